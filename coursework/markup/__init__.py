@@ -1,1 +1,1 @@
-"""One small tree of formulas and texts, and its printers: Typst, MathML, LaTeX, spoken, plain."""
+"""Tree of formulas and texts, and its printers: Typst, MathML, LaTeX, spoken, plain."""

@@ -1,4 +1,4 @@
-"""The LaTeX that a statement may use, read into a small tree.
+"""Parser from the LaTeX of a statement to a small tree.
 
 Every back end writes from this one tree, so a formula that is read here prints everywhere.
 Only the macros listed below are read; any other is refused by its name.
@@ -87,7 +87,7 @@ _CHARACTERS = {
 
 @dataclass(frozen=True)
 class Symbol:
-    """One character and its kind: letter, digits, binary, relation, opening, ..."""
+    """Character and its kind: letter, digits, binary, relation, opening, ..."""
 
     text: str
     kind: str
@@ -95,7 +95,7 @@ class Symbol:
 
 @dataclass(frozen=True)
 class Num:
-    """A number that the language prints its own way: sign, digits with a point, power of ten."""
+    """Number printed in the language's own way: sign, digits with a point, power of ten."""
 
     negative: bool
     digits: str
@@ -104,7 +104,7 @@ class Num:
 
 @dataclass(frozen=True)
 class Name:
-    """A named function; with limits, its subscript goes below."""
+    """Named function; with limits, its subscript goes below."""
 
     text: str
     limits: bool = False
@@ -160,7 +160,7 @@ class Script:
 
 @dataclass(frozen=True)
 class Fence:
-    """Delimiters that grow with what they hold; an empty one is not drawn."""
+    """Delimiters that grow with their content; an empty one is not drawn."""
 
     left: str
     body: Node
@@ -179,7 +179,7 @@ Node: TypeAlias = (
 
 
 def _upright(node: Node) -> Node:
-    """Return the same with each run of letters made one word: ``mm`` is a unit, not two variables.
+    """Return the node with each run of letters as one word: ``mm`` is a unit, not two variables.
 
     A dot between two units stands as close as their letters.
     """
@@ -253,7 +253,7 @@ class _Parser:
             raise self.refuse(f"{token} expected after {after}, found {found or 'the end'}")
 
     def raw_group(self, macro: str) -> str:
-        """Return the characters between the braces that follow a macro, as they stand."""
+        """Return the characters between the braces after a macro, unchanged."""
         self.expect("{", macro)
         start = self.at
         depth = 1
@@ -301,7 +301,7 @@ class _Parser:
         return Script(base, below, above, primes)
 
     def argument(self, macro: str) -> Node:
-        """Return one group, or one character or macro as LaTeX takes it."""
+        """Return a group, or a single character or macro as in LaTeX."""
         token = self.peek()
         if token in ("", "}", "&", "^", "_", r"\\", r"\right", r"\end"):
             raise self.refuse(f"nothing after {macro}")

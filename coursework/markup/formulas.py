@@ -16,7 +16,7 @@ _UNITS_THAT_TOUCH = ("°", "′", "″")
 
 
 def check_formula(tex: str) -> None:
-    """Refuse what a statement may not use, by its name, with :class:`BadStatement`."""
+    """Refuse a formula that a statement may not use; :class:`BadStatement` names what is wrong."""
     parse(tex)
 
 
@@ -30,8 +30,7 @@ def number_text(number: str, lang: str) -> str:
 
 
 def after_number(unit: str) -> str:
-    """Return the unit as it follows a number in running text: degrees touch it, others stand a narrow space
-    off."""
+    """Return the unit as printed after a number: degrees without a space, others after a narrow one."""
     return unit if unit in ("", *_UNITS_THAT_TOUCH) else NARROW_SPACE + unit
 
 

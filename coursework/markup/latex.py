@@ -1,4 +1,4 @@
-"""Formulas as LaTeX that stands in any document with amsmath and amssymb, its numbers written out.
+"""Formulas as LaTeX for any document with amsmath and amssymb, with numbers written out.
 
 The source is written from the tree, not copied: what the tree does not hold does not reach the file.
 """
@@ -110,8 +110,8 @@ def _character(char: str) -> str:
 
 @lru_cache(maxsize=4096)
 def to_latex(tex: str, lang: str) -> str:
-    r"""Return the formula without its dollars: ``
-    um{4.21}`` is ``4{,}21`` where the language has a comma."""
+    r"""Return the formula as LaTeX without dollars, its numbers written out: ``4{,}21`` where the language has
+    a comma."""
     return _latex(parse(tex), lang)
 
 
@@ -197,7 +197,8 @@ def to_notebook(tex: str, lang: str) -> str:
 
 
 def _figures_raised(found: re.Match[str]) -> str:
-    r"""Return ``\text{rad/s²}`` with its figure as an exponent: KaTeX's own letters have no raised one."""
+    r"""Return a text group such as ``\text{rad/s²}`` with its raised digits as exponents, since KaTeX has no
+    such glyphs."""
     text = re.sub("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+", _exponent, found.group())
     return text.replace(r"\text{}", "")
 

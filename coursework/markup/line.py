@@ -1,4 +1,4 @@
-"""A formula as one line of plain text."""
+"""Formulas as one line of plain text."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _grouped(node: Node, lang: str) -> str:
 
 
 def _raised(text: str, table: Mapping[int, int], mark: str) -> str:
-    """Return the small characters where Unicode has them all, else the mark and the text."""
+    """Return the text in small Unicode characters where all exist, else the mark and the text."""
     if all(ord(c) in table for c in text):
         return text.translate(table)
     return mark + (text if len(text) == 1 else f"({text})" if mark == "^" else text)

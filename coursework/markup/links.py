@@ -1,4 +1,4 @@
-"""Links of a course's texts: to an exercise, to a lesson or a section of one, and terms of an index.
+"""Links in the texts of a course: to an exercise, to a lesson or a section of one, and terms of an index.
 
 ``[the construction](exercise:two_circles)``, ``[positions](lesson:positions#3)``, ``[dead points](#index "dead point")``.
 """
@@ -20,7 +20,7 @@ TERM = "term"
 
 @dataclass(frozen=True)
 class Link:
-    """A link by its words: to an exercise or a lesson, or a term with its entry in the index."""
+    """Link to an exercise or a lesson, or a term with its entry in the index."""
 
     said: str
     kind: str  #: exercise, lesson or term
@@ -29,7 +29,7 @@ class Link:
 
 
 def relinked(text: str, write: Callable[[Link], str]) -> str:
-    """Return the text with each of its links written anew; code is left as it is."""
+    """Replace each link of a text by the result of ``write``; leave code unchanged."""
     pieces = _VERBATIM.split(text)
     pieces[::2] = [_LINK.sub(lambda found: write(_link(found)), piece) for piece in pieces[::2]]
     return "".join(pieces)

@@ -1,4 +1,4 @@
-"""The Markdown of statements, for every back end.
+"""Markdown of statements and its printers for every back end.
 
 Markdown here is CommonMark with tables and ``$formulas$``; raw HTML is text like any other. Each
 writer escapes whatever the text holds for its back end, so a ``#`` or a ``<`` prints as itself.
@@ -36,12 +36,12 @@ def _reader() -> MarkdownIt:
 
 @lru_cache(maxsize=1024)
 def tree(markdown: str) -> SyntaxTreeNode:
-    """Return the tree of a text."""
+    """Return the syntax tree of a text."""
     return SyntaxTreeNode(_reader().parse(markdown))
 
 
 def no_image(source: str) -> BadStatement:
-    """What is said of a text that shows an image."""
+    """Return the error for a text that shows an image."""
     return BadStatement(
         f"the text shows the image {source!r}: a sheet has one figure, drawn by its exercise, and no other"
     )
@@ -72,8 +72,8 @@ SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand 
 
 
 def drawable(text: str, drawn: Callable[[str], bool] = lambda char: False) -> str:
-    """Return the text with a square for each character that a PDF sheet cannot draw; ``drawn`` tells of those
-    that only other fonts than the typesetter's own may draw."""
+    """Replace each character that a PDF sheet cannot draw by a square; ``drawn`` accepts characters of
+    fallback fonts."""
     return _UNDRAWN.sub(lambda found: found[0] if drawn(found[0]) else SUBSTITUTE, text)
 
 
@@ -97,15 +97,15 @@ def _typst_plain(text: str, lang: str) -> str:
 
 
 def typst_string(text: str) -> str:
-    """Return A Typst string literal."""
+    """Return a Typst string literal."""
     return (
         '"' + _ABOVE.sub(SUBSTITUTE, text).replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
     )
 
 
 def typst_typed(text: str) -> str:
-    """What somebody typed, as a Typst expression that prints these characters and no others: the typesetter puts no
-    hyphen, quotation mark or space of the language in their place."""
+    """Return typed text as a Typst expression that prints exactly these characters, without automatic
+    hyphens, quotation marks or spaces."""
     pieces = _VECTOR.split(text.replace("\r\n", "\n"))
     shown = [f"#{typst_string(piece)}" for piece in pieces]
     shown[1::2] = [_vector(piece) for piece in pieces[1::2]]
@@ -208,7 +208,7 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
 
 
 def _leads(node: SyntaxTreeNode) -> bool:
-    """Return whether a paragraph stands before a formula on a line of its own, or a table."""
+    """Return whether a paragraph precedes a displayed formula or a table."""
     after = node.next_sibling
     return after is not None and after.type in ("math_block", "math_block_label", "table")
 
@@ -225,13 +225,13 @@ def _typst_link(href: str, title: str, inside: str) -> str:
 
 
 def sort_key(entry: str) -> str:
-    """What an entry of an index is sorted by: its letters without accents or capitals."""
+    """Return the sort key of an index entry: its letters without accents or capitals."""
     plain = unicodedata.normalize("NFD", entry.casefold())
     return "".join(char for char in plain if not unicodedata.combining(char))
 
 
 def anchor(entry: str) -> str:
-    """Return the place of a term in a page: its sort key in letters, digits and hyphens."""
+    """Return the HTML id of a term: its sort key in letters, digits and hyphens."""
     return "term-" + re.sub(r"[^a-z0-9]+", "-", sort_key(entry)).strip("-")
 
 
@@ -267,20 +267,19 @@ def to_html(markdown: str, lang: str) -> str:
 
 
 def html_inline(markdown: str, lang: str) -> str:
-    """Return Markdown of one paragraph as HTML without the ``<p>``; more than one paragraph keeps them."""
+    """Return Markdown of one paragraph as HTML without ``<p>``; several paragraphs keep theirs."""
     shown = to_html(markdown, lang)
     one = shown.startswith("<p>") and shown.endswith("</p>") and shown.count("<p>") == 1
     return shown.removeprefix("<p>").removesuffix("</p>") if one else shown
 
 
 def html_words(markdown: str, lang: str) -> str:
-    """Return the same without its tags: what is left of a line and its formulas where a page is made plain
-    text."""
+    """Return Markdown as inline HTML with its tags removed, for pages turned into plain text."""
     return unescape(re.sub(r"<[^>]*>", "", html_inline(markdown, lang)))
 
 
 def formula_words(markdown: str, lang: str) -> str:
-    """How a text that is one formula is read aloud; of any other, nothing."""
+    """Return the spoken words of a text that is a single formula; empty for any other text."""
     formula = _ONE_FORMULA.fullmatch(markdown)
     return spoken(formula[1].strip(), lang) if formula else ""
 

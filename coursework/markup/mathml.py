@@ -1,4 +1,4 @@
-"""A formula as MathML."""
+"""Formulas as MathML."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def _is_name(node: Node) -> bool:
 
 
 def _thin_space_between(left: Node, right: Node) -> bool:
-    """Return a function's name stands off from what it multiplies and from an argument without brackets."""
+    """Return whether a thin space separates a function's name from a factor or an argument without brackets."""
 
     def is_term(node: Node, bracket: str) -> bool:
         if isinstance(node, Symbol):
@@ -114,7 +114,7 @@ def _thin_space_between(left: Node, right: Node) -> bool:
 
 
 def _is_sign(left: Node | None, right: Symbol) -> bool:
-    """Return a plus or a minus after ``=``, ``(`` or a comma is a sign: it stands close to its number."""
+    """Return whether a plus or minus is a sign, after ``=``, ``(`` or a comma, set close to its number."""
     return (
         right.text in f"+±{MINUS}"
         and isinstance(left, Symbol)
@@ -181,7 +181,8 @@ def _fenced(left: str, body: str, right: str, grows: bool = True) -> str:
 
 
 def _is_tall(node: Node) -> bool:
-    """Return whether brackets around it must grow; a browser leaves gaps beside those that could and do not."""
+    """Return whether brackets around a node must stretch; browsers leave gaps beside stretchable ones that do
+    not."""
     match node:
         case Fraction() | Root() | Grid():
             return True

@@ -1,7 +1,7 @@
-"""A formula is turned into a back end's text once for all its numbers.
+"""Cache of printed formulas with holes in place of their numbers.
 
-The formulas of a class differ in their numbers alone: what is made of a formula with holes in place of the
-numbers is remembered, and a student's numbers are put in.
+The formulas of a class differ in their numbers alone. Each formula is printed once with holes; a student's
+numbers are then filled in.
 """
 
 from __future__ import annotations
@@ -26,8 +26,7 @@ Turn = Callable[[str, str], str]
 
 
 def once_for_all_numbers(turn: Turn) -> Turn:
-    """Return the same function of a formula and a language, which walks a formula once whatever its numbers
-    are.
+    """Return a cached version of a formula printer, which parses a formula once for all its numbers.
 
     Where ``turn`` makes more of a number's digits than to print them (small ones of an index, say), it is called for
     each formula.

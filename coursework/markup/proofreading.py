@@ -1,4 +1,4 @@
-"""What of a text no sheet could print as it was meant: a dollar without its partner, a formula that cannot be read."""
+"""Checks of a text for what a sheet cannot print: a dollar without its partner, an unreadable formula."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SHOWN = 40  #: characters of a paragraph that a message quotes
 
 
 def pair_dollars(markdown: str, place: Callable[[str], str]) -> None:
-    r"""Refuse a paragraph with an odd number of dollars; one that is written ``\$`` is none, nor one in code.
+    r"""Refuse a paragraph with an odd number of dollars; ``\$`` does not count, nor does code.
 
     ``place`` says where a piece of the text stands: the file, and the line if it is known.
     """
@@ -39,7 +39,7 @@ def _dollars(text: str) -> int:
 
 
 def read_formulas(markdown: str, place: Callable[[str], str]) -> None:
-    """Refuse a text with a formula that cannot be read, and say where it stands."""
+    """Refuse a text with an unreadable formula, and report its position."""
     from coursework.markup.formula_tree import parse
 
     for tex in _formulas(markdown):

@@ -1,4 +1,4 @@
-"""What a cell shows: Markdown and pictures in a notebook, plain text anywhere else."""
+"""Display of a notebook cell: Markdown and pictures in a notebook, plain text elsewhere."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from coursework.markup.markdown import to_notebook_markdown, to_text
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawing as SVG, and what it shows, for who does not see it."""
+    """SVG drawing with its description for readers who cannot see it."""
 
     svg: str
     said: str
 
     @property
     def html(self) -> str:
-        """The drawing as an image: front ends show it as well in a notebook that they do not trust."""
+        """HTML image of the drawing, which front ends show in untrusted notebooks too."""
         data = base64.b64encode(self.svg.encode()).decode()
         return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.said)}">'
 
 
 class Shown:
-    """Pieces of one answer, in order: texts in the Markdown of statements, and pictures.
+    """Pieces of an answer in order: texts in the Markdown of statements, and pictures.
 
-    As the last line of a notebook's cell it is displayed, each piece by itself: formulas are set there, which
-    inside HTML not every front end does. ``str()`` gives plain text.
+    The last line of a notebook cell displays it piece by piece, since some front ends set no formulas inside
+    HTML. ``str()`` gives plain text.
     """
 
     def __init__(self, lang: str, *pieces: str | Picture):
@@ -38,7 +38,7 @@ class Shown:
 
     @property
     def markdown(self) -> str:
-        """The texts as a notebook reads them, without the pictures."""
+        """Markdown of the texts for a notebook, without the pictures."""
         texts = (p for p in self.pieces if isinstance(p, str))
         return "\n\n".join(to_notebook_markdown(text, self.lang) for text in texts)
 

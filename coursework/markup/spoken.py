@@ -1,4 +1,4 @@
-"""A formula in words, for those who hear it."""
+"""Formulas in words, to be heard."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from coursework.markup.number_holes import once_for_all_numbers
 
 @once_for_all_numbers
 def spoken(tex: str, lang: str) -> str:
-    """Return the formula in words, for those who hear the sheet: ``θ_4`` is ``theta 4``."""
+    """Return the formula in words, to be read aloud: ``θ_4`` is ``theta 4``."""
     said = _spoken(parse(tex), lang, words(lang)["formula"])
     return re.sub(r"\s+", " ", said).strip() or words(lang)["formula"]["empty"]
 
 
 def is_simple(node: Node) -> bool:
-    """Return whether the words of a node need no end mark: one symbol, or one symbol with a subscript."""
+    """Return whether the words of a node need no end mark: a symbol, alone or with a subscript."""
     match node:
         case Row(items):
             return len(items) <= 1 and all(map(is_simple, items))

@@ -1,4 +1,4 @@
-"""A formula as Typst mathematics."""
+"""Formulas as Typst mathematics."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def to_typst(tex: str, lang: str) -> str:
 
 
 def _typst_join(parts: Iterable[str]) -> str:
-    """Return the typst prints the blanks around a quoted text, so none is written beside a quote."""
+    """Join parts without blanks beside quoted text, where Typst would print them."""
     joined = ""
     for part in filter(None, parts):
         touch = not joined or joined.endswith('"') or part.startswith('"')
