@@ -1,4 +1,4 @@
-"""What every element of a figure is, and the shapes that several share."""
+"""Base class of the elements of a figure, and shapes that several share."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Bars = tuple[tuple[complex, complex], ...]
 
 @dataclass(frozen=True)
 class Element:
-    """A part of a figure, in mechanism coordinates: complex numbers, mm, y up; degrees from +x."""
+    """Element of a figure, in mechanism coordinates: complex numbers, mm, y up; degrees from +x."""
 
     def __post_init__(self) -> None:
         for name, kind in self._told():
@@ -35,7 +35,7 @@ class Element:
     @classmethod
     @lru_cache(maxsize=128)
     def _told(cls) -> tuple[tuple[str, str], ...]:
-        """Return the name of each value and its type, as written."""
+        """Return the name of each field and its type, as written."""
         return tuple((item.name, str(item.type)) for item in fields(cls))
 
     def _checked(self, name: str, kind: str) -> object:
@@ -52,7 +52,7 @@ class Element:
         return value
 
     def settled(self, decimals: int) -> Element:
-        """Return the element with its points and numbers rounded to so many decimals."""
+        """Return the element with its points and numbers rounded to ``decimals`` decimals."""
         told = {name: getattr(self, name) for name, _ in self._told()}
         changed = {
             name: new for name, old in told.items() if repr(new := _rounded(old, decimals)) != repr(old)
@@ -64,7 +64,7 @@ class Element:
         return tuple(z for name, _ in self._told() for z in _points(getattr(self, name)))
 
     def bars(self) -> Bars:
-        """Return the segments of the links, which labels and supports of pins keep away from."""
+        """Return the segments of links, which labels and pin supports avoid."""
         return ()
 
     def draw(self, paper: Paper) -> None:

@@ -1,4 +1,4 @@
-"""Charts of tables and measurements, by matplotlib: an extra that only charts need."""
+"""Charts of tables and measurements by matplotlib, an optional dependency of charts alone."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _pyplot() -> Any:
 
 
 def lacking() -> str:
-    """Why no chart can be drawn here; nothing where they can."""
+    """Return the reason why no chart can be drawn; empty where matplotlib is installed."""
     try:
         _pyplot()
     except NotAtHand as why:
@@ -48,7 +48,7 @@ def curves(
     units: Mapping[str, str],
     title: str,
 ) -> bytes:
-    """Return the curves over one variable, a panel for each unit, as SVG; the same data give the same bytes."""
+    """Return curves over one variable as SVG, a panel for each unit; the same data give the same bytes."""
     pyplot = _pyplot()
     by_unit: dict[str, list[str]] = {}
     for name in columns:
@@ -74,7 +74,7 @@ def curves(
 
 
 def _without_jumps(degrees: np.ndarray) -> np.ndarray:
-    """Return the line of a direction is cut where it passes from 180 to -180."""
+    """Return the degrees with a gap (NaN) where a direction passes from 180 to -180."""
     values = np.array(degrees, dtype=float)
     values[1:][np.abs(np.diff(degrees)) > 180] = np.nan
     return values
@@ -89,7 +89,7 @@ def _svg(pyplot: Any, figure: Any) -> bytes:
 
 
 def _fit_title(figure: Any, panel: Any) -> None:
-    """A title that is wider than its chart stands over the whole of it, on as many lines as it takes."""
+    """Replace a title wider than its panel by one over the whole chart, on as many lines as it takes."""
     title, room = panel.title, figure.bbox.width
     if title.get_window_extent(figure.canvas.get_renderer()).width <= _SHORT * room:
         return
@@ -110,7 +110,7 @@ def _fit_title(figure: Any, panel: Any) -> None:
 
 
 def _lines(text: str, fits: Callable[[str], bool]) -> list[str]:
-    """Return a text on lines that fit; a word longer than a line is cut."""
+    """Break a text into lines that fit; a word longer than a line is cut."""
     lines = [""]
     for word in text.split(" "):
         longer, rest = f"{lines[-1]} {word}".strip(), word
@@ -135,7 +135,7 @@ def scatter(
     joined: bool = True,
     whole: bool = False,
 ) -> bytes:
-    """Return the named series of points on two logarithmic axes, as SVG; ``whole`` numbers stand on a plain
+    """Return named series of points on two logarithmic axes, as SVG; ``whole`` puts whole numbers on a linear
     axis."""
     pyplot = _pyplot()
     marks = "osD^v<>Px*hp+d"
@@ -153,7 +153,7 @@ def scatter(
 
 
 def formula_label(tex: str, otherwise: str) -> str:
-    """Return a formula as a label of a chart; a plain text where the charts' own typesetter cannot set it."""
+    """Return a formula as a chart label; the plain text ``otherwise`` where matplotlib cannot set it."""
     _pyplot()
     from matplotlib.mathtext import MathTextParser
 
@@ -172,17 +172,17 @@ _UNDRAWN = re.compile(
 
 
 def drawable_label(text: str) -> str:
-    """Return the text with a square for each character that the charts' font does not draw."""
+    """Replace each character that the chart font cannot draw by a square."""
     return _UNDRAWN.sub("\N{WHITE SQUARE}", text)
 
 
 def plain_label(text: str) -> str:
-    """Return a text as a label of a chart: its dollars are dollars."""
+    """Return a text as a chart label, with its dollar signs escaped."""
     return text.replace("$", r"\$")
 
 
 def bars(rows: Sequence[tuple[str, float, str]], title: str, horizontal: str, full: float = 0.0) -> bytes:
-    """Return the horizontal bars, the first at the top, as SVG.
+    """Return a chart of horizontal bars, the first at the top, as SVG.
 
     A row is a label, a length, and what is written at the bar's end; the axis reaches ``full``, or a
     little beyond the longest bar.
@@ -205,7 +205,7 @@ def bars(rows: Sequence[tuple[str, float, str]], title: str, horizontal: str, fu
 
 
 def _whole_ticks(axis: Any, full: float) -> None:
-    """Five steps up to ``full``; without it, whole numbers."""
+    """Set five steps up to ``full``; without it, whole numbers."""
     from matplotlib.ticker import MaxNLocator
 
     if full:
@@ -217,7 +217,7 @@ def _whole_ticks(axis: Any, full: float) -> None:
 def histogram(
     counts: Sequence[int], edges: Sequence[float], title: str, horizontal: str, vertical: str
 ) -> bytes:
-    """Return the counts between edges, one edge more than counts, as SVG; each count stands on its column."""
+    """Return a histogram as SVG, with one edge more than counts; each column carries its count."""
     pyplot = _pyplot()
     with pyplot.rc_context(STYLE):
         figure, panel = pyplot.subplots(figsize=(6.6, 2.9), layout="constrained")

@@ -1,6 +1,6 @@
-"""The parts a figure is made of: each knows its extent, its bars, and how to draw itself.
+"""Elements of a figure: each computes its extent and its bars, and draws itself.
 
-Their names are lower-case since an instructor writes them as one writes a function.
+Class names are lower-case, since authors write them like functions.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ground_pivot(Element):
-    """A revolute joint with the frame: a pin on a hatched support."""
+    """Revolute joint with the frame: a pin on a hatched support."""
 
     p: complex
     label: str | None = None
@@ -61,7 +61,7 @@ class ground_pivot(Element):
 
 @dataclass(frozen=True)
 class pin(Element):
-    """A revolute joint between moving bodies."""
+    """Revolute joint between moving bodies."""
 
     p: complex
     label: str | None = None
@@ -74,7 +74,7 @@ class pin(Element):
 
 @dataclass(frozen=True)
 class point(Element):
-    """A point marked by a dot."""
+    """Point marked by a dot."""
 
     p: complex
     label: str | None = None
@@ -88,7 +88,7 @@ class point(Element):
 
 @dataclass(frozen=True)
 class contact(Element):
-    """A point of contact between two bodies: a larger dot."""
+    """Point of contact between two bodies: a larger dot."""
 
     p: complex
     label: str | None = None
@@ -102,7 +102,7 @@ class contact(Element):
 
 @dataclass(frozen=True)
 class bar(Element):
-    """A link between the pins ``points``: see :func:`link`."""
+    """Link between the pins ``points``: see :func:`link`."""
 
     points: tuple[complex, ...]
     label: str | None = None
@@ -131,7 +131,7 @@ class bar(Element):
 
 
 def _gusset(paper: Paper, before: complex, corner: complex, after: complex) -> None:
-    """A small filled triangle: the two bars are one body."""
+    """Draw a small filled triangle in a corner: the two bars are one body."""
     legs = [corner + 2.6 * (z - corner) / (abs(z - corner) or 1.0) for z in (before, after)]
     paper.draw(Path((corner, *legs), THIN, BLACK, closed=True, layer=BARS))
 
@@ -147,7 +147,7 @@ def link(p: complex, q: complex, *more: complex, label: str | None = None, weld:
 
 @dataclass(frozen=True)
 class slot_link(Element):
-    """A slotted guide from ``p`` to ``q``: a block slides between its two edges."""
+    """Slotted guide from ``p`` to ``q``: a block slides between its two edges."""
 
     p: complex
     q: complex
@@ -168,7 +168,7 @@ class slot_link(Element):
 
 @dataclass(frozen=True)
 class slider(Element):
-    """A block centred on ``p``, its length along ``direction`` (degrees). Its pin, if any, is a ``pin``."""
+    """Block centred on ``p``, its length along ``direction`` (degrees). Its pin, if any, is a ``pin``."""
 
     p: complex
     direction: float = 0.0
@@ -183,7 +183,7 @@ class slider(Element):
 
 @dataclass(frozen=True)
 class rail(Element):
-    """A fixed guide for a slider whose centre moves from ``p`` to ``q``.
+    """Fixed guide for a slider whose centre moves from ``p`` to ``q``.
 
     The guide touches the block on the right of p→q, below when p→q goes to the right, and
     is hatched on its far side.
@@ -204,7 +204,7 @@ class rail(Element):
 
 @dataclass(frozen=True)
 class section(Element):
-    """A solid cut by the plane of the figure: a polygon with hatching.
+    """Solid cut by the plane of the figure: a polygon with hatching.
 
     ``angle`` (degrees) tells neighbouring bodies apart: 45 for one, -45 for the other.
     """
@@ -234,8 +234,8 @@ def _sides(points: tuple[complex, ...]) -> Bars:
 
 
 def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[complex, ...]:
-    """Return the corners of a gap in the hatching for a label, where the polygon is widest; none if it fits
-    nowhere."""
+    """Return the corners of a gap in the hatching for a label, where the polygon is widest; nothing if it
+    does not fit."""
     from coursework.figures.placing import distance, within
 
     half = complex(box[0] / 2 + 1, box[1] / 2 + 1)
@@ -261,8 +261,8 @@ def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[comple
 def _hatching(
     outlines: tuple[tuple[complex, ...], ...], way: complex, spacing: float
 ) -> list[tuple[complex, complex]]:
-    """Return the segments of parallel lines inside a polygon with holes, by the even-odd rule in the lines'
-    own axes."""
+    """Return the segments of parallel lines inside a polygon with holes (even-odd rule), in the lines' own
+    axes."""
     sides = [(a * way.conjugate(), b * way.conjugate()) for points in outlines for a, b in _sides(points)]
     low, high = min(a.imag for a, _ in sides), max(a.imag for a, _ in sides)
     segments = []
@@ -278,13 +278,13 @@ def _hatching(
 
 
 def _by_two(cuts: list[float]) -> list[tuple[float, float]]:
-    """Return a line enters and leaves: cuts go by two."""
+    """Return the cuts in pairs: where a line enters and where it leaves."""
     return list(zip(cuts[::2], cuts[1::2], strict=True))
 
 
 @dataclass(frozen=True)
 class ball(Element):
-    """A ball, or a disc, in section: a tinted circle."""
+    """Ball, or disc, in section: a tinted circle."""
 
     center: complex
     radius: Positive
@@ -302,7 +302,7 @@ class ball(Element):
 
 @dataclass(frozen=True)
 class wheel(Element):
-    """A wheel or a cam: a tinted disc beneath the bars, the supports and the pins."""
+    """Wheel or cam: a tinted disc beneath the bars, the supports and the pins."""
 
     center: complex
     radius: Positive
@@ -320,7 +320,7 @@ class wheel(Element):
 
 @dataclass(frozen=True)
 class profile(Element):
-    """A body of any closed outline, such as a cam: tinted, beneath the bars, the supports and the pins."""
+    """Body of any closed outline, such as a cam: tinted, beneath the bars, the supports and the pins."""
 
     points: tuple[complex, ...]
     label: str | None = None

@@ -1,4 +1,4 @@
-"""A figure: elements, scaled to a paper box, with their labels placed."""
+"""Figure: elements, scaled to a paper box, with their labels placed."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _GROWTHS, _WORTH_GROWING = 4, 1.05  #: so often a drawing is laid out once more 
 
 
 class LabelBox(NamedTuple):
-    """Where a label is printed: mm on paper from the top left corner of the figure, y down."""
+    """Box of a printed label: mm on paper from the top left corner of the figure, y down."""
 
     label: str
     x: float
@@ -37,7 +37,7 @@ class LabelBox(NamedTuple):
 
 @dataclass(frozen=True)
 class _Layout:
-    """A drawing at one scale: paper mm, y up; ``low`` and ``high`` are the corners of the frame."""
+    """Drawing at one scale: paper mm, y up; ``low`` and ``high`` are the corners of the frame."""
 
     scale: float
     ink: tuple[Ink, ...]
@@ -61,7 +61,7 @@ class _Layout:
         return {}
 
     def svg(self, count: int | None, lettering: Lettering) -> str:
-        """What the first elements drew, in the frame of them all."""
+        """Return the first ``count`` elements as SVG, in the frame of all."""
         from coursework.figures.writing import pieces, written
 
         if lettering not in self._written:
@@ -127,8 +127,7 @@ class Figure:
 
     @cached_property
     def _settled(self) -> tuple[Element, ...]:
-        """The elements to ten digits of the drawing's extent: what is drawn, and every choice on the way, hangs on no
-        last bit."""
+        """Elements rounded to ten digits of the drawing's extent, so that the layout depends on no last bit."""
         points = [z for element in self.elements for z in element.reach()]
         size = max((max(abs(z.real), abs(z.imag)) for z in points), default=0.0)
         if not size > 0:
@@ -175,8 +174,7 @@ class Figure:
         raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
 
     def _grown(self, layout: _Layout, size: complex, refused: float) -> _Layout:
-        """Return a layout that fits, grown into what its labels have shown to be left, below a scale that was
-        refused."""
+        """Return a larger layout that fits, using the room that the labels leave, below a ``refused`` scale."""
         for _ in range(_GROWTHS):
             symbols = layout.high - layout.low - layout.scale * size
             wider = min(self._fitting(size, symbols), (layout.scale + refused) / 2)
@@ -201,8 +199,7 @@ class Figure:
         return settled(min(scales))
 
     def _drawn(self, scale: float) -> tuple[Paper, list[int], list[int]]:
-        """Return the ink and wishes for labels at a scale; and the element, by its place, that each comes
-        from."""
+        """Return the ink and the label requests at a scale, and for each the index of its element."""
         from coursework.figures.paper import Paper
 
         low, high = self._extent
@@ -229,12 +226,11 @@ class Figure:
         return _Layout(scale, ink, labels, *corners, tuple(drew), tuple(named))
 
     def fitted(self, width: float, height: float) -> Figure:
-        """Return the figure laid out for a room of so many mm: the bars shrink or grow, the letters keep
-        their size.
+        """Return the figure laid out for a room in mm: the bars scale, the letters keep their size.
 
-        A box told by the author is not exceeded, and a figure with a scale of its own stays as it is. So does
-        one whose symbols and labels alone are larger than the room: who prints it makes it smaller as a whole.
-        Laid out once for each room.
+        A box given by the author is not exceeded, and a figure with a fixed scale is unchanged. So is one
+        whose symbols and labels alone exceed the room: the printer then scales it as a whole. Each room is
+        laid out once.
         """
         if self.fixed_scale is not None:
             return self
@@ -257,9 +253,9 @@ class Figure:
         return {}
 
     def beginning(self, count: int) -> Beginning:
-        """Return the first elements of the figure, each where it is in the whole and in the same frame.
+        """Return the first elements of the figure, placed as in the whole and in the same frame.
 
-        So a construction is shown step by step, laid out once.
+        The steps of a construction use it, laid out once.
         """
         return Beginning(self, count)
 
@@ -294,23 +290,24 @@ class Figure:
         return self._layout.svg(None, as_text)
 
     def outlined_svg(self) -> str:
-        """Return the same with labels as outlines: looks the same on a machine without the font."""
+        """Return the drawing as SVG with labels as outlines, independent of installed fonts."""
         from coursework.figures.writing import as_outlines
 
         return self._layout.svg(None, as_outlines)
 
     def bare_svg(self) -> str:
-        """Return the same without the letters of its labels, for who sets them over it: see :meth:`letters`."""
+        """Return the drawing as SVG without the letters of its labels, which the caller sets over it: see
+        :meth:`letters`."""
         from coursework.figures.writing import left_out
 
         return self._layout.svg(None, left_out)
 
     def letters(self) -> tuple[Letters, ...]:
-        """Return the letters of the labels, each with its place on the drawing."""
+        """Return the letters of the labels with their positions on the drawing."""
         return self._layout.letters(None)
 
     def _repr_svg_(self) -> str:
-        """What a notebook shows of a figure that ends a cell."""
+        """Return the SVG that a notebook shows."""
         return self.outlined_svg()
 
     def png(self, ppi: float = 200) -> bytes:
@@ -328,7 +325,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Beginning:
-    """The first elements of a figure: a step of a construction."""
+    """First elements of a figure: a step of a construction."""
 
     whole: Figure
     count: int
@@ -357,7 +354,7 @@ class Beginning:
         return self.whole._layout.svg(self.count, left_out)
 
     def letters(self) -> tuple[Letters, ...]:
-        """Return the letters of the labels, each with its place on the drawing."""
+        """Return the letters of the labels with their positions on the drawing."""
         return self.whole._layout.letters(self.count)
 
     def _repr_svg_(self) -> str:
@@ -365,8 +362,10 @@ class Beginning:
 
 
 def _bounds(ink: Sequence[Ink], points: Sequence[complex]) -> tuple[complex, complex]:
-    """Return the corners of the frame round ink and points, with its margin, on tenths of a mm, so that
-    rounded points stay rounded in the file."""
+    """Return the corners of the frame round ink and points, with its margin, on tenths of a mm.
+
+    Rounded points thus stay rounded in the file.
+    """
     corners = list(points)
     for item in ink:
         half = complex(item.width, item.width) / 2

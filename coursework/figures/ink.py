@@ -1,4 +1,4 @@
-"""What is drawn, in mm on paper, y up: paths, discs and arcs, and the writing of them as SVG."""
+"""Drawn shapes in mm on paper, y up: paths, discs and arcs, with their SVG."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Number = TypeVar("Number", float, complex)
 
 
 def number(x: float) -> str:
-    """Return a length in mm, to the hundredth at most, without idle zeros."""
+    """Format a length in mm, to the hundredth at most, without trailing zeros."""
     text = f"{rounded(x, 2):.2f}".rstrip("0").rstrip(".")
     return text
 
@@ -38,18 +38,18 @@ def pair(z: complex) -> str:
 
 
 def added(numbers: Iterable[Number]) -> Number | float:
-    """Return the numbers added one after the other: how ``sum`` rounds depends on the version of Python."""
+    """Sum the numbers from left to right; the rounding of ``sum`` depends on the version of Python."""
     return reduce(operator.add, numbers, 0.0)
 
 
 def turn(degrees: float) -> complex:
-    """Return the unit vector at an angle."""
+    """Return the unit vector at an angle in degrees."""
     return cmath.rect(1.0, math.radians(degrees))
 
 
 @lru_cache(maxsize=64)
 def _round(sides: int) -> tuple[complex, ...]:
-    """Return the unit vectors to the corners of a regular polygon, the first of them again at the end."""
+    """Return the unit vectors to the corners of a regular polygon, the first one repeated at the end."""
     return tuple(turn(360 * k / sides) for k in range(sides + 1))
 
 
@@ -62,7 +62,7 @@ def _paint(width: float, fill: str, dash: str = "") -> str:
 
 @dataclass(frozen=True)
 class Path:
-    """A broken line, or a polygon when closed."""
+    """Polyline, or polygon when closed."""
 
     points: tuple[complex, ...]
     width: float = EDGE
@@ -82,7 +82,7 @@ class Path:
 
 @dataclass(frozen=True)
 class Disc:
-    """A circle, filled or not."""
+    """Circle, filled or not."""
 
     center: complex
     radius: float
@@ -104,7 +104,7 @@ class Disc:
 
 @dataclass(frozen=True)
 class Arc:
-    """An arc from one angle to another, degrees, counter-clockwise when the second is larger."""
+    """Arc from one angle to another, degrees, counter-clockwise when the second is larger."""
 
     center: complex
     radius: float

@@ -1,4 +1,4 @@
-"""Elements that say something about a mechanism: axes, angles, dimensions, vectors, notes, traces."""
+"""Annotations of a mechanism: axes, angles, dimensions, vectors, notes, traces."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class note(Element):
-    """Words or a symbol centred on a point if there is room, else near it; nothing is drawn there."""
+    """Words or a symbol centred on a point if there is room, else near it; nothing is drawn at the point."""
 
     p: complex
     label: str | None
@@ -44,7 +44,7 @@ class note(Element):
 
 @dataclass(frozen=True)
 class line(Element):
-    """A plain line."""
+    """Plain line."""
 
     p: complex
     q: complex
@@ -60,7 +60,7 @@ class line(Element):
 
 @dataclass(frozen=True)
 class centre_line(Element):
-    """An axis of symmetry or of rotation, chain-dotted."""
+    """Axis of symmetry or of rotation, chain-dotted."""
 
     p: complex
     q: complex
@@ -74,7 +74,7 @@ class centre_line(Element):
 
 @dataclass(frozen=True)
 class circle(Element):
-    """A circle: the path of a pin, a construction, a gear's pitch circle."""
+    """Circle: the path of a pin, a construction, a gear's pitch circle."""
 
     center: complex
     radius: Positive
@@ -92,7 +92,7 @@ class circle(Element):
 
 @dataclass(frozen=True)
 class arc(Element):
-    """An arc, counter-clockwise when ``to_deg`` is the larger angle."""
+    """Arc, counter-clockwise when ``to_deg`` is the larger angle."""
 
     center: complex
     radius: Positive
@@ -129,7 +129,7 @@ class axes(Element):
 
 @dataclass(frozen=True)
 class rotation_arrow(Element):
-    """An arc with an arrow head at ``to_deg``: a sense of rotation."""
+    """Arc with an arrow head at ``to_deg``: a sense of rotation."""
 
     center: complex
     radius: Positive
@@ -149,7 +149,7 @@ class rotation_arrow(Element):
 
 @dataclass(frozen=True)
 class angle_mark(Element):
-    """An angle: an arc from a thin reference line at ``from_deg`` to an arrow head at ``to_deg``.
+    """Angle: an arc from a thin reference line at ``from_deg`` to an arrow head at ``to_deg``.
 
     ``radius`` is in mechanism mm; by default the arc has 9 mm on paper,
     less when a bar that ends there is short.
@@ -175,7 +175,7 @@ class angle_mark(Element):
 
 @dataclass(frozen=True)
 class dimension(Element):
-    """A dimension line with two arrow heads and its extension lines.
+    """Dimension line with two arrow heads and its extension lines.
 
     ``offset`` is in mechanism mm, positive to the left of p→q; by default the line stands
     7 mm away on paper, or as far as it must to miss the links. ``offset=0`` measures on p–q itself.
@@ -208,7 +208,8 @@ class dimension(Element):
 
 
 def _measured(paper: Paper, a: complex, b: complex) -> None:
-    """A line with a head at each end; the heads come from outside when there is no room between."""
+    """Draw a line with a head at each end; the heads point inwards from outside when there is no room
+    between."""
     if a == b:
         return
     way = (b - a) / abs(b - a)
@@ -225,7 +226,7 @@ def _measured(paper: Paper, a: complex, b: complex) -> None:
 
 @dataclass(frozen=True)
 class vector(Element):
-    """An arrow from ``p`` to ``p + v``; the author scales a velocity or a force to mm of mechanism."""
+    """Arrow from ``p`` to ``p + v``; the author scales a velocity or a force to mm of mechanism."""
 
     p: complex
     v: complex
@@ -242,7 +243,7 @@ class vector(Element):
 
 @dataclass(frozen=True)
 class scale_bar(Element):
-    """A bar from ``p`` to the right with a tick at each end: what so long a line stands for."""
+    """Bar from ``p`` to the right with a tick at each end, labelled with the value of its length."""
 
     p: complex
     length: Positive
@@ -259,7 +260,7 @@ class scale_bar(Element):
 
 @dataclass(frozen=True)
 class trace(Element):
-    """A thin curve through points: the path of one, dotted unless told."""
+    """Thin curve through points, such as the path of one; dotted by default."""
 
     points: tuple[complex, ...]
     dotted: bool = True

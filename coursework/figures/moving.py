@@ -1,7 +1,7 @@
-"""A figure that moves: the same elements at many instants, drawn to one scale in one frame.
+"""Moving figure: the same elements at many instants, drawn to one scale in one frame.
 
-Every drawn line is a track, its numbers at every instant. What says where a thing stands for the whole cycle
-(a guide, an axis, the hatched side of a pivot, the side of a link on which its label is) is settled once for all
+Every drawn line is a track of its coordinates at every instant. Positions that hold for the whole cycle (a
+guide, an axis, the hatched side of a pivot, the side of a link with its label) are decided once for all
 instants, so that nothing jumps.
 """
 
@@ -55,7 +55,7 @@ _RIM = 30  #: white round letters, hundredths of their size
 
 @dataclass(frozen=True)
 class Track:
-    """One drawn thing over the instants.
+    """Drawn line or mark over the instants.
 
     ``numbers`` has a row an instant, mm on paper, y down, from the top left corner: of a ``path`` the coordinates
     of its points in turn, of what is carried about (``mark``) those of its origin.
@@ -76,7 +76,7 @@ class Track:
         return bool(np.ptp(self.numbers, axis=0).max(initial=0.0) >= 0.005)
 
     def value(self, instant: int) -> str:
-        """What changes, as an attribute: a path, or a translation."""
+        """Return the attribute that changes at an instant: the data of a path, or a translation."""
         row = self.numbers[instant]
         if self.mark:
             return " ".join(map(number, row))
@@ -84,7 +84,7 @@ class Track:
         return "M" + "L".join(points) + ("Z" if self.closed else "")
 
     def svg(self, instant: int, more: str = "", inside: str = "") -> str:
-        """Return the thing at an instant."""
+        """Return the line or mark at an instant as SVG."""
         if self.mark:
             return f'<g transform="translate({self.value(instant)})"{more}>{self.mark}{inside}</g>'
         tail = f">{inside}</path>" if inside else "/>"
@@ -93,7 +93,8 @@ class Track:
 
 @dataclass(frozen=True)
 class Arrow:
-    """A vector over the instants: ``v`` (complex, one an instant) at ``p``, mm of mechanism; NaN where none."""
+    """Vector over the instants: ``v`` (complex, one an instant) at ``p``, mm of mechanism; NaN where there is
+    none."""
 
     p: np.ndarray
     v: np.ndarray
@@ -103,7 +104,7 @@ class Arrow:
 
 @dataclass(frozen=True)
 class Spot:
-    """A point over the instants, and its path; ``closed`` when it comes back to where it began."""
+    """Point over the instants, and its path; ``closed`` if the path returns to its start."""
 
     p: np.ndarray
     point: str
@@ -112,7 +113,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Key:
-    """A line of the legend: an arrow of this many mm of mechanism, and what it stands for."""
+    """Line of the legend: an arrow of this many mm of mechanism, and its words."""
 
     effect: str
     length: float
@@ -121,7 +122,7 @@ class Key:
 
 @dataclass(frozen=True)
 class Drawing:
-    """Tracks in the order they are painted, and the size of the paper in mm."""
+    """Tracks in painting order, and the size of the paper in mm."""
 
     tracks: tuple[Track, ...]
     size: tuple[float, float]
@@ -129,7 +130,7 @@ class Drawing:
 
 
 class _Stage(Paper):
-    """Paper for one instant: nothing is rounded, and the same marks are drawn whatever their size."""
+    """Paper for one instant, without rounding; the same marks are drawn whatever their size."""
 
     def __init__(
         self,
@@ -185,7 +186,7 @@ def drawing(
     closed: bool = True,
     paper_mm: tuple[float, float] = PAPER_MM,
 ) -> Drawing:
-    """Return the elements at every instant, with vectors and paths of points, to one scale.
+    """Draw the elements at every instant, with vectors and paths of points, to one scale.
 
     ``closed``: the last instant is followed by the first.
 
@@ -211,7 +212,7 @@ def drawing(
 def extent(
     frames: Frames, arrows: Sequence[Arrow] = (), spots: Sequence[Spot] = ()
 ) -> tuple[complex, complex]:
-    """Return the corners of all that is seen at some instant, mm of mechanism."""
+    """Return the corners of all that is visible at some instant, mm of mechanism."""
     points = [np.array([z for elements in frames for e in elements for z in e.reach()])]
     points += [spot.p for spot in spots] + [arrow.p + arrow.v for arrow in arrows]
     seen = np.concatenate(points)
@@ -223,7 +224,7 @@ def extent(
 
 
 def _common(frames: Frames) -> list[list[Element]]:
-    """Return the elements that are there at every instant: of one kind, label and rank among their like."""
+    """Return the elements present at every instant, matched by kind, label and rank among equals."""
     keyed = [_by_kind(elements) for elements in frames]
     common = [key for key in keyed[0] if all(key in one for one in keyed)]
     return [[one[key] for key in common] for one in keyed]
@@ -240,7 +241,8 @@ def _by_kind(elements: Sequence[Element]) -> Mapping[tuple, Element]:
 
 
 def _settled(frames: list[list[Element]]) -> list[list[Element]]:
-    """What the frame carries stands still: its guides and axes at full length, a sense of rotation."""
+    """Return the elements with those on the frame at rest: guides and axes at full length, one sense of
+    rotation."""
     columns = [_settled_one(column) for column in zip(*frames, strict=True)]
     return [list(row) for row in zip(*columns, strict=True)]
 
@@ -257,7 +259,7 @@ def _settled_one(column: tuple[Element, ...]) -> tuple[Element, ...]:
 
 
 def _on_one_line(column: tuple) -> tuple:
-    """Return the union of segments of one line, at every instant; segments that turn stay as they are."""
+    """Return the union of segments of one line, at every instant; rotating segments stay unchanged."""
     p, way = column[0].p, column[0].q - column[0].p
     if abs(way) == 0:
         return column
@@ -275,7 +277,7 @@ def _on_one_line(column: tuple) -> tuple:
 
 
 def _stages(frames: list[list[Element]], scale: float, middle: complex) -> list[_Stage]:
-    """Return one drawn sheet an instant."""
+    """Return one sheet for each instant, with its elements drawn."""
     sides: dict[tuple[float, float], complex] = {}
 
     def ground(p: complex) -> complex:
@@ -305,7 +307,7 @@ def _free_side(taken: Sequence[Sequence[complex]]) -> complex:
 
 
 def _drawn(stages: Sequence[_Stage]) -> list[Track]:
-    """Return a track for each thing that the elements drew."""
+    """Return a track for each drawn line or mark of the elements."""
     count = min(len(stage.ink) for stage in stages)
     return [_track([stage.ink[i] for stage in stages]) for i in range(count)]
 
@@ -335,7 +337,7 @@ def _points_of(thing: Ink) -> list[complex]:
 
 
 def _flat(points: Sequence[Sequence[complex]] | np.ndarray) -> np.ndarray:
-    """Return the rows of x, y, x, y, …; y up as yet."""
+    """Return rows of x, y, x, y, …, with y up."""
     grid = np.asarray(points, dtype=complex)
     return np.stack([grid.real, grid.imag], axis=-1).reshape(len(grid), -1)
 
@@ -383,7 +385,7 @@ def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
 
 
 def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float, closed: bool) -> list[Track]:
-    """Return the labels that ride with what they name."""
+    """Return the tracks of the labels, which move with their elements."""
     segments = _segments([stage.ink for stage in stages])
     count = min(len(stage.wishes) for stage in stages)
     rows = [[stage.wishes[i] for stage in stages] for i in range(count)]
@@ -402,7 +404,7 @@ def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float, close
 
 
 def _letters(label: str, colour: str) -> str:
-    """Return a label centred on the origin, on a white rim of its own: lines may pass under it."""
+    """Return a label centred on the origin as SVG, on a white rim, so that lines may pass under it."""
     text = read(label)
     at = baseline(text, 0j)
     letters = as_outlines(text, at)
@@ -411,7 +413,7 @@ def _letters(label: str, colour: str) -> str:
 
 
 def _segments(inks: Sequence[Sequence[Ink]]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends of every drawn segment that a label should keep off, a row an instant."""
+    """Return the ends of every drawn segment that a label should avoid, one row an instant."""
     rows = [[side for thing in ink for side in _sides(thing)] for ink in inks]
     most = max(map(len, rows))
     ends = np.array([[*row, *[row[-1]] * (most - len(row))] for row in rows])
@@ -427,7 +429,7 @@ def _sides(thing: Ink) -> list[tuple[complex, complex]]:
 
 
 def _framed(tracks: Sequence[Track], keys: Sequence[Key], scale: float) -> Drawing:
-    """Return all tracks in the frame's own coordinates, the legend below."""
+    """Return the drawing of all tracks in the coordinates of its frame, with the legend below."""
     xs = np.concatenate([t.numbers[:, 0::2].ravel() for t in tracks])
     ys = np.concatenate([t.numbers[:, 1::2].ravel() for t in tracks])
     around = 4.0  # symbols and letters reach this far from their origin
@@ -454,7 +456,7 @@ def _downwards(numbers: np.ndarray, left: float, top: float) -> np.ndarray:
 
 
 def _key_tracks(key: Key, count: int, corner: complex, indent: float, scale: float) -> list[Track]:
-    """Return an arrow of a round length, and its words."""
+    """Return an arrow of a round length and its words, for the legend."""
     start = corner / scale
     arrow = Arrow(np.full(count, start), np.full(count, key.length + 0j), key.effect, "")
     centre = start * scale + indent + read(key.words).box[0] / 2

@@ -1,4 +1,4 @@
-"""What moves as SVG: moving by itself, with no script, or standing still at an instant."""
+"""SVG of a moving figure, without scripts: in motion, or still at one instant."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def moving_svg(
     lang: str,
     times: str = "",
 ) -> str:
-    """Return the drawing in motion; it stands still for who wants no motion.
+    """Return the drawing in motion as SVG; it stands still for readers who prefer reduced motion.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def moving_svg(
 
 
 def still_svg(shown: Drawing, instant: int, *, title: str, words: str, lang: str) -> str:
-    """Return the drawing at one instant."""
+    """Return the drawing at one instant as SVG."""
     return _whole(shown, (track.svg(instant) for track in shown.tracks), title, words, lang)
 
 

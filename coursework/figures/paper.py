@@ -1,4 +1,4 @@
-"""The sheet that elements draw themselves on: it turns mechanism coordinates into paper ones."""
+"""Sheet on which elements draw themselves: it converts mechanism coordinates to paper coordinates."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Paper:
         return found
 
     def ground_side(self, p: complex) -> complex:
-        """Where a pivot's support goes: below unless a bar leaves that way."""
+        """Return the direction of a pivot's support: below unless a bar leaves that way."""
         taken = self.directions(p)
 
         def room(way: complex) -> float:
@@ -91,8 +91,11 @@ class Paper:
         toward: float | None = None,
         area: tuple[complex, ...] = (),
     ) -> None:
-        """Asks for a label round a point: toward an angle if one is given, else in the widest gap
-        between the bars that leave the point. ``area`` is the outline of the body that it names."""
+        """Request a label round a point: towards an angle if one is given, else in the widest gap between the
+        bars at the point.
+
+        ``area`` is the outline of the body that the label names.
+        """
         if label:
             gap = _widest_gap([*self.directions(p), *taken])
             way = gap if toward is None else turn(toward)
@@ -111,14 +114,14 @@ class Paper:
             self.wishes.append(Wish(label, p, way / (abs(way) or 1.0), start, rank, area=area))
 
     def inside(self, label: str, center: complex, height: float) -> None:
-        """Asks for a label centred on a point of a hatched area."""
+        """Request a label centred on a point of a hatched area."""
         # Starting half a height below, the first place tried is the point itself.
         self.wishes.append(Wish(label, center, 1j, -height / 2, INSIDE, inside=True))
 
     def beside(
         self, label: str | None, p: complex, q: complex, start: float, way: complex | None = None
     ) -> None:
-        """Asks for a label beside a segment, on the outer side of the figure unless told."""
+        """Request a label beside a segment, by default on the outer side of the figure."""
         if not label:
             return
         if p == q:
@@ -132,7 +135,7 @@ class Paper:
         self.wishes.append(Wish(label, (p + q) / 2, way, start, SIDES, (p, q)))
 
     def aside(self, p: complex, q: complex) -> float:
-        """Return the distance to the left of p→q where a dimension line meets no bar, the outer side first."""
+        """Return the distance to the left of p→q at which a dimension line meets no bar, outer side first."""
         normal = 1j * (q - p) / (abs(q - p) or 1.0)
         outer = 1 if (((p + q) / 2 - self.middle) * normal.conjugate()).real >= 0 else -1
 
@@ -157,7 +160,7 @@ class Paper:
         self.head(q, way, size)
 
     def arc_arrow(self, center: complex, radius: float, start: float, end: float, size: float) -> None:
-        """An arc with a head at its end; without, when it is too short to carry one."""
+        """Draw an arc with a head at its end; no head on an arc too short for one."""
         if start == end:
             return
         spread = math.degrees(size / radius)
@@ -170,7 +173,7 @@ class Paper:
         self.head(center + radius * turn(end), sign * 1j * turn(end - sign * spread / 2), size)
 
     def hatch(self, p: complex, q: complex, side: complex, step: float = 1.3, depth: float = 1.3) -> None:
-        """Ground hatching along a segment, on the side of the unit vector."""
+        """Draw ground hatching along a segment, on the side of the unit vector."""
         along = (q - p) / abs(q - p)
         count = max(2, round(abs(q - p) / step))
         for k in range(count):
@@ -179,7 +182,7 @@ class Paper:
 
 
 def _widest_gap(ways: Sequence[complex]) -> complex:
-    """Return the middle of the widest angle free of the given directions; up and right when there are none."""
+    """Return the middle of the widest angle between the given directions; up and right when there are none."""
     if not ways:
         return turn(45)
     angles = sorted(math.degrees(cmath.phase(way)) for way in ways)

@@ -1,4 +1,4 @@
-"""Joints in space: their symbols, their directions, the bodies between them, seen from where they are best told apart."""
+"""Joints in space with their symbols, directions and bodies, from the viewpoint that separates them best."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _UNITS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 @dataclass(frozen=True)
 class _face(Element):
-    """A side of a symbol, or a line in front of it: it hides what is drawn before."""
+    """Face of a symbol, or a line in front of it: it hides earlier elements."""
 
     points: tuple[complex, ...]
 
@@ -58,7 +58,7 @@ class _face(Element):
 
 @dataclass(frozen=True)
 class _ball(Element):
-    """A ball of a symbol."""
+    """Ball of a symbol."""
 
     center: complex
     radius: Positive
@@ -68,7 +68,8 @@ class _ball(Element):
 
 
 def _looking(about: float, above: float) -> tuple[See, Place]:
-    """How a point is seen from there, and the unit vector to the reader."""
+    """Return the projection from a viewpoint (azimuth and elevation in degrees), and the unit vector towards
+    the reader."""
     phi, eps = math.radians(about), math.radians(above)
     right = (-math.sin(phi), math.cos(phi), 0.0)
     up = (-math.cos(phi) * math.sin(eps), -math.sin(phi) * math.sin(eps), math.cos(eps))
@@ -85,7 +86,7 @@ def _beyond(p: Place, u: Place, far: float) -> Place:
 
 
 def _steps(place: Place) -> list[tuple[Place, Place]]:
-    """From the origin to a point along y, then x, then z: the lines that are not nothing."""
+    """Return the lines from the origin to a point along y, then x, then z, without those of length zero."""
     x, y, z = place
     return list(pairwise(dict.fromkeys([(0, 0, 0), (0, y, 0), (x, y, 0), (x, y, z)])))
 
@@ -93,10 +94,12 @@ def _steps(place: Place) -> list[tuple[Place, Place]]:
 def in_perspective(
     rows: Sequence[Mapping[str, Any]], bodies: Iterable[tuple[int, int, int]] = (), *, tall: float = 36.0
 ) -> Figure:
-    """Return the joints of a statement's table (see ``table``). ``bodies`` are (number, first joint, second
-    joint) of those drawn as a line between two points; ``tall`` is what the drawing may take of the paper
-    upwards, mm. A point of several joints carries all their names, and their symbols stand aside of it along
-    their axes."""
+    """Draw the joints of a statement's table (see ``table``).
+
+    ``bodies`` are (number, first joint, second joint) of those drawn as a line between two points; ``tall``
+    is the height on paper, mm. A point of several joints carries all their names, and their symbols stand
+    beside it along their axes.
+    """
     places = [tuple(map(float, row["point"])) for row in rows]
     chain = _Chain(rows, places, [(k, places[p - 1], places[q - 1]) for k, p, q in bodies])
     view = max(_VIEWS, key=lambda view: (round(chain.apart(view, tall), 2), -_VIEWS.index(view)))
@@ -117,7 +120,7 @@ def _height(elements: Sequence[Element]) -> float:
 
 @dataclass(frozen=True)
 class _Chain:
-    """Joints, the points where they are, and the bodies between them: number and both ends."""
+    """Joints, their points, and the bodies between them: number and both ends."""
 
     rows: Sequence[Mapping[str, Any]]
     places: Sequence[Place]
@@ -132,7 +135,7 @@ class _Chain:
         return list(dict.fromkeys(end for step in self.steps for end in step)) or list(self.places[:1])
 
     def size(self, view: tuple[float, float]) -> complex:
-        """Return the width and height of the points as seen."""
+        """Return the projected width and height of the points."""
         see, _ = _looking(*view)
         across, up = ([see(c).real for c in self.corners], [see(c).imag for c in self.corners])
         return complex(max(across) - min(across), max(up) - min(up))
@@ -142,7 +145,8 @@ class _Chain:
         return min(_SCALE, _WIDE / (size.real or 1.0), tall / (size.imag or 1.0))
 
     def apart(self, view: tuple[float, float], tall: float) -> float:
-        """Return the least distance on paper between two points, or a point and a body that ends at others."""
+        """Return the least distance on paper between two points, or between a point and a body that ends at
+        others."""
         see, _ = _looking(*view)
         return min(
             _APART, self.scale(view, tall) * _least(see, list(dict.fromkeys(self.places)), self.bodies)
@@ -169,7 +173,7 @@ class _Chain:
 
 
 def _least(see: See, places: Sequence[Place], bodies: Sequence[tuple[int, Place, Place]]) -> float:
-    """Return the least distance, as seen, between two places, or between a place and a body that ends
+    """Return the least projected distance between two points, or between a point and a body that ends
     elsewhere."""
     gaps = [abs(see(p) - see(q)) for p, q in combinations(places, 2)]
     gaps += [
@@ -181,7 +185,7 @@ def _least(see: See, places: Sequence[Place], bodies: Sequence[tuple[int, Place,
 def _symbol(
     row: Mapping[str, Any], place: Place, aside: float, see: See, forward: Place, mm: float
 ) -> list[Element]:
-    """Return a joint's axis and its symbol, which hides what is behind it; ``mm`` is one of the symbol's."""
+    """Return a joint's axis and its symbol, which hides what is behind it; ``mm`` is a mm of the symbol."""
     kind = row["joint"]
     shape, depth = _DRAWN[kind]
     if kind == "spherical":
@@ -198,7 +202,7 @@ def _symbol(
 def _tube(
     center: Place, u: Place, see: See, forward: Place, mm: float, long: float = _LONG, radius: float = _RADIUS
 ) -> list[Element]:
-    """Return a cylinder about an axis: its outline, then the end that is seen."""
+    """Return a cylinder about an axis: its outline, then the visible end."""
     e1, e2 = _across(u)
 
     def rim(far: float) -> list[complex]:
@@ -213,7 +217,7 @@ def _tube(
 
 
 def _stopped(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """Return a cylinder between two collars, which keep it from sliding."""
+    """Return a cylinder between two collars, which prevent sliding."""
     ends = [_beyond(center, u, far * (_LONG + 0.4) * mm) for far in (-1, 1)]
     back, front = ends if _dot(u, forward) >= 0 else ends[::-1]
     collar = {"long": 0.35, "radius": 1.6 * _RADIUS}
@@ -232,7 +236,7 @@ def _threaded(center: Place, u: Place, see: See, forward: Place, mm: float) -> l
 
 
 def _box(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """Return a block along an axis: its three sides that are seen."""
+    """Return a block along an axis: its three visible faces."""
     e1, e2 = _across(u)
     half = ((u, _LONG * mm), (e1, _RADIUS * mm), (e2, _RADIUS * mm))
     faces: list[Element] = []
@@ -267,7 +271,7 @@ def _round(center: Place, u: Place, see: See, forward: Place, mm: float) -> list
 
 
 def _pinned(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """Return a ball with a pin across its axis, that way in which it is seen best."""
+    """Return a ball with a pin across its axis, in the direction that shows best."""
     across = max(_across(u), key=lambda e: abs(see(e)))
     pin = _face(tuple(see(_beyond(center, across, far * 1.9 * _BALL * mm)) for far in (-1, 1)))
     return [pin, *_round(center, u, see, forward, mm)]
@@ -282,7 +286,7 @@ def _grooved(center: Place, u: Place, see: See, forward: Place, mm: float) -> li
 
 
 def _on_plate(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """Return a ball on the side of a plate that is seen."""
+    """Return a ball on the visible side of a plate."""
     side = _BALL * mm if _dot(u, forward) >= 0 else -_BALL * mm
     return [_plate(center, u, see, mm), *_round(_beyond(center, u, side), u, see, forward, mm)]
 
@@ -321,7 +325,8 @@ def _unit(vector: Place) -> Place:
 
 
 def _across(u: Place) -> tuple[Place, Place]:
-    """Return the two other axes, in order after this one; of any other direction, two that go with it."""
+    """Return the two other axes in cyclic order; for any other direction, two unit vectors perpendicular to
+    it."""
     units: list[Place] = list(_UNITS.values())
     if u in units:
         k = units.index(u)

@@ -1,4 +1,4 @@
-"""A picture from outside, SVG or PNG, shown where a figure is: in every format, and never with a script in it."""
+"""External picture, SVG or PNG, shown in place of a figure in every format and never with a script in it."""
 
 from __future__ import annotations
 
@@ -53,17 +53,18 @@ _LINKS = (
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A picture of a file beside the exercise, or of its bytes; ``width_mm`` on paper, its own unless told.
+    """Picture from a file beside the exercise, or from its bytes; ``width_mm`` on paper, its natural width by
+    default.
 
-    Any other format, an SVG that holds a script or fetches something, and a file that is not there are refused with
-    :class:`BadCourse`. What it shows, in words, is a section ``## figure`` of the statement's text.
+    Any other format, an SVG that holds a script or fetches something, and a missing file are refused with
+    :class:`BadCourse`. A section ``## figure`` of the statement describes it in words.
     """
 
     source: str | Path | bytes
     width_mm: float | None = None
 
     def beside(self, folder: Path) -> Picture:
-        """Return the picture read from its file, a relative path being one from this folder.
+        """Return the picture read from its file; a relative path starts at ``folder``.
 
         Raises
         ------
@@ -87,7 +88,7 @@ class Picture:
 
     @cached_property
     def _drawn(self) -> tuple[str, float, float]:
-        """The drawing as SVG with a place for its size, its natural width in mm, height over width."""
+        """SVG of the drawing with a placeholder for its size, its natural width in mm, and height over width."""
         data = self.source
         if not isinstance(data, bytes):
             raise BadCourse(f"the picture {data} has not been read yet")
@@ -111,20 +112,20 @@ class Picture:
         return round(wide, 1), round(wide * self._drawn[2], 1)
 
     def fitted(self, width: float, height: float) -> Picture:
-        """Return the picture made smaller where it does not fit a room of so many mm."""
+        """Return the picture, made smaller where it does not fit a room in mm."""
         wide, high = self.size_mm
         ratio = min(1.0, width / wide, height / high)
         return self if ratio == 1 else replace(self, width_mm=wide * ratio)
 
     def svg(self) -> str:
-        """Return the picture as SVG of its size in mm; a PNG stands inside it."""
+        """Return the picture as SVG of its size in mm; a PNG is embedded."""
         wide, high = self.size_mm
         return self._drawn[0].replace("SIZE", f'width="{wide}mm" height="{high}mm"', 1)
 
     outlined_svg = bare_svg = svg
 
     def letters(self) -> tuple[Letters, ...]:
-        """Return None: the letters of a picture are in it."""
+        """Return no letters: a picture contains its own."""
         return ()
 
     def _repr_svg_(self) -> str:
@@ -183,13 +184,13 @@ def _of_svg(data: bytes) -> tuple[str, float, float]:
 
 
 def _length(text: str) -> float:
-    """Return a length of SVG in mm; 0 where none is told, or a share of something."""
+    """Return a length of SVG in mm; 0 where none is given, or a percentage."""
     found = _LENGTH.fullmatch(text)
     return float(found[1]) * _MM[found[2].lower()] if found and found[2].lower() in _MM else 0.0
 
 
 def _dangers(root: ElementTree.Element) -> Iterator[str]:
-    """What of an SVG would run or fetch something."""
+    """Yield the elements and attributes of an SVG that would run or fetch something."""
     for element in root.iter():
         space, _, name = str(element.tag).rpartition("}")
         is_drawn = name in _DRAWS or name.startswith("fe")

@@ -1,4 +1,5 @@
-"""Where labels go: near what they name, on no line, on no other label, nearer to what they name than to its like.
+"""Placement of labels: near their element, on no line, on no other label, and nearer to their own element
+than to similar ones.
 
 Every label has a list of candidate places, cheapest first; it takes the first free one.
 Labels are placed in a fixed order, so the same figure always comes out the same.
@@ -36,7 +37,7 @@ _MORE = 8.0  #: mm round a place in which lines are looked up with it
 
 
 class Place(NamedTuple):
-    """A place for a label, told from what it names: the same list serves every label of a kind."""
+    """Candidate position of a label, relative to its element: one list serves every label of a kind."""
 
     way: complex  #: from the preferred direction, a unit complex number
     step: float  #: beyond where labels begin, mm
@@ -48,7 +49,8 @@ class Place(NamedTuple):
 
 @lru_cache(maxsize=4)
 def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
-    """Return all places of a kind of label, cheapest first; the costs are in mm away from the best place."""
+    """Return all candidate positions for a kind of label, cheapest first; costs are in mm from the best
+    position."""
     costed: list[tuple[float, tuple[complex, float, float | None]]] = []
     if beside:
         for side in (1, -1):
@@ -75,7 +77,7 @@ def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
 
 @dataclass(frozen=True)
 class Label:
-    """A placed label: its box on paper, mm, y up, and its leader line if it has one."""
+    """Placed label: its box on paper, mm, y up, and its leader line if it has one."""
 
     label: str
     text: Text
@@ -92,7 +94,7 @@ class Label:
 
 @dataclass(frozen=True)
 class Wish:
-    """A label to place around a point, or beside a segment when ``along`` has its two ends."""
+    """Request for a label around a point, or beside a segment when ``along`` has its two ends."""
 
     label: str
     anchor: complex
@@ -105,15 +107,15 @@ class Wish:
 
     @property
     def source(self) -> complex:
-        """The point that the label must be in sight of: on its arc for an angle."""
+        """Point that the label must be in sight of: on its arc for an angle."""
         return self.anchor + self.toward * max(0.0, self.start) if self.rank == ANGLES else self.anchor
 
     def places(self) -> tuple[Place, ...]:
-        """Where the label may go, the best place first."""
+        """Return the candidate positions of the label, the best first."""
         return _places(self.along is not None, self.rank == ANGLES)
 
     def hoped(self) -> tuple[complex, complex]:
-        """Return the corners of its box at the best place, whatever lies there."""
+        """Return the corners of the label's box at its best position, whatever lies there."""
         half = complex(*read(self.label).box) / 2
         center = self.center(self.places()[0], half)
         return center - half, center + half
@@ -128,7 +130,7 @@ class Wish:
 
 
 def _support(half: complex, way: complex) -> float:
-    """Return half-width of a box across a direction."""
+    """Return the half-width of a box in a direction."""
     return half.real * abs(way.real) + half.imag * abs(way.imag)
 
 
@@ -156,7 +158,7 @@ def _line(a: complex, b: complex, half: float) -> Line:
 
 
 def _meets(line: Line, across: float, up: float, wide: float, tall: float) -> bool:
-    """Return whether a box, told by its middle and its half-sides, meets a line: no axis separates them."""
+    """Return whether a box, given by its centre and half-sides, meets a line: no axis separates them."""
     left, low, right, high, middle_across, middle_up, half_across, half_up, half = line
     if left > across + wide or right < across - wide or low > up + tall or high < up - tall:
         return False
@@ -165,7 +167,7 @@ def _meets(line: Line, across: float, up: float, wide: float, tall: float) -> bo
 
 
 def _way_out(line: Line, across: float, up: float, wide: float, tall: float, way: complex) -> float:
-    """How far a box that meets a line goes until it does not, in a direction: some axis separates them there."""
+    """Return the distance that a box on a line moves in a direction until some axis separates them."""
     left, low, right, high, middle_across, middle_up, half_across, half_up, half = line
     x, y = way.real, way.imag
     out = math.inf
@@ -184,7 +186,7 @@ def _way_out(line: Line, across: float, up: float, wide: float, tall: float, way
 
 
 def _gap(line: Line, across: float, up: float, wide: float, tall: float) -> float:
-    """Return the white between a box and a line, thin, that does not meet it."""
+    """Return the distance between a box and a thin line that does not meet it."""
     x, y, dx, dy = line[4] - across, line[5] - up, line[6], line[7]
     square = dx * dx + dy * dy
     found = math.inf
@@ -199,7 +201,7 @@ def _gap(line: Line, across: float, up: float, wide: float, tall: float) -> floa
 
 
 class Obstacles:
-    """The lines already drawn, with areas that labels avoid, and the labels already placed."""
+    """Lines already drawn, with areas that labels avoid, and the labels already placed."""
 
     def __init__(self, ink: Sequence[Ink]) -> None:
         self._things: list[Thing] = []
@@ -216,13 +218,13 @@ class Obstacles:
         self._start()
 
     def _start(self) -> None:
-        """Nothing is known yet of the label to place."""
+        """Reset the cache for the next label to place."""
         self._window = (math.inf, math.inf, -math.inf, -math.inf)  #: of the paper where it was tried
         self._near: list[Thing] = []  #: what comes into the window
         self._blocking: list[Line] = []  #: the lines that it has met, the last one first
 
     def put(self, label: Label) -> None:
-        """A label that is placed, with its leader."""
+        """Add a placed label, with its leader."""
         self.labels.append(label)
         reach = complex(label.width, label.height) / 2 + complex(_APART, _APART)
         self._boxes.append((label.center.real, label.center.imag, reach.real, reach.imag))
@@ -231,7 +233,7 @@ class Obstacles:
         self._start()
 
     def _look(self, left: float, low: float, right: float, high: float) -> None:
-        """Widens the window so that it holds a box, and some more for the next ones."""
+        """Widen the window so that it holds a box, with a margin for the next ones."""
         a, b, c, d = self._window
         if left < a or low < b or right > c or high > d:
             a, b, c, d = (
@@ -246,8 +248,11 @@ class Obstacles:
             ]
 
     def white(self, center: complex, half: complex, way: complex, inside: bool = False) -> float:
-        """Return the white that a box has: the one that labels prefer, or the least there may be; where there
-        is less, what it has to go that way, at least, until there may be more, with a minus."""
+        """Return the white space round a box: the preferred one, or the least one allowed.
+
+        Where there is less, return minus the distance to go in direction ``way``, at least, until there may
+        be more.
+        """
         cx, cy, wide, tall = center.real, center.imag, half.real, half.imag
         x, y = wide + _CLEAR, tall + _CLEAR
         left, low, right, high = cx - x, cy - y, cx + x, cy + y
@@ -299,7 +304,7 @@ class Obstacles:
 
 
 def within(z: complex, area: Sequence[complex]) -> bool:
-    """Return even-odd rule."""
+    """Return whether a point lies inside an area, by the even-odd rule."""
     odd = False
     for a, b in pairwise(area):
         if (a.imag > z.imag) != (b.imag > z.imag):
@@ -322,8 +327,8 @@ def distance(z: complex, a: complex, b: complex) -> float:
 
 
 def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...], tuple[int, ...]]:
-    """Return the places every label, in order of rank then of writing; with each, the place of its wish among
-    them."""
+    """Place every label, in order of rank, then of appearance; return the labels and the index of each one's
+    request."""
     obstacles = Obstacles(ink)
     order = sorted(range(len(wishes)), key=lambda k: wishes[k].rank)
     sides = {wish.along: _line(*wish.along, 0.0) for wish in wishes if wish.along}
@@ -333,8 +338,8 @@ def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...]
 
 
 class _Rivals:
-    """What else of the same sort has a label, lines, points or angles: who reads a label takes it for that of the
-    nearest; and a number on an area for that of the area."""
+    """Other labelled elements of the same kind, for which a reader may take a label: lines, points, angles or
+    areas."""
 
     def __init__(
         self, wish: Wish, wishes: Sequence[Wish], sides: Mapping[tuple[complex, complex], Line]
@@ -349,8 +354,11 @@ class _Rivals:
         self.points = [z for z in others if self.source is not None and abs(z - self.source) > _SAME]
 
     def mistaken(self, center: complex, half: complex, leader: tuple[complex, complex] | None) -> int:
-        """How a label here may be taken for that of another: 0 not at all, 1 for that it is near in spite of its
-        leader, 2 in spite of one that crosses, 3 for want of one."""
+        """Return how easily a label here is taken for that of another element.
+
+        0: not at all; 1: another is near, but a leader points to its own; 2: its leader crosses another; 3:
+        no leader.
+        """
         if self.source is not None:
             return self._of_a_point(self.source, center, half, leader) if self.points else 0
         if leader is None and any(within(center, area) for area in self.areas):
@@ -377,7 +385,7 @@ class _Rivals:
         return 0 if far else 1
 
     def _within(self, gap: float, center: complex, half: complex) -> bool:
-        """Return whether one of the lines is so near to a box."""
+        """Return whether one of the lines is nearer to a box than ``gap``."""
         cx, cy, x, y = center.real, center.imag, half.real + gap, half.imag + gap
         left, low, right, high = cx - x, cy - y, cx + x, cy + y
         for line in self.lines:
@@ -389,7 +397,7 @@ class _Rivals:
 
 
 def _from_box(z: complex, center: complex, half: complex) -> float:
-    """How far a point is from a box."""
+    """Return the distance of a point from a box."""
     away = z - center
     return math.hypot(max(abs(away.real) - half.real, 0.0), max(abs(away.imag) - half.imag, 0.0))
 
@@ -446,7 +454,7 @@ def _choose(wish: Wish, obstacles: Obstacles, rivals: _Rivals) -> Label:
 
 
 def _leader(wish: Wish, center: complex, half: complex) -> tuple[complex, complex] | None:
-    """Return a thin line from the anchor to the box, when the label is far from what it names."""
+    """Return a thin line from the anchor to the box, when the label is far from its element."""
     if wish.along and distance(center, *wish.along) <= _support(half, wish.toward) + _LEADER:
         return None
     # An angle is named at its arc: its label may lie on any side of the corner.
@@ -461,7 +469,7 @@ def _leader(wish: Wish, center: complex, half: complex) -> tuple[complex, comple
 
 
 def _outside(wish: Wish, text: Text, obstacles: Obstacles) -> Label:
-    """Return the beyond everything drawn: the place of a label that found no other."""
+    """Return the label at a position beyond everything drawn, for want of a free one."""
     right = max([obstacles.right, *(label.corners[1].real for label in obstacles.labels)])
     width, height = text.box
     return Label(wish.label, text, complex(right + 2 + width / 2, wish.anchor.imag), width, height)

@@ -1,4 +1,5 @@
-"""Curves over one variable as SVG, a panel each, drawn without any library; the same data, the same bytes."""
+"""Curves over one variable as SVG, one panel each, drawn without a library; the same data give the same
+bytes."""
 
 from __future__ import annotations
 
@@ -25,9 +26,9 @@ LINE, RIGHT, WRONG, GRID = "#1b3a57", "#1b7a4b", "#b3261e", "#d5d9de"
 
 @dataclass(frozen=True)
 class Spot:
-    """A point beside a curve: somebody's answer. ``right`` None when nobody has judged it.
+    """Point of somebody's answer beside a curve. ``right`` is None when it is not judged.
 
-    ``written``: the number to be told where the point is outside its panel; ``y`` unless told.
+    ``written``: the number to print where the point is outside its panel; ``y`` by default.
     """
 
     x: float
@@ -38,7 +39,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Axis:
-    """A variable: its LaTeX symbol (or plain words), its unit as printed, its values."""
+    """Variable: its LaTeX symbol (or plain words), its printed unit, its values."""
 
     label: str
     unit: str
@@ -123,7 +124,7 @@ class Plot:
 
     @property
     def has_outside(self) -> tuple[bool, ...]:
-        """By panel, whether a point is so far from the curve that an arrow at the edge stands for it."""
+        """True, by panel, if a point is so far from the curve that an arrow at the edge stands for it."""
         return tuple(
             any(not low <= s.y <= high for s in spots)
             for (low, high), spots in zip(
@@ -202,8 +203,7 @@ class Plot:
         return out
 
     def _outside(self, spot: Spot, edge: float, is_above: bool) -> list[str]:
-        """Return an arrow at the panel's edge, and the number that it stands for: the point itself is not in
-        sight."""
+        """Return an arrow at the panel's edge with the number of a point outside the panel."""
         x, out = self._x(spot.x), -1 if is_above else 1
         to_left = x > _LEFT + _WIDTH * 0.8
         arrow = (
@@ -219,7 +219,7 @@ class Plot:
 
 
 def _dot(x: float, y: float, right: bool | None) -> str:
-    """Return a full disc for what is right, a cross for what is not: told apart without colour."""
+    """Return a full disc for a right point, a cross for a wrong one: distinct without colour."""
     if right is False:
         return (
             f'<path d="M{number(x - 1.3)} {number(y - 1.3)}l2.6 2.6m0 -2.6l-2.6 2.6" stroke="{WRONG}" '
@@ -242,7 +242,7 @@ def _letters(text: Text, at: complex, anchor: str, size: float = 1.0) -> str:
 
 
 def _range(values: np.ndarray, others: Sequence[float]) -> tuple[float, float]:
-    """What a panel shows: all values, and of the other points those that are not far off."""
+    """Return the range of a panel: all values, and those other points that are not far off."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     span = high - low
     if span <= 1e-9 * max(abs(low), abs(high)):
@@ -256,7 +256,7 @@ def _range(values: np.ndarray, others: Sequence[float]) -> tuple[float, float]:
 
 
 def _ticks(low: float, high: float, count: int) -> list[float]:
-    """Round values between two, about so many."""
+    """Return about ``count`` round values between two."""
     rough = (high - low) / count
     power = 10.0 ** math.floor(math.log10(rough))
     larger = [m * power for m in (1, 2, 5, 10) if m * power >= rough * (1 - 1e-9)]
@@ -269,7 +269,7 @@ def _ticks(low: float, high: float, count: int) -> list[float]:
 
 
 def _axis_ticks(axis: Axis, low: float, high: float, count: int) -> list[float]:
-    """Round values; multiples of 60 or 180 degrees where a direction goes far round."""
+    """Return round values; multiples of 60 or 180 degrees for a direction over a large range."""
     if axis.unit != "°" or high - low < 180:
         return _ticks(low, high, count)
     step = 60.0 if count > 4 else 90.0 if high - low < 200 else 180.0
@@ -277,7 +277,7 @@ def _axis_ticks(axis: Axis, low: float, high: float, count: int) -> list[float]:
 
 
 def _runs(x: np.ndarray, y: np.ndarray, turns: bool) -> list[list[tuple[float, float]]]:
-    """Return the curve in pieces: cut where there is no value, and where a direction passes from 180 to -180."""
+    """Return the curve in pieces, cut where there is no value and where a direction passes from 180 to -180."""
     runs: list[list[tuple[float, float]]] = []
     before = math.nan
     for a, b in zip(x.tolist(), y.tolist(), strict=True):

@@ -1,7 +1,7 @@
-"""Labels of a figure that moves: each rides with what it names, and moves aside before a line or another label.
+"""Labels of a moving figure: each moves with its element, and avoids lines and other labels.
 
-For every label there is a fixed list of places about what it names. At each instant a place costs what it lies on;
-going from one place to another costs too. The cheapest way through the whole cycle is found at once.
+Every label has a fixed list of positions about its element. At each instant a position costs what it covers;
+a change of position costs too. The cheapest path through the whole cycle is found at once.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Segments = tuple[np.ndarray, np.ndarray]
 
 
 def ride(rows: Sequence[Sequence[Wish]], segments: Segments, closed: bool) -> list[np.ndarray]:
-    """Return the centres of labels at every instant, mm on paper.
+    """Return the centres of the labels at every instant, mm on paper.
 
     ``rows`` has for each label its wish at every instant; ``segments`` the ends of everything drawn, a row an
     instant. ``closed``: the last instant is followed by the first.
@@ -53,7 +53,7 @@ def ride(rows: Sequence[Sequence[Wish]], segments: Segments, closed: bool) -> li
 
 
 def _places(wishes: Sequence[Wish], half: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
-    """Yield the ways to carry a label about: a cost, and its centre at every instant."""
+    """Yield the candidate positions of a label: a cost, and its centre at every instant."""
     anchor = np.array([wish.anchor for wish in wishes])
     start = np.array([wish.start for wish in wishes])
 
@@ -81,7 +81,7 @@ def _places(wishes: Sequence[Wish], half: np.ndarray) -> Iterator[tuple[float, n
 
 
 def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """Return whether a box of these half-sides meets a segment: a row a place, a column an instant."""
+    """Return whether a box of these half-sides meets a segment: one row a position, one column an instant."""
     a, b = segments
     middle, d = (a + b) / 2, (b - a) / 2
     across, up = half[0] + abs(d.real), half[1] + abs(d.imag)
@@ -96,8 +96,8 @@ def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.nd
 
 
 def _cheapest(price: np.ndarray, centres: np.ndarray, closed: bool) -> np.ndarray:
-    """Return the place at each instant on the cheapest way through all of them; a closed way ends where it
-    began."""
+    """Return the position at each instant on the cheapest path through all instants; a closed path ends where
+    it began."""
     count = price.shape[1]
     # A cycle is gone through three times; in the middle one nothing is left of where it began and ends.
     order = np.tile(np.arange(count), 3 if closed else 1)
@@ -120,8 +120,8 @@ def _cheapest(price: np.ndarray, centres: np.ndarray, closed: bool) -> np.ndarra
 
 
 def _along(places: np.ndarray, chosen: np.ndarray, looked_at: np.ndarray, closed: bool) -> np.ndarray:
-    """Return the centres at all instants: on the chosen places where they were compared, steadily from one to
-    the next between."""
+    """Return the centres at all instants: at the chosen positions where they were compared, interpolated
+    between."""
     count = places.shape[1]
     centres = np.empty(count, dtype=complex)
     stops = [*looked_at, count]

@@ -83,7 +83,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Accent:
-    """A mark over the runs ``first`` to ``last - 1``: dot, ddot, arrow or bar."""
+    """Accent over the runs ``first`` to ``last - 1``: dot, ddot, arrow or bar."""
 
     kind: str
     first: int
@@ -122,13 +122,13 @@ class Text:
 
 
 def advance(runs: Sequence[Run]) -> float:
-    """How far letters set one after the other come to the right."""
+    """Return the total width of letters set one after the other."""
     return added(run.width - run.back for run in runs)
 
 
 @lru_cache(maxsize=2048)
 def read(label: str) -> Text:
-    """Return the runs of a label; UnknownName for a command that is not known, WrongValue for stray braces."""
+    """Parse a label; UnknownName for an unknown command, WrongValue for stray braces."""
     label = label.strip().removeprefix("$").removesuffix("$").strip()
     if not re.search(r"[\\_^{}]", label) and re.search(r"\s|[^\W\d]{3,}", label):
         return Text((Run(label, italic=False),), ())
@@ -140,7 +140,7 @@ def read(label: str) -> Text:
 
 
 class _Reader:
-    """Reads one formula from left to right, appending runs."""
+    """Parser of one formula, which appends runs from left to right."""
 
     def __init__(self, label: str) -> None:
         self.label = label
@@ -183,8 +183,7 @@ class _Reader:
     def index_or_exponent(
         self, token: str, style: Run, before: tuple[str, int] | None
     ) -> tuple[str, int] | None:
-        """Return the reads one, or primes, which are an exponent; the other one, if just read, is stacked
-        with it."""
+        """Read a subscript, an exponent, or primes; a subscript and an exponent in a row are stacked."""
         first = self.barrier = len(self.runs)
         if token == "'":
             self.letters("′", style)
@@ -201,8 +200,8 @@ class _Reader:
         return None
 
     def stack(self, low: int, middle: int) -> None:
-        """The runs from ``middle`` on start where those from ``low`` on do; the narrower come first, so that what
-        follows starts where both have ended."""
+        """Start the runs from ``middle`` on where those from ``low`` on start, the narrower first, so that
+        the next letters follow the wider."""
         first, second = self.runs[low:middle], self.runs[middle:]
         if not first or not second:
             return
@@ -235,7 +234,7 @@ class _Reader:
 
 
 def _moved(accent: Accent, low: int, middle: int, end: int) -> Accent:
-    """Return an accent once the runs from ``middle`` to the end stand before those from ``low`` to
+    """Return an accent after the runs from ``middle`` to the end were moved before those from ``low`` to
     ``middle``."""
     shift = 0 if accent.first < low else end - middle if accent.first < middle else low - middle
     return Accent(accent.kind, accent.first + shift, accent.last + shift)

@@ -1,4 +1,4 @@
-"""What needs typst: PNG, PDF, and the outlines of letters. Imported only when one of them is asked."""
+"""Functions that need typst, imported on demand: PNG, PDF, and the outlines of letters."""
 
 from __future__ import annotations
 
@@ -32,34 +32,34 @@ _own = threading.local()
 
 
 def _compiler() -> typst.Compiler:
-    """Return one compiler for each thread, kept: a new one would read its fonts again."""
+    """Return this thread's compiler, created once since a new one reads its fonts again."""
     if not hasattr(_own, "compiler"):
         _own.compiler = typst.Compiler(ignore_system_fonts=True)
     return _own.compiler
 
 
 def _compiled(page: bytes, form: Form, inputs: dict[str, str], ppi: float | None = None) -> bytes:
-    """Return a page that is one file: not the list of files that several pages of PNG or SVG are."""
+    """Compile a page to one file; several pages of PNG or SVG would give a list."""
     found = _compiler().compile(input=page, format=form, ppi=ppi, sys_inputs=inputs, timestamp=0)
     assert isinstance(found, bytes)
     return found
 
 
 def converted(svg: str, width_mm: float, form: Form, ppi: float | None = None) -> bytes:
-    """Return an SVG drawing as ``png`` or ``pdf``, with the fonts that typst brings and no other."""
+    """Return an SVG drawing as ``png`` or ``pdf``, with the fonts of typst alone."""
     inputs = {"svg": svg, "width": str(width_mm)}
     return _compiled(_PAGE, form, inputs, ppi)
 
 
 def pages(drawings: Sequence[tuple[str, float]]) -> bytes:
-    """Return SVG drawings, each with its width in mm, as the pages of one PDF, each of its own size."""
+    """Return one PDF of SVG drawings, each on a page of its own size; each comes with its width in mm."""
     listed = json.dumps([{"svg": svg, "width": width} for svg, width in drawings])
     return _compiled(_PAGES, "pdf", {"drawings": listed})
 
 
 @lru_cache(maxsize=512)
 def glyph(letter: str, italic: bool) -> str:
-    """Return SVG path of a letter, hundredths of an em, y up; empty for a space."""
+    """Return the SVG path of a letter, hundredths of an em, y up; empty for a space."""
     inputs = {"letter": letter, "style": "italic" if italic else "normal"}
     page = _compiled(_LETTER, "svg", inputs).decode()
     return " ".join(re.findall(r'<symbol[^>]*><path d="([^"]*)"', page)).strip()

@@ -1,4 +1,4 @@
-"""A laid-out figure as SVG: short, deterministic, black on white."""
+"""SVG of a laid-out figure: short, deterministic, black on white."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ Lettering: TypeAlias = Callable[[Text, complex], str]
 
 
 class Letters(NamedTuple):
-    """The letters of a label, for who sets them over the drawing: the middle of their baseline, mm from the top
-    left corner of the figure, y down, and their runs."""
+    """Letters of a label to be set over the drawing: the middle of their baseline in mm from the top left
+    corner of the figure, y down, and their runs."""
 
     x: float
     y: float
@@ -28,8 +28,8 @@ class Letters(NamedTuple):
 def pieces(
     ink: Sequence[Ink], labels: Sequence[Label], corner: complex, lettering: Lettering
 ) -> tuple[list[str], list[str]]:
-    """Return each piece of a paper-mm drawing and each label as SVG; ``corner`` is the frame's top left,
-    which becomes (0, 0), y down."""
+    """Return each piece of a paper-mm drawing and each label as SVG; ``corner``, the frame's top left,
+    becomes (0, 0), y down."""
 
     lines = [item.svg(lambda z: _from(corner, z)) for item in ink]
     middles = [baseline(label.text, _from(corner, label.center)) for label in labels]
@@ -40,7 +40,7 @@ def pieces(
 
 
 def letters(label: Label, corner: complex) -> Letters:
-    """Return a label's letters and their place, from the frame's top left ``corner``."""
+    """Return a label's letters and their position, from the frame's top left ``corner``."""
     at = baseline(label.text, _from(corner, label.center))
     return Letters(at.real, at.imag, label.text.runs)
 
@@ -58,7 +58,7 @@ def baseline(text: Text, center: complex) -> complex:
 def written(
     lines: Sequence[str], texts: Sequence[str], size: tuple[float, float], lettering: Lettering
 ) -> str:
-    """Return a whole SVG from its pieces, from the bottom to the top of the pile."""
+    """Return a complete SVG from its pieces, from bottom to top."""
     width, height = map(number, size)
     font = f' font-family="{_FALLBACK}" font-size="{number(SIZE)}" text-anchor="middle"'
     style = font if lettering is as_text else ""
@@ -73,12 +73,12 @@ def written(
 
 
 def left_out(text: Text, at: complex) -> str:
-    """No letters: they are set over the drawing."""
+    """Return no letters: the caller sets them over the drawing."""
     return ""
 
 
 def as_text(text: Text, at: complex) -> str:
-    """Return the letters as text, in the font that the reader has."""
+    """Return the letters as SVG text, in the reader's font."""
     if len(text.runs) == 1 and text.runs[0].size == 1:
         italic = ' font-style="italic"' if text.runs[0].italic else ""
         body = escape(text.runs[0].text)
@@ -99,7 +99,7 @@ def _tspan(run: Run, rise: float) -> str:
 
 
 def as_outlines(text: Text, at: complex) -> str:
-    """Return the letters as outlines: they look the same on a machine without the font."""
+    """Return the letters as outlines, independent of installed fonts."""
     from coursework.figures.typesetting import glyph
 
     left = at - SIZE * text.width / 2
@@ -117,19 +117,18 @@ def as_outlines(text: Text, at: complex) -> str:
 
 
 def _fine(x: float) -> str:
-    """Return a scale, which needs more digits than a length."""
+    """Format a scale, which needs more digits than a length."""
     return f"{x:.5f}".rstrip("0")
 
 
 def accents(text: Text, at: complex) -> str:
-    """Return the accents over a text, given the middle of its baseline: they need no combining character of
-    the font."""
+    """Return the accents over a text, given the middle of its baseline, without combining characters."""
     left = at - SIZE * text.width / 2
     return "".join(_accent(text, accent, left) for accent in text.accents)
 
 
 def _accent(text: Text, accent: Accent, left: complex) -> str:
-    """Return the dots as discs, bars and arrows as lines."""
+    """Return an accent: dots as discs, bars and arrows as lines."""
     runs = text.runs[accent.first : accent.last]
     start = left.real + SIZE * text.start(accent.first)
     width = SIZE * advance(runs)
