@@ -10,42 +10,42 @@ BIN := $(VENV)/bin
 .PHONY: demo site test test-all test-share test-plain golden docs lint wheel wheel-test lock lock-test sbom audit clean
 .DEFAULT_GOAL := demo
 
-# Installed anew when the requirements change; edited code needs no reinstallation.
+# A stamp for each extra, all in one environment: a command installs what it still lacks. Renewed when the requirements
+# change; edited code needs no reinstallation. Python compiles a module when it is first imported.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+
 $(VENV)/ready: pyproject.toml
 	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed; none was found. Try: make PYTHON=/path/to/python"; exit 2; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
-	touch $(VENV)/ready
+	$(PIP) --editable .
+	touch $@
+
+$(VENV)/ready-%: $(VENV)/ready
+	$(PIP) --editable '.[$*]'
+	touch $@
 
 demo: $(VENV)/ready  ## The whole job on a class of twelve
 	$(BIN)/coursework demo --out demo
 
-# The site alone; what `make test` installs has it as well.
-$(VENV)/site-ready: pyproject.toml
-	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed; none was found. Try: make PYTHON=/path/to/python"; exit 2; }
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[site]'
-	touch $(VENV)/site-ready
-
 # SITE says more of it: make site SITE="--db marks.db --port 8080"; without a word, the class of twelve.
 SITE ?= --demo
 
-site: $(VENV)/site-ready  ## The site on this machine, opened in the browser
+site: $(VENV)/ready-site  ## The site on this machine, opened in the browser
 	$(BIN)/coursework serve --open $(SITE)
 
 PYTEST := python -m pytest -n auto -q
 
 # Of each sweep over seeds, exercises or languages the first few: see tests/sweeps.py.
-test: $(VENV)/ready lint  ## Every promise, sweeps in short
+test: $(VENV)/ready-test lint  ## Every promise, sweeps in short
 	$(BIN)/$(PYTEST) -m "not slow"
 
-test-all: $(VENV)/ready lint  ## Every test, sweeps at full length
+test-all: $(VENV)/ready-test $(VENV)/ready-e2e lint  ## Every test, sweeps at full length
 	$(BIN)/$(PYTEST)
 
 # An eighth of what test-all has more than test; each commit names one of the eight by its own digits.
 SHARE ?= $(shell printf '%d/8' "$$((0x$$(git rev-parse --short=7 HEAD) % 8))")
 
-test-share: $(VENV)/ready lint  ## Every promise, and of the long ends of sweeps an eighth, with each commit another
+test-share: $(VENV)/ready-test $(VENV)/ready-e2e lint  ## Every promise, and of the long ends of sweeps an eighth, with each commit another
 	$(BIN)/$(PYTEST) --share $(SHARE)
 
 # The tests of numbers, where a last bit would show.
@@ -56,7 +56,7 @@ VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extens
 
 # numpy, the C library and the linear algebra compute as on a processor without vector units, so that last bits
 # differ. A library passes over a word that it does not know.
-test-plain: $(VENV)/ready  ## The numbers once more, with other last bits
+test-plain: $(VENV)/ready-test  ## The numbers once more, with other last bits
 	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c "$(VECTOR_UNITS)")" OPENBLAS_CORETYPE=Nehalem \
 	GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable \
 	$(BIN)/$(PYTEST) -m "not slow" $(NUMBERS:%=tests/%)
@@ -68,18 +68,14 @@ BUILT := --variants 3 --formats pdf,html,ipynb,tex --lang fr,en
 # Python 3.11 or 3.12, for which there is such an old numpy.
 golden: $(VENV)/ready  ## The same bytes of a build by the oldest and the newest numpy
 	rm -rf build/golden
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --target build/golden/oldest $(OLDEST)
+	$(PIP) --no-deps --target build/golden/oldest $(OLDEST)
 	PYTHONPATH=build/golden/oldest $(BIN)/python -P -c "import numpy; print('numpy', numpy.__version__)"
 	PYTHONPATH=build/golden/oldest $(BIN)/python -P $(BIN)/coursework build $(BUILT) --out build/golden/one
 	$(BIN)/coursework build $(BUILT) --out build/golden/two
 	diff -r build/golden/one build/golden/two
 
-$(VENV)/docs-ready: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
-	touch $(VENV)/docs-ready
-
 # A warning is an error. The gallery is made from the course, beside a copy of the sources.
-docs: $(VENV)/docs-ready  ## The documentation, in build/site
+docs: $(VENV)/ready-docs  ## The documentation, in build/site
 	rm -rf build/docs build/site
 	mkdir -p build
 	cp -r docs build/docs
@@ -89,7 +85,7 @@ docs: $(VENV)/docs-ready  ## The documentation, in build/site
 	@echo "open build/site/index.html"
 
 # The same sources give the same bytes: dated by the commit, and no file is looked at outside the sources.
-wheel: $(VENV)/ready  ## The wheel, in dist, and its digest
+wheel: $(VENV)/ready-test  ## The wheel, in dist, and its digest
 	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct 2>/dev/null || echo 1580601600) \
 	$(BIN)/python -m build --quiet --no-isolation --wheel --outdir dist .
 	cd dist && sha256sum *.whl
@@ -102,7 +98,7 @@ IN_THE_WHEEL := authoring/test_examples.py cli course database/test_desk.py data
 	site/test_demo_site.py site/test_home.py site/test_preview.py statistics/test_alike.py workbook/test_lessons.py
 
 # The wheel in an environment of its own, the tests beside it, and no source in reach.
-wheel-test: $(VENV)/ready
+wheel-test: $(VENV)/ready-test
 	rm -rf build/wheel
 	mkdir -p build/wheel
 	$(BIN)/python -m build --quiet --outdir build/wheel .
@@ -112,10 +108,6 @@ wheel-test: $(VENV)/ready
 	cd build/wheel && venv/bin/python -P -m pytest -n auto -q -m "not slow" $(IN_THE_WHEEL:%=tests/%)
 	cd build/wheel && venv/bin/coursework demo --out demo
 
-$(VENV)/supply-ready: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[supply]'
-	touch $(VENV)/supply-ready
-
 # What a server installs, with digests, for each Python and system: all.txt decides each version, the others follow it.
 # The versions that stand there stay while they fit pyproject.toml: make lock UPGRADE=--upgrade takes the newest.
 EXTRAS := accuracy charts cluster lti nbgrader parquet scan
@@ -123,7 +115,7 @@ UPGRADE ?=
 COMPILE = $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --custom-compile-command "make lock" $(UPGRADE)
 
-lock: $(VENV)/supply-ready  ## The lock files, in locks
+lock: $(VENV)/ready-supply  ## The lock files, in locks
 	$(COMPILE) --all-extras --output-file locks/all.txt
 	$(COMPILE) --no-annotate --constraints locks/all.txt --extra site --extra lti --output-file locks/site.txt
 	set -e; for extra in $(EXTRAS); do \
@@ -139,13 +131,13 @@ lock-test: wheel  ## The site from its lock file, in an environment of its own
 	build/locked/bin/python -m pip check
 	cd build/locked && bin/python -P -c "import coursework.site.server, coursework.lti.service" && bin/coursework list | tail -1
 
-sbom: $(VENV)/supply-ready  ## The inventory of what the site installs, in build
+sbom: $(VENV)/ready-supply  ## The inventory of what the site installs, in build
 	$(BIN)/python locks/sbom.py locks/site.txt build/site.cdx.json
 
-audit: $(VENV)/supply-ready  ## Known vulnerabilities of what the site installs; asks the package index
+audit: $(VENV)/ready-supply  ## Known vulnerabilities of what the site installs; asks the package index
 	$(BIN)/pip-audit --require-hashes --disable-pip -r locks/site.txt
 
-lint: $(VENV)/ready
+lint: $(VENV)/ready-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
