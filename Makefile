@@ -11,18 +11,21 @@ BIN := $(VENV)/bin
 .DEFAULT_GOAL := demo
 
 # A stamp for each extra, all in one environment: a command installs what it still lacks. Renewed when the requirements
-# change; edited code needs no reinstallation. Python compiles a module when it is first imported.
+# change; edited code needs no reinstallation. pip would compile one file after another, and tests of libraries too.
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+define install
+$(PIP) --editable '.$(1)'
+$(BIN)/python -m compileall -qq -j 0 -x '/tests?/' $(VENV)/lib coursework || true
+touch $@
+endef
 
 $(VENV)/ready: pyproject.toml
 	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed; none was found. Try: make PYTHON=/path/to/python"; exit 2; }
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) --editable .
-	touch $@
+	$(call install,)
 
 $(VENV)/ready-%: $(VENV)/ready
-	$(PIP) --editable '.[$*]'
-	touch $@
+	$(call install,[$*])
 
 demo: $(VENV)/ready  ## The whole job on a class of twelve
 	$(BIN)/coursework demo --out demo

@@ -24,12 +24,25 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = Path(coursework.__file__).resolve().parent
 LOCKS = ROOT / "locks"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-EXTRAS = PROJECT["optional-dependencies"]
+STATED = PROJECT["optional-dependencies"]
 
 #: What stays without an upper bound, and why: pyproject.toml.
 UNBOUNDED = {"argon2-cffi", "cryptography", "pyarrow"}
 #: Extras that no server installs.
-TOOLS = {"docs", "test"}
+TOOLS = {"docs", "e2e", "test"}
+
+
+def requirements(extra: str) -> list[str]:
+    """Return the requirements of an extra on other packages, those of the extras that it refers to included."""
+    found = []
+    for text in STATED[extra]:
+        one = Requirement(text)
+        own = canonicalize_name(one.name) == DISTRIBUTION
+        found += [t for other in sorted(one.extras) for t in requirements(other)] if own else [text]
+    return found
+
+
+EXTRAS = {extra: requirements(extra) for extra in STATED}
 
 PLACES = [
     {"python_version": f"3.{minor}", "python_full_version": f"3.{minor}.1", "sys_platform": system, "os_name": os,
@@ -157,6 +170,23 @@ def test_requirements_are_bounded_where_the_next_number_may_change_what_is_calle
         if not any(one.operator in ("<", "<=", "==", "~=") for one in requirement.specifier):
             unbounded.add(requirement.name)
     assert unbounded == UNBOUNDED
+
+
+def test_an_extra_refers_to_another_in_place_of_repeating_it():
+    """Where all requirements of one stand in another, the other names it."""
+    repeated = [
+        (extra, other)
+        for extra, texts in STATED.items()
+        for other, own in STATED.items()
+        if extra != other and set(own) <= set(texts)
+    ]
+    assert not repeated
+
+
+def test_every_extra_of_a_job_is_tested():
+    """The tests' two extras bring together whatever a message may tell a user to add."""
+    brought = {*EXTRAS["test"], *EXTRAS["e2e"]}
+    assert {e for e in EXTRAS if not set(EXTRAS[e]) <= brought} == {"docs", "supply"}
 
 
 def test_an_extra_asks_for_the_same_as_another():
