@@ -1,1 +1,1 @@
-"""What moves: scenes over a cycle or in time, and animations."""
+"""Scenes over a cycle or in time, and animations."""

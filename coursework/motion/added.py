@@ -1,4 +1,4 @@
-"""What a scene adds to the mechanism of its exercise: masses, loads, friction, a flywheel, gravity of another place."""
+"""Data that a scene adds to the mechanism of its exercise: masses, loads, friction, a flywheel, gravity."""
 
 from __future__ import annotations
 
@@ -14,8 +14,11 @@ from coursework.mechanics.wrenches import GRAVITY
 
 @dataclass(frozen=True)
 class Weighed:
-    """Mass (kg), moment of inertia about the centre (kg m^2), and the centre: one of the body's points, or a place in its
-    frame, mm. None leaves what the exercise says."""
+    """Mass (kg), moment of inertia about the centre (kg m^2), and centre of a body: one of its points, or a
+    position in its frame, mm.
+
+    None leaves the exercise's value.
+    """
 
     mass: float | None = None
     inertia: float | None = None
@@ -24,8 +27,10 @@ class Weighed:
 
 @dataclass(frozen=True)
 class Flywheel:
-    """A flywheel on the driver's shaft, by its moment of inertia (kg m^2), or by the unevenness that it has to keep:
-    (largest - least speed) / mean speed, over a cycle at the given speed."""
+    """Flywheel on the driver's shaft, by its moment of inertia (kg m^2) or by the allowed unevenness.
+
+    The unevenness is (largest - least speed) / mean speed, over a cycle at the given speed.
+    """
 
     inertia: float | None = None
     unevenness: float | None = None
@@ -39,8 +44,8 @@ class Flywheel:
 
 @dataclass(frozen=True)
 class Motor:
-    """What drives in time: a torque at rest (N m), and the speed (rad/s) at which none is left, on a straight line between;
-    without that speed the torque is constant."""
+    """Drive in time: a torque at rest (N m), falling linearly to 0 at the no-load speed (rad/s); constant
+    without that speed."""
 
     torque: float
     no_load_speed: float | None = None
@@ -59,7 +64,7 @@ class Motor:
 
 @dataclass(frozen=True)
 class Added:
-    """The data of a scene.
+    """Data that a scene adds to its exercise.
 
     ``friction``: by joint, a coefficient for a slide, a pair of coefficient and radius of the journal (mm) for a pin;
     ``lengths``: of slides that bear on both edges, mm; ``gravity``: its acceleration, m/s^2, complex.
@@ -74,13 +79,13 @@ class Added:
 
     @property
     def is_own(self) -> bool:
-        """True if it says anything that the exercise does not know of."""
+        """True if the scene has data that the exercise does not know."""
         return (
             bool(self.bodies or self.loads or self.friction or self.lengths) or self.gravity != -1j * GRAVITY
         )
 
     def to(self, mechanism: Mechanism) -> Mechanism:
-        """Return the mechanism with it.
+        """Return the mechanism with the added data.
 
         Raises
         ------

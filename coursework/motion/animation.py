@@ -1,4 +1,4 @@
-"""An exercise in motion: its figure over the cycle of its driver, paths of points, and vectors.
+"""Animation of an exercise: its figure over the cycle of its driver, paths of points, and vectors.
 
 The figure is the statement's own, asked again at every angle, unless the solution states a :class:`~coursework.solution.Film`
 with one that can move. The points that leave a trace and carry vectors are those of the solution's ``MECHANISM``, or of its
@@ -42,7 +42,7 @@ _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
 
 
 class Animation(Reel):
-    """A variant's mechanism over the cycle of its driver, or over the turns that its film shows.
+    """Animation of a variant's mechanism over the cycle of its driver, or over the turns of its film.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Animation(Reel):
 
     @cached_property
     def points(self) -> Mapping[str, Moving]:
-        """The points that the solution states, over the instants."""
+        """Points that the solution states, over the instants."""
         exercise = self.variant.exercise
         if not exercise.folder.has_solutions:
             return {}
@@ -97,12 +97,12 @@ class Animation(Reel):
 
     @cached_property
     def readings(self) -> tuple[Gauge, ...]:
-        """The numbers of what the effects show, over the instants; none in a course without solutions."""
+        """Values of the effects' quantities over the instants; none in a course without solutions."""
         return gauges(self, self._vectors)
 
     @cached_property
     def available(self) -> tuple[str, ...]:
-        """The effects of which there is something to show: a path, a vector or a number."""
+        """Effects with something to show: a path, a vector or a number."""
         drawn = {effect for _, effect, _ in self._vectors} | ({"position"} if self.points else set())
         return tuple(e for e in EFFECTS if e in drawn or any(e in r.effects for r in self.readings))
 
@@ -117,7 +117,7 @@ class Animation(Reel):
 
     @cached_property
     def scales(self) -> Mapping[str, float]:
-        """Of vectors, for each effect: units for one mm of mechanism, one scale for the whole cycle.
+        """Scale of the vectors of each effect: units for one mm of mechanism, the same for the whole cycle.
 
         Coriolis terms are accelerations and have their scale.
         """
@@ -133,7 +133,7 @@ class Animation(Reel):
 
     @property
     def _inside(self) -> slice:
-        """The instants that are no limits: at a limit the velocities do not exist."""
+        """Instants that are not limits: at a limit the velocities do not exist."""
         return slice(None) if self.turns else slice(1, -1)
 
     # -------------------------------------------------------------------- picture
@@ -144,8 +144,11 @@ class Animation(Reel):
         paper_mm: tuple[float, float] = PAPER_MM,
         frames: Sequence[tuple[Element, ...]] | None = None,
     ) -> Drawing:
-        """Return everything at every instant, with what these effects show, in a box of this size; ``frames``
-        stand in place of its own."""
+        """Return the drawing over all instants with the vectors and paths of these effects, in a box of this
+        size.
+
+        ``frames`` replace the animation's own.
+        """
         arrows, spots = [], []
         for name, effect, v in self._vectors:
             if effect in effects and effect in self.scales:
@@ -165,7 +168,7 @@ class Animation(Reel):
         )
 
     def _keys(self, effects: set[str]) -> list[Key]:
-        """Return the legend: for each effect an arrow of a round value."""
+        """Return the legend: an arrow of a round value for each effect."""
         low, high = extent(self.frames)
         said = words(self.variant.lang)["motion"]
         size, keys = max((high - low).real, (high - low).imag), []
@@ -183,7 +186,7 @@ class Animation(Reel):
 
     @cached_property
     def words(self) -> str:
-        """What the picture shows, for those who cannot see it: the statement's own words, or the film's."""
+        """Description of the picture for readers who cannot see it: the statement's own words, or the film's."""
         from coursework.language.typography import typeset
 
         section = (
@@ -195,7 +198,8 @@ class Animation(Reel):
         return typeset(said, self.variant.lang) or self.title
 
     def svg(self) -> str:
-        """Return the moving figure as SVG with no script; it stands still for who wants no motion."""
+        """Return the moving figure as SVG without scripts; it stands still for readers who prefer reduced
+        motion."""
         return moving_svg(
             self.drawing(self.effects),
             order=self.order,
@@ -208,8 +212,11 @@ class Animation(Reel):
         )
 
     def stills(self, count: int, paper_mm: tuple[float, float]) -> tuple[str, ...]:
-        """So many instants of the cycle as SVG, evenly spread, the statement's first, each in a box of this size, which has no room
-        for the letters of lengths and angles."""
+        """Return ``count`` instants of the cycle as SVG, evenly spread, the statement's first, each in a box
+        of this size.
+
+        Letters of lengths and angles are left out, since the box has no room for them.
+        """
         frames = [_without_sizes(frame) for frame in self.frames]
         shown, instants = self.drawing(self.effects, paper_mm, frames), len(self.angles)
         turned = [(self.first + round(k * instants / count)) % instants for k in range(count)]
@@ -217,7 +224,7 @@ class Animation(Reel):
         return tuple(still_svg(shown, instant, **said) for instant in turned)
 
     def _key_times(self) -> str:
-        """Return the same for SVG; nothing when they are evenly spread."""
+        """Return the times as SVG key times; empty when they are evenly spread."""
         if np.ptp(np.diff(self.times)) < 1e-9:
             return ""
         return ";".join([*(f"{t:.5f}" for t in self.times[:-1]), "1"])
@@ -239,6 +246,6 @@ def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
 
 
 def _round_below(value: float) -> float:
-    """Return the largest of 1, 2 and 5 times a power of ten that is not above a value."""
+    """Return the largest of 1, 2 and 5 times a power of ten that does not exceed a value."""
     power = 10.0 ** math.floor(math.log10(value) + 1e-12)
     return max(m * power for m in (1, 2, 5) if m * power <= value * (1 + 1e-12))

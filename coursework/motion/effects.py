@@ -1,4 +1,4 @@
-"""The effects that a scene may call for, and what an exercise shows of each.
+"""Effects that a scene may request, and the quantities that an exercise shows of each.
 
 What belongs to an effect is what the solution's ``EFFECTS`` say. Of an effect that they leave out: the unknowns of the
 loops are positions, and their rates are velocities and accelerations; without loops, of the parts asked, those are
@@ -25,12 +25,12 @@ REFUSED = ("impact", "impacts", "clearance", "clearances", "play", "backlash")
 
 
 def refusal(name: str) -> str:
-    """What is said of an effect that is never simulated."""
+    """Return the message for an effect that is never simulated."""
     return f"{name}: impacts and clearances are not simulated; joints hold without play, and nothing strikes"
 
 
 def check_effect(effect: str, exercise: CourseExercise) -> None:
-    """Refuse an effect that there is not.
+    """Refuse an unknown effect.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The numbers beside a picture in motion: a quantity or a vector's length at every instant, as printed."""
+"""Numbers beside a moving picture: a quantity or a vector's length at every instant, as printed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Vectors: TypeAlias = tuple[
 
 @dataclass(frozen=True)
 class Gauge:
-    """A quantity over the instants, as printed; empty where it does not exist."""
+    """Quantity over the instants, as printed; empty where it does not exist."""
 
     symbol: str
     unit: str
@@ -34,7 +34,7 @@ class Gauge:
 
 
 def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
-    """Return the numbers of what the effects show, over the instants; none in a course without solutions.
+    """Return the quantities of the effects over the instants; none in a course without solutions.
 
     ``vectors`` are those of the points, each with its name and effect.
     """
@@ -67,7 +67,7 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
 
 
 def _measured(reel: Reel, effect: str) -> Sequence[str]:
-    """Return the quantities of an effect; of a film, they keep their values."""
+    """Return the quantities of an effect; in a film, only those that change."""
     exercise = reel.variant.exercise
     film = reel.film
     driver = exercise.spec.driver if film is None else Driver(film.angle, film.speed)
@@ -75,7 +75,7 @@ def _measured(reel: Reel, effect: str) -> Sequence[str]:
 
 
 def _norms(reel: Reel, vectors: Sequence[Vectors]) -> list[Gauge]:
-    """Return the length of every vector, under the name that it has in the course."""
+    """Return the length of every vector, under its name in the course."""
     return [
         _gauge(reel, _symbol(effect, name), UNIT[effect], (effect,), np.abs(v), name)
         for name, effect, v in vectors
@@ -97,12 +97,12 @@ def _gauge(reel: Reel, symbol: str, unit: str, effects: Sequence[str], value: An
 
 
 def number(value: float, lang: str) -> str:
-    """Return a value as the language writes it; empty where there is none."""
+    """Format a value in the language; empty where it does not exist."""
     return localise(significant(value), lang) if math.isfinite(value) else ""
 
 
 def _symbol(effect: str, point: str) -> str:
-    """Return LaTeX of a vector's length, as the course writes it: ``v_B``, ``a_{A,c}``."""
+    """Return LaTeX of a vector's length in the course's notation: ``v_B``, ``a_{A,c}``."""
     index = f"{point},c" if effect == "coriolis" else point
     letter = "v" if effect == "velocity" else "a"
     return f"{letter}_" + (index if len(index) == 1 else f"{{{index}}}")

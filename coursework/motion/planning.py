@@ -1,4 +1,4 @@
-"""What a scene is going to evaluate, and why: said before anything is computed."""
+"""Plan of a scene: the quantities to evaluate and the reasons, before anything is computed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from coursework.motion.staged import INERTIA
 
 
 def plan(scene: Scene) -> list[tuple[str, str]]:
-    """What is evaluated at every instant and why, in order; the last lines say what is left out."""
+    """Return the quantities evaluated at every instant with their reasons, in order, then those left out."""
     return [*_of_exercise(scene), *_of_mechanism(scene), *_left_out(scene)]
 
 
@@ -67,7 +67,7 @@ def _of_forces(scene: Scene, asked: bool) -> Iterator[tuple[str, str]]:
 
 
 def _left_out(scene: Scene) -> Iterator[tuple[str, str]]:
-    """What no effect of the scene, and nothing that it shows, needs."""
+    """Yield what no effect of the scene and no shown quantity requires."""
     kinds = {shown.what(name)[0] for name in scene.extra}
     bent = {"acceleration", "coriolis", INERTIA} & {*scene.called, *kinds}
     own = scene.evaluated(scene.quantities)

@@ -1,4 +1,4 @@
-"""A driver's cycle, instant by instant: its angles, and the figure at each of them."""
+"""Cycle of a driver, instant by instant: its angles, and the figure at each of them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MOST_TURNS = 20  #: of its driver, in a film
 
 
 class Reel:
-    """The instants of a variant's mechanism: over the cycle of its driver, or over the turns that its film shows.
+    """Instants of a variant's mechanism: over the cycle of its driver, or over the turns of its film.
 
     ``count`` is the number of angles in a turn of the driver.
 
@@ -50,17 +50,17 @@ class Reel:
 
     @property
     def film(self) -> Film | None:
-        """The film that the solution states, if it is one."""
+        """Film of the solution; None without one."""
         return self.variant.exercise.film
 
     @property
     def driver(self) -> str:
-        """The name of the driving angle."""
+        """Name of the driving angle."""
         return self._drive.angle
 
     @property
     def _sign(self) -> int:
-        """Which way the driver turns."""
+        """Sign of the driver's rotation: +1 or -1."""
         return -1 if float(self.variant.given.get(self._drive.speed, 1.0)) < 0 else 1
 
     @property
@@ -77,7 +77,7 @@ class Reel:
         return {**given, **self.variant.exercise.posed(given, angle)}
 
     def _stated(self, name: str, function: Callable[..., Any], given: Mapping[str, Any]) -> Any:
-        """What a function of the solution's quantities gives, called by a name that is none of theirs."""
+        """Evaluate a function of the solution's quantities, under a name that none of them has."""
         exercise = self.variant.exercise
         graph = exercise.solution.graph.with_functions({name: function})
         known = {n: v for n, v in given.items() if n in exercise.quantity_names | graph.leaves}
@@ -107,7 +107,8 @@ class Reel:
 
     @cached_property
     def _cycle(self) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
-        """Angles of the driver, increasing; elements at each; the first shown; whether it turns fully."""
+        """Driver's angles in increasing order, the elements at each, the index of the statement's instant,
+        and whether the driver turns fully."""
         if self.film is not None:
             return self._reel(self.film)
         start, step = self.variant.exercise.driver_angle(self.variant.given), 360.0 / self.count
@@ -137,7 +138,7 @@ class Reel:
         return np.array(ordered), [closing[a] for a in ordered], ordered.index(start), False
 
     def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
-        """Return the same for a film: from 0, by equal steps and a last one that may be shorter."""
+        """Return the cycle of a film: from 0, by equal steps and a last one that may be shorter."""
         place = f"{self.variant.exercise.solution.source}: FILM"
         if film.speed not in self.variant.given:
             given = ", ".join(self.variant.given)
@@ -154,8 +155,8 @@ class Reel:
         return angles, [self._elements_or_fault(angle) for angle in angles], first, True
 
     def _toward_limit(self, last: float, step: float, back: int) -> dict[float, tuple[Element, ...]]:
-        """Return the limit beyond the last angle, and more angles before it, where the links turn as its
-        square root."""
+        """Return the limit beyond the last angle, and further angles before it, where the links turn as the
+        square root of the distance."""
         limit, elements = self._limit(last, step)
         if abs(limit - last) < 1e-3 * abs(step):
             return {}
@@ -165,7 +166,8 @@ class Reel:
         return {limit: elements} | {angle: one for angle, one in found.items() if one is not None}
 
     def _limit(self, angle: float, step: float) -> tuple[float, tuple[Element, ...]]:
-        """Return the last angle that closes between one that does and the next, which does not."""
+        """Return the last angle at which the mechanism closes, between one that closes and the next, which
+        does not."""
         inside, outside = 0.0, 1.0
         elements = self._elements_or_fault(angle)
         for _ in range(30):
@@ -189,7 +191,7 @@ class Reel:
 
     @property
     def first(self) -> int:
-        """The instant that the sheet shows; of a film the first one."""
+        """Index of the instant on the sheet; in a film 0."""
         return self._cycle[2]
 
     @property
@@ -199,18 +201,18 @@ class Reel:
 
     @property
     def closed(self) -> bool:
-        """True if the last instant is followed by the first as any by the next; neither in a swing nor in a
-        film."""
+        """True if the first instant follows the last one; False for a swing and for a film."""
         return self.turns and self.film is None
 
     @property
     def seconds(self) -> float:
-        """How long a loop lasts on the screen."""
+        """Duration of a loop on the screen."""
         return SECONDS * (1.0 if self.film is None else round(float(np.ptp(self.angles)) / 360.0, 3))
 
     @cached_property
     def order(self) -> tuple[int, ...]:
-        """The instants of a loop, in time, from the sheet's own back to it; a film's from its first to its last."""
+        """Indices of a loop in time, from the sheet's instant back to it; in a film from the first to the
+        last."""
         count, first, sign = len(self.angles), self.first, self._sign
         if self.film is not None:
             return tuple(range(count))[::sign]
@@ -222,7 +224,7 @@ class Reel:
 
     @cached_property
     def times(self) -> np.ndarray:
-        """When each instant of a loop is reached, from 0 to 1: a turn goes steadily, a swing like a pendulum's."""
+        """Time of each instant of a loop, from 0 to 1: a full turn is uniform, a swing like a pendulum's."""
         if self.film is not None:
             gone = np.abs(self.angles - self.angles[self.first])[list(self.order)]
             return gone / gone[-1]

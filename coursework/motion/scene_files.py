@@ -1,4 +1,4 @@
-"""Scenes as files: TOML, every value with its unit.
+"""Scene files: TOML, every value with its unit.
 
 ::
 
@@ -56,7 +56,7 @@ Path_ = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class SceneFile:
-    """A scene, and how it is run: over a cycle of so many steps, or in time under a drive."""
+    """Scene with its run: over a cycle in a number of steps, or in time under a drive."""
 
     name: str
     scene: Scene
@@ -66,7 +66,7 @@ class SceneFile:
 
 
 def read_scene(path: Path, course: Course) -> SceneFile:
-    """Read a scene's file.
+    """Read a scene file.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def read_scene(path: Path, course: Course) -> SceneFile:
 
 
 class _Reader:
-    """Reads the tables of one file; what it refuses it tells with the line."""
+    """Reader of the tables of one file; its errors give the line."""
 
     def __init__(self, path: Path, text: str, table: Mapping[str, Any], course: Course) -> None:
         self.path, self.text, self.table, self.course = path, text, table, course
@@ -130,7 +130,7 @@ class _Reader:
         return Scene(exercise, given, effects, show, added)
 
     def _check_names(self, exercise: CourseExercise) -> None:
-        """Look every name up that the mechanism has to know, whichever effects are called."""
+        """Check every name that the mechanism must know, whichever effects are requested."""
         mechanism = exercise.solution.mechanism
         if mechanism is None:
             return
@@ -149,7 +149,7 @@ class _Reader:
             self._known(("slides", name), "slide", name, slides)
 
     def _told(self, at: Path_, function: Any, *arguments: Any) -> Any:
-        """What a function gives; what it refuses, with the line."""
+        """Call a function, and add the line to its errors."""
         try:
             return function(*arguments)
         except BadInput:
@@ -171,7 +171,7 @@ class _Reader:
                 raise self.refused((*at, key), f"no key {key!r}{nearest(key, known)}")
 
     def _at(self, at: Path_) -> Any:
-        """What stands at a path; None where nothing does."""
+        """Return the value at a path; None where there is none."""
         found: Any = self.table
         for part in at:
             try:
@@ -221,7 +221,7 @@ class _Reader:
         return self.course[name]
 
     def _given(self, exercise: CourseExercise) -> dict[str, Any]:
-        """Return the values of a variant, with those that the file names instead."""
+        """Return the values of a variant, overridden by those of the file."""
         seed = self.table.get("seed", 0)
         found = dict(self._told(("seed",), exercise.variant, seed).given)
         for name, value in self._table(("given",)).items():
@@ -319,7 +319,7 @@ class _Reader:
         )
 
     def _refuse_idle(self, at: Path_, own: Mapping[str, Any]) -> None:
-        """Refuse a key beside another that makes it idle."""
+        """Refuse a key that has no effect beside another one."""
         for key, other in (("force", "moment"), ("table", "force"), ("table", "moment"), ("angle", "against"),
                            ("angle", "moment"), ("body", "moment")):  # fmt: skip
             if key in own and other in own:

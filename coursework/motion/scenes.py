@@ -1,4 +1,4 @@
-"""Scenes: an exercise's mechanism, its data, and the effects that the scene calls for.
+"""Scenes: an exercise's mechanism, its data, and the requested effects.
 
 A scene that calls for less runs less: its columns are the quantities of the effects named, and the quantity graph
 evaluates what those need and nothing else; forces come from the mechanism that the solution states, the effort alone by
@@ -34,20 +34,20 @@ class Table:
     balance: float = math.nan  #: largest energy balance error over the energy exchanged; for motions in time
 
     def rows(self, every: int = 1) -> list[dict[str, Any]]:
-        """Return a row an instant, or every so manieth; headers with units, empty where something does not
-        exist."""
+        """Return every ``every``-th instant as a row; headers carry units, cells are empty where a value does
+        not exist."""
         heads = [f"{name} [{self.units[name]}]" for name in self.columns]
         values = zip(*(c[::every].tolist() for c in self.columns.values()), strict=True)
         return [{h: v if math.isfinite(v) else "" for h, v in zip(heads, row, strict=True)} for row in values]
 
     def __len__(self) -> int:
-        """How many instants there are."""
+        """Return the number of instants."""
         return len(next(iter(self.columns.values())))
 
 
 @dataclass(frozen=True)
 class Scene(Showing):
-    """One mechanism with its data and the effects called for.
+    """Mechanism with its data and the requested effects.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class Scene(Showing):
             yield f"not everything exists at {self.driver.angle} = {listed} deg{more}: a dead centre"
 
     def _empty_effects(self) -> Iterator[str]:
-        """Yield the effects that are called and for which the scene has no data."""
+        """Yield the requested effects for which the scene has no data."""
         if self.exercise.solution.mechanism is None or (self._graph_effects and not self.has_own_data):
             return
         data = self.with_data()
@@ -133,7 +133,7 @@ class Scene(Showing):
 
     @property
     def _resists(self) -> bool:
-        """True if something goes against the motion."""
+        """True if a force or a moment opposes the motion."""
         if self.exercise.solution.mechanism is None:
             return False
         return bool(self.contacts) or (
@@ -141,7 +141,7 @@ class Scene(Showing):
         )
 
     def _is_open(self, columns: Mapping[str, np.ndarray], angles: np.ndarray) -> np.ndarray:
-        """Where a position of the mechanism does not exist."""
+        """Return a mask of the instants at which a position of the mechanism does not exist."""
         positions = [columns[n] for n in self._of("position") if n in columns]
         if self.exercise.solution.mechanism is not None:
             positions += list(self.pose(angles).turns)
@@ -150,7 +150,7 @@ class Scene(Showing):
         return np.logical_or.reduce([np.isnan(position) for position in positions])
 
     def _flywheel_notes(self) -> Iterator[str]:
-        """What the turn asks of a drive that gives a constant torque."""
+        """Yield the mean torque, the excess energy and the flywheel of a turn at constant torque."""
         if self.added.flywheel is None or FLYWHEEL not in self.effects or not self._speed:
             return
         yield f"mean torque: {self.evenness.mean_torque:.4g} N*m"

@@ -1,4 +1,4 @@
-"""What a scene shows: the exercise's quantities of its effects, and what the mechanism tells besides."""
+"""Quantities that a scene shows: those of the exercise for its effects, and those of the mechanism."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _PIECE = 1 << 16  #: instants whose points are computed together
 
 @dataclass(frozen=True)
 class Showing(Staged):
-    """A staged mechanism with what is to be seen of it."""
+    """Staged mechanism with the quantities that it shows."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -34,7 +34,7 @@ class Showing(Staged):
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """What the scene shows of the exercise's own quantities."""
+        """Quantities of the exercise that the scene shows."""
         wanted = [n for effect in self.called for n in self._of(effect)]
         if self._graph_effects and not (self.has_own_data and self.exercise.solution.mechanism):
             wanted += self._of(OF_FORCES)
@@ -54,7 +54,7 @@ class Showing(Staged):
 
     @property
     def constants(self) -> frozenset[str]:
-        """Quantities shown that no effect moves: they are computed once."""
+        """Shown quantities that no effect changes: they are computed once."""
         moving = {n for names in self._by_effect.values() for n in names}
         if self.exercise.spec.driver is None or self.exercise.spec.driver.poses is None:
             return frozenset()
@@ -62,7 +62,7 @@ class Showing(Staged):
 
     @cached_property
     def extra(self) -> tuple[str, ...]:
-        """What is shown besides: of the drive, of points, of joints."""
+        """Further quantities shown: of the drive, of points, of joints."""
         named = [n for n in self.show if n not in self.exercise.quantity_names]
         if (
             self._forces_called
@@ -80,12 +80,11 @@ class Showing(Staged):
 
     @cached_property
     def _moved_by_solution(self) -> tuple[str, ...]:
-        """The points that the solution's ``motion`` gives."""
+        """Points that the solution's ``motion`` gives."""
         return tuple(self._motion_of_solution(0.0))
 
     def _motion_of_solution(self, angle: Any) -> Mapping[str, Moving]:
-        """Return the points that the solution's ``motion`` moves, at driver's angles, degrees; none without
-        one."""
+        """Return the points of the solution's ``motion`` at driver's angles, degrees; none without one."""
         solution = self.exercise.solution
         if solution.motion is None:
             return {}
@@ -95,8 +94,8 @@ class Showing(Staged):
         return graph.evaluate(("motion",), known, self._graph_effects)["motion"]
 
     def _of_what_the_solution_leaves_out(self) -> list[str]:
-        """Return the velocities and accelerations of moving points, where the effect is called and no
-        quantity tells it."""
+        """Return the velocities and accelerations of moving points, for a requested effect that no quantity
+        covers."""
         points = [p for p in self.linkage.mechanism.points if p not in self.linkage.mechanism.ground]
         return [
             f"{effect} {point}"
@@ -107,7 +106,7 @@ class Showing(Staged):
 
     @cached_property
     def _of_own_forces(self) -> frozenset[str]:
-        """The exercise's quantities that its own effects change."""
+        """Quantities of the exercise that its own effects change."""
         graph = self.exercise.solution.graph
         return graph.descendants(graph.effects()) if graph.effects() else frozenset()
 
@@ -152,8 +151,7 @@ class Showing(Staged):
         return {n: np.broadcast_to(found[n], shape) for n in dict.fromkeys([*self.quantities, *found])}
 
     def _advantage(self, driven: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the effort that comes out for effort that goes in: the driver's speed over that of its
-        output."""
+        """Return the mechanical advantage: the driver's speed over that of its output."""
         output = self.driver.output
         if not output or not self.driver.speed:
             raise WrongValue(f"{self.exercise.name}: its driver names no output, so no advantage is known")
@@ -169,7 +167,7 @@ class Showing(Staged):
     def _extra_columns(
         self, angles: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
     ) -> shown.Columns:
-        """What the mechanism tells, at driver's angles in radians."""
+        """Return the further quantities at driver's angles in radians."""
         if not self.extra:
             return {}
         if self.exercise.solution.mechanism is None:
@@ -197,8 +195,8 @@ class Showing(Staged):
         speed: np.ndarray,
         acceleration: np.ndarray,
     ) -> dict[tuple[str, str], shown.Columns]:
-        """Return the motions of points, by pieces of the instants, so that a long cycle takes no more memory
-        than its columns."""
+        """Return the motions of points, in blocks of instants, so that a long cycle needs no more memory than
+        its columns."""
         parts: list[dict[tuple[str, str], shown.Columns]] = []
         for start in range(0, len(angles), _PIECE) if points else ():
             piece = slice(start, start + _PIECE)
@@ -213,7 +211,7 @@ class Showing(Staged):
         }
 
     def _points_of_solution(self, angle: np.ndarray) -> shown.Columns:
-        """Return the points that the solution itself moves: a mechanism in space states no bodies in a plane."""
+        """Return the points that the solution itself moves, for a spatial mechanism without plane bodies."""
         points = self._motion_of_solution(angle)
         found: shown.Columns = {}
         for kind, of in map(shown.what, self.extra):
@@ -229,7 +227,7 @@ class Showing(Staged):
         return {name: (0.5 * inertia * speed**2, "J")}
 
     def _moved(self) -> Forces:
-        """Return the inertia alone, with the flywheel that is called."""
+        """Return the forces of inertia alone, with the requested flywheel."""
         return replace(self.forces, downwards=0j, inertia=True, loads=(), contacts=())
 
     def moving_points(self, angle: np.ndarray) -> dict[str, Moving]:
@@ -264,7 +262,7 @@ class Showing(Staged):
         return self.evaluated(wanted)
 
     def evaluated(self, wanted: Sequence[str]) -> tuple[str, ...]:
-        """Return the quantities that are evaluated for some, in order."""
+        """Return all quantities evaluated for the requested ones, in order."""
         graph = self.exercise.solution.graph
         names = {**self.exercise.intake.defaults, **self._driven(0.0)}
         given = frozenset(names) & self.exercise.quantity_names

@@ -1,4 +1,4 @@
-"""What a scene can show besides the exercise's quantities: motions of points, what joints bear, the drive.
+"""Quantities that a scene can show beside the exercise's own: motions of points, joint reactions, the drive.
 
 ``drive_torque``, ``drive_power``, ``kinetic_energy``; ``position B``, ``velocity B``, ``acceleration B``, ``coriolis A``;
 ``reaction B``, of a pin or a slide.
@@ -25,13 +25,13 @@ Columns = dict[str, tuple[Any, str]]  #: values and unit, by name
 
 
 def what(name: str) -> tuple[str, str]:
-    """Return the kind and the point or joint of ``"velocity B"``; no kind for the name of a quantity."""
+    """Split ``"velocity B"`` into the kind and the point or joint; the kind of a plain quantity is empty."""
     kind, _, of = name.strip().partition(" ")
     return (kind, of.strip()) if of and kind in (*OF_POINTS, REACTION) else ("", name.strip())
 
 
 def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
-    """Refuse what a scene cannot show.
+    """Refuse a name that a scene cannot show.
 
     Raises
     ------
@@ -55,12 +55,12 @@ def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
 
 
 def turning_slides(linkage: Linkage) -> tuple[SlideJoint, ...]:
-    """Return the slides whose guide turns: there Coriolis has a term."""
+    """Return the slides whose guide turns, where a Coriolis term exists."""
     return tuple(s for s in linkage.slides if linkage.coordinates[s.on] != -1)
 
 
 def joint_points(linkage: Linkage) -> dict[str, list[str]]:
-    """Return the joints at each point, by what they are called in a scene."""
+    """Return the joints at each point, by their names in a scene."""
     found: dict[str, list[str]] = {}
     names = [
         *(p.name for p in linkage.pins),
@@ -74,7 +74,7 @@ def joint_points(linkage: Linkage) -> dict[str, list[str]]:
 
 
 def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, acceleration: np.ndarray) -> Columns:
-    """Return two components and, of a rate, its length: mm, mm/s, mm/s^2, in the ground's frame."""
+    """Return two components and, for a rate, the magnitude: mm, mm/s, mm/s^2, in the ground's frame."""
     if kind == "coriolis":
         (slide,) = (s for s in turning_slides(stance.linkage) if s.name.removesuffix(" slide") == point)
         return {f"a_coriolis_{point}": (stance.coriolis(slide, speed) / MM, "mm/s^2")}
@@ -88,7 +88,8 @@ def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, accelerat
 
 
 def of_moving(kind: str, point: str, moving: Moving) -> Columns:
-    """Return the same of a point that a solution moves itself; nothing where it does not say it."""
+    """Return the same columns for a point that a solution moves itself; empty where the solution leaves them
+    out."""
     values = getattr(moving, kind)
     if values is None:
         return {}
@@ -104,7 +105,7 @@ def _vector(name: str, values: np.ndarray, unit: str) -> Columns:
 
 
 def of_joint(point: str, linkage: Linkage, borne: Borne) -> Columns:
-    """What the joints at a point bear, on the body that slides or is pinned on."""
+    """Return the reactions of the joints at a point, on the body that slides or is pinned on."""
     found: Columns = {}
     for name in joint_points(linkage)[point]:
         found |= _of_one(name, borne.joints, borne.rubs)
@@ -112,7 +113,7 @@ def of_joint(point: str, linkage: Linkage, borne: Borne) -> Columns:
 
 
 def _of_one(name: str, joints: Mapping[str, np.ndarray], rubs: Mapping[str, np.ndarray]) -> Columns:
-    """Return a pin's force, a slide's normal force, moment and friction, or a gear's."""
+    """Return the force of a pin; the normal force, moment and friction of a slide; or the force of a gear."""
     called = name.removesuffix(" slide").replace(" ", "_")
     if f"{name}_x" in joints:
         force = joints[f"{name}_x"] + 1j * joints[f"{name}_y"]

@@ -1,6 +1,5 @@
-"""A mechanism of the course on its stage: the exercise's numbers, the effects called for, the data that a scene adds, and
-what acts from them.
-"""
+"""Mechanism of the course on stage: the exercise's numbers, the requested effects, the added data, and the
+resulting forces."""
 
 from __future__ import annotations
 
@@ -31,7 +30,8 @@ _JUDGED = 3600  #: steps of the cycle over which a flywheel is sized
 
 @dataclass(frozen=True)
 class Staged:
-    """An exercise's mechanism with the effects and the data of a scene; see :class:`~coursework.motion.scenes.Scene`."""
+    """Mechanism of an exercise with the effects and the data of a scene; see
+    :class:`~coursework.motion.scenes.Scene`."""
 
     exercise: CourseExercise
     given: Mapping[str, Any]
@@ -51,14 +51,14 @@ class Staged:
             self.mechanism  # noqa: B018  # is refused here where there is none
 
     def without(self, effect: str) -> Self:
-        """Return the same, less one effect; what it shows stays."""
+        """Return the scene without one effect; its shown quantities stay."""
         return replace(self, effects=tuple(e for e in self.effects if e != effect))
 
     # -------------------------------------------------------------------- driver
 
     @property
     def driver(self) -> Driver:
-        """What drives the mechanism; a film's angle and speed, where the solution states one.
+        """Driver of the mechanism; a film's angle and speed, where the solution states one.
 
         Raises
         ------
@@ -74,13 +74,13 @@ class Staged:
 
     @cached_property
     def _accepted(self) -> dict[str, Any]:
-        """The given values in canonical units, with the exercise's defaults."""
+        """Given values in canonical units, with the exercise's defaults."""
         accepted = {n: self.exercise.intake.value(n, v) for n, v in self.given.items()}
         return {**self.exercise.intake.defaults, **accepted}
 
     @property
     def has_own_data(self) -> bool:
-        """True if the scene brings data that the exercise's own formulas of forces do not know of."""
+        """True if the scene has data that the exercise's own force formulas do not know."""
         return self.added.is_own or FLYWHEEL in self.effects
 
     def _driven(self, angle: Any) -> dict[str, Any]:
@@ -90,8 +90,8 @@ class Staged:
         return {**self.given, **self.exercise.posed(self._accepted, angle)}
 
     def _at_unit_speed(self, angle: Any) -> dict[str, Any]:
-        """Return the same with the driver turning at a constant 1 rad/s: rates are then derivatives by its
-        angle."""
+        """Return the given values at an angle with the driver at a constant 1 rad/s, so that rates are
+        derivatives by its angle."""
         driver = self.driver
         rest = {driver.acceleration: 0.0} if driver.acceleration else {}
         return {**self._driven(angle), driver.speed: 1.0, **rest}
@@ -112,7 +112,7 @@ class Staged:
 
     @property
     def _graph_effects(self) -> tuple[str, ...]:
-        """The effects called that the exercise's own formulas know."""
+        """Requested effects that the exercise's own formulas know."""
         own = self.exercise.solution.graph.effects()
         return tuple(e for e in self.effects if e in own)
 
@@ -129,11 +129,11 @@ class Staged:
 
     @property
     def called(self) -> tuple[str, ...]:
-        """The effects, positions where none is named."""
+        """Requested effects; positions when none is named."""
         return self.effects or ("position",)
 
     def with_data(self) -> tuple[str, ...]:
-        """Return the effects of forces for which there are data: masses, loads, friction, a flywheel."""
+        """Return the force effects for which there are data: masses, loads, friction, a flywheel."""
         if self.exercise.solution.mechanism is None:
             return self.exercise.solution.graph.effects()
         mechanism, found = self.mechanism, []
@@ -183,7 +183,7 @@ class Staged:
         return linkage
 
     def _refuse_moving(self, mechanism: Mechanism) -> None:
-        """Refuse places that move within their body.
+        """Refuse positions that move within their body.
 
         Raises
         ------
@@ -199,8 +199,11 @@ class Staged:
                     )
 
     def pose(self, angles: np.ndarray, *, by_joints: bool = False) -> Stance:
-        """Return the mechanism at driver's angles, radians, shape ``(n,)``; its rates by the solution's own
-        formulas where it has all of them, and by the joints where it has not, or where that is asked."""
+        """Return the mechanism at driver's angles, radians, shape ``(n,)``.
+
+        Its rates come from the solution's formulas where all exist, otherwise, or with ``by_joints``, from
+        the joint equations.
+        """
         linkage = self.linkage
         bodies = linkage.mechanism.bodies
         shifting = tuple(n for body in bodies if body.origin is not None for n in parameters(body.origin))
@@ -218,8 +221,8 @@ class Staged:
         return Stance(linkage, turns, None if by_joints else partial(self._stated_rates, degrees), shifts)
 
     def _stated_rates(self, degrees: np.ndarray, order: int) -> np.ndarray | None:
-        """Return first or second derivatives of the unknown angles by the driver's, as the solution's own
-        rates give them."""
+        """Return first or second derivatives of the unknown angles by the driver's, from the solution's own
+        rates."""
         names = self._rates_by_name[order - 1]
         if names is None or not self.driver.speed:
             return None
@@ -230,7 +233,7 @@ class Staged:
 
     @cached_property
     def _rates_by_name(self) -> tuple[tuple[str, ...] | None, tuple[str, ...] | None]:
-        """The quantities of the unknown angles' rates, and of their accelerations; None where one is missing."""
+        """Names of the rates and of the accelerations of the unknown angles; None where one is missing."""
         angles, solution = self.linkage.unknown_angles, self.exercise.solution
         known = frozenset(solution.graph.quantities)
         of_loops = {n: pair for loop in solution.loops.values() for n, pair in loop.rates.items()}
@@ -244,12 +247,12 @@ class Staged:
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """What rubs, with the effect friction."""
+        """Contacts with friction, if that effect is requested."""
         return contacts(self.linkage, self.linkage.mechanism.friction) if FRICTION in self.effects else ()
 
     @cached_property
     def forces(self) -> Forces:
-        """What acts, of the effects called."""
+        """Forces of the requested effects."""
         called, linkage = self.effects, self.linkage
         loads = linkage.mechanism.loads if "load" in called else ()
         return Forces(
@@ -286,13 +289,13 @@ class Staged:
 
     @cached_property
     def _sped(self) -> frozenset[str]:
-        """The quantities that the driver's speed changes."""
+        """Quantities that the driver's speed changes."""
         rates = [n for n in (self.driver.speed, self.driver.acceleration) if n]
         return self.exercise.solution.graph.descendants(rates) if rates else frozenset()
 
     @cached_property
     def moved(self) -> frozenset[str]:
-        """The quantities that the driver's angle moves."""
+        """Quantities that the driver's angle moves."""
         placing = {self.driver.angle}
         if self.exercise.spec.driver is not None and self.exercise.spec.driver.poses is not None:
             placing = set(self.exercise.posed(self._accepted, 0.0))
@@ -307,7 +310,7 @@ class Staged:
 
     @cached_property
     def evenness(self) -> Evenness:
-        """Of the turn at the given speed, held constant, without a flywheel."""
+        """Evenness of the turn at the given constant speed, without a flywheel."""
         if not self._speed:
             raise WrongValue(
                 f"a flywheel is sized for a speed: {self.driver.speed or 'it'} is 0 or not given"
@@ -318,7 +321,7 @@ class Staged:
 
     @cached_property
     def flywheel(self) -> float:
-        """Its moment of inertia, kg m^2; sized for the unevenness where that is what is said."""
+        """Moment of inertia of the flywheel, kg m^2; sized for the unevenness where that is given."""
         wheel = self.added.flywheel
         if wheel is None:
             raise WrongValue(

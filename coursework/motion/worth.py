@@ -1,4 +1,4 @@
-"""What each effect of a scene is worth: the time it costs, and what leaving it out changes of what is shown."""
+"""Cost and influence of each effect of a scene: its computing time, and the change of the outputs without it."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ Run = Callable[[Scene], Table]
 
 @dataclass(frozen=True)
 class Change:
-    """How far an output moves: its largest and its root mean square change, in its unit, and as parts of the output's
-    largest and root mean square value."""
+    """Change of an output: largest and root mean square, in its unit and relative to the output's own largest
+    and root mean square."""
 
     output: str
     unit: str
@@ -40,9 +40,9 @@ class Change:
 
 @dataclass(frozen=True)
 class Worth:
-    """One effect: seconds that it costs of the scene's, and what leaving it out changes, output by output.
+    """Effect with its cost in seconds, and the changes of the outputs without it.
 
-    ``needed``: why the scene does not run without it; empty where it does.
+    ``needed``: the reason why the scene does not run without it; empty where it does.
     """
 
     effect: str
@@ -53,13 +53,14 @@ class Worth:
 
     @property
     def most(self) -> Change | None:
-        """The output that it changes most."""
+        """Output that changes most."""
         return max(self.changes, key=lambda change: change.largest_part, default=None)
 
 
 @dataclass(frozen=True)
 class Budget:
-    """The effects of a scene with their worth, the time of all of them, and those that it lacks."""
+    """Effects of a scene with their cost and influence, the time of all of them, and the effects that it
+    lacks."""
 
     seconds: float
     worths: tuple[Worth, ...]
@@ -67,7 +68,7 @@ class Budget:
     tolerance: float
 
     def said(self) -> Iterator[str]:
-        """What it says in plain words."""
+        """Yield the findings as sentences."""
         limit = f"{100 * self.tolerance:g} %"
         for worth in self.worths:
             most = worth.most
@@ -94,7 +95,7 @@ class Budget:
 
 
 def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> Budget:
-    """Return the worth of every effect of a scene; ``run`` runs one, over a cycle or in time.
+    """Measure every effect of a scene; ``run`` runs a scene over a cycle or in time.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> Budget:
 
 
 def _others(scene: Scene, run: Run, effects: Sequence[str]) -> tuple[dict[str, Scene], dict[str, str]]:
-    """Return the scene without each effect, and why it does not run without some."""
+    """Return the scene without each effect, and the reasons why it does not run without some."""
     found, needed = {}, {}
     for effect in effects:
         try:
@@ -153,7 +154,7 @@ def _worth(
 
 
 def _changes(whole: Table, other: Table) -> Iterator[Change]:
-    """Of every output that both show, at the instants of both."""
+    """Yield the change of every output that both tables contain, at their common instants."""
     kept, there = (~_dead(table) for table in (whole, other))
     largest: dict[str, float] = {}
     for name, values in whole.columns.items():
@@ -192,7 +193,7 @@ def _rms(values: np.ndarray) -> float:
 
 
 def _lacking(scene: Scene, run: Run, whole: Table) -> Iterator[Worth]:
-    """Yield the effects for which the scene has data and which it does not call, where it shows forces or
+    """Yield the effects for which the scene has data but which it does not request, if it shows forces or
     moves in time."""
     for effect in scene.with_data():
         if effect in scene.effects:
