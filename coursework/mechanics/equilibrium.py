@@ -1,4 +1,4 @@
-"""What the joints bear: three equations a body, for every instant at once.
+"""Joint reactions: three equations a body, for every instant at once.
 
 The unknowns are the forces of the pins on the body that they are named for (x and y), of the slides on the sliding body
 (across the guide, to the left of its direction, and a moment), of the gears on the first wheel (along the common tangent,
@@ -20,7 +20,7 @@ PIECE = (
 
 
 class Equilibrium:
-    """The equations of a mechanism's bodies at the instants of a stance."""
+    """Equilibrium equations of a mechanism's bodies at the instants of a stance."""
 
     def __init__(self, stance: Stance) -> None:
         self.stance = stance
@@ -35,12 +35,13 @@ class Equilibrium:
         self.names = (*names, "effort")
 
     def column(self, name: str) -> int:
-        """Where an unknown stands."""
+        """Return the column of an unknown."""
         return self.names.index(name)
 
     @cached_property
     def matrix(self) -> np.ndarray:
-        """Shape ``(n, 3 bodies, unknowns)``; rows are forces along x, along y, and moments about the origins."""
+        """Matrix of shape ``(n, 3 bodies, unknowns)``; rows are forces along x, along y, and moments about
+        the origins."""
         size = 3 * self.bodies
         columns = [*self._of_pins(), *self._of_slides(), *self._of_gears(), self._of_drive()]
         found = np.empty((self.stance.count, size, len(columns)))
@@ -49,7 +50,7 @@ class Equilibrium:
         return found
 
     def _rows(self, wrench: Wrench) -> np.ndarray:
-        """Return a wrench as rows of the equations, shape ``(n, 3 bodies)``: the ground bears what it must."""
+        """Return a wrench as rows of the equations, shape ``(n, 3 bodies)``, without the ground."""
         parts = (wrench.forces.real[:-1], wrench.forces.imag[:-1], wrench.moments[:-1])
         return np.stack(parts, axis=1).reshape(3 * self.bodies, -1).T
 
@@ -84,7 +85,7 @@ class Equilibrium:
         return Wrench.none(self.stance).turn(self.linkage.driven, 1.0)
 
     def under(self, *wrenches: Wrench) -> np.ndarray:
-        """Return the unknowns under each of some wrenches alone, shape ``(n, unknowns, wrenches)``; NaN in a
+        """Return the unknowns under each of some wrenches alone, shape ``(n, unknowns, wrenches)``; NaN at a
         dead point."""
         right = -np.stack([self._rows(wrench) for wrench in wrenches], axis=-1)
         return solved(self.matrix, right)

@@ -1,4 +1,4 @@
-"""How evenly a mechanism turns: the mean effort of a turn, what a flywheel has to store, and how large it must be."""
+"""Evenness of rotation: the mean effort of a turn, the energy that a flywheel stores, and its size."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from coursework.errors import Undefined
 
 @dataclass(frozen=True)
 class Evenness:
-    """The effort of a drive over a turn at a constant rate, N m, at equal steps, and that rate, rad/s.
+    """Effort of a drive over a turn at a constant rate, N m, at equal steps, and that rate, rad/s.
 
     Source: the energy that a drive of constant torque lacks and has in excess is kept by the flywheel; for a small
     unevenness (largest - least speed) / mean speed it is J (mean speed)^2 times the unevenness.
@@ -36,19 +36,19 @@ class Evenness:
 
     @property
     def mean_torque(self) -> float:
-        """Of the drive over a turn, N m."""
+        """Mean torque of the drive over a turn, N m."""
         return float(np.mean(self.efforts))
 
     @cached_property
     def excess_energy(self) -> float:
-        """The largest that a flywheel stores and gives back over a turn at the mean torque, J."""
+        """Largest energy that a flywheel stores and returns over a turn at the mean torque, J."""
         step = 2 * np.pi / len(self.efforts)
         return float(np.ptp(np.cumsum(self.mean_torque - self.efforts) * step))
 
     def inertia_for(self, unevenness: float) -> float:
-        """Of the flywheel that keeps an unevenness, kg m^2."""
+        """Return the moment of inertia of the flywheel for an unevenness, kg m^2."""
         return self.excess_energy / (unevenness * self.speed**2)
 
     def unevenness_of(self, inertia: float) -> float:
-        """What a flywheel leaves."""
+        """Return the unevenness with a flywheel of some inertia."""
         return self.excess_energy / (inertia * self.speed**2)

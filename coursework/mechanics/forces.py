@@ -1,4 +1,4 @@
-"""What a scene calls for, on a mechanism: the drive's effort by virtual power, and what the joints bear where it is asked.
+"""Forces on a mechanism: the drive's effort by virtual power, and joint reactions on request.
 
 Nothing is computed that no effect needs: without inertia no acceleration, without friction no iteration, without a
 question about joints no equilibrium.
@@ -25,9 +25,9 @@ _STEPS = 1440  #: of a turn, to find how long strokes are
 
 @dataclass(frozen=True)
 class Borne:
-    """What is found at ``n`` instants: the drive's effort (N m), and the unknowns of the equilibrium by name, if asked.
+    """Results at ``n`` instants: the drive's effort (N m), and the joint unknowns by name, on request.
 
-    ``rubs``: what each contact rubs with, by joint, along its direction.
+    ``rubs``: the friction of each contact, by joint, along its direction.
     """
 
     effort: np.ndarray
@@ -37,7 +37,7 @@ class Borne:
 
 @dataclass(frozen=True)
 class Forces:
-    """What acts on a mechanism.
+    """Forces on a mechanism.
 
     ``downwards``: the acceleration of gravity, m/s^2, complex; 0 without the effect. ``inertia``: whether masses count;
     ``flywheel``: kg m^2 on the driver's shaft.
@@ -58,7 +58,7 @@ class Forces:
 
     @property
     def resists(self) -> bool:
-        """True if something always goes against the motion, so that the mechanism can stick."""
+        """True if something always opposes the motion, so that the mechanism can stick."""
         return bool(self.contacts) or any(acting.turns_over for acting in self.loads)
 
     @cached_property
@@ -69,7 +69,7 @@ class Forces:
 
     @cached_property
     def strokes(self) -> tuple[Strokes, ...]:
-        """When each load acts."""
+        """Strokes on which each load acts."""
         if not any(acting.load.during != "always" for acting in self.loads):
             return tuple(Strokes() for _ in self.loads)
         step = 2 * np.pi / _STEPS
@@ -81,7 +81,7 @@ class Forces:
         return tuple(found)
 
     def load_sizes(self, stance: Stance, driver: np.ndarray, way: np.ndarray | float) -> list[np.ndarray]:
-        """How large each load is along its line, for the way the driver turns: +1, -1, 0 at rest."""
+        """Return the size of each load along its line, for the driver's direction: +1, -1, 0 at rest."""
         found = []
         for acting, when in zip(self.loads, self.strokes, strict=True):
             sizes = acting.sizes(driver)
@@ -95,7 +95,7 @@ class Forces:
     def applied(
         self, stance: Stance, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
     ) -> Wrench:
-        """Return everything but friction and the joints."""
+        """Return the total wrench without friction and joint reactions."""
         total = Wrench.none(stance)
         for acting, size in zip(self.loads, self.load_sizes(stance, driver, np.sign(speed)), strict=True):
             total = total + acting.pull(stance) * size
@@ -108,8 +108,8 @@ class Forces:
     def over(
         self, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray, *, joints: bool = False
     ) -> Borne:
-        """At angles of the driver (radians), its speed and its acceleration, shape ``(n,)``; NaN where it jams or does
-        not close."""
+        """Compute the forces at angles (radians), speeds and accelerations of the driver, shape ``(n,)``; NaN
+        where the mechanism jams or does not close."""
         found = [
             self._piece(driver[k], speed[k], acceleration[k], joints)
             for k in _pieces(len(driver), PIECE if joints or self.contacts else 16 * PIECE)
@@ -153,7 +153,8 @@ class Forces:
 
 
 def share_of_turn(pace: np.ndarray) -> float:
-    """How much of a turn, radians, a function that is sampled in the middle of equal steps is positive."""
+    """Return the part of a turn, in radians, on which a function is positive; it is sampled in the middle of
+    equal steps."""
     step, after = 2 * np.pi / len(pace), np.roll(pace, -1)
     with np.errstate(all="ignore"):
         crossing = np.clip(np.where(pace > 0, pace, after) / np.abs(pace - after), 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Friction of Coulomb, in slides and pins: which side of a guide bears, and where a mechanism jams.
+"""Coulomb friction in slides and pins: the bearing side of a guide, and jamming.
 
 What rubs is a *contact*: a slide at its point, the two edges of a long slide, or a pin's journal. A contact bears a
 normal force s; friction there has the size f |s| (f rho |s|, as a moment, in a pin of radius rho), against the motion. Without
@@ -30,29 +30,32 @@ _ROUNDS = 40  #: of Newton's method at a step; sides and magnitudes settle in a 
 
 @dataclass(frozen=True)
 class Contact:
-    """Something that rubs. ``reads`` gives what it bears from the joints' unknowns: one row for a slide or an edge, two
-    for a pin; ``size`` is the coefficient, in a pin times its radius in metres."""
+    """Contact with friction.
+
+    ``reads`` gives its normal forces from the joints' unknowns: one row for a slide or an edge, two for a
+    pin; ``size`` is the coefficient, in a pin times its radius in metres.
+    """
 
     joint: PinJoint | SlideJoint
     size: float
     reads: tuple[Mapping[str, float], ...]
 
     def rubs(self, stance: Stance) -> Wrench:
-        """Return the friction of size one against a motion in the joint's direction."""
+        """Return the unit friction opposite to a motion in the joint's direction."""
         wrench = Wrench.none(stance)
         if isinstance(self.joint, SlideJoint):
             return wrench.rub(self.joint, -stance.direction(self.joint))
         return wrench.turn(self.joint.of.body, -1.0).turn(self.joint.on.body, 1.0)
 
     def rate(self, stance: Stance) -> np.ndarray:
-        """How the joint moves for one of the driver: what rubs goes against it. What is rounding is 0."""
+        """Return the sliding rate of the joint for unit speed of the driver, with rounding errors set to 0."""
         if isinstance(self.joint, SlideJoint):
             return no_rounding(stance.sliding(self.joint), stance.size)
         return no_rounding(stance.rates[self.joint.of.body] - stance.rates[self.joint.on.body], 1.0)
 
 
 def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ...]:
-    """What rubs, for coefficients by joint; a pin has a pair of its coefficient and the radius of its journal, mm.
+    """Return the contacts for coefficients by joint; a pin has a pair of coefficient and journal radius, mm.
 
     Raises
     ------
@@ -103,7 +106,7 @@ def _of_slide(slide: SlideJoint, size: float) -> list[Contact]:
 
 
 class Rubbing:
-    """The contacts of a mechanism, and how the normal forces of each follow from what all bear.
+    """Contacts of a mechanism, with the map from joint unknowns to normal forces.
 
     Attributes
     ----------
@@ -119,7 +122,7 @@ class Rubbing:
         self.sizes = np.array([contact.size for contact in contacts])
 
     def reading(self, equations: Equilibrium) -> np.ndarray:
-        """From the unknowns of the equations to the normal forces, shape ``(k, unknowns)``."""
+        """Return the matrix from the unknowns of the equations to the normal forces, shape ``(k, unknowns)``."""
         found = np.zeros((len(self._rows), len(equations.names)))
         for number, row in enumerate(self._rows):
             for name, share in row.items():
@@ -145,10 +148,12 @@ class Rubbing:
     def one(
         self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, near: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """What the contacts rub with at one instant, shape ``(contacts,)``, and the normal forces ``(k,)``.
+        """Return the friction of the contacts at one instant, shape ``(contacts,)``, and the normal forces
+        ``(k,)``.
 
-        ``strength``: coefficients with the signs of the motions; ``near``: the normal forces an instant ago, from which
-        Newton's method needs a step or two. Where it does not settle from them, friction grows from nothing.
+        ``strength``: coefficients with the signs of the motions; ``near``: the normal forces of the previous
+        instant, from which Newton's method needs a step or two. If it does not converge from them, friction
+        is increased from 0.
         """
         normals = free if near is None else near
         unit = np.eye(len(free))
@@ -169,7 +174,7 @@ class Rubbing:
         return (strength * self.magnitudes(grown))[0], grown[0]
 
     def balanced(self, free: np.ndarray, spread: np.ndarray, sense: np.ndarray) -> np.ndarray:
-        """What the contacts rub with, w, shape ``(n, contacts)``; NaN where the mechanism jams.
+        """Return the friction w of the contacts, shape ``(n, contacts)``; NaN where the mechanism jams.
 
         Parameters
         ----------
@@ -184,7 +189,8 @@ class Rubbing:
         return strength * self.magnitudes(self._grown(free, spread, strength))
 
     def _grown(self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray) -> np.ndarray:
-        """Return the normal forces as friction grows from nothing to its strength, NaN where it jams."""
+        """Return the normal forces as friction increases from 0 to its full strength; NaN where the mechanism
+        jams."""
         normals = free
         for step in range(1, _STEPS + 1):
             normals, good = self._settled(free, spread, strength * (step / _STEPS), normals)
@@ -194,7 +200,8 @@ class Rubbing:
     def _settled(
         self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, start: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return Newton's method from a solution for a little less friction; and where it holds."""
+        """Return the result of Newton's method from a solution for a little less friction, and a mask of
+        convergence."""
         normals, one = start, np.eye(free.shape[1])
         size = np.abs(free).max(axis=1) + np.abs(start).max(axis=1)
         for _ in range(_ROUNDS):

@@ -1,4 +1,4 @@
-"""A mechanism with its numbers: places in metres as complex numbers, bodies by their place in a list.
+"""Mechanism with its numbers: positions in metres as complex numbers, bodies by index.
 
 The ground stands last in every list of bodies, so that its index is -1. Coordinates are the driver's angle, index 0,
 and the angles that follow from it, from 1 on; a body that never turns has none.
@@ -22,14 +22,14 @@ NONE = -1  #: the coordinate of what never turns
 
 
 class Held(NamedTuple):
-    """A place in a body's frame."""
+    """Position in a body's frame."""
 
     body: int
     place: complex
 
 
 class PinJoint(NamedTuple):
-    """A pin: where it lies on either body; ``closes`` where the frames do not already hold it together."""
+    """Pin: its position on either body; ``closes`` where the frames do not already hold it together."""
 
     name: str
     of: Held
@@ -38,7 +38,8 @@ class PinJoint(NamedTuple):
 
 
 class SlideJoint(NamedTuple):
-    """A slide: its point on the sliding body, the guide, the direction in the guide's frame (unit vector), its length."""
+    """Slide: its point on the sliding body, the guide, the direction in the guide's frame (unit vector), its
+    length."""
 
     name: str
     of: Held
@@ -48,8 +49,8 @@ class SlideJoint(NamedTuple):
 
 
 class GearJoint(NamedTuple):
-    """A gear: two wheels, what carries their centres, their radii; the second one negative where it is toothed inside;
-    the middles of the wheels."""
+    """Gear: two wheels, the carrier of their centres, their radii (the second negative for internal teeth),
+    and their centres."""
 
     name: str
     first: int
@@ -60,7 +61,7 @@ class GearJoint(NamedTuple):
 
 
 class Mass(NamedTuple):
-    """What a body weighs, kg, its moment of inertia about its centre, kg m^2, and where the centre lies."""
+    """Mass of a body, kg, its moment of inertia about the centre, kg m^2, and the position of the centre."""
 
     body: int
     mass: float
@@ -70,7 +71,7 @@ class Mass(NamedTuple):
 
 @dataclass(frozen=True)
 class Linkage:
-    """The numbers of a mechanism of one degree of freedom."""
+    """Numbers of a mechanism of one degree of freedom."""
 
     mechanism: Mechanism
     values: Mapping[str, Any]
@@ -90,7 +91,7 @@ class Linkage:
 
     @cached_property
     def coordinates(self) -> tuple[int, ...]:
-        """The coordinate that turns each body, the ground last."""
+        """Index of the coordinate that turns each body, the ground last."""
         names: dict[Any, int] = {self.driver: 0}
         found = []
         for body in self.mechanism.bodies:
@@ -102,7 +103,8 @@ class Linkage:
 
     @cached_property
     def unknown_angles(self) -> tuple[str, ...] | None:
-        """The quantities of the coordinates from 1 on; None where one is a wheel's, which has none, or a free body's."""
+        """Quantities of the coordinates from 1 on; None if one belongs to a wheel or to a free body, which
+        have none."""
         if self.free:
             return None
         bodies = zip(self.mechanism.bodies, self.coordinates, strict=False)
@@ -112,18 +114,18 @@ class Linkage:
 
     @cached_property
     def free(self) -> dict[int, int]:
-        """The bodies whose origins no pin holds, and the first of the two coordinates that place each."""
+        """Bodies whose origins no pin holds, each with the first of its two position coordinates."""
         bodies = [k for k, body in enumerate(self.mechanism.bodies) if body.origin is not None]
         return {body: max(self.coordinates) + 1 + 2 * number for number, body in enumerate(bodies)}
 
     @property
     def unknowns(self) -> int:
-        """How many coordinates follow from the driver's angle."""
+        """Number of coordinates that follow from the driver's angle."""
         return max(self.coordinates) + 2 * len(self.free)
 
     @cached_property
     def constant_turns(self) -> np.ndarray:
-        """The angle of each body that never turns, radians; 0 for the others."""
+        """Angle of each body that never turns, radians; 0 for the others."""
         angles = [b.angle for b in self.mechanism.bodies]
         return np.radians([float(a) if isinstance(a, (int, float)) else 0.0 for a in angles] + [0.0])
 
@@ -133,16 +135,16 @@ class Linkage:
         return number(place, self.values)
 
     def held(self, point: str, body: str) -> Held:
-        """Where a point lies on a body that has it."""
+        """Return the position of a point on a body that has it."""
         return Held(self.index[body], complex(self.number(self.mechanism.place(point, body))) * MM)
 
     def owner(self, point: str) -> Held:
-        """Return a point on the first body that has it."""
+        """Return the position of a point on the first body that has it."""
         return self.held(point, self.mechanism.holders(point)[0])
 
     @cached_property
     def origins(self) -> tuple[Held, ...]:
-        """Where the frame of each body has its origin: on a body before it, or on the ground; a free body's on the
+        """Position of each body's frame origin on an earlier body or on the ground; a free body's on the
         ground, from where it is shifted."""
         found = []
         for k, body in enumerate(self.mechanism.bodies):
@@ -211,7 +213,7 @@ class Linkage:
         return tuple(found)
 
     def check(self) -> None:
-        """Raise where the mechanism is none of one degree of freedom.
+        """Refuse a mechanism that does not have one degree of freedom.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The loads of a scene, at every instant of a turn: how large, which way, and on which stroke."""
+"""Loads of a scene at every instant of a turn: size, direction and stroke."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ By = Callable[[str, np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Acting:
-    """A load of a mechanism.
+    """Load of a mechanism.
 
-    Its force is a *pull* of one newton (or one N m) along a line that goes on smoothly through the turn, times a size. Of a
-    load against the motion the line is that of the motion, and its ``pace`` along it tells which way the pull goes.
+    Its force is a *pull* of 1 N (or 1 N m) along a line that varies smoothly over the turn, times a size. For
+    a load against the motion the line is that of the motion, and the sign of its ``pace`` gives the direction
+    of the pull.
 
     Raises
     ------
@@ -67,7 +68,7 @@ class Acting:
 
     @property
     def is_moment(self) -> bool:
-        """True if it turns a body."""
+        """True if the load turns a body."""
         mechanism = self.linkage.mechanism
         return bool(self.load.moment) or (
             self.load.on in mechanism.names and self.load.on not in mechanism.points
@@ -75,28 +76,29 @@ class Acting:
 
     @property
     def turns_over(self) -> bool:
-        """True if it changes its way with that of the motion."""
+        """True if the load reverses with the motion."""
         return self.load.against
 
     @property
     def _size(self) -> Place:
-        """Newtons or newton metres, where no table says it: a number, or a quantity that may move with the driver."""
+        """Size in newtons or newton metres, without a table: a number, or a quantity that may move with the
+        driver."""
         return self.load.moment if self.is_moment else self.load.force
 
     @property
     def follows(self) -> str:
-        """The quantity that says how large it is over the turn; none where it is a number or goes by the driver's angle."""
+        """Quantity that gives the size over the turn; empty for a number or a table by the driver's angle."""
         if self.load.table:
             return "" if self.is_by_angle else self.load.by
         return self._size if isinstance(self._size, str) else ""
 
     @cached_property
     def constant(self) -> float | None:
-        """How large it is, where that is the same all over the turn."""
+        """Size, if it is the same all over the turn; otherwise None."""
         return None if self.load.table or self.follows else float(self.linkage.number(self._size))
 
     def followed(self, driver: np.ndarray) -> np.ndarray:
-        """Return the values of what it follows at driver's angles, radians."""
+        """Return the values of the followed quantity at driver's angles, radians."""
         return self._at(self.follows, driver)
 
     def _at(self, name: str, driver: np.ndarray) -> np.ndarray:
@@ -105,7 +107,7 @@ class Acting:
 
     @property
     def _held(self) -> Held:
-        """Where its force acts."""
+        """Point of application."""
         body = self.load.body or self.linkage.mechanism.holders(self.load.on)[-1]
         return self.linkage.held(self.load.on, body)
 
@@ -113,7 +115,7 @@ class Acting:
 
     @property
     def _guide(self) -> complex | Held | None:
-        """The line that its point goes along: a direction, or the arm from a fixed point about which it turns."""
+        """Path of the loaded point: a direction, or the arm from a fixed point about which it turns."""
         held = self._held
         for slide in self.linkage.slides:
             if slide.on == -1 and slide.of.body == held.body:
@@ -123,7 +125,7 @@ class Acting:
         return None
 
     def _line(self, stance: Stance) -> np.ndarray | complex:
-        """Of the pull: a unit vector."""
+        """Return the direction of the pull: a unit vector."""
         if not self.load.against:
             angle = self.load.angle
             if isinstance(angle, str):
@@ -140,13 +142,14 @@ class Acting:
             return np.where(rate == 0, 0, rate / np.abs(rate))
 
     def pull(self, stance: Stance) -> Wrench:
-        """Return one newton along the line, or one N m."""
+        """Return the wrench of 1 N along the line, or of 1 N m."""
         if self.is_moment:
             return Wrench.none(stance).turn(self.linkage.index[self.load.on], 1.0)
         return Wrench.none(stance).push(self._held, self._line(stance))
 
     def pace(self, stance: Stance) -> np.ndarray:
-        """How fast what it acts on goes along the line, for one of the driver; what is rounding is 0."""
+        """Return the rate of the loaded point or body along the line for unit speed of the driver, with
+        rounding errors set to 0."""
         if self.is_moment:
             return no_rounding(stance.rates[self.linkage.index[self.load.on]], 1.0)
         return no_rounding((np.conj(self._line(stance)) * stance.rate(self._held)).real, stance.size)
@@ -155,11 +158,12 @@ class Acting:
 
     @property
     def is_by_angle(self) -> bool:
-        """True if its table goes by the driver's angle."""
+        """True if the table goes by the driver's angle."""
         return bool(self.load.table) and self.load.by in ("", self.linkage.driver)
 
     def sizes(self, driver: np.ndarray, here: np.ndarray | None = None) -> np.ndarray:
-        """How large it is at driver's angles, radians, along its line; ``here``: the values of what it follows, if known."""
+        """Return the size along the line at driver's angles, radians; ``here``: the values of the followed
+        quantity, if known."""
         if self.follows and here is None:
             here = self._at(self.follows, driver)
         if not self.load.table:
@@ -179,9 +183,10 @@ class Acting:
 
 @dataclass(frozen=True)
 class Strokes:
-    """When a load acts: always (0), or where what it acts on goes forward (+1) or backward (-1) along its line.
+    """Stroke on which a load acts: always (0), or where its point moves forward (+1) or backward (-1) along
+    the line.
 
-    ``really``: as it goes indeed, whichever way the driver turns; otherwise as it would with the driver turning forward.
+    ``really``: for the actual direction of the driver; otherwise for a driver that turns forward.
     """
 
     way: int = 0
@@ -189,14 +194,15 @@ class Strokes:
 
     def along(self, size: Any, pace: Any, driver_way: Any, *, against: bool) -> Any:
         """Return a load's size along its line, for the sign of its pace with the driver turning forward, and
-        the driver's way."""
+        the driver's direction."""
         if self.way:
             size = size * ((pace * driver_way if self.really else pace) == self.way)
         return -size * pace * driver_way if against else size
 
 
 def strokes(acting: Acting, forward: float, backward: float) -> Strokes:
-    """When a load acts, for how much of the driver's turn (radians) its point goes forward and backward.
+    """Return the strokes of a load, from the parts of the driver's turn (radians) on which its point moves
+    forward and backward.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How a mechanism moves with its driver: places, and their first and second derivatives by its angle.
+"""Motion of a mechanism by its driver: positions, with first and second derivatives by the driver's angle.
 
 Angles follow from the exercise; all else from the joints: a pin holds two points together, a slide lets one go along
 the guide alone, a gear rolls. The equations are linear in the derivatives, and solved at every instant at once. Where the
@@ -22,7 +22,7 @@ Stated: TypeAlias = Callable[[int], np.ndarray | None]
 
 
 class Stance:
-    """A mechanism at ``n`` instants.
+    """Mechanism at ``n`` instants.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Stance:
 
     @cached_property
     def size(self) -> float:
-        """The largest distance from the ground's origin to a body's, metres: what lengths are measured by."""
+        """Largest distance from the ground's origin to a body's, metres: the reference length."""
         distances = np.abs(self.origins)
         return float(np.max(distances[np.isfinite(distances)], initial=1e-9))
 
@@ -68,21 +68,21 @@ class Stance:
 
     @cached_property
     def origins(self) -> np.ndarray:
-        """Where the frames lie; the ground's at 0."""
+        """Origins of the frames; the ground's is 0."""
         found = np.zeros(self.turns.shape, dtype=complex)
         for body, held in enumerate(self.linkage.origins):
             found[body] = found[held.body] + self.arm(held) + self._shifts.get(body, 0.0)
         return found
 
     def arm(self, held: Held) -> np.ndarray:
-        """From the origin of a body's frame to a place on it."""
+        """Return the vector from the origin of a body's frame to a position on it."""
         return held.place * self.headings[held.body]
 
     def place(self, held: Held) -> np.ndarray:
         return self.origins[held.body] + self.arm(held)
 
     def direction(self, slide: SlideJoint) -> np.ndarray:
-        """Return the along which a slide goes: unit vectors."""
+        """Return the directions of a slide: unit vectors."""
         return slide.along * self.headings[slide.on]
 
     # --------------------------------------------------------------- first order
@@ -106,7 +106,7 @@ class Stance:
 
     @cached_property
     def _conditions(self) -> np.ndarray:
-        """What each joint holds to nothing, linear in the rates: shape ``(conditions, coordinates, n)``."""
+        """Coefficients of the joint equations, linear in the rates: shape ``(conditions, coordinates, n)``."""
         rows = []
         for pin in self.linkage.pins:
             if pin.closes:
@@ -120,7 +120,7 @@ class Stance:
         return np.array(rows) if rows else np.zeros(shape)
 
     def _sliding(self, slide: SlideJoint) -> np.ndarray:
-        """Of a slide's point, as seen from the guide's own point under it: by each coordinate."""
+        """Return the motion of a slide's point relative to the guide's point under it, by each coordinate."""
         moved = self._partial(slide.of, self._partials) - self._partials[slide.on]
         if (own := self.linkage.coordinates[slide.on]) != NONE:
             moved[own] -= 1j * (self.place(slide.of) - self.origins[slide.on])
@@ -135,7 +135,7 @@ class Stance:
         return row
 
     def _solved(self, right: np.ndarray) -> np.ndarray:
-        """Return the rates of the unknown coordinates for right sides ``(conditions, n)``."""
+        """Return the rates of the unknown coordinates for right-hand sides ``(conditions, n)``."""
         if not self.linkage.unknowns:
             return np.zeros((0, self.count))
         matrix = np.moveaxis(self._conditions[:, 1:], -1, 0)
@@ -143,19 +143,19 @@ class Stance:
 
     @cached_property
     def rates(self) -> np.ndarray:
-        """How fast each body turns, for one of the driver: shape ``(bodies + 1, n)``."""
+        """Angular rates of the bodies for unit speed of the driver: shape ``(bodies + 1, n)``."""
         return self._by_body(self._coordinate_rates)
 
     @cached_property
     def _coordinate_rates(self) -> np.ndarray:
-        """First derivatives of all coordinates, the driver's own among them."""
+        """First derivatives of all coordinates, including the driver's."""
         unknown = self._stated(1) if self._stated else None
         if unknown is None:
             unknown = self._solved(-self._conditions[:, 0])
         return np.concatenate([np.ones((1, self.count)), unknown])
 
     def _shifted(self, body: int, coordinates: np.ndarray) -> np.ndarray | float:
-        """What the coordinates of a free body add to its origin's motion."""
+        """Return the part of a free body's own coordinates in its origin's motion."""
         first = self.linkage.free.get(body)
         return 0.0 if first is None else coordinates[first] + 1j * coordinates[first + 1]
 
@@ -165,7 +165,7 @@ class Stance:
 
     @cached_property
     def origin_rates(self) -> np.ndarray:
-        """How the frames' origins move, for one of the driver."""
+        """Velocities of the frames' origins for unit speed of the driver."""
         found = np.zeros(self.turns.shape, dtype=complex)
         for body, held in enumerate(self.linkage.origins):
             found[body] = found[held.body] + 1j * self.rates[held.body] * self.arm(held)
@@ -173,13 +173,13 @@ class Stance:
         return found
 
     def rate(self, held: Held) -> np.ndarray:
-        """How a place moves, for one of the driver."""
+        """Return the velocity of a position for unit speed of the driver."""
         return self.origin_rates[held.body] + 1j * self.rates[held.body] * self.arm(held)
 
     def acceleration(
         self, held: Held, speed: np.ndarray | float, acceleration: np.ndarray | float
     ) -> np.ndarray:
-        """Of a place, m/s^2, for the driver's speed and acceleration."""
+        """Return the acceleration of a position, m/s^2, for the driver's speed and acceleration."""
         return self.bend(held) * speed**2 + self.rate(held) * acceleration
 
     def coriolis(self, slide: SlideJoint, speed: np.ndarray | float) -> np.ndarray:
@@ -187,7 +187,7 @@ class Stance:
         return 2 * self.rates[slide.on] * self.sliding(slide) * speed**2
 
     def sliding(self, slide: SlideJoint) -> np.ndarray:
-        """How fast a slide goes along its direction, for one of the driver: signed."""
+        """Return the signed speed of a slide along its direction, for unit speed of the driver."""
         under = self.place(slide.of) - self.origins[slide.on]
         guide = self.origin_rates[slide.on] + 1j * self.rates[slide.on] * under
         return (np.conj(self.direction(slide)) * (self.rate(slide.of) - guide)).real
@@ -208,7 +208,7 @@ class Stance:
         return np.concatenate([np.zeros((1, self.count)), unknown])
 
     def _bent(self) -> np.ndarray:
-        """Return second derivatives of the unknown coordinates by the joints."""
+        """Return the second derivatives of the unknown coordinates from the joint equations."""
         rows = []
         still = np.zeros(self.turns.shape)
         origins = self._origin_bends(still)
@@ -234,8 +234,8 @@ class Stance:
         return found
 
     def _bend(self, held: Held, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
-        """Return second derivative of a place, for second derivatives of the origins and of the bodies'
-        angles."""
+        """Return the second derivative of a position, for second derivatives of the origins and of the
+        bodies' angles."""
         return origins[held.body] + (1j * turning[held.body] - self.rates[held.body] ** 2) * self.arm(held)
 
     @cached_property
@@ -244,26 +244,26 @@ class Stance:
         return self._origin_bends(self.bends, self._coordinate_bends)
 
     def bend(self, held: Held) -> np.ndarray:
-        """Return second derivative of a place by the driver's angle."""
+        """Return the second derivative of a position by the driver's angle."""
         return self._bend(held, self.origin_bends, self.bends)
 
     # ---------------------------------------------------------------- certificate
 
     @cached_property
     def gap(self) -> np.ndarray:
-        """By how much the pins that close the loops fail to meet, metres: rounding, where all is right."""
+        """Largest gap of the pins that close the loops, metres: rounding, for a correct pose."""
         gaps = [abs(self.place(p.of) - self.place(p.on)) for p in self.linkage.pins if p.closes]
         return np.max(gaps, axis=0) if gaps else np.zeros(self.count)
 
 
 def no_rounding(pace: np.ndarray, size: float) -> np.ndarray:
-    """Return a pace with nothing where it is no more than rounding beside the size of a mechanism, or 1 for a
-    turning body."""
+    """Return the rates with 0 for those that are mere rounding relative to the size of the mechanism (1 for a
+    turning body)."""
     return np.where(np.abs(pace) > 1e-12 * size, pace, np.where(np.isnan(pace), np.nan, 0.0))
 
 
 def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Return many small linear systems, shapes ``(n, k, k)`` and ``(n, k, columns)``; NaN where one is
+    """Solve many small linear systems, shapes ``(n, k, k)`` and ``(n, k, columns)``; NaN where one is
     singular."""
     try:
         return np.linalg.solve(matrix, right)

@@ -1,4 +1,4 @@
-"""A mechanism left to itself under its drive: its motion in time, with sticking and leaving.
+"""Motion of a mechanism in time under its drive, with sticking and release.
 
 One degree of freedom: I q'' + h q'^2 + g + loads + friction = what the drive gives. The functions of the driver's angle
 in it are tabulated over the turn. The motion goes in *phases*, between the places where a rubbing joint or a loaded point
@@ -34,7 +34,8 @@ Drive = Callable[[float], float]  #: N m, by the driver's speed in rad/s
 
 
 class _Instant(NamedTuple):
-    """A driver's angle, speed and way, what its drive gives beyond all but inertia and friction, and the inertia."""
+    """Driver's angle, speed and direction, the surplus of the drive over all but inertia and friction, and
+    the inertia."""
 
     angle: float
     speed: float
@@ -45,7 +46,7 @@ class _Instant(NamedTuple):
 
 @dataclass(frozen=True)
 class Phase:
-    """A stretch of a motion: from one instant to another, the way the driver turns (0: at rest), and its state in between:
+    """Interval of a motion: its start and end, the driver's direction (0: at rest), and the state in between:
     angle (radians), speed, work done so far."""
 
     start: float
@@ -57,13 +58,13 @@ class Phase:
 
 @dataclass
 class Motion:
-    """A motion in time: phases one after another, and what it took."""
+    """Motion in time: consecutive phases, and the number of evaluations."""
 
     phases: list[Phase] = field(default_factory=list)
     evaluations: int = 0
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the state at increasing instants, shape ``(3, n)``, and the way the driver turns."""
+        """Return the state at increasing instants, shape ``(3, n)``, and the driver's direction."""
         found, ways = np.empty((3, len(t))), np.empty(len(t))
         starts = np.array([phase.start for phase in self.phases])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
@@ -75,19 +76,19 @@ class Motion:
 
     @property
     def dead_centres(self) -> np.ndarray:
-        """When the output stands still on its way, each instant once."""
+        """Instants at which the output reaches a dead centre, each once."""
         found = sorted(t for phase in self.phases for t in phase.dead)
         apart = _SAME * max(self.phases[-1].end, 1e-300) if self.phases else 0.0
         return np.array([t for k, t in enumerate(found) if not k or t - found[k - 1] > apart])
 
     @property
     def stuck(self) -> tuple[tuple[float, float], ...]:
-        """When the mechanism stood still: start and end."""
+        """Intervals of rest: start and end."""
         return tuple((p.start, p.end) for p in self.phases if p.way == 0)
 
 
 class _Rows:
-    """Where each of an equation's functions stands in its table."""
+    """Positions of an equation's functions in its table."""
 
     def __init__(self, forces: Forces, with_output: bool) -> None:
         self.loads, self.contacts = len(forces.loads), len(forces.contacts)
@@ -106,7 +107,7 @@ class _Rows:
 
 
 class Running:
-    """The equation of motion of a mechanism under its forces.
+    """Equation of motion of a mechanism under its forces.
 
     ``output``: the pace of what has dead centres, over driver's angles in radians; none without.
     """
@@ -123,18 +124,21 @@ class Running:
 
     @cached_property
     def table(self) -> TurnTable | Untabulated:
-        """The functions of the angle that the equation needs."""
+        """Functions of the angle in the equation."""
         return tabulated(self._functions)
 
     @cached_property
     def cost(self) -> int:
-        """What an evaluation counts: several contacts are solved for, and without a table every body is posed anew."""
+        """Relative cost of an evaluation: several contacts require an iteration; without a table every body
+        is posed anew."""
         return (10 if self.rows.normals > 1 else 1) * (1 if self.table.steps else 50)
 
     def _functions(self, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return inertia, its growth, gravity and unit loads: what each asks of the drive, then of the
-        contacts; unit friction the same; the paces; the positions that loads go by. With the sizes of their
-        terms."""
+        """Return the tabulated functions at some angles, and the sizes of their terms.
+
+        In order: the parts of inertia, its growth, gravity and unit loads in the drive's effort, then in the
+        normal forces; the same of unit friction; the paces; the positions that loads follow.
+        """
         forces = self.forces
         stance = forces.pose(angles)
         with np.errstate(all="ignore"):
@@ -180,7 +184,8 @@ class Running:
         return found
 
     def acceleration(self, angle: float, speed: float, way: int, signs: np.ndarray | None = None) -> float:
-        """Of the driver, rad/s^2, at an angle (radians) and a speed, turning a way; ``signs`` of the paces in a phase.
+        """Return the driver's acceleration, rad/s^2, at an angle (radians), a speed and a direction;
+        ``signs`` of the paces in a phase.
 
         Raises
         ------
@@ -190,8 +195,7 @@ class Running:
         return self._balance(angle, speed, way, signs)[0]
 
     def _balance(self, angle: float, speed: float, way: int, signs: np.ndarray | None) -> tuple[float, float]:
-        """Return the acceleration, and what goes of the drive into the kinetic energy: per radian, without
-        the inertia's."""
+        """Return the acceleration, and the part of the drive that becomes kinetic energy, per radian."""
         self._count(angle)
         values = self.table.at(angle)
         efforts: list[float] = values[: self.rows.wrenches].tolist()
@@ -235,7 +239,8 @@ class Running:
             )
 
     def _rubbed(self, at: _Instant, values: np.ndarray, sizes: Sequence[float], signs: np.ndarray) -> float:
-        """What friction asks of the drive, the acceleration being free; NaN where the mechanism jams."""
+        """Return the friction's part of the drive's effort, with the acceleration free; NaN where the
+        mechanism jams."""
         if self.rows.normals == 1:
             return self._rubbed_by_one(at, values.tolist(), sizes, float(signs[self.rows.loads]))
         efforts, normals = values[: self.rows.wrenches], self.rows.borne(values)
@@ -252,8 +257,7 @@ class Running:
     def _rubbed_by_one(
         self, at: _Instant, values: Sequence[float], sizes: Sequence[float], sign: float
     ) -> float:
-        """Return the same where one place rubs on one side or the other: in numbers, as most mechanisms have
-        it."""
+        """Return the friction's part for a single contact, in plain numbers, as most mechanisms have it."""
         n, first = self.rows.wrenches, 3 + self.rows.loads
         efforts, normals = values[:n], values[n : 2 * n]
         start = (at.lacking - efforts[1] * at.speed**2) / at.inertia
@@ -266,8 +270,8 @@ class Running:
         return efforts[first] * strength * abs(free) / slope if slope > 0 else math.nan
 
     def holding(self, angle: float) -> tuple[float, float]:
-        """Return the efforts between which the drive does not move the mechanism from rest, N m; infinite
-        where it locks itself."""
+        """Return the range of drive efforts that do not move the mechanism from rest, N m; infinite where it
+        is self-locking."""
         low, high = (self._holding(angle, way) for way in (-1, 1))
         return low, high
 
@@ -287,7 +291,8 @@ class Running:
 
     @cached_property
     def turning_places(self) -> np.ndarray:
-        """Angles of a turn, radians, where what rubs or is loaded turns back, or a load's table has a corner."""
+        """Angles of a turn, radians, at which a contact or a loaded point turns back, or a load's table has a
+        corner."""
         knots = [float(np.mod(knot, TURN)) for acting in self.forces.loads for knot in acting.knots]
         rows = [
             self.rows.paces.start + number
@@ -299,7 +304,7 @@ class Running:
 
     @cached_property
     def dead_places(self) -> np.ndarray:
-        """Angles of a turn, radians, where the output stands still."""
+        """Angles of a turn, radians, at which the output stands still."""
         return np.array(self._zeros(self.rows.output) if self.rows.output is not None else [])
 
     @cached_property
@@ -308,7 +313,7 @@ class Running:
         return grid, self.table.over(grid)
 
     def _zeros(self, row: int) -> list[float]:
-        """Where a function of the table changes its sign."""
+        """Return the angles at which a function of the table changes sign."""
         from scipy.optimize import brentq
 
         grid, sampled = self._sampled
@@ -320,7 +325,7 @@ class Running:
 
     @staticmethod
     def _unrolled(places: np.ndarray, low: float, high: float) -> np.ndarray:
-        """Return the places of every turn between two angles, both left out."""
+        """Return the angles of every turn strictly between two bounds."""
         if not len(places):
             return places
         turns = np.arange(math.floor(low / TURN) - 1, math.floor(high / TURN) + 2)
@@ -328,13 +333,13 @@ class Running:
         return found[(found > low + 1e-9) & (found < high - 1e-9)]
 
     def next_place(self, angle: float, way: int) -> float:
-        """Return the next of the turning places, beyond an angle; infinitely far where there is none."""
+        """Return the next turning place beyond an angle; infinite where there is none."""
         ahead = (angle, angle + 1.01 * TURN) if way > 0 else (angle - 1.01 * TURN, angle)
         beyond = self._unrolled(self.turning_places, *ahead)
         return float(beyond[0] if way > 0 else beyond[-1]) if len(beyond) else way * math.inf
 
     def signs(self, angle: float, way: int) -> np.ndarray:
-        """Return the signs of the paces just beyond an angle, the way that the driver turns: they stay to the
+        """Return the signs of the paces just beyond an angle in the driver's direction; they hold up to the
         next turning place."""
         if not self.forces.loads and not self.forces.contacts:
             return np.empty(0)
@@ -371,12 +376,13 @@ class Running:
         return motion
 
     def _energy(self, angle: float, speed: float, duration: float) -> float:
-        """Return an energy to measure errors by: what the motion starts with, and what the drive could do."""
+        """Return an energy as the scale of errors: the initial kinetic energy plus the work that the drive
+        could do."""
         inertia = abs(float(self.table.at(angle)[0])) + self.forces.flywheel
         return 0.5 * inertia * speed**2 + abs(self.drive(speed) * speed) * duration + 1e-12
 
     def _way(self, state: np.ndarray) -> int:
-        """Which way a state moves on: 0 where it stays."""
+        """Return the direction in which a state moves on: 0 where it stays."""
         if state[1]:
             return 1 if state[1] > 0 else -1
         angle, drive = float(state[0]), self.drive(0.0)
@@ -389,7 +395,7 @@ class Running:
     def _stretch(
         self, t: float, duration: float, state: np.ndarray, way: int, rtol: float, scales: tuple[float, ...]
     ) -> tuple[Phase, np.ndarray]:
-        """On to the next turning place, to rest, or to the end."""
+        """Integrate to the next turning place, to rest, or to the end."""
         from scipy.integrate import solve_ivp
 
         angle = float(state[0])
@@ -419,7 +425,8 @@ class Running:
     def _dead(
         self, state: Callable[[float], np.ndarray], start: float, end: float, angle: float, last: float
     ) -> tuple[float, ...]:
-        """When the driver passes the places where the output stands still, in a phase in which it never turns back."""
+        """Return the instants at which the output stands still, in a phase in which the driver never turns
+        back."""
         from scipy.optimize import brentq
 
         low, high = min(angle, last), max(angle, last)
@@ -441,13 +448,13 @@ class Running:
 
 
 def _rest(t: float, duration: float, state: np.ndarray) -> tuple[Phase, np.ndarray]:
-    """Nothing changes at rest under a drive that depends on the speed alone."""
+    """Return a phase of rest to the end: under a drive that depends on the speed alone nothing changes."""
     still = np.array([state[0], 0.0, state[2]])
     return Phase(t, duration, 0, lambda at: np.repeat(still[:, None], len(at), axis=1)), still
 
 
 def _changes(values: np.ndarray) -> Iterator[int]:
-    """Where a sampled function changes its sign before the next sample."""
+    """Return the indices at which a sampled function changes sign before the next sample."""
     with np.errstate(invalid="ignore"):
         return iter(np.flatnonzero(values[:-1] * values[1:] < 0).tolist())
 

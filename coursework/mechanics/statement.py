@@ -1,4 +1,4 @@
-"""The statement of a mechanism: its bodies, where each one's frame lies, and what joins them.
+"""Statement of a mechanism: its bodies, the position of each one's frame, and the joints.
 
 A place is a quantity's name, a number, or a function of quantities: mm in the frame of the body that holds it, complex
 where it does not lie on the frame's x axis. Places do not move within their body.
@@ -23,7 +23,7 @@ Place: TypeAlias = (
 
 @dataclass(frozen=True)
 class Body:
-    """A moving body.
+    """Moving body.
 
     Attributes
     ----------
@@ -56,13 +56,14 @@ class Body:
 
     @property
     def places(self) -> Mapping[str, Place]:
-        """Every point of the body, its origin first."""
+        """Points of the body with their positions, the origin first."""
         return {self.at: 0.0, **self.points}
 
 
 @dataclass(frozen=True)
 class Slide:
-    """A body that slides on another along a line of it: at a point, in a direction of the guide's frame (degrees).
+    """Body that slides on another along a line of it: at a point, in a direction of the guide's frame
+    (degrees).
 
     The two are turned alike. ``length`` (mm): a long slide bears on both of its edges; one without length at its point.
     """
@@ -76,9 +77,11 @@ class Slide:
 
 @dataclass(frozen=True)
 class Gear:
-    """Two round wheels that roll on each other without slip, their centres held by a carrier; ``inner``: the second
-    one's teeth are on its inside. ``radii`` in mm. ``centres`` name the points in the middle of the wheels: the origins of
-    their frames unless told; a wheel that is fixed to the ground has to be told."""
+    """Gear of two round wheels that roll on each other without slip, their centres held by a carrier.
+
+    ``inner``: the second one has internal teeth. ``radii`` in mm. ``centres`` name the points in the middle
+    of the wheels: by default the origins of their frames; required for a wheel fixed to the ground.
+    """
 
     first: str
     second: str
@@ -90,7 +93,7 @@ class Gear:
 
 @dataclass(frozen=True)
 class Load:
-    """What acts on a point (``force``, N) or turns a body (``moment``, N m): a quantity of the exercise, or a number.
+    """Load on a point (``force``, N) or on a body (``moment``, N m): a quantity of the exercise, or a number.
 
     Where bodies share the point, the last of them bears the force: the piston, not the rod; ``body`` may name another.
     A force points along ``angle``, degrees from the ground's x axis; or, ``against`` the motion, the other way than its
@@ -112,7 +115,7 @@ class Load:
 
 @dataclass(frozen=True)
 class Pin:
-    """A joint that follows from a point which two bodies share."""
+    """Joint that follows from a point shared by two bodies."""
 
     at: str
     of: str
@@ -121,7 +124,7 @@ class Pin:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """Bodies and joints, with the loads and the friction that the exercise itself speaks of.
+    """Bodies and joints, with the loads and the friction that the exercise itself states.
 
     ``friction``: by joint (a point), a coefficient, for slides; for a pin, a pair of coefficient and radius (mm).
 
@@ -146,7 +149,7 @@ class Mechanism:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The moving bodies."""
+        """Names of the moving bodies."""
         return tuple(body.name for body in self.bodies)
 
     def body(self, name: str) -> Body:
@@ -158,23 +161,23 @@ class Mechanism:
         return (*on_ground, *(b.name for b in self.bodies if point in b.places))
 
     def place(self, point: str, body: str) -> Place:
-        """Where a point lies in a body's frame."""
+        """Return the position of a point in a body's frame."""
         return self.ground[point] if body == GROUND else self.body(body).places[point]
 
     @property
     def points(self) -> tuple[str, ...]:
-        """Every point, each once."""
+        """Names of all points, each once."""
         return tuple(dict.fromkeys([*self.ground, *(p for b in self.bodies for p in b.places)]))
 
     @property
     def pins(self) -> tuple[Pin, ...]:
-        """The joints that shared points make: each body is pinned to the first that holds the point."""
+        """Joints of shared points: each body is pinned to the first one that holds the point."""
         shared = ((p, self.holders(p)) for p in self.points)
         return tuple(Pin(point, other, first) for point, (first, *others) in shared for other in others)
 
     @property
     def mobility(self) -> int:
-        """Degrees of freedom by the count of Chebyshev and Gruebler: 3 a body, less 2 a pin or slide, less 1 a gear."""
+        """Degrees of freedom by the Chebyshev-Grübler count: 3 a body, less 2 a pin or slide, less 1 a gear."""
         return 3 * len(self.bodies) - 2 * (len(self.pins) + len(self.slides)) - len(self.gears)
 
     @property
@@ -199,7 +202,7 @@ class Mechanism:
 
     @property
     def named(self) -> tuple[str, ...]:
-        """The quantities that places, masses, loads and friction are given by, each once."""
+        """Quantities in positions, masses, loads and friction, each once."""
         places = [*self.unfolded()]
         for load in self.loads:
             places += [load.force, load.moment, load.angle]
@@ -208,7 +211,7 @@ class Mechanism:
         return tuple(dict.fromkeys(name for place in places for name in parameters(place)))
 
     def unfolded(self) -> Iterator[Place]:
-        """Yield everything that a number must be found for."""
+        """Yield every expression that must have a value."""
         yield from self.ground.values()
         for body in self.bodies:
             yield from (*body.points.values(), body.mass, body.inertia)
@@ -266,14 +269,14 @@ class Mechanism:
 
 
 def parameters(place: Place) -> tuple[str, ...]:
-    """Return the quantities that a place is given by."""
+    """Return the quantities on which an expression depends."""
     if isinstance(place, str):
         return (place,)
     return tuple(inspect.signature(place).parameters) if callable(place) else ()
 
 
 def number(place: Place, values: Mapping[str, Any]) -> Any:
-    """Return the number of a place."""
+    """Evaluate an expression."""
     if isinstance(place, str):
         return values[place]
     return place(*(values[n] for n in parameters(place))) if callable(place) else place

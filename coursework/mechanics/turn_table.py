@@ -1,4 +1,5 @@
-"""Functions of the driver's angle as a table over the turn, good to rounding: built by Fourier series, read by polynomials.
+"""Functions of the driver's angle as a table over the turn, accurate to rounding: built by Fourier series,
+evaluated by polynomials.
 
 What is periodic and smooth is known everywhere once it is known at enough equal steps: the number of steps is doubled
 until the series has run out. Between finer steps, values and two derivatives of the series give a polynomial of the fifth
@@ -23,7 +24,7 @@ Functions = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 class TurnTable:
-    """Some functions of an angle, tabulated.
+    """Tabulated functions of an angle.
 
     Attributes
     ----------
@@ -54,7 +55,7 @@ class TurnTable:
         return float(np.max(tail / np.where(size > 0, size, 1.0), initial=0.0))
 
     def _pieces(self, series: np.ndarray) -> None:
-        """Polynomials between fine steps, coefficients of shape ``(steps, 6, functions)``."""
+        """Compute the polynomials between fine steps, coefficients of shape ``(steps, 6, functions)``."""
         order = np.arange(series.shape[1])
         # The error of a fifth-degree polynomial is its step to the sixth times the sixth derivative over 46080.
         bend = (np.abs(series) * order**6.0).sum(axis=1) / np.maximum(np.abs(series).sum(axis=1), 1e-300)
@@ -99,7 +100,7 @@ class TurnTable:
 
 
 class Untabulated:
-    """The same face for functions that have no table: computed each time they are asked."""
+    """Functions without a table, with the interface of :class:`TurnTable`: computed at each call."""
 
     steps = 0
 
@@ -114,6 +115,6 @@ class Untabulated:
 
 
 def tabulated(functions: Functions) -> TurnTable | Untabulated:
-    """Return a table where one can be had: the functions close around the turn and are smooth."""
+    """Return a table if the functions are periodic and smooth; otherwise the functions themselves."""
     table = TurnTable(functions)
     return table if table.steps else Untabulated(functions)

@@ -1,4 +1,4 @@
-"""What acts on the bodies: a force and a moment about the origin of each body's frame, at every instant.
+"""Wrenches on the bodies: a force and a moment about the origin of each body's frame, at every instant.
 
 Newtons and newton metres. Inertia is one of them, by d'Alembert's principle, and comes in two: for one rad/s of the
 driver squared, and for one rad/s^2.
@@ -30,34 +30,36 @@ class Wrench:
         return Wrench(stance, np.zeros(stance.turns.shape, dtype=complex), np.zeros(stance.turns.shape))
 
     def push(self, held: Held, force: np.ndarray | complex) -> Wrench:
-        """With a force at a place of a body."""
+        """Add a force at a position of a body."""
         return self.push_at(held.body, self.stance.arm(held), force)
 
     def push_at(self, body: int, arm: np.ndarray, force: np.ndarray | complex) -> Wrench:
-        """With a force at an arm from the origin of a body."""
+        """Add a force at an arm from the origin of a body."""
         self.forces[body] += force
         self.moments[body] += (np.conj(arm) * force).imag
         return self
 
     def turn(self, body: int, moment: np.ndarray | float) -> Wrench:
-        """With a moment on a body."""
+        """Add a moment on a body."""
         self.moments[body] += moment
         return self
 
     def rub(self, slide: SlideJoint, force: np.ndarray | complex) -> Wrench:
-        """With a force on a sliding body at its point, and its opposite on the guide there."""
+        """Add a force on a sliding body at its point, and its opposite on the guide there."""
         under = self.stance.place(slide.of) - self.stance.origins[slide.on]
         return self.push(slide.of, force).push_at(slide.on, under, -force)
 
     @property
     def effort(self) -> np.ndarray:
-        """What the drive must supply for it, along its angle, by virtual power: N m, shape ``(n,)``."""
+        """Effort of the drive along its angle that balances the wrench, by virtual power: N m, shape
+        ``(n,)``."""
         power = (np.conj(self.forces) * self.stance.origin_rates).real + self.moments * self.stance.rates
         return -power.sum(axis=0)
 
     @property
     def size(self) -> float:
-        """What the effort could be, did its parts not cancel: forces on arms as long as the mechanism is large."""
+        """Magnitude of the effort if its parts did not cancel: forces on arms as long as the mechanism is
+        large."""
         stance = self.stance
         reach = np.abs(stance.origin_rates) + stance.size * np.abs(stance.rates)
         parts = np.abs(self.forces) * reach + np.abs(self.moments * stance.rates)
@@ -71,7 +73,7 @@ class Wrench:
 
 
 def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> Wrench:
-    """Return the weights; ``downwards`` is the acceleration of gravity."""
+    """Return the weights of the bodies; ``downwards`` is the acceleration of gravity."""
     wrench = Wrench.none(stance)
     for own in stance.linkage.masses:
         wrench.push(Held(own.body, own.centre), own.mass * downwards)
@@ -79,18 +81,18 @@ def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> Wrench:
 
 
 def inertia_at_rate(stance: Stance) -> Wrench:
-    """Return the inertia for a driver at a constant 1 rad/s."""
+    """Return the inertia forces for a driver at a constant 1 rad/s."""
     return _inertia(stance, stance.bend, stance.bends)
 
 
 def inertia_at_start(stance: Stance) -> Wrench:
-    """Return the inertia for a driver at rest that accelerates by 1 rad/s^2: its effort is the generalised
-    inertia, kg m^2."""
+    """Return the inertia forces for a driver at rest that accelerates by 1 rad/s^2: their effort is the
+    generalised inertia, kg m^2."""
     return _inertia(stance, stance.rate, stance.rates)
 
 
 def _inertia(stance: Stance, motion: Callable[[Held], np.ndarray], turning: np.ndarray) -> Wrench:
-    """Return the against accelerations of places, and of the bodies' angles."""
+    """Return the inertia forces for accelerations of positions and of the bodies' angles."""
     wrench = Wrench.none(stance)
     for own in stance.linkage.masses:
         held = Held(own.body, own.centre)
