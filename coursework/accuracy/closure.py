@@ -1,4 +1,4 @@
-"""Loop-closure equations as plain sums, in any arithmetic: floats, arrays, complex numbers."""
+"""Loop-closure equations as plain sums in any arithmetic: floats, arrays, complex numbers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Function = Callable[[Any], Any]
 
 
 class Closure:
-    """The projections of the loops on x and y, and their derivatives by the unknowns.
+    """Projections of the loops on x and y, and their derivatives by the unknowns.
 
     Lengths in one unit, angles in radians. ``cos`` and ``sin`` decide the arithmetic.
     """
@@ -23,7 +23,7 @@ class Closure:
         self.angles = {a for loop in loops for v in loop for a in (v.angle, v.turn) if isinstance(a, str)}
 
     def gaps(self, values: Mapping[str, Any], cos: Function = np.cos, sin: Function = np.sin) -> list[Any]:
-        """What each loop lacks to close, along x and y in turn."""
+        """Return the gap of each loop, along x and y in turn."""
         found = []
         for loop in self.loops:
             x = y = 0.0
@@ -36,7 +36,7 @@ class Closure:
     def jacobian(
         self, values: Mapping[str, Any], cos: Function = np.cos, sin: Function = np.sin
     ) -> list[list[Any]]:
-        """Return the rows as :meth:`gaps`, a column an unknown."""
+        """Return the Jacobian: rows as in :meth:`gaps`, a column for each unknown."""
         rows = []
         for loop in self.loops:
             of_x = dict.fromkeys(self.unknowns, 0.0)
@@ -70,7 +70,7 @@ class Closure:
 
 
 def _solved(matrix: list[list[Any]], right: list[Any]) -> list[Any]:
-    """Return many small linear systems: two unknowns by Cramer's rule, more by elimination."""
+    """Solve many small linear systems: two unknowns by Cramer's rule, more by elimination."""
     if len(right) == 2:
         (a, b), (c, d) = matrix
         inverse = 1.0 / (a * d - b * c)

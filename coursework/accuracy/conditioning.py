@@ -1,4 +1,4 @@
-"""What the last digit of the data does to a quantity: the error that nobody can avoid."""
+"""Conditioning of a quantity: the unavoidable error from the last digit of the data."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _STEP = 1e-30
 def unavoidable(
     reference: Reference, given: Mapping[str, Any], values: Mapping[str, Any]
 ) -> dict[str, float]:
-    """By how much each quantity moves when every datum moves by one last digit, in its unit; no less than a last digit of
-    the quantity itself, and for an angle of a radian.
+    """Return the change of each quantity when every datum moves by one last digit, in its unit.
 
-    An angle is reduced to within half a turn first: whole turns lose no digit.
+    It is at least a last digit of the quantity itself, and for an angle one of a radian. An angle is first
+    reduced to within half a turn: whole turns cost no digit.
     """
     moves = dict.fromkeys(values, 0.0)
     for datum, value in given.items():
@@ -36,7 +36,8 @@ def unavoidable(
 def _moved(
     reference: Reference, given: Mapping[str, Any], datum: str, values: Mapping[str, Any]
 ) -> dict[str, float]:
-    """Return the change of each quantity per relative change of one datum; nothing where it has none beside."""
+    """Return the change of each quantity per relative change of one datum; no entry where it does not exist
+    nearby."""
     mp = reference.mp
     exact = mp.mpf(float(given[datum]))
     in_degrees = reference.exercise.units.get(datum) == "deg"
@@ -50,7 +51,7 @@ def _moved(
 
 
 def difference(reference: Reference, name: str, value: Any, right: Any) -> Any:
-    """Return one value less another; of angles modulo a turn."""
+    """Return one value minus another; for angles modulo a turn."""
     apart = value - right
     if reference.exercise.units.get(name) == "deg":
         apart -= 360 * reference.mp.nint(apart / 360)

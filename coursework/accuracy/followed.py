@@ -1,4 +1,4 @@
-"""Numbers that a solution's formulas take as they are, and that keep what a formula does with them.
+"""Numbers that pass through a solution's formulas and record each operation.
 
 The functions of a solution are written for floats and arrays. A :class:`Followed` number passes through them, through
 ``coursework.degrees`` and through numpy's functions, on one of two sorts of arithmetic: many digits, one number at a
@@ -22,18 +22,18 @@ Tape = Callable[[str, Any], None]
 
 
 class NotFollowed(TypeError):
-    """A formula does something with its numbers that is not followed."""
+    """Operation of a formula that cannot be followed."""
 
 
 class Arithmetic:
-    """How numbers are computed with; ``functions`` by numpy's names of them."""
+    """Arithmetic of followed numbers; ``functions`` by numpy's names."""
 
     def __init__(self, functions: dict[str, Callable[..., Any]], tape: Tape | None = None) -> None:
         self.functions, self.tape = functions, tape
         self.mp: Any = None  #: the context of mpmath, of many digits
 
     def __call__(self, name: str, *values: Any) -> Any:
-        """Return a function of followed or plain numbers; truths come out plain, numbers followed."""
+        """Evaluate a function of followed or plain numbers; truth values come out plain, numbers followed."""
         if name not in self.functions:
             raise NotFollowed(f"np.{name} is not followed")
         plain = [_plain(v) for v in values]
@@ -44,7 +44,7 @@ class Arithmetic:
         return found if _is_truth(found) else Followed(found, self)
 
     def __getattr__(self, name: str) -> Any:
-        """What ``coursework.degrees`` asks of a context of mpmath."""
+        """Return the function that ``coursework.degrees`` takes from an mpmath context."""
         if name not in _OF_CONTEXT:
             raise AttributeError(name)
         if name == "mpf":
@@ -79,7 +79,7 @@ def _is_truth(value: Any) -> bool:
 
 
 class Followed:
-    """A number, or an array, of an arithmetic."""
+    """Number, or array, of an arithmetic."""
 
     __array_priority__ = 1000.0
     __slots__ = ("context", "value")
@@ -182,7 +182,7 @@ for _dunder, _name in _DUNDERS.items():
 
 
 def of_arrays(tape: Tape | None = None) -> Arithmetic:
-    """Return plain arrays, whatever numpy does with them."""
+    """Return the arithmetic of plain arrays, with numpy's functions."""
     names = (
         "add subtract multiply true_divide divide power square reciprocal remainder negative positive absolute fabs sign "
         "sqrt exp log log10 sin cos tan arctan2 arcsin arccos arctan hypot degrees radians deg2rad rad2deg conjugate floor "
@@ -195,7 +195,7 @@ def of_arrays(tape: Tape | None = None) -> Arithmetic:
 
 
 def _sinpi(turns: Any) -> Any:
-    """Return the sine of so many half turns, whole half turns taken out first."""
+    """Return the sine of a number of half turns, reduced by whole half turns first."""
     whole = np.rint(turns)
     sign = 1.0 - 2.0 * np.mod(whole, 2.0)
     return sign * np.sin((turns - whole) * math.pi)
@@ -205,7 +205,8 @@ def _sinpi(turns: Any) -> Any:
 
 
 def of_many_digits(digits: int, tape: Tape | None = None) -> Arithmetic:
-    """Return one number at a time in so many decimal digits; floats stand for exactly themselves."""
+    """Return the arithmetic of single numbers in ``digits`` decimal digits; floats stand for exactly
+    themselves."""
     import mpmath
 
     mp = mpmath.MPContext()
@@ -250,8 +251,8 @@ def _truth(value: Any) -> bool:
 
 
 def _exact(mp: Any, value: Any) -> Any:
-    """Return a plain number of a formula as the many-digit number that is meant; pi and its simple parts as
-    themselves."""
+    """Return a plain number of a formula in many digits; pi and its simple fractions as exact multiples of
+    pi."""
     if hasattr(value, "context") or isinstance(value, (str, bool)):
         return value
     if isinstance(value, np.ndarray):

@@ -1,4 +1,4 @@
-"""Where a mechanism is hard to compute: found from its formulas, typed by nobody.
+"""Hard places of a mechanism, where digits are lost, found from its formulas.
 
 Digits are lost where something that a formula needs vanishes: the determinant of the loops' Jacobian, a number that is
 divided by, the distance whose direction is asked, what a root is taken of, what an arcsine lacks to 1. A tape notes all
@@ -51,7 +51,7 @@ _FAILURES = (CourseworkError, NotFollowed, TypeError, ValueError)
 
 @dataclass(frozen=True)
 class HardPlace:
-    """Where digits are lost, and along what it is approached.
+    """Place where digits are lost, and the quantity along which it is approached.
 
     ``given`` holds the place itself, where there may be no answer; ``moved`` is what comes near, and ``scale`` what its
     distance is counted in. ``kind`` and ``quantity`` say what vanishes there, in the formula of which quantity;
@@ -74,9 +74,11 @@ class HardPlace:
         return bool(self.tuned)
 
     def at(self, distance: float, aside: float = 0.0) -> dict[str, Any]:
-        """Return the given values so far away, in parts of the scale; negative on the other side.
+        """Return the given values at a distance from the place, in parts of the scale; negative on the other
+        side.
 
-        ``aside`` is how far off what is tuned lies, in parts of its own value: there the solutions come near and pass.
+        ``aside`` is the offset of the tuned quantity, in parts of its own value: there the solutions come
+        near and pass.
         """
         moved = {self.moved: self.given[self.moved] + distance * self.scale}
         tuned = {self.tuned: self.given[self.tuned] * (1 + aside)} if self.tuned else {}
@@ -85,26 +87,26 @@ class HardPlace:
     def approach(
         self, distances: Sequence[float] = DISTANCES, aside: float = 0.0
     ) -> Iterator[dict[str, Any]]:
-        """Yield both sides in turn, from far to near."""
+        """Yield the given values on both sides in turn, from far to near."""
         for distance in distances:
             for side in self.sides:
                 yield self.at(side * distance, aside)
 
     @staticmethod
     def distances(quick: bool) -> tuple[float, ...]:
-        """How near it is approached; every other step where time is short."""
+        """Return the distances of the approach; every third one for a quick measurement."""
         return DISTANCES[1::3] if quick else DISTANCES
 
     @property
     def sides(self) -> tuple[int, ...]:
-        """From where it can be approached: what vanishes has one side."""
+        """Sides from which the place can be approached: a vanishing quantity has one."""
         if self.kind != VANISHING:
             return (1, -1)
         return (1,) if not self.given[self.moved] else (-1,)
 
 
 def hard_places(exercise: CourseExercise, wanted: Sequence[str], most: int = _MOST) -> tuple[HardPlace, ...]:
-    """Return the hard places of some quantities, those that lose most first.
+    """Return the hard places of some quantities, those with the largest loss first.
 
     None where the formulas cannot be followed, beyond vanishing lengths.
     """
@@ -114,7 +116,7 @@ def hard_places(exercise: CourseExercise, wanted: Sequence[str], most: int = _MO
 
 
 class Terrain:
-    """The margins of an exercise's formulas over what may be given."""
+    """Margins of an exercise's formulas over the range of the given quantities."""
 
     def __init__(self, exercise: CourseExercise, wanted: Sequence[str]) -> None:
         self.exercise, self.wanted = exercise, tuple(wanted)
@@ -135,7 +137,8 @@ class Terrain:
 
     @cached_property
     def bases(self) -> list[dict[str, Any]]:
-        """Whole sets of given values from which is sought: variants, and one with noughts where there may be any."""
+        """Complete sets of given values from which the search starts: variants, and one with zeros where they
+        are allowed."""
         found = [self._whole(v.given) for v in self.exercise.variants(range(_BASES))]
         first = found[0]
         noughts = {n: 0.0 for n in self.names if self._may_be_nought(n) and first[n]}
@@ -157,13 +160,13 @@ class Terrain:
 
     @cached_property
     def _drawn(self) -> dict[str, tuple[float, float]]:
-        """The least and the largest value that is drawn of each, conditions or not."""
+        """Least and largest drawn value of each quantity, without regard to constraints."""
         values = draws.first_candidates(self.exercise.name, self.exercise.spec, 512)
         return {n: (float(np.nanmin(values[n])), float(np.nanmax(values[n]))) for n in self.names}
 
     @cached_property
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """Where each is sought: a size, a length say, in the range of all sizes of its unit, an angle over a turn."""
+        """Search range of each quantity: for a size, that of all sizes of its unit; for an angle, a turn."""
         found = {}
         for name, (least, largest) in self._drawn.items():
             low, high = self._of_unit(self.unit(name))
@@ -178,38 +181,38 @@ class Terrain:
         return {n: r for n, r in found.items() if r[1] > r[0]}
 
     def _of_unit(self, unit: str) -> tuple[float, float]:
-        """From half the least to twice the largest of the sizes of a unit; nothing where it has none."""
+        """Return half the least and twice the largest of the sizes of a unit; (0, 0) where it has none."""
         sizes = [self._drawn[n] for n in self.names if self.unit(n) == unit and self._is_size(n)]
         return min((low for low, _ in sizes), default=0.0) / 2, max(
             (high for _, high in sizes), default=0.0
         ) * 2
 
     def turns(self, name: str) -> bool:
-        """Return whether an angle may be any, not one of a triangle."""
+        """Return whether an angle may have any value, unlike an angle of a triangle."""
         least, largest = self._drawn[name]
         driver = self.exercise.spec.driver
         return largest - least >= 180 or least < 0 or (driver is not None and name == driver.angle)
 
     def _is_size(self, name: str) -> bool:
-        """Return whether it is always positive, and no angle: a length, a mass."""
+        """Return whether a quantity is always positive and no angle: a length, a mass."""
         return self.unit(name) != "deg" and self._drawn[name][0] > 0
 
     @property
     def sizes(self) -> tuple[str, ...]:
-        """What may be far smaller than others of its unit."""
+        """Quantities that may be far smaller than others of their unit."""
         own = [n for n in self.names if self._is_size(n)]
         units = [self.unit(n) for n in own]
         return tuple(n for n in own if units.count(self.unit(n)) > 1)
 
     @property
     def angles(self) -> tuple[str, ...]:
-        """The driver's angle first."""
+        """Angles, the driver's first."""
         driver = self.exercise.spec.driver
         names = [n for n in self.names if self.unit(n) == "deg" and n in self.ranges]
         return tuple(sorted(names, key=lambda n: driver is None or n != driver.angle))
 
     def scale(self, name: str, given: Mapping[str, Any]) -> float:
-        """What a distance in one of the given quantities is counted in."""
+        """Return the unit of distance along a given quantity."""
         if self.unit(name) == "deg":
             return _ANGLE
         return max(abs(given[n]) for n in self.names if self.unit(n) == self.unit(name)) or 1.0
@@ -217,7 +220,7 @@ class Terrain:
     # ------------------------------------------------------------------ margins
 
     def margins(self, given: Mapping[str, Any], wanted: Sequence[str]) -> Margins:
-        """Return every margin on the way to some quantities, at each place of arrays of one shape."""
+        """Return every margin of the formulas of some quantities, at each place of arrays of one shape."""
         shape = np.broadcast_shapes(*(np.shape(v) for v in given.values()))
         self._notes.clear()
         found: Margins = {}
@@ -235,7 +238,7 @@ class Terrain:
         return Followed(np.broadcast_to(np.asarray(value, dtype=float), shape), self._arithmetic)
 
     def _one_by_one(self, wanted: Sequence[str], given: Mapping[str, Any]) -> dict[str, Any]:
-        """What can be followed, where something cannot."""
+        """Return the values of those quantities whose formulas can be followed."""
         values: dict[str, Any] = {}
         for name in wanted:
             try:
@@ -246,7 +249,7 @@ class Terrain:
 
     @cached_property
     def _notes(self) -> list[tuple[str, Any]]:
-        """What the tape has noted since the last quantity was complete."""
+        """Margins noted on the tape since the last complete quantity."""
         return []
 
     @cached_property
@@ -255,7 +258,7 @@ class Terrain:
 
     @cached_property
     def _watched(self) -> Graph:
-        """The formulas, which leave their margins behind."""
+        """Graph of formulas that record their margins."""
 
         def observe(name: str, value: Any) -> Any:
             for i, (kind, margin) in enumerate(self._notes):
@@ -268,7 +271,7 @@ class Terrain:
         return self.graph.observed(observe)
 
     def _determinant(self, values: Mapping[str, Any], shape: tuple[int, ...]) -> Margins:
-        """Of the loops' Jacobian, its columns made one long."""
+        """Return the determinant of the loops' Jacobian, with its columns normalised."""
         if self.closure is None:
             return {}
         try:
@@ -292,13 +295,13 @@ class Terrain:
 
     @cached_property
     def _loop_names(self) -> dict[str, bool]:
-        """The names that the loops hold, and whether each is an angle."""
+        """Names in the loops, each with True if it is an angle."""
         loops = self.exercise.solution.loops.values()
         return {n: n in loop.angles for loop in loops for n in loop.names}
 
     @cached_property
     def _sampled(self) -> Margins:
-        """The margins at random places, anywhere and along single lines from the bases."""
+        """Margins at random places, anywhere and along single lines from the bases."""
         rng = np.random.default_rng(1)
         rows = []
         for base in self.bases:
@@ -313,7 +316,7 @@ class Terrain:
 
     @cached_property
     def usual(self) -> dict[_Key, float]:
-        """The usual size of each margin that varies."""
+        """Typical size of each margin that varies."""
         found = {}
         for key, values in self._sampled.items():
             sizes = abs(values[np.isfinite(values)])
@@ -326,15 +329,14 @@ class Terrain:
         return found
 
     def relative(self, given: Mapping[str, Any]) -> Margins:
-        """Return the margins that vary, in parts of their usual size; of those that vanish together the
-        first."""
+        """Return the varying margins in parts of their typical size; of those that vanish together the first."""
         keys = self.distinct
         margins = self.margins(given, tuple(dict.fromkeys(name for name, _, _ in keys if name != _LOOPS)))
         return {key: margins[key] / self.usual[key] for key in keys if key in margins}
 
     @cached_property
     def distinct(self) -> tuple[_Key, ...]:
-        """The margins whose zeros differ."""
+        """Margins whose zeros differ."""
         usual = {key: values for key, values in self._sampled.items() if key in self.usual}
         kept: dict[_Key, np.ndarray] = {}
         for key, values in usual.items():
@@ -344,7 +346,7 @@ class Terrain:
 
 
 def _vanish_together(a: np.ndarray, b: np.ndarray) -> bool:
-    """Return whether two margins have the same zeros, by what they are at random places."""
+    """Return whether two margins have the same zeros, judged by random places."""
     both = np.isfinite(a) & np.isfinite(b)
     if both.sum() < 0.9 * max(np.isfinite(a).sum(), np.isfinite(b).sum()):
         return False
@@ -368,7 +370,7 @@ def _plain_radians(value: Any, is_angle: bool) -> Any:
 
 @dataclass(frozen=True)
 class _Spot:
-    """A place that is sought, or found: where a margin vanishes as one given quantity moves, another tuned."""
+    """Zero of a margin, sought or found, as one given quantity moves and another is tuned."""
 
     given: Mapping[str, Any]
     moved: str
@@ -384,7 +386,7 @@ def _arrays(base: Mapping[str, Any], count: int) -> dict[str, Any]:
 
 
 def _alike(spots: Sequence[_Spot]) -> list[list[_Spot]]:
-    """Return the spots that one call can compute: those whose choices are the same."""
+    """Group the spots that one call can compute: those with the same choices."""
     groups: dict[Any, list[_Spot]] = {}
     for spot in spots:
         groups.setdefault(tuple(v for v in spot.given.values() if isinstance(v, str)), []).append(spot)
@@ -392,7 +394,7 @@ def _alike(spots: Sequence[_Spot]) -> list[list[_Spot]]:
 
 
 def _together(spots: Sequence[_Spot], shape: tuple[int, ...] = ()) -> dict[str, Any]:
-    """Return the given values of many spots as arrays, a row a spot."""
+    """Return the given values of many spots as arrays, one row a spot."""
     found: dict[str, Any] = {}
     for name, value in spots[0].given.items():
         if isinstance(value, str):
@@ -418,7 +420,7 @@ def _own_margins(
 
 
 def _crossings(terrain: Terrain) -> list[_Spot]:
-    """Where a margin changes its sign along one given quantity."""
+    """Return the spots where a margin changes sign along one given quantity."""
     brackets: list[tuple[_Spot, float, float]] = []
     for base in terrain.bases:
         for name, (low, high) in terrain.ranges.items():
@@ -434,7 +436,7 @@ def _crossings(terrain: Terrain) -> list[_Spot]:
 
 
 def _bisected(terrain: Terrain, spots: Sequence[_Spot], low: np.ndarray, high: np.ndarray) -> Iterator[_Spot]:
-    """Yield the spots at their zeros; none where a margin has a pole."""
+    """Yield the spots at their zeros, without poles of a margin."""
     given = _together(spots)
 
     def values(at: np.ndarray) -> np.ndarray:
@@ -458,7 +460,7 @@ def _bisected(terrain: Terrain, spots: Sequence[_Spot], low: np.ndarray, high: n
 
 
 def _turning_points(terrain: Terrain) -> list[_Spot]:
-    """Where a margin vanishes and is least, or largest, along an angle: two solutions touch."""
+    """Return the spots where a margin touches zero at an extremum along an angle: two solutions meet."""
     spots: list[_Spot] = []
     for base in terrain.bases:
         for moved in terrain.angles[:2]:
@@ -469,7 +471,7 @@ def _turning_points(terrain: Terrain) -> list[_Spot]:
 
 
 def _touching(terrain: Terrain, base: Mapping[str, Any], moved: str, tuned: str) -> Iterator[_Spot]:
-    """Where a margin is about to touch nought, on a plane of two given quantities."""
+    """Yield the spots where a margin nearly touches zero, in a plane of two given quantities."""
     across = np.linspace(*terrain.ranges[tuned], _ROWS)
     along = np.linspace(*terrain.ranges[moved], _COLUMNS)
     y, x = (v.ravel() for v in np.meshgrid(across, along, indexing="ij"))
@@ -480,8 +482,7 @@ def _touching(terrain: Terrain, base: Mapping[str, Any], moved: str, tuned: str)
 
 
 def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
-    """Return the places of a plane where an extremum along the rows is about to vanish, or vanishes, from row
-    to row."""
+    """Return the cells of a plane where an extremum along the rows vanishes, or is about to, from row to row."""
     found = []
     with np.errstate(all="ignore"):
         for least in (True, False):
@@ -502,7 +503,7 @@ def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _zoomed(terrain: Terrain, spots: Sequence[_Spot]) -> Iterator[_Spot]:
-    """Yield the spots as exactly as doubles tell them: the plane around each, finer and finer."""
+    """Yield the spots to double precision, from finer and finer planes around each."""
     levels, points = np.linspace(-1, 1, 5), np.linspace(-1, 1, 9)
     shape = len(levels), len(points)
     y, x = (np.array([s.given[name] for s, name in pairs]) for pairs in _pairs(spots))
@@ -527,8 +528,11 @@ def _pairs(spots: Sequence[_Spot]) -> tuple[list[tuple[_Spot, str]], list[tuple[
 
 
 def _settled(terrain: Terrain, spots: Sequence[_Spot]) -> Iterator[_Spot]:
-    """With what is tuned as a short decimal where that makes the margin vanish, or as it was found; those whose margin
-    does not vanish, or that lie without the range, are left out."""
+    """Yield the spots with the tuned quantity as a short decimal where the margin vanishes there, else as
+    found.
+
+    Spots whose margin does not vanish, or outside the range, are left out.
+    """
     short = [s.put(**{s.tuned: _short(v := s.given[s.tuned], 1e-5 * max(abs(v), 1.0))}) for s in spots]
     left = [abs(_own_margins(terrain, own, _together(own), ())) for own in (short, spots)]
     for own in zip(short, spots, *left, strict=True):
@@ -542,7 +546,7 @@ def _is_inside(value: float, limits: tuple[float, float]) -> bool:
 
 
 def _short(value: float, apart: float) -> float:
-    """Return a value that is known no better than this: the shortest decimal nearby, of at most six places."""
+    """Return the shortest decimal, of at most six places, within ``apart`` of a value."""
     for places in range(7):
         if abs(round(value, places) - value) <= apart:
             return round(value, places) + 0.0
@@ -550,7 +554,7 @@ def _short(value: float, apart: float) -> float:
 
 
 def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
-    """Return the row whose extremum along it is nearest to nought, and where on it that is, from -1 to 1."""
+    """Return the row whose extremum is nearest to zero, and its position on the row, from -1 to 1."""
     best, place = np.inf, (plane.shape[0] // 2, 0.0)
     last = plane.shape[1] - 1
     for row, values in enumerate(plane):
@@ -572,7 +576,7 @@ def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
 
 
 def _vanishing(terrain: Terrain) -> list[_Spot]:
-    """Return a length as small as one likes beside the others; an angle of a triangle that is flat."""
+    """Return the spots of a vanishing length beside others, and of the angle of a flat triangle."""
     base = terrain.bases[0]
     flat = [n for n in terrain.angles if not terrain.turns(n)]
     ends = [(n, 0.0) for n in (*terrain.sizes, *flat)] + [(n, 180.0) for n in flat]
@@ -580,7 +584,7 @@ def _vanishing(terrain: Terrain) -> list[_Spot]:
 
 
 def _merged(terrain: Terrain, found: Sequence[_Spot]) -> list[HardPlace]:
-    """Return one place for all that vanishes there; for one sort of place, what is found first."""
+    """Merge the zeros at one place; of one kind of place, keep the first."""
     by_place: dict[Any, list[_Spot]] = {}
     for zero in found:
         where = tuple(
@@ -602,7 +606,7 @@ def _merged(terrain: Terrain, found: Sequence[_Spot]) -> list[HardPlace]:
 
 
 def _ranked(terrain: Terrain, places: Sequence[HardPlace]) -> list[HardPlace]:
-    """With what each loses, most first."""
+    """Return the places with their loss of digits, the largest first."""
     weighed = sorted((replace(p, lost=_lost(terrain, p)) for p in places), key=lambda p: -p.lost)
     kept: dict[Any, list[HardPlace]] = {}
     for place in weighed:
@@ -613,7 +617,7 @@ def _ranked(terrain: Terrain, places: Sequence[HardPlace]) -> list[HardPlace]:
 
 
 def _lost(terrain: Terrain, place: HardPlace) -> float:
-    """What the textbook formula, or the last digit of a datum, changes beside a place, relative."""
+    """Return the relative change near a place due to the textbook formula, or to the last digit of a datum."""
     worst = 0.0
     graph, textbook = terrain.exercise.solution.graph, terrain.graph
     eps = np.finfo(float).eps

@@ -1,4 +1,4 @@
-"""Time and error of every way, here and now."""
+"""Time and error of every way to compute, measured at run time."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _TIMED = 10_000
 
 @dataclass(frozen=True)
 class Row:
-    """One way at one kind of place.
+    """Measurement of one way at one kind of place.
 
     ``max_error`` is the largest, over places and quantities, against the reference: radians for angles; for the rest parts
     of the value, or of its usual size where that is larger; beside a vanishing length parts of the value itself. For motions
@@ -78,7 +78,7 @@ class Row:
 
 
 def needs_mpmath() -> None:
-    """Refuse where the digits of a reference cannot be had."""
+    """Refuse to measure without mpmath."""
     try:
         import mpmath  # noqa: F401
     except ImportError:
@@ -88,7 +88,7 @@ def needs_mpmath() -> None:
 
 
 def subject_of(exercise: CourseExercise) -> Subject:
-    """What is measured of an exercise.
+    """Return the measured subject of an exercise.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def subject_of(exercise: CourseExercise) -> Subject:
 
 
 def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
-    """Yield the rows as they are measured.
+    """Yield the rows of an exercise as they are measured.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
 
 
 def checked(subject: Subject, seeds: Sequence[int] = (0, 1)) -> Closing | None:
-    """What vouches for the reference; None where the solution states no equation besides.
+    """Check the reference by the stated equations; None where the solution states none.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def checked(subject: Subject, seeds: Sequence[int] = (0, 1)) -> Closing | None:
 
 
 class _Trial:
-    """The ways to one sort of quantity: timed at generic places, compared there and at hard ones."""
+    """Ways to one kind of quantity: timed at generic places, compared there and at hard ones."""
 
     def __init__(self, subject: Subject, what: str, quick: bool) -> None:
         self.subject, self.what, self.quick = subject, what, quick
@@ -177,7 +177,7 @@ class _Trial:
         return 20 if self.quick else 200
 
     def _times(self, own: Sequence[Way]) -> list[Times]:
-        """Of every way at generic places, in rounds."""
+        """Return the times of every way at generic places, measured in rounds."""
         counts = [10 if way.one_by_one else _TIMED for way in own]
         calls = [
             partial(_computed, way, _first(self.timed, count)) for way, count in zip(own, counts, strict=True)
@@ -189,7 +189,10 @@ class _Trial:
     def _hard_rows(
         self, own: Sequence[Way], times: Sequence[Times], scales: Mapping[str, float]
     ) -> Iterator[Row]:
-        """At the places that lose most; a way that needs a fixed mechanism only where the driver is what moves."""
+        """Yield the rows at the places with the largest loss.
+
+        A way that needs a fixed mechanism takes part only where the driver moves.
+        """
         worst: dict[str, tuple[float | None, int, int]] = {}
         least = 0.0
         for place in self._places:
@@ -211,7 +214,8 @@ class _Trial:
 
     @property
     def _places(self) -> list[HardPlace]:
-        """The hardest that the driver comes to, where there are such: every way can be put to these."""
+        """Hardest places along the driver if there are any, since every way applies there; otherwise the
+        hardest of all."""
         driven = [p for p in self.subject.hard if p.moved == self.subject.driver]
         return (driven or list(self.subject.hard))[:_PLACES_OF_A_SORT]
 
@@ -236,7 +240,7 @@ def _first(places: Places, count: int) -> Places:
 
 
 def _computed(way: Way, places: Places) -> Values:
-    """What a way gives, and nothing where it stops."""
+    """Return the values of a way; nothing where it stops with an error."""
     try:
         return way.compute(places)
     except CourseworkError:
@@ -246,7 +250,7 @@ def _computed(way: Way, places: Places) -> Values:
 def usual_sizes(
     subject: Subject, wanted: Sequence[str], reference: Mapping[str, Sequence[Any]]
 ) -> dict[str, float]:
-    """Return the usual size of each quantity; of an angle a radian."""
+    """Return the typical size of each quantity; of an angle a radian."""
     sizes = {}
     for name in wanted:
         values = [abs(float(v)) for v in reference[name] if v is not None]
@@ -261,8 +265,8 @@ def compare(
     reference: Mapping[str, Sequence[Any]],
     scales: Mapping[str, float],
 ) -> tuple[float | None, int, int]:
-    """Return the largest error, at how many places an answer lacks that there is, and at how many there is
-    one."""
+    """Return the largest error, the number of places with a missing answer, and the number of places with a
+    right answer."""
     count = _count(found, reference)
     errors = np.zeros(count)
     exists = np.zeros(count, dtype=bool)
@@ -285,8 +289,7 @@ def compare(
 def unavoidable_of(
     subject: Subject, places: Places, reference: Mapping[str, Sequence[Any]], scales: Mapping[str, float]
 ) -> float:
-    """Return the largest error that the last digits of the data make by themselves, counted as all errors
-    are."""
+    """Return the largest error due to the last digits of the data, measured like all other errors."""
     largest = 0.0
     for i, place in enumerate(one_by_one(places)):
         values = {name: reference[name][i] for name in scales if reference[name][i] is not None}
@@ -300,7 +303,7 @@ def unavoidable_of(
 
 
 def _count(found: Mapping[str, Any], reference: Mapping[str, Sequence[Any]]) -> int:
-    """At how many places a way was asked: those that are solved one by one are asked at fewer."""
+    """Return the number of places that a way computed; single solves take fewer."""
     whole = len(next(iter(reference.values())))
     sizes = [len(v) for v in found.values() if np.ndim(v)]
     return min([whole, *sizes])

@@ -1,4 +1,4 @@
-"""Accuracy of motion in time: what a tolerance, a fixed step or a table costs, and what it leaves.
+"""Accuracy of motion in time: cost and error of a tolerance, a fixed step or a table.
 
 One small interface: a *method* is a function of a scene, an effort, a duration and whether time is short, that yields a
 :class:`Run` for each of its settings. What stands in :data:`METHODS` is measured, with friction and without.
@@ -27,7 +27,7 @@ _FINE = 800  #: equal steps where a table makes each of them cheap
 
 
 class Run(NamedTuple):
-    """One motion by one method at one setting.
+    """Motion by one method at one setting.
 
     ``end`` integrates it, each time anew, to where its driver stands at the end, degrees, not reduced, and how fast it turns
     there, rad/s; ``build`` is how many seconds were spent before.
@@ -41,7 +41,7 @@ class Run(NamedTuple):
 
 @dataclass(frozen=True)
 class MotionRow:
-    """``error`` in radians of the driver at the end of the motion."""
+    """Measurement of a motion; ``error`` in radians of the driver at its end."""
 
     method: str
     setting: float
@@ -55,7 +55,7 @@ Method = Callable[[Scene, float, float, bool], Iterator[Run]]
 
 
 def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
-    """Yield the scene's own integration, at each relative tolerance."""
+    """Yield the scene's own integration at each relative tolerance."""
     driver = scene.driver
     # A quick look takes a few; with friction each digit costs so much that it stops halfway.
     rubs = FRICTION in scene.effects
@@ -70,8 +70,8 @@ def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> I
 
 
 def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
-    """Yield the classical Runge-Kutta method at equal steps, the mechanism computed anew at each of its four
-    stages."""
+    """Yield the classical Runge-Kutta method at equal steps, with the mechanism computed anew at each of its
+    four stages."""
     counts = (50, 100, 200, 400, 800)
     most = len(counts) if not quick else 2 if FRICTION in scene.effects else 3
     rate = _Acceleration(scene, effort)
@@ -80,7 +80,7 @@ def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Itera
 
 
 def by_table(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
-    """Yield the same at fine steps, the coefficients of the motion from a table of the cycle by Fourier
+    """Yield the Runge-Kutta method at fine steps, with coefficients from a table of the cycle by Fourier
     interpolation."""
     for nodes in (32, 64) if quick else (16, 32, 64, 128):
         start = clock()
@@ -98,8 +98,10 @@ METHODS: tuple[Method, ...] = (by_tolerance, by_steps, by_table)
 
 
 def motion_rows(exercise: CourseExercise, study: Study, quick: bool) -> Iterator[MotionRow]:
-    """Yield every method at each of its settings, in rounds: without friction against the energy integral,
-    with friction against the tightest tolerance there is."""
+    """Yield every method at each of its settings, in rounds.
+
+    The reference is the energy integral without friction, and the tightest tolerance with it.
+    """
     assert study.motion is not None
     motion = study.motion
     given = {**study.given, **motion.given}
@@ -130,7 +132,7 @@ def _measured(right: _Right, place: str, quick: bool) -> Iterator[MotionRow]:
 
 
 class _Right:
-    """Where the driver rightly stands at the end of a motion."""
+    """Reference for the driver's position at the end of a motion."""
 
     def __init__(self, scene: Scene, effort: float, duration: float) -> None:
         self.scene, self.effort, self.duration = scene, effort, duration
@@ -140,7 +142,7 @@ class _Right:
 
 
 class _Exact(_Right):
-    """By the energy integral: how late the end of a run is, times its speed."""
+    """Reference by the energy integral: the delay at the end of a run, times its speed."""
 
     def __init__(self, scene: Scene, effort: float, duration: float) -> None:
         super().__init__(scene, effort, duration)
@@ -157,7 +159,7 @@ class _Exact(_Right):
 
 
 class _Tightest(_Right):
-    """By the scene's own integration at a tolerance beyond those that are measured."""
+    """Reference by the scene's own integration at a tolerance beyond the measured ones."""
 
     def __init__(self, scene: Scene, effort: float, duration: float, quick: bool) -> None:
         super().__init__(scene, effort, duration)
@@ -175,7 +177,8 @@ class _Tightest(_Right):
 
 
 class EnergyIntegral:
-    """When a mechanism of one degree of freedom reaches an angle under a constant effort: many digits.
+    """Time at which a mechanism of one degree of freedom reaches an angle under a constant effort, in many
+    digits.
 
     Its kinetic energy grows by the work of the drive, and is half the generalised inertia times the speed
     squared: so t = integral of sqrt(I / (2 E)) over the angle, piece by piece of the turn.
@@ -210,7 +213,7 @@ class EnergyIntegral:
         return pulls[1] - pulls[0]
 
     def time(self, start: float, end: float) -> Any:
-        """Return the seconds from one angle to another, in degrees and not reduced."""
+        """Return the seconds from one angle to another, in degrees, not reduced."""
         start, end = self._radians(start), self._radians(end)
 
         def slowness(angle: Any) -> Any:
@@ -237,9 +240,10 @@ def _given(scene: Scene) -> dict[str, Any]:
 
 
 class _Acceleration:
-    """The driver's acceleration at an angle and a speed under a constant effort, from the exercise's own formulas.
+    """Driver's acceleration at an angle and a speed under a constant effort, from the exercise's own
+    formulas.
 
-    The effort is linear in the acceleration: two evaluations give what is asked.
+    The effort is linear in the acceleration, so two evaluations suffice.
     """
 
     def __init__(self, scene: Scene, effort: float) -> None:
@@ -250,7 +254,7 @@ class _Acceleration:
         self.start = np.array([np.radians(self.given[self.driver.angle]), self.given[self.driver.speed]])
 
     def efforts(self, angles: Any, speeds: Any) -> tuple[Any, Any]:
-        """What the drive must supply at rest of its speed, and for each unit of acceleration."""
+        """Return the drive's effort at zero acceleration, and per unit of acceleration."""
         shape = np.broadcast_shapes(np.shape(angles), np.shape(speeds))
         given = {
             **self.given,
@@ -280,7 +284,8 @@ class _Acceleration:
 
 
 class _Tabulated:
-    """The same from tables over the cycle: inertia, and what the square of the speed costs, as Fourier series."""
+    """Driver's acceleration from tables over the cycle: inertia and the coefficient of the squared speed, as
+    Fourier series."""
 
     def __init__(self, whole: _Acceleration, nodes: int) -> None:
         self.effort, self.start = whole.effort, whole.start
@@ -302,7 +307,7 @@ class _Tabulated:
 def runge_kutta(
     rate: Callable[[np.ndarray], np.ndarray], start: np.ndarray, duration: float, steps: int
 ) -> np.ndarray:
-    """Return the state at the end of so many equal steps of the classical method of fourth order."""
+    """Integrate by the classical fourth-order method in ``steps`` equal steps; return the final state."""
     state, h = np.array(start, dtype=float), duration / steps
     for _ in range(steps):
         first = rate(state)

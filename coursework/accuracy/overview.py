@@ -1,4 +1,4 @@
-"""One line an exercise: what it keeps of its digits, at what cost, and what vouches for that."""
+"""Overview: for each exercise the digits kept, their cost, and the check of the reference."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _RIGHT = 2e-15  #: relative: right to the last digits
 
 @dataclass(frozen=True)
 class Line:
-    """What is measured of one exercise; errors in the parts that :class:`~coursework.accuracy.measuring.Row` says.
+    """Results of one exercise; errors are relative as in :class:`~coursework.accuracy.measuring.Row`.
 
     ``lack`` of the equation that vouches for the reference, in parts of its terms; None where none is stated. At the hard
     places two errors: the solver's and the textbook formula's;
@@ -61,7 +61,7 @@ class Line:
 
 
 def overview(exercise: CourseExercise, *, quick: bool = False) -> Line | None:
-    """Return the line of an exercise; None where it asks for no number.
+    """Return the results of an exercise; None where it asks for no number.
 
     Raises
     ------
@@ -144,8 +144,8 @@ class _Survey:
         }
 
     def _is_same_case(self, name: str, solver: dict[str, Any], reference: dict[str, list[Any]]) -> bool:
-        """Return whether the formula is of the case that the solver finds: so far off, at the farthest place,
-        no rounding is."""
+        """Return whether the formula computes the same case as the solver: at the farthest place, rounding
+        cannot explain a difference."""
         first = {name: reference[name][:1]}
         error, failed, count = compare(
             self.subject,
@@ -158,8 +158,8 @@ class _Survey:
     def _beyond(
         self, places: Places, reference: dict[str, list[Any]], names: Sequence[str], solver: dict[str, Any]
     ) -> float:
-        """Return the largest of the solver's errors, each in eight times what is unavoidable where it is
-        made."""
+        """Return the largest error of the solver, relative to eight times the unavoidable error at the same
+        place."""
         worst = 0.0
         for i, place in enumerate(one_by_one(places)):
             doubtful = {}
@@ -196,7 +196,7 @@ class _Survey:
 
 
 def _entry(values: Any, i: int) -> Any:
-    """Return one entry of an answer, as an array of one."""
+    """Return one entry of an answer, as an array of length one."""
     import numpy as np
 
     if values is None:

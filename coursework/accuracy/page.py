@@ -1,4 +1,4 @@
-"""The measurements as a page: charts, tables, and what they say in plain words."""
+"""Report of the measurements: charts, tables, and conclusions in words."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MOTION_LIMITS = (1e-3, 1e-6)
 
 
 def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
-    """Return a section an exercise and kind of quantity, in the order of the rows."""
+    """Return the report, a section for each exercise and kind of quantity, in the order of the rows."""
     said = words(lang)["accuracy"]
     sections = []
     kinds = {POSITION: "positions", RATE: "rates", ACCELERATION: "accelerations", OTHER: "others"}
@@ -48,7 +48,7 @@ def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
 
 
 def no_charts(said: Words) -> str:
-    """What is said where charts cannot be drawn."""
+    """Return the note for a report without charts."""
     return f" {said['no_charts']}" if lacking() else ""
 
 
@@ -141,7 +141,7 @@ def _read_motion(rows: Sequence[Row], where: str, said: Words) -> list[str]:
 
 
 def _data(subject: Subject, said: Words, lang: str) -> str:
-    """Return the data of both kinds of places."""
+    """Return the description of the generic and of the hard places."""
     lines = [said["generic_variants"]]
     if subject.driver:
         shown = {n: v for n, v in subject.base.items() if n != subject.driver}
@@ -166,7 +166,7 @@ def _value(subject: Subject, name: str, value: Any, lang: str) -> str:
 
 
 def told_place(subject: Subject, place: HardPlace, said: Words, lang: str) -> str:
-    """Return a hard place in words: what comes near what, and what vanishes there."""
+    """Describe a hard place in words: which quantities come near each other, and what vanishes there."""
     unit = subject.exercise.units.get(place.moved, "1")
     tuned = ""
     if place.tuned:
@@ -260,7 +260,7 @@ def _read_rates(rows: Rows, said: Words) -> list[str]:
 
 
 def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[list[float], list[float]]]:
-    """Return the points by family, those of one family joined."""
+    """Return the points by family; points of one family are joined."""
     found: dict[str, tuple[list[float], list[float]]] = {}
     for row in rows:
         name = said["series"].get(row.family) or _method(row, said)
@@ -273,7 +273,7 @@ def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[li
 def charts_of(
     points: Mapping[str, Any], heading: str, horizontal: str, said: Words, *, digits: bool = False
 ) -> tuple[Chart, ...]:
-    """Return the chart, where charts can be drawn."""
+    """Return the chart; none where charts cannot be drawn."""
     if lacking():
         return ()
     svg = scatter(points, heading, horizontal, said["error"], whole=digits).decode("utf-8")
@@ -281,7 +281,7 @@ def charts_of(
 
 
 def _table(rows: Rows, said: Words) -> Table:
-    """Return a line a method, both kinds of places side by side."""
+    """Return the table of the methods, with both kinds of places side by side."""
     by_method: dict[str, dict[str, Row]] = {}
     for row in rows.rows:
         by_method.setdefault(row.method, {})[row.place] = row
@@ -305,7 +305,7 @@ def _table(rows: Rows, said: Words) -> Table:
 
 
 def _spread(row: Row) -> str:
-    """From quartile to quartile, in parts of the median."""
+    """Return the interquartile range in percent of the median."""
     return f"{number(100 * (row.high - row.low) / row.median)}\N{NO-BREAK SPACE}%"
 
 
@@ -346,7 +346,7 @@ def _method(row: Row, said: Words) -> str:
 
 
 def _setting(value: float) -> str:
-    """Return a setting as plain text, in charts too: powers of ten by their exponent."""
+    """Format a setting as plain text, in charts too; powers of ten by their exponent."""
     if value >= 1:
         return f"{value:g}"
     exponent = round(-math.log10(value))
@@ -354,7 +354,7 @@ def _setting(value: float) -> str:
 
 
 def number(value: float, unit: str = "1", lang: str = "en", digits: int = 2) -> str:
-    """Return a figure of these pages as inline Markdown."""
+    """Format a number of these pages as inline Markdown."""
     shown = unit_text(unit, lang)
     space = "" if shown in ("", "°") else "\N{NO-BREAK SPACE}"
     if 10 <= value < 1e4 and digits == 2:

@@ -1,4 +1,4 @@
-"""The overview of a course, and the page on accuracy on paper."""
+"""Overview of a course, and report on accuracy on paper."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ _HALF = 8
 
 
 def overview_report(course: Course, lines: Sequence[Line], without: Sequence[str], lang: str) -> Report:
-    """Return a row an exercise: digits, times, where it is hardest, what vouches for the reference."""
+    """Return the overview, a row for each exercise: digits, times, the hardest place, the check of the
+    reference."""
     said = words(lang)["accuracy"]
     told = said["overview"]
     right = [line for line in lines if not line.wrong and line.quantities]
@@ -85,7 +86,7 @@ def _digits_table(course: Course, lines: Sequence[Line], told: Words, lang: str)
 
 
 def _digits(error: float | None) -> int:
-    """How many digits are right, of sixteen."""
+    """Return the number of correct digits, at most sixteen."""
     if error is None:
         return _MOST_DIGITS
     return max(0, min(_MOST_DIGITS, math.floor(-math.log10(error)))) if error > 0 else _MOST_DIGITS
@@ -137,7 +138,7 @@ def _vouched_table(course: Course, lines: Sequence[Line], told: Words, lang: str
 
 
 def paper_report(course: Course, rows: Sequence[PaperRow], variants: int, lang: str) -> Report:
-    """Why so many digits, why this margin: one page to show a colleague."""
+    """Return the one-page report that justifies the number of digits and the margin."""
     said = words(lang)["accuracy"]
     told = said["paper"]
     digits = course.folder.rules.digits
@@ -213,8 +214,8 @@ def _paper_line(first: str, row: PaperRow, told: Words) -> tuple[str, ...]:
 
 
 def _by_exercise(course: Course, rows: Sequence[PaperRow], digits: int, told: Words, lang: str) -> Table:
-    """Return a line an exercise: wronged by a plain margin at each number of digits, then what the course's
-    margin does."""
+    """Return a row for each exercise: errors of a plain margin at each number of digits, then of the course's
+    margin."""
     kept = [d for d in dict.fromkeys(row.digits for row in rows) if d != PLAIN]
     heads = (
         told["exercise"],

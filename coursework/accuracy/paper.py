@@ -1,4 +1,4 @@
-"""The other accuracy: digits that a student keeps on paper, and the margin that goes with them.
+"""Accuracy on paper: the digits that a student keeps, and the margin for them.
 
 The same simulated students as in ``coursework check``: who does everything right and rounds each step; who makes a named
 mistake; who hands in the neighbour's variant. Against them stand a plain margin, and one that is widened to what
@@ -28,7 +28,7 @@ _NEIGHBOURS = (1, 2, 3)
 
 @dataclass(frozen=True)
 class Share:
-    """So many of so many answers."""
+    """Part of a number of answers."""
 
     of: int = 0
     found: int = 0
@@ -43,10 +43,10 @@ class Share:
 
 @dataclass(frozen=True)
 class PaperRow:
-    """One exercise, or all, at one number of digits; ``PLAIN`` for the margin that is not widened.
+    """Row of an exercise, or of all, at one number of digits; ``PLAIN`` for the margin without widening.
 
-    Of right answers, rounded at each step to so many digits: how many a plain margin calls wrong, and how many the
-    course's own. Of wrong ones: how many a margin for so many digits lets pass.
+    For right answers, rounded at each step to this number of digits: how many a plain margin marks wrong, and
+    how many the course's own. For wrong answers: how many a margin for this number of digits accepts.
     """
 
     exercise: str
@@ -61,7 +61,7 @@ class PaperRow:
 
 
 def on_paper(exercise: CourseExercise, variants: int, digits: Sequence[int] = DIGITS) -> list[PaperRow]:
-    """Return the rows of one exercise: the plain margin first; none where it asks for no number."""
+    """Return the rows of one exercise, the plain margin first; none where it asks for no number."""
     parts = [p for p in exercise.spec.parts if p.kind in ("number", "angle") and p.has_margin]
     parts = [p for p in parts if p.quantity in numbers_of(exercise)]
     if not parts:
@@ -71,7 +71,7 @@ def on_paper(exercise: CourseExercise, variants: int, digits: Sequence[int] = DI
 
 
 class _Room:
-    """The students of one exercise, each with a variant of their own."""
+    """Simulated students of one exercise, each with a variant."""
 
     def __init__(self, exercise: CourseExercise, parts: Sequence[Part], variants: int) -> None:
         self.exercise, self.parts, self.count = exercise, parts, variants
@@ -91,7 +91,7 @@ class _Room:
         return {n: np.broadcast_to(np.asarray(v, dtype=float), (self.count,)) for n, v in found.items()}
 
     def _mistaken(self) -> list[dict[str, np.ndarray]]:
-        """Return the answers of who makes each named mistake, and goes on rightly."""
+        """Return the answers of students who make each named mistake and continue correctly."""
         found = []
         for name in self.exercise.solution.mistakes:
             try:
@@ -120,7 +120,7 @@ class _Room:
         return found
 
     def _passed(self, answers: Mapping[str, np.ndarray], margin: int) -> Share:
-        """Of answers that are wrong and show it, those that are accepted."""
+        """Return the share of accepted answers among those that are visibly wrong."""
         found = Share()
         for part in self.parts:
             right, own = self.right[part.quantity], answers[part.quantity]
@@ -144,7 +144,7 @@ class _Room:
         return part.sort.accepted(answers, right, half)
 
     def _widths(self, digits: int) -> dict[str, np.ndarray]:
-        """What rounding to so many digits on the way can do."""
+        """Return the possible effect of rounding to ``digits`` digits at each step."""
         if digits not in self._kept_widths:
             found = envelopes(self.exercise, self.wanted, self.given, self.effects, digits)
             finite = {n: np.where(np.isfinite(v), v, 0.0) for n, v in self._whole(found).items()}
@@ -157,7 +157,7 @@ class _Room:
 
 
 def total(rows: Sequence[PaperRow]) -> list[PaperRow]:
-    """Return all exercises together, a row a number of digits."""
+    """Return the sums over all exercises, one row for each number of digits."""
     found = {}
     for digits in dict.fromkeys(row.digits for row in rows):
         own = [row for row in rows if row.digits == digits]

@@ -1,4 +1,4 @@
-"""Values in many digits that something else vouches for.
+"""Reference values in many digits, checked against independent equations.
 
 The textbook formulas of a solution are computed in a hundred digits, of which they may lose some and be exact still. That a
 formula is *right* no number of digits says. So what comes out is put into the equations that the solution states
@@ -32,8 +32,8 @@ _FAILURES = (CourseworkError, NotFollowed, TypeError, ValueError, ArithmeticErro
 
 @dataclass(frozen=True)
 class Closing:
-    """How well values close the equations that are stated besides: the largest lack, and of which equation; where some
-    do not close, of the first of these."""
+    """Largest residual of values in independently stated equations, with the name of the equation; the first
+    of those that do not close."""
 
     lack: float
     equation: str
@@ -46,7 +46,7 @@ class Closing:
 
 
 class Reference:
-    """The quantities of an exercise in many digits, one place at a time.
+    """Quantities of an exercise in many digits, one place at a time.
 
     ``lacking`` are those of the wanted whose formulas cannot be followed.
     """
@@ -69,7 +69,7 @@ class Reference:
     # ------------------------------------------------------------------- values
 
     def at(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the wanted quantities as numbers of mpmath; None for one that does not exist there."""
+        """Return the quantities as mpmath numbers; None for one that does not exist there."""
         try:
             values = self.numbers(given, self.wanted)
         except _FAILURES:  # of what is pinned
@@ -77,7 +77,7 @@ class Reference:
         return {n: self._number(values.get(n)) for n in self.wanted}
 
     def numbers(self, given: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
-        """Return the quantities by name, followed numbers; what does not exist is left out."""
+        """Return the quantities by name as followed numbers; those that do not exist are left out."""
         start = self._start(given)
         try:
             return self.graph.evaluate(names, start, self.effects)
@@ -117,7 +117,8 @@ class Reference:
     # ---------------------------------------------------------------- what lacks
 
     def _find_out(self) -> None:
-        """Which quantities are pinned to what floats give, being steps that no small change moves, and which lack."""
+        """Find the quantities pinned to their float values, being step functions, and those that cannot be
+        followed."""
         given = {**self.exercise.intake.defaults, **self.exercise.variant(0).given}
         known = {n: v for n, v in given.items() if n in self.exercise.quantity_names}
         values: dict[str, Any] = {n: self._followed(v) for n, v in known.items()}
@@ -144,7 +145,7 @@ class Reference:
         self.lacking = tuple(n for n in self.asked if n in lacking)
 
     def _is_step(self, name: str, known: Mapping[str, Any]) -> bool:
-        """Return whether no small change of a datum moves a quantity."""
+        """Return whether no small change of a datum changes a quantity."""
         graph = self.exercise.solution.graph
         try:
             own = graph.evaluate((name,), known, self.effects)[name]
@@ -160,8 +161,8 @@ class Reference:
     # ------------------------------------------------------------------ closing
 
     def closing(self, places: Iterable[Mapping[str, Any]]) -> Closing | None:
-        """How well the values close the loops, their derivatives and ``residual`` at some places; None where the solution
-        states no equation that can be followed."""
+        """Return the residual of the values in the loops, their derivatives and ``residual`` at some places;
+        None where the solution states no equation that can be followed."""
         lacks: dict[str, float] = {}
         for given in places:
             for name, lack in self.lacks(given).items():
@@ -178,7 +179,7 @@ class Reference:
         return Closing(worst, equation.removesuffix(_DOUBLES), self.held, in_doubles)
 
     def lacks(self, given: Mapping[str, Any]) -> dict[str, float]:
-        """What each stated equation lacks to close, in parts of its terms."""
+        """Return the residual of each stated equation, relative to its terms."""
         found = {}
         for name, loop in self.exercise.solution.loops.items():
             for order in range(loop.known + 1):
@@ -242,7 +243,7 @@ class Reference:
         return lacks
 
     def _residual_in_doubles(self, given: Mapping[str, Any]) -> Any:
-        """Of the values rounded to doubles: where an equation makes plain arrays of them."""
+        """Return ``residual`` of the values rounded to doubles, for equations that require plain arrays."""
         known = {**self.exercise.intake.defaults, **given}
         known = {n: v for n, v in known.items() if n in self.exercise.quantity_names}
         rounded = {n: float(v) for n, v in self.at(given).items() if v is not None}
@@ -259,7 +260,7 @@ class Reference:
 
     @cached_property
     def held(self) -> frozenset[str]:
-        """The quantities that some stated equation holds."""
+        """Quantities that occur in some stated equation."""
         names = {n for loop in self.exercise.solution.loops.values() for n in loop.names}
         names |= {
             r for loop in self.exercise.solution.loops.values() for pair in loop.rates.values() for r in pair
@@ -270,5 +271,5 @@ class Reference:
 
 
 def twinned(graph: Graph) -> Graph:
-    """Return the same graph with the core's functions replaced by their twins."""
+    """Return the graph with the core's functions replaced by their twins."""
     return graph.mapped(Twinned())

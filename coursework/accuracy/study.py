@@ -1,4 +1,4 @@
-"""What a solution states of the measurement of accuracy against time, where it does not follow."""
+"""Settings that a solution may state for the measurement of accuracy against time."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion in time that is integrated at several tolerances.
+    """Motion in time, integrated at several tolerances.
 
     The effects are ``inertia``, under a constant effort of the driver, and where ``friction`` is given a second motion
     with that. Without friction the speed follows from the energy at every angle, and the time from an integral, so that
@@ -23,7 +23,8 @@ class Motion:
 
 @dataclass(frozen=True)
 class Study:
-    """What does not follow from the exercise: values of the generic mechanism, and a motion in time.
+    """Settings of a measurement that do not follow from the exercise: values of the generic mechanism, and a
+    motion in time.
 
     Attributes
     ----------

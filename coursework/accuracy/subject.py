@@ -1,4 +1,4 @@
-"""What is measured of an exercise: all that follows from it and from its solution.
+"""Subject of a measurement: everything that follows from an exercise and its solution.
 
 Which quantities are positions, rates, accelerations follows from the loops and their derivatives, else from units; the
 generic mechanism is the exercise's first variant, its driver turned through a whole turn, or where nothing is driven the
@@ -30,8 +30,7 @@ Places = dict[str, Any]  #: given values: arrays of one shape, texts
 
 
 def numbers_of(exercise: CourseExercise) -> tuple[str, ...]:
-    """Return the asked quantities that are numbers with digits; none of an exercise whose solution is not
-    written yet.
+    """Return the requested quantities that are numbers with digits; none without a solution.
 
     Raises
     ------
@@ -49,7 +48,7 @@ def numbers_of(exercise: CourseExercise) -> tuple[str, ...]:
 
 
 def study_of(exercise: CourseExercise) -> Study:
-    """What the exercise's solution adds; nothing unless it states ``ACCURACY``."""
+    """Return the solution's ``ACCURACY``; an empty study without one."""
     stated = getattr(exercise.folder.module("solutions", exercise.name), "ACCURACY", None)
     if stated is not None and not isinstance(stated, Study):
         raise BadCourse(f"{exercise.solution.source}: ACCURACY is a Study(…); found {str(stated)[:60]}")
@@ -57,7 +56,7 @@ def study_of(exercise: CourseExercise) -> Study:
 
 
 class Subject:
-    """One exercise, to be computed in many ways."""
+    """Exercise to be computed in many ways."""
 
     def __init__(self, exercise: CourseExercise) -> None:
         self.exercise = exercise
@@ -73,7 +72,7 @@ class Subject:
 
     @cached_property
     def wanted(self) -> tuple[str, ...]:
-        """All that is computed: what is asked, and what the loops find, with its rates."""
+        """All computed quantities: the requested ones, and the unknowns of the loops with their rates."""
         return tuple(dict.fromkeys((*self.numbers, *self.unknowns, *self.rate_of.values())))
 
     @cached_property
@@ -82,7 +81,7 @@ class Subject:
 
     @property
     def unknowns(self) -> tuple[str, ...]:
-        """What the loops find; nothing where they do not fix it."""
+        """Unknowns of the loops; none where the loops do not determine them."""
         return self._terrain.unknowns if self._terrain.closure is not None and self.driver else ()
 
     @property
@@ -91,13 +90,13 @@ class Subject:
 
     @cached_property
     def rate_of(self) -> dict[str, str]:
-        """The rates of what the loops find, by its names."""
+        """Rates of the loops' unknowns, by the unknown."""
         loops = self.exercise.solution.loops.values()
         rates = {n: pair[0] for loop in loops for n, pair in loop.rates.items() if pair[0]}
         return {n: rates[n] for n in self.unknowns} if all(n in rates for n in self.unknowns) else {}
 
     def quantities(self, what: str) -> tuple[str, ...]:
-        """Return the quantities of one sort, as far as there are right values of them."""
+        """Return the quantities of one kind that have a reference."""
         if what == POSITION and self.unknowns:
             chosen = self.unknowns
         elif what == RATE and self.rate_of:
@@ -115,7 +114,7 @@ class Subject:
 
     @cached_property
     def driver(self) -> str:
-        """The given angle that moves the mechanism; none where nothing given does."""
+        """Given angle that moves the mechanism; empty where there is none."""
         driver = self.exercise.spec.driver
         given = self.exercise.spec.given
         return driver.angle if driver is not None and driver.poses is None and driver.angle in given else ""
@@ -127,7 +126,7 @@ class Subject:
 
     @cached_property
     def base(self) -> dict[str, Any]:
-        """The generic mechanism."""
+        """Given values of the generic mechanism."""
         known = {**self.exercise.intake.defaults, **self.exercise.variant(0).given, **self.study.given}
         return {
             n: v if isinstance(v, str) else float(v)
@@ -136,7 +135,7 @@ class Subject:
         }
 
     def generic(self, count: int) -> Places:
-        """So many generic places."""
+        """Return ``count`` generic places."""
         if self.driver:
             turned = np.random.default_rng(1).uniform(-180.0, 180.0, count)
             return {**self.base, self.driver: turned}
@@ -150,13 +149,13 @@ class Subject:
 
 
 def one_by_one(places: Places) -> list[dict[str, Any]]:
-    """Return each place by itself."""
+    """Split arrays of places into single places."""
     count = max((np.size(v) for v in places.values() if np.ndim(v)), default=1)
     return [{n: (v if np.ndim(v) == 0 else v[i]) for n, v in places.items()} for i in range(count)]
 
 
 def together(rows: list[dict[str, Any]]) -> Places:
-    """Return many places as arrays; what is a text in all of them stays one where it is the same."""
+    """Join places into arrays; a text stays single where it is the same in all."""
     found: Places = {}
     for name, first in rows[0].items():
         values = [row[name] for row in rows]

@@ -1,4 +1,4 @@
-"""The way to every hard place of an exercise, and how far the solver's answers lie off there."""
+"""Approach to every hard place of an exercise, with the errors of the solver on it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ASIDE = (0.0, 1e-7, 1e-9)  #: off what is tuned, in parts of its value
 
 @dataclass(frozen=True)
 class Miss:
-    """An answer that is farther off than eight times what the last digits of the data explain, or that lacks."""
+    """Answer with an error beyond eight times that of the data's last digits, or a missing answer."""
 
     quantity: str
     given: Mapping[str, Any]
@@ -45,7 +45,8 @@ class Miss:
 def misses(
     exercise: CourseExercise, wanted: Sequence[str], *, distances: Sequence[float] = DISTANCES, most: int = 8
 ) -> Iterator[Miss]:
-    """Where the solver's answers are worse than their conditioning, on the way to each hard place."""
+    """Yield the answers of the solver that are worse than their conditioning, on the approach to each hard
+    place."""
     reference = Reference(exercise, wanted)
     for place in hard_places(exercise, reference.wanted, most):
         for aside in ASIDE if place.tuned else ASIDE[:1]:
@@ -54,7 +55,7 @@ def misses(
 
 
 def _after_turns(reference: Reference) -> Iterator[Miss]:
-    """Yield the after whole turns of an angle, a place is what it was."""
+    """Yield the answers that change after whole turns of an angle."""
     terrain = Terrain(reference.exercise, reference.wanted)
     base = terrain.bases[0]
     for name in terrain.angles:
@@ -76,7 +77,8 @@ def _on_the_way(
 def _along(
     reference: Reference, place: HardPlace, aside: float, way: Sequence[tuple[float, Mapping[str, Any]]]
 ) -> Iterator[Miss]:
-    """From far to near on one side: what the solver answers somewhere on the way it must answer all the way."""
+    """Yield the misses from far to near on one side; a quantity that has an answer somewhere must have one
+    everywhere."""
     found = solved(reference, [given for _, given in way])
     answers = {n for n, values in found.items() if np.isfinite(values).any()}
     other: set[str] = set()
@@ -104,9 +106,11 @@ def _along(
 
 
 def _is_judged(reference: Reference, name: str, given: Mapping[str, Any], distance: float) -> bool:
-    """Return whether the solver says in words that the quantity does not exist there, or whether a last bit
-    decides it: so near to the place, an answer that exists when it is asked for alone may be just out of
-    reach when it is asked for with others."""
+    """Return whether the solver rejects the quantity there with a message, or a last bit decides.
+
+    Near the place, an answer that exists when requested alone may be just out of reach when requested with
+    others.
+    """
     known = reference.exercise.intake.values(given)
     try:
         alone = reference.exercise.solution.graph.evaluate((name,), known, reference.effects)[name]
@@ -120,7 +124,7 @@ def _largest(right: Any) -> float:
 
 
 def _has_lengths(reference: Reference, given: Mapping[str, Any]) -> bool:
-    """Return whether no given quantity that must be positive is not."""
+    """Return whether all given quantities that must be positive are."""
     specs = reference.exercise.spec.given
     return all(given[n] > 0 for n, s in specs.items() if s.positive and n in given)
 

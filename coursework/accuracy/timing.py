@@ -1,4 +1,4 @@
-"""How long calls take: rounds in which every call has its turn, so that a busy machine is busy for all of them."""
+"""Timing of calls in alternating rounds, so that other load affects all of them alike."""
 
 from __future__ import annotations
 
@@ -37,14 +37,13 @@ class Times:
 
 
 def is_busy(times: Iterable[Any]) -> bool:
-    """Return whether so many times spread widely that the machine had other work, and no time can be
-    compared."""
+    """Return whether the times spread so widely that other load makes them incomparable."""
     spreads = [(t.high - t.low) / t.median for t in times if t.median]
     return bool(spreads) and sum(spread > WIDE for spread in spreads) >= MANY * len(spreads)
 
 
 def overlap(a: Any, b: Any) -> bool:
-    """Return whether two times cannot be told apart: their quartiles overlap, or they are nearly the same."""
+    """Return whether two times are indistinguishable: their quartiles overlap, or they are nearly equal."""
     fast, slow = sorted((a, b), key=lambda t: t.median)
     return slow.low <= fast.high or slow.median < ALIKE * fast.median
 
@@ -52,7 +51,7 @@ def overlap(a: Any, b: Any) -> bool:
 def interleaved(
     calls: Sequence[Callable[[], Any]], at_least: float, budget: float = math.inf, rounds: int = _ROUNDS
 ) -> list[Times]:
-    """Return the times of some calls, each repeated within a round for ``at_least`` so many seconds.
+    """Time some calls, each repeated within a round for at least ``at_least`` seconds.
 
     Every call has at least three rounds; one that takes longer than ``budget`` in all has no more than these.
     """

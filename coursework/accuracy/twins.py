@@ -1,8 +1,9 @@
-"""The numeric core as a textbook has it: what formulas that call the core are computed by in many digits.
+"""Textbook versions of the numeric core, for references in many digits.
 
-A solution may call the core in a formula itself, for a triangle's side or a linkage's pose. The core computes with
-floats alone, and by ways that this room is to judge; so in a reference its functions are replaced by these *twins*: the
-law of cosines, two circles that meet, nothing that is clever. They take floats, arrays and followed numbers.
+A solution may call the core in a formula, for a triangle's side or a linkage's pose. The core computes with
+floats alone, by the methods that this package judges; a reference therefore replaces its functions by these
+*twins*: the law of cosines, the intersection of two circles, nothing refined. They take floats, arrays and
+followed numbers.
 """
 
 from __future__ import annotations
@@ -19,8 +20,7 @@ from coursework.kinematics.dyads import side_of
 
 
 def _degrees_of(angle: Any) -> Any:
-    """Return a heading in degrees; the start of what lies between two directions is exact in many digits
-    anyway."""
+    """Return a heading in degrees."""
     if not isinstance(angle, Degrees):
         raise TypeError("a twin takes angles in degrees")
     return angle.angle
@@ -39,7 +39,7 @@ def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
 
 
 class FourBar:
-    """Angles and rates of a four-bar by the two circles on which B lies."""
+    """Angles and rates of a four-bar by the intersection of two circles."""
 
     def __init__(self, ground: Any, crank: Any, coupler: Any, rocker: Any, mode: Any = "open") -> None:
         self.lengths = ground, crank, coupler, rocker
@@ -57,7 +57,7 @@ class FourBar:
 
 
 class _Pose:
-    """The vectors of a four-bar at one crank angle; rates by their projections."""
+    """Vectors of a four-bar at one crank angle; rates by their projections."""
 
     def __init__(self, crank: Any, coupler: Any, rocker: Any) -> None:
         self._crank, self._coupler, self._rocker = crank, coupler, rocker
@@ -92,7 +92,7 @@ _TWINS: dict[str, Any] = {f.__name__: f for f in (third_side, corner, corner_bes
 
 
 class Twinned:
-    """The functions of a course with the core's functions replaced by their twins."""
+    """Functions of a course with the core's functions replaced by their twins."""
 
     def __init__(self) -> None:
         self._spaces: dict[int, dict[str, Any]] = {}

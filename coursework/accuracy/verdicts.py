@@ -1,4 +1,4 @@
-"""What the figures say in words: sentences that stay the same when the figures are measured again.
+"""Conclusions of a measurement in words, stable under repeated measurement.
 
 No time stands in a sentence, and none is called shorter than another unless the quartiles are apart and their ratio is
 plain. Errors are the same in every run, and may be told.
@@ -20,7 +20,7 @@ Words = Mapping[str, Any]
 
 
 def cheapest(rows: Iterable[Row]) -> list[Row]:
-    """Return the rows whose times cannot be told from the shortest, shortest first."""
+    """Return the rows whose times are indistinguishable from the shortest, shortest first."""
     by_time = sorted(rows, key=lambda row: row.median)
     return [row for row in by_time if overlap(by_time[0], row)]
 
@@ -36,7 +36,7 @@ class Rows:
         return sorted(found, key=lambda r: (r.setting is not None, r.setting))
 
     def answered(self, family: str, place: str = GENERIC) -> list[Row]:
-        """Return those that have an answer somewhere, and so an error."""
+        """Return the rows with an answer somewhere, and so an error."""
         return [r for r in self.of(family, place) if r.max_error is not None]
 
     def one(self, family: str, place: str = GENERIC) -> Row | None:
@@ -44,8 +44,8 @@ class Rows:
         return found[0] if found else None
 
     def within(self, limit: float, places: Sequence[str]) -> list[Row]:
-        """Return the generic rows of the ways that keep below a limit at all of these places; references left
-        out."""
+        """Return the generic rows of the ways that stay below a limit at all of these places, without
+        references."""
         found = []
         for row in self.rows:
             if row.place != places[0] or row.family in _REFERENCES:
@@ -58,17 +58,18 @@ class Rows:
 
     @property
     def is_busy(self) -> bool:
-        """True if the machine had other work while these were timed."""
+        """True if other load disturbed the times."""
         return is_busy(row for row in self.rows if row.place != HARD and row.family not in _REFERENCES)
 
     @property
     def places(self) -> tuple[str, ...]:
-        """Generic places, and hard ones where there are such."""
+        """Generic places, and hard ones where there are any."""
         return (GENERIC, HARD) if any(r.place == HARD for r in self.rows) else (GENERIC,)
 
 
 def enough(rows: Rows, said: Words, name: Any, number: Any) -> list[str]:
-    """For some errors the cheapest ways that keep below them everywhere; limits of one answer together."""
+    """Return for some errors the cheapest ways that stay below them everywhere; limits with one answer are
+    joined."""
     told: dict[tuple[str, str], list[float]] = {}
     for limit in LIMITS:
         for key, methods in _answers(rows, said, name, limit):
@@ -81,7 +82,7 @@ def enough(rows: Rows, said: Words, name: Any, number: Any) -> list[str]:
 
 
 def _answers(rows: Rows, said: Words, name: Any, limit: float) -> list[tuple[str, str]]:
-    """What is to be said of one limit: the sentence, and the methods that it names."""
+    """Return the sentences for one limit: each one's key, and the methods that it names."""
     best = cheapest(rows.within(limit, rows.places))
     if best and rows.is_busy:
         return [("busy", "")]
@@ -95,14 +96,14 @@ def _answers(rows: Rows, said: Words, name: Any, limit: float) -> list[tuple[str
 
 
 def _cheaper_at_generic_places(rows: Rows, limit: float, best: Sequence[Row]) -> list[Row]:
-    """Return the ways that would do at generic places alone, clearly cheaper than the best that do
+    """Return the ways that suffice at generic places and are clearly cheaper than the best that suffice
     everywhere."""
     generic = cheapest(rows.within(limit, (GENERIC,)))
     return [] if {row.method for row in best} & {row.method for row in generic} else generic
 
 
 def listed(rows: Sequence[Row], said: Words, name: Any) -> str:
-    """Return the methods by name: in an order of their own, since their times are no order."""
+    """Return the names of the methods in alphabetical order, since their times give no order."""
     return _and(sorted(f"*{name(row)}*" for row in rows), said)
 
 
@@ -111,15 +112,15 @@ def _and(words: Sequence[str], said: Words) -> str:
 
 
 def paid_after(row: Row, stable: Row | None) -> float | None:
-    """How many uses pay for the making of a table; None where it is not clearly cheaper than the solver."""
+    """Return the number of uses after which a table pays off; None where it is not clearly cheaper than the
+    solver."""
     if row.build_ns is None or stable is None or overlap(row, stable) or row.median > stable.median:
         return None
     return row.build_ns / (stable.median - row.median)
 
 
 def halves(rows: Sequence[Row]) -> bool:
-    """Return whether each step of Newton's method halves the error and no more, as it does where two
-    solutions meet."""
+    """Return whether each step of Newton's method only halves the error, as it does where two solutions meet."""
     return len(rows) > 1 and all(
         a.max_error and b.max_error and 0.3 < b.max_error / a.max_error < 0.7 for a, b in pairwise(rows)
     )

@@ -1,4 +1,4 @@
-"""The ways to compute the quantities of an exercise: each a function of places, to be timed and compared.
+"""Ways to compute the quantities of an exercise: functions of places, to be timed and compared.
 
 A way takes the given values of many places as arrays, and gives an array a quantity, in canonical units; NaN where it
 has no answer. Some need a mechanism that is fixed but for its driver: a table over the turn, a start from which
@@ -32,7 +32,7 @@ Values = dict[str, Any]
 
 @dataclass(frozen=True)
 class Way:
-    """One way: ``family`` and ``setting`` name it. ``build`` is how many seconds it took to make, before any use."""
+    """Way to compute: ``family`` and ``setting`` name it. ``build`` is the preparation time in seconds."""
 
     what: str
     family: str
@@ -47,8 +47,8 @@ class Way:
 
 
 def ways(subject: Subject, what: str, fixed: Mapping[str, Any] | None) -> Iterator[Way]:
-    """Yield every way to the quantities of one sort; those that need a ``fixed`` mechanism, without its
-    driver's angle, only where there is one."""
+    """Yield every way to the quantities of one kind; some only with a ``fixed`` mechanism, without its
+    driver's angle."""
     bench = _Bench(subject, what)
     if what == POSITION:
         yield bench.in_precision("single", np.float32)
@@ -64,7 +64,7 @@ def ways(subject: Subject, what: str, fixed: Mapping[str, Any] | None) -> Iterat
 
 
 class _Bench:
-    """The formulas of one sort of quantity, in several precisions."""
+    """Formulas of one kind of quantity, in several precisions."""
 
     def __init__(self, subject: Subject, what: str) -> None:
         self.subject, self.what, self.wanted = subject, what, subject.quantities(what)
@@ -122,7 +122,7 @@ def _moved(subject: Subject, what: str, fixed: Mapping[str, Any]) -> Iterator[Wa
 
 
 class _Turning:
-    """A mechanism that is fixed but for its driver's angle."""
+    """Mechanism that is fixed but for its driver's angle."""
 
     def __init__(self, subject: Subject, fixed: Mapping[str, Any]) -> None:
         self.subject = subject
@@ -176,12 +176,12 @@ class _Turning:
 
     @property
     def _loops(self) -> Closure:
-        """What the ways that need loops close: there are none without."""
+        """Closure of the loops, which this way requires."""
         assert self.subject.closure is not None
         return self.subject.closure
 
     def _start(self, angle: np.ndarray) -> list[np.ndarray]:
-        """Return the unknowns at the nearest of the nodes: what somebody knows who moves in steps."""
+        """Return the unknowns at the nearest node, as in a stepwise motion."""
         nodes, found = self._nodes
         nearest = np.rint((angle - nodes[0]) / (360 / NODES)).astype(int) % NODES
         return [np.broadcast_to(found[name], nodes.shape)[nearest] for name in self.subject.unknowns]
@@ -192,7 +192,7 @@ class _Turning:
         return nodes, self._in_radians(self._solve(self.subject.unknowns, nodes))
 
     def _known(self, angle: Any) -> dict[str, Any]:
-        """What the loops need besides their unknowns, constants of the mechanism that are computed among it."""
+        """Return the known values of the loops, computed constants of the mechanism included."""
         names = {n for loop in self.subject.exercise.solution.loops.values() for n in loop.names}
         computed = names - set(self.subject.unknowns) - set(self.fixed) - {self.angle}
         known = {n: v for n, v in self.fixed.items() if isinstance(v, float)}
@@ -218,7 +218,7 @@ class _Turning:
         return compute
 
     def _one_by_one(self, solve: Callable[..., np.ndarray | None]) -> Callable[[Places], Values]:
-        """Return a library's solver, which takes one configuration at a time."""
+        """Return a way by a library's solver, which takes one configuration at a time."""
         closure = self._loops
 
         def compute(places: Places) -> Values:
@@ -261,7 +261,7 @@ class _Turning:
     # -------------------------------------------------------------------- rates
 
     def differences(self, step: float) -> Callable[[Places], Values]:
-        """Return the central differences of the stable positions."""
+        """Return the way by central differences of the stable positions."""
         width, rates = math.degrees(step), self.subject.rate_of
 
         def compute(places: Places) -> Values:
@@ -278,8 +278,7 @@ class _Turning:
         return compute
 
     def complex_step(self) -> Callable[[Places], Values]:
-        """Return the imaginary part of the closed loops at an imaginary step: a derivative without a
-        difference.
+        """Return the way by the complex step: the imaginary part of the closed loops at an imaginary step.
 
         The loops are closed at the angle itself, so that one step of Newton's method gives all of the first order; a
         second one would only bring in the rounding that the first one left.
@@ -301,5 +300,5 @@ class _Turning:
 
 
 def _nothing(angle: np.ndarray) -> np.ndarray:
-    """No table of what does not exist all turn."""
+    """Return NaN: there is no table of a quantity that does not exist all turn."""
     return np.full(np.shape(angle), np.nan)
