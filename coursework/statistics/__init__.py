@@ -1,1 +1,1 @@
-"""How a class did: measured from its marks, and told on a page."""
+"""Statistics of a class from its marks, and their report."""

@@ -1,4 +1,4 @@
-"""Answers that are not right on a student's own variant, and are right on another one: somebody's whole sheet handed in.
+"""Sheets whose wrong answers are right on another variant, a sign of copying.
 
 For the staff alone, and no proof: two students may have exchanged their papers.
 """
@@ -24,7 +24,7 @@ _NUMBER = re.compile(r"-?\d*\.?\d+(?:e[-+]?\d+)?")
 
 
 class Alike(NamedTuple):
-    """A sheet whose wrong answers are right on another variant."""
+    """Sheet whose wrong answers are right on another variant."""
 
     student: str
     exercise: str
@@ -48,7 +48,7 @@ class Alike(NamedTuple):
 
 
 def alike(folder: Path) -> list[Alike]:
-    """Return the sheets of a folder of marks of which most that is wrong is right on one other variant.
+    """Return the sheets of a folder of marks most of whose wrong answers are right on one other variant.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def alike(folder: Path) -> list[Alike]:
 
 
 def _measured(read_as: str) -> float | None:
-    """Return a number of three digits at least; fewer are alike by chance."""
+    """Return a number with at least three digits; None for fewer, which agree by chance."""
     found = _NUMBER.match(read_as)
     if found is None or len(re.sub(r"e.*|\D", "", found[0]).lstrip("0")) < 3:
         return None
@@ -96,7 +96,7 @@ def _likest(
     answers: list[tuple[str, float]],
     right: dict[tuple[str, str], tuple[np.ndarray, list[str]]],
 ) -> Iterator[tuple[str, int]]:
-    """Yield the other variant that most answers are right on, and how many."""
+    """Yield the other variant on which most answers are right, and their number."""
     counts: Counter[str] = Counter()
     for part, value in answers:
         values, seeds = right.get((exercise, part), (np.array([]), []))

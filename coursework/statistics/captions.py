@@ -1,4 +1,4 @@
-"""What a report calls questions and mistakes: as sheets and feedback do, and never by names of the code alone."""
+"""Captions of questions and mistakes in a report, as on sheets and in feedback."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _OPEN = re.compile(r"\{\w+\}")
 
 
 class Question(Protocol):
-    """A question by its exercise and its part."""
+    """Question by its exercise and its part."""
 
     @property
     def exercise(self) -> str: ...
@@ -31,7 +31,7 @@ class Question(Protocol):
 
 
 class Names:
-    """The names of one report. What the course does not know keeps the name that the marks give it."""
+    """Names of one report; a name unknown to the course stays as in the marks."""
 
     def __init__(self, course: Course, statistics: Statistics, lang: str) -> None:
         self._course = course
@@ -42,7 +42,7 @@ class Names:
         self._texts: dict[str, list[Mapping[str, Any]]] = {}
 
     def exercise(self, name: str) -> CourseExercise | None:
-        """Return the exercise of that name, where the course has it."""
+        """Return the exercise of that name; None where the course has none."""
         if name not in self._course:
             return None
         return self._course[name]
@@ -50,7 +50,7 @@ class Names:
     # --------------------------------------------------------------- questions
 
     def number(self, part: PartStatistics) -> int | None:
-        """Return the number of the question; None where it is not the same on every sheet, or cannot be told."""
+        """Return the number of the question; None where it differs between sheets or is unknown."""
         exercise = self.exercise(part.exercise)
         asked = [p for p in exercise.spec.parts if not p.by_request] if exercise else []
         ids = [p.id for p in asked]
@@ -61,21 +61,19 @@ class Names:
         return place + 1 if always.issuperset(ids[:place]) else None
 
     def _known(self, part: Question) -> tuple[CourseExercise | None, Part | None]:
-        """Return the exercise and the part, where the course has them."""
+        """Return the exercise and the part; None for one that the course does not have."""
         exercise = self.exercise(part.exercise)
         return exercise, None if exercise is None else exercise.spec.part(part.part)
 
     def symbol(self, part: PartStatistics) -> str:
-        """Return LaTeX of what the part asks; nothing where a symbol says nothing, or the course knows no
-        such part."""
+        """Return LaTeX of the requested quantity; empty where no symbol names it, or the part is unknown."""
         exercise, asked = self._known(part)
         if exercise is None or asked is None or not asked.sort.is_scalar:
             return ""
         return exercise.symbol(asked.quantity)
 
     def question(self, part: Question) -> str:
-        """Return the words of the question, shortened, as plain text; the part's own name where there are
-        none."""
+        """Return the words of the question, shortened, as plain text; the part's id where there are none."""
         exercise, asked = self._known(part)
         if exercise is None or asked is None or self._lang not in exercise.languages:
             return part.part
@@ -88,25 +86,26 @@ class Names:
     # ---------------------------------------------------------------- mistakes
 
     def says(self, one: MistakeStatistics) -> str:
-        """What students are told of a mistake or a slip, as plain text: an ellipsis where each has words of their own,
-        nothing where the course has none."""
+        """Return the message for a mistake or a slip, as plain text; words that vary become an ellipsis, and
+        an unknown message is empty."""
         if one.kind == "slip":
             return self._slip(one.name)
         told = [plain_line(text, self._lang) for text in self._told(one)]
         return _common(told) if told else ""
 
     def says_markdown(self, one: MistakeStatistics) -> str:
-        """Return the same with its formulas, where all are told the same; else nothing."""
+        """Return the message with its formulas, if it is the same for all; otherwise an empty text."""
         told = set(self._told(one))
         return " ".join(told.pop().split()) if len(told) == 1 else ""
 
     def mistake(self, one: MistakeStatistics, most: int = SHORT) -> str:
-        """Return the mistake in the first words of what is told; its own name where nothing is."""
+        """Return the first sentence of the message for a mistake, shortened; its own name where there is no
+        message."""
         first = re.split(r"(?<=[.?!])\s", self.says(one), maxsplit=1)[0]
         return shortened(first.removesuffix("."), most) or one.name
 
     def _told(self, one: MistakeStatistics) -> list[str]:
-        """Return the sentence of a mistake on two variants, Markdown."""
+        """Return the message for a mistake on two variants, Markdown."""
         if one.kind == "slip":
             return []
         if one.exercise not in self._texts:
@@ -131,7 +130,7 @@ class Names:
 
 
 def shortened(text: str, most: int = SHORT) -> str:
-    """Return the text up to the end of a word, with an ellipsis where that is not all."""
+    """Shorten a text at the end of a word, with an ellipsis."""
     if len(text) <= most:
         return text
     whole = text[:most].rpartition(" ")[0] or text[: most - 1]
@@ -139,8 +138,8 @@ def shortened(text: str, most: int = SHORT) -> str:
 
 
 def _common(texts: list[str]) -> str:
-    """Return the words that the texts share, an ellipsis for each that they do not; nothing where they differ
-    in more."""
+    """Return the words that the texts share, with an ellipsis for each that differs; empty where they differ
+    in length."""
     split = [text.split() for text in texts]
     if len({len(one) for one in split}) > 1:
         return ""

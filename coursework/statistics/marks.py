@@ -1,4 +1,4 @@
-"""The marks of a class as columns, read back from its tables."""
+"""Marks of a class as columns, read from its tables."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _SUMMARY = ("student", "unreadable", "out_of", "missing")
 
 @dataclass(frozen=True)
 class Marks:
-    """The lines of ``marks.csv`` as columns, each of shape (lines,), and what the other files add."""
+    """Lines of ``marks.csv`` as columns, each of shape (lines,), with the data of the other files."""
 
     students: tuple[str, ...]  #: those with a line, then those of the summary without
     parts: tuple[tuple[str, str], ...]  #: exercise and part
@@ -46,12 +46,12 @@ class Marks:
 
     @property
     def exercises(self) -> tuple[str, ...]:
-        """Names of the exercises, in the order they are met."""
+        """Names of the exercises, in order of appearance."""
         return tuple(dict.fromkeys(exercise for exercise, _ in self.parts))
 
 
 class _Numbered(dict):
-    """Texts to numbers, in the order they are met."""
+    """Numbering of texts in order of appearance."""
 
     def __missing__(self, key: Any) -> int:
         self[key] = number = len(self)
@@ -59,7 +59,8 @@ class _Numbered(dict):
 
 
 class _Decimals(dict):
-    """Texts to numbers that points may be, each read once; a comma is a point, as some spreadsheets save it."""
+    """Conversion of texts to points, each text read once; a decimal comma is accepted, as some spreadsheets
+    write it."""
 
     def __missing__(self, text: str) -> float:
         value = float(text.strip().replace(",", "."))
@@ -99,7 +100,7 @@ Line = tuple[str, str, str, str, float, float]  #: student, exercise, part, verd
 
 
 class Told(NamedTuple):
-    """What a summary says of a student."""
+    """Summary of a student."""
 
     out_of: float
     missing: int  #: answers
@@ -107,12 +108,12 @@ class Told(NamedTuple):
 
 
 def marks_of(lines: Iterable[Line], told: Mapping[str, Told], rejected: int = 0) -> Marks:
-    """Return the columns of a class's marks, and of what its summary says of each student."""
+    """Return the columns of a class's marks, with the summary of each student."""
     return _Columns(lines).marks(told, rejected)
 
 
 class _Columns:
-    """Lines as columns."""
+    """Lines of marks as columns."""
 
     def __init__(self, lines: Iterable[Line]):
         self.students, self.parts, self.verdicts = _Numbered(), _Numbered(), _Numbered()
@@ -126,7 +127,7 @@ class _Columns:
             self.out_of.append(of)
 
     def marks(self, told: Mapping[str, Told], rejected: int) -> Marks:
-        """Return the columns, and what else is known."""
+        """Return the marks, with the summaries."""
         students, marked = self.students, len(self.students)
         unread = [name for name, own in told.items() if own.unreadable]
         for name in told:
@@ -157,8 +158,8 @@ class _Columns:
 
 
 def unlike_summary(folder: Path, marks: Marks) -> list[str]:
-    """Return the students whose points in the marks are not those of the summary beside them: a hand changed
-    one of the two."""
+    """Return the students whose points in the marks differ from those of the summary, edited by hand in one
+    of the two."""
     path = folder / "summary.csv"
     if not path.is_file() or "points" not in _header(path):
         return []
@@ -169,7 +170,7 @@ def unlike_summary(folder: Path, marks: Marks) -> list[str]:
 
 
 def _counting(folder: Path, decimals: _Decimals) -> Iterator[tuple[Any, ...]]:
-    """Yield the lines of the marks; of a student with several sittings those of the one that counts."""
+    """Yield the lines of the marks; for a student with several sittings only those of the one that counts."""
     path, summary = folder / "marks.csv", folder / "summary.csv"
     if not (summary.is_file() and SITTING in _header(path) and SITTING in _header(summary)):
         yield from _lines(path, _MARKS, decimals)
@@ -190,7 +191,7 @@ def _header(path: Path) -> list[str]:
 
 
 def _summary(path: Path, decimals: _Decimals) -> dict[str, Told]:
-    """By student, what the summary says."""
+    """Return the summary of each student."""
     if not path.is_file():
         return {}
     return {

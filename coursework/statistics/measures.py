@@ -1,4 +1,4 @@
-"""Statistics of a marked class, from the folder that ``grade`` wrote: numbers, and no page.
+"""Statistics of a marked class, from the folder that ``grade`` wrote.
 
 Texts are numbered as they are read, so that a line of ``marks.csv`` costs a few numbers whatever its
 answer and feedback hold.
@@ -34,7 +34,7 @@ MISTAKE_COLUMNS = ("exercise", "part", "kind", "mistake", "count", "share", "los
 
 @dataclass(frozen=True)
 class PartStatistics:
-    """One part over a class; shares are from 0 to 1."""
+    """Statistics of one part over a class; shares are from 0 to 1."""
 
     exercise: str
     part: str
@@ -50,12 +50,13 @@ class PartStatistics:
 
     @property
     def right(self) -> float:
-        """Share of the marked answers that are right: by themselves, from an earlier wrong one, or accepted by hand."""
+        """Share of the marked answers that are right: by themselves, relative to an earlier wrong one, or
+        accepted by hand."""
         return sum(self.counts[f] for f in RIGHT) / self.marked if self.marked else 0.0
 
     @property
     def marked(self) -> int:
-        """The answers that do not wait for a person."""
+        """Number of answers that do not wait for a person."""
         return self.answers - self.counts[WAITING]
 
     def row(self) -> dict[str, Any]:
@@ -74,7 +75,8 @@ class PartStatistics:
 
 @dataclass(frozen=True)
 class MistakeStatistics:
-    """A recognised mistake or slip, on one part or, where ``part`` is empty, on all of an exercise."""
+    """Statistics of a recognised mistake or slip, on one part or, where ``part`` is empty, on all of an
+    exercise."""
 
     exercise: str
     part: str
@@ -86,7 +88,7 @@ class MistakeStatistics:
     share_of_lost: float  #: of all points that the class lost on lines of marks.csv
 
     def row(self) -> dict[str, Any]:
-        """Return a line of ``mistakes.csv``, but for the words of its feedback."""
+        """Return a line of ``mistakes.csv``, without the words of its feedback."""
         return {
             "exercise": self.exercise,
             "part": self.part,
@@ -101,7 +103,7 @@ class MistakeStatistics:
 
 @dataclass(frozen=True)
 class Statistics:
-    """What a class did."""
+    """Statistics of a class."""
 
     students: int
     silent: int  #: students who handed in nothing
@@ -116,7 +118,7 @@ class Statistics:
 
     @property
     def needs_a_look(self) -> int:
-        """Answers that somebody must look at: unreadable, rejected, or to be marked by a person."""
+        """Number of answers that a person must check: unreadable, rejected, or to be marked by hand."""
         return self.counts["unreadable"] + self.rejected + self.counts[WAITING]
 
     @property
@@ -124,13 +126,14 @@ class Statistics:
         return tuple(dict.fromkeys(p.exercise for p in self.parts))
 
     def histogram(self) -> np.ndarray:
-        """Return the students in each tenth of the points, shape (BINS,); a full score is in the last."""
+        """Return the number of students in each tenth of the points, shape (BINS,); a full score is in the
+        last."""
         # A hair above its edge, so that rounding puts no 70 % below 70 %.
         place = np.floor(self.percents * BINS / 100 + 1e-9)
         return np.bincount(np.clip(place, 0, BINS - 1).astype(int), minlength=BINS)
 
     def mistakes_of_exercises(self) -> list[MistakeStatistics]:
-        """Return the mistakes, those of one name summed over an exercise's parts; the most frequent first."""
+        """Return the mistakes summed over an exercise's parts by name, the most frequent first."""
         groups: dict[tuple[str, str, str], list[MistakeStatistics]] = {}
         for one in self.mistakes:
             groups.setdefault((one.exercise, one.kind, one.name), []).append(one)
@@ -224,8 +227,8 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
 
 
 def marked_lines(marks: Marks, marked: np.ndarray) -> Marks:
-    """Return the marks without the lines that wait for a person, shape (lines,) of booleans, and without
-    their points."""
+    """Return the marks without the lines that wait for a person, and without their points; ``marked`` is a
+    mask of shape (lines,)."""
     if np.all(marked):
         return marks
     waiting = np.bincount(marks.student[~marked], marks.out_of[~marked], minlength=len(marks.students))
@@ -236,7 +239,7 @@ def marked_lines(marks: Marks, marked: np.ndarray) -> Marks:
 
 
 def _askers(marks: Marks) -> list[int]:
-    """By part, how many students have a line of it."""
+    """Return for each part the number of students with a line of it."""
     students = max(1, len(marks.students))
     pairs = np.sort(marks.part * students + marks.student)
     pairs = pairs[np.diff(pairs, prepend=-1) > 0]
@@ -244,7 +247,7 @@ def _askers(marks: Marks) -> list[int]:
 
 
 def _discriminations(marks: Marks, share: np.ndarray, askers: Sequence[int]) -> list[float | None]:
-    """By part, the correlation of its points with the student's points on everything else.
+    """Return for each part the correlation of its points with the student's points on everything else.
 
     Both are shares, since variants may ask different parts; where all ask the same this is the
     correlation of the points themselves. What a student was asked and did not hand in counts as 0.

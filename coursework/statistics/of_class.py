@@ -1,4 +1,4 @@
-"""The marks of a class that was just marked, as its tables would give them."""
+"""Marks of a class just marked, as its tables would give them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from coursework.statistics.marks import Line, Marks, Told, marks_of
 
 
 def marks_of_class(graded: Iterable[Graded], results: Mapping[str, Result], rejected: int = 0) -> Marks:
-    """Return the columns of a class; of a student with several sittings those of the one that counts."""
+    """Return the columns of a class; for a student with several sittings only those of the one that counts."""
     told = {student: _told(own) for student, own in results.items()}
     return marks_of(_lines(graded, results), told, rejected)
 

@@ -1,4 +1,4 @@
-"""Statistics of a class as a page: charts, tables, and what they say in plain words."""
+"""Report of a class's statistics: charts, tables, and conclusions in words."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ Words = Mapping[str, Any]
 
 
 def sheet_order(course: Course, exercises: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """Return the part ids in the order of the sheets, of those exercises that the course has."""
+    """Return the part ids in the order of the sheets, for those exercises that the course has."""
     return {name: tuple(p.id for p in course[name].spec.parts) for name in exercises if name in course}
 
 
 def report(course: Course, statistics: Statistics, lang: str) -> Report:
-    """Return the reading, the points, a section an exercise, the mistakes; says so where no chart can be
-    drawn."""
+    """Return the report: conclusions, points, a section for each exercise, mistakes; with a note where no
+    chart can be drawn."""
     page = _Page(course, statistics, lang)
     sections = [page.short()]
     if statistics.percents.size:
@@ -74,7 +74,7 @@ def mistake_rows(course: Course, statistics: Statistics, lang: str) -> Iterator[
 
 
 class _Page:
-    """The sections of one report."""
+    """Sections of one report."""
 
     def __init__(self, course: Course, statistics: Statistics, lang: str) -> None:
         self.course = course
@@ -177,7 +177,7 @@ class _Page:
         return self.said["too_few" if part.students < ENOUGH else "all_alike"]
 
     def _verdict_table(self, parts: Sequence[PartStatistics]) -> Table:
-        """Return the verdicts that some answer has; the others have no column."""
+        """Return the table of verdicts, with a column for each verdict that occurs."""
         met = [f for f in VERDICTS if any(p.counts[f] for p in parts)]
         rows = tuple(
             (self._name(p), *(self._hundredths(p.share(f)) if p.counts[f] else "" for f in met))
@@ -282,12 +282,12 @@ class _Page:
         return self._numbered(part, f"${symbol}$" if symbol else _as_it_is(self.names.question(part)))
 
     def _name_and_id(self, part: PartStatistics) -> str:
-        """For the one table where an author looks for a part by its id."""
+        """Return the name of a part with its id, for the table in which authors look parts up."""
         name, own = self._name(part), _as_it_is(part.part)
         return name if name == own else f"{name} ({own})"
 
     def _with(self, part: PartStatistics, value: str) -> str:
-        """Return a part and a number of it, in a sentence about the class."""
+        """Return a part and its value, for a sentence about the class."""
         several = len(self.statistics.exercises) > 1
         note = f"{self._title(part.exercise)}, {value}" if several else value
         return f"{self._name(part)} ({note})"
@@ -313,7 +313,8 @@ class _Page:
         return localise(text.removeprefix("-") if float(text) == 0 else text, self.lang)
 
     def _hundredths(self, share: float) -> str:
-        """Return a share in percent as a number alone; what is not all and not nothing does not round to it."""
+        """Format a share in percent as a bare number; a share strictly between 0 and 1 never shows as 0 or
+        100."""
         value = round(100 * float(share), 9)
         rounded = min(max(round(value), 1), 99) if 0 < value < 100 else round(value)
         return localise(str(rounded), self.lang)
@@ -325,19 +326,19 @@ class _Page:
         return _charted(typeset(_short(text, _HEADED), self.lang))
 
     def _charts(self, draw: Callable[[], bytes], heading: str) -> tuple[Chart, ...]:
-        """Return the chart, where charts can be drawn."""
+        """Return the chart; none where charts cannot be drawn."""
         return (Chart(draw().decode("utf-8"), self.said["alt"].format(heading)),) if self.drawn else ()
 
 
 def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[PartStatistics]]:
-    """Return the rows in as few runs as hold them, of about the same length."""
+    """Split the rows into as few runs as hold them, of about equal length."""
     runs = -(-len(rows) // most)
     size = -(-len(rows) // runs)
     return [rows[start : start + size] for start in range(0, len(rows), size)]
 
 
 def _short(name: str, most: int = 40) -> str:
-    """Return a name from a file on one line of a chart."""
+    """Shorten a name from a file to one line of a chart."""
     one_line = " ".join(name.split())
     return one_line if len(one_line) <= most else one_line[: most - 1] + "…"
 
@@ -347,8 +348,7 @@ _VECTOR = re.compile("([^\\W_])\N{COMBINING RIGHT ARROW ABOVE}")
 
 
 def _charted(text: str) -> str:
-    """Return a text as a label of a chart, in characters that its font has; an arrow over a letter is drawn
-    as in a formula."""
+    """Return a text as a chart label, in characters of its font; an arrow over a letter becomes a formula."""
     pieces = _VECTOR.split(text)
     pieces[::2] = [plain_label(drawable_label(piece)) for piece in pieces[::2]]
     pieces[1::2] = [rf"$\vec{{{letter}}}$" for letter in pieces[1::2]]
@@ -356,6 +356,6 @@ def _charted(text: str) -> str:
 
 
 def _as_it_is(name: str) -> str:
-    """Return a name from a file as Markdown that shows it."""
+    """Escape a name from a file as Markdown."""
     one_line = " ".join("".join(c if c.isprintable() else " " for c in name).split())
     return re.sub(r"([!-/:-@\[-`{-~])", r"\\\1", one_line) or "–"
