@@ -11,7 +11,7 @@ from coursework.errors import WrongValue
 
 
 def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> Any:
-    """Return ``function`` of the arguments; element by element where some are arrays, which broadcast.
+    """Evaluate ``function``; element by element where some arguments are arrays, which broadcast.
 
     Lists and records are single values. ``dtype`` is that of the array of results: ``int``, ``str``, or objects.
     """
@@ -27,7 +27,7 @@ def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> 
 
 
 def each_stacked(read: Callable[[Any], Any], whole: Any) -> Any:
-    """Return ``read`` of one thing, or of each in an array of objects; vectors along a last axis."""
+    """Evaluate ``read`` on a single object, or on each of an array of objects; vectors lie along a last axis."""
     if not isinstance(whole, np.ndarray):
         return read(whole)
     if whole.dtype != object or not whole.size:
@@ -57,7 +57,7 @@ def matrix(*rows: Sequence[Any]) -> np.ndarray:
 
 
 def cases(**holds: Any) -> Any:
-    """Return the names of what holds, as the answer of several choices has them: ``"stable fast"``, or an
+    """Return the names of the true conditions, as the answer to several choices: ``"stable fast"``, or an
     array of such."""
 
     def named(*which: Any) -> str:

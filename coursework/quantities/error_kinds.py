@@ -1,4 +1,4 @@
-"""The kinds of errors that marking knows, each with its usual price."""
+"""Kinds of errors that marking knows, each with its default penalty."""
 
 from __future__ import annotations
 

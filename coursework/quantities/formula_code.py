@@ -1,4 +1,4 @@
-"""The formula of a quantity as an expression tree of Python: from the code that computes it, or from how it is printed.
+"""Formula of a quantity as a Python expression tree: from its code, or from its printed form.
 
 A function whose body is one expression is that expression; guards that raise are passed over. A private helper that is
 one expression itself stands in its place. A function that says its formula by
@@ -28,12 +28,12 @@ from coursework.system import python_code
 
 
 class NoExpression(Exception):
-    """The function's source is not one expression."""
+    """Function whose source is not one expression."""
 
 
 @lru_cache(maxsize=1024)
 def expression(function: Callable[..., Any]) -> ast.expr:
-    """What a function returns, where that is all it does besides refusing what does not exist.
+    """Return the expression that a function returns, if it does nothing else but guard.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def expression(function: Callable[..., Any]) -> ast.expr:
 
 
 def returning(function: ast.stmt) -> list[ast.stmt]:
-    """Return the statements of a function but for its docstring and its guards."""
+    """Return the statements of a function without its docstring and its guards."""
     return [s for s in getattr(function, "body", []) if not (_is_docstring(s) or _is_guard(s))]
 
 
@@ -61,7 +61,7 @@ def _is_docstring(statement: ast.stmt) -> bool:
 
 
 def _is_guard(statement: ast.stmt) -> bool:
-    """Return ``if …: raise …``, which says where the formula does not exist."""
+    """Return whether a statement is ``if …: raise …``, which states where the formula does not exist."""
     return (
         isinstance(statement, ast.If)
         and not statement.orelse
@@ -70,7 +70,7 @@ def _is_guard(statement: ast.stmt) -> bool:
 
 
 def called(node: ast.expr) -> str:
-    """Return the name of the function that is called, without its module's; empty where nothing is."""
+    """Return the name of the called function, without its module; empty where the node is no call."""
     if not isinstance(node, ast.Call):
         return ""
     function = node.func
@@ -78,12 +78,12 @@ def called(node: ast.expr) -> str:
 
 
 def call(name: str, *arguments: ast.expr) -> ast.Call:
-    """Return the tree of a call."""
+    """Return the syntax tree of a call."""
     return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
 
 
 def put_in(helper: Any, arguments: Sequence[ast.expr]) -> ast.expr:
-    """Return a helper that is one expression, with these arguments in place of its parameters.
+    """Return the expression of a helper, with these arguments in place of its parameters.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def put_in(helper: Any, arguments: Sequence[ast.expr]) -> ast.expr:
 
 
 class _PutIn(ast.NodeTransformer):
-    """Trees in place of names."""
+    """Substitution of trees for names."""
 
     def __init__(self, trees: Mapping[str, ast.expr]):
         self.trees = trees
@@ -115,14 +115,14 @@ class _PutIn(ast.NodeTransformer):
 
 @dataclass(frozen=True)
 class Formula:
-    """An expression of quantities, and what its other names mean."""
+    """Expression of quantities, and the meaning of its other names."""
 
     tree: ast.expr
     names: tuple[str, ...]  #: the quantities
     space: Mapping[str, Any]
 
     def __call__(self, values: Mapping[str, Any]) -> Any:
-        """Return its value, for scalars or arrays ``(n,)`` by name; NaN where it does not exist."""
+        """Evaluate the formula for scalars or arrays ``(n,)`` by name; NaN where it does not exist."""
         with np.errstate(all="ignore"):
             return self._function(*(values[name] for name in self.names))
 
@@ -138,7 +138,7 @@ class Formula:
 
 @lru_cache(maxsize=1024)
 def formula_of(function: Callable[..., Any]) -> Formula | None:
-    """Return the formula of a quantity's function; None where it is told in words alone."""
+    """Return the formula of a quantity's function; None where only words describe it."""
     template = getattr(function, "__formula__", None)
     try:
         return _of_code(function) if template is None else _of_template(template)
@@ -156,7 +156,7 @@ def _of_code(function: Callable[..., Any]) -> Formula:
 
 
 class _Inlined(ast.NodeTransformer):
-    """Private helpers that are one expression, with their arguments in place."""
+    """Substitution of private helpers by their single expression."""
 
     def __init__(self, space: dict[str, Any]):
         self.space = space
@@ -198,7 +198,7 @@ _FIRST = 10**9  #: numbers from here on stand for names
 
 
 def _of_template(template: str) -> Formula:
-    """Return a printed formula, its angles in degrees."""
+    """Parse a printed formula, its angles in degrees."""
     names = tuple(dict.fromkeys(re.findall(r"<(\w+)>", template)))
     latex = re.sub(r"<(\w+)>", lambda m: rf"\num{{{_FIRST + names.index(m[1])}}}", template)
     try:
@@ -212,7 +212,7 @@ def _of_template(template: str) -> Formula:
 
 
 class _Code:
-    """An expression that grows by what is done with it."""
+    """Expression built up by the operations on it."""
 
     def __init__(self, tree: ast.expr):
         self.tree = tree
@@ -248,7 +248,7 @@ def _code(value: Any) -> ast.expr:
 
 
 class _Coding(Evaluation):
-    """The reader of printed formulas, writing code in place of numbers."""
+    """Parser of printed formulas that builds code in place of numbers."""
 
     def __init__(self, names: Sequence[str]):
         super().__init__((), ())

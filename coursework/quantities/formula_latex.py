@@ -1,4 +1,4 @@
-"""The worked solution: the walk of the quantity graph, each function shown as formula, numbers, value.
+"""Formulas of the worked solution: each function as formula, numbers, value.
 
 A function whose body is one expression is printed from its own source, so that the formula on
 paper is the one that computed the answer. Guards that raise are passed over, and a private helper that is one
@@ -49,7 +49,7 @@ _SUM, _PRODUCT, _UNARY, _POWER, _ATOM = range(5)
 
 
 class Told(NamedTuple):
-    """What stands for a name in print."""
+    """Printed form of a name."""
 
     latex: str
     is_number: bool
@@ -61,19 +61,21 @@ Shown = Mapping[str, tuple]
 
 
 def kind_of(value: Any, unit: str) -> str:
-    """Return the kind of a value, as :class:`Told` has it."""
+    """Return the kind of a value, as in :class:`Told`."""
     if isinstance(value, (complex, np.complexfloating)):
         return "complex"
     return "angle" if unit == "deg" else ""
 
 
 class Unprintable(Exception):
-    """An expression that we cannot print."""
+    """Expression that cannot be printed."""
 
 
 def why_unprinted(function: Callable[..., Any]) -> str:
-    """What in a function's code no formula says: a choice, or a function that has no name on paper; empty where
-    it is something else, such as several steps."""
+    """Return what in a function's code no formula can print: a choice, or a function without a name on paper.
+
+    Empty for anything else, such as several steps.
+    """
     try:
         body = python_code.parse(textwrap.dedent(inspect.getsource(function))).body[0]
     except (OSError, TypeError, SyntaxError):
@@ -90,7 +92,7 @@ def why_unprinted(function: Callable[..., Any]) -> str:
 
 
 def _of_numbers(called: ast.expr) -> str:
-    """Return ``np.log2``, ``math.gamma``; empty where what is called is no function of a number."""
+    """Return the name of a called numpy or math function, such as ``np.log2``; empty for any other."""
     match called:
         case ast.Attribute(value=ast.Name(id="np" | "numpy" as home), attr=name):
             return f"{home}.{name}" if isinstance(getattr(np, name, None), np.ufunc) else ""
@@ -105,7 +107,7 @@ def _line_of(function: Callable[..., Any], node: ast.expr | ast.stmt) -> int:
 
 
 class _Degrees(float):
-    """A constant that is an angle: it stands in a sum with angles."""
+    """Constant that is an angle, in a sum with angles."""
 
 
 def _square(node: ast.expr) -> ast.expr:
@@ -113,7 +115,7 @@ def _square(node: ast.expr) -> ast.expr:
 
 
 class _Printer:
-    """An expression tree to LaTeX; names are shown as told, private helpers are those of ``helpers``."""
+    """Printer from an expression tree to LaTeX; private helpers are those of ``helpers``."""
 
     def __init__(self, shown: Shown, helpers: Mapping[str, Any]):
         self.shown = shown
@@ -165,7 +167,7 @@ class _Printer:
         raise Unprintable
 
     def _second(self, node: ast.expr, within: int) -> str:
-        """What comes after a sign: no sign follows a sign."""
+        """Return an operand after a sign, in brackets if it begins with a sign itself."""
         text = self.latex(node, within)
         return rf"\left({text}\right)" if text.startswith(("-", r"\num{-")) else text
 
@@ -192,7 +194,7 @@ class _Printer:
         return f"{stem}_{{{','.join(below)}}}" if below else stem, _ATOM
 
     def _value_of(self, name: str) -> float | None:
-        """Return the value of a constant of the module; None where a name is none."""
+        """Return the value of a constant of the module; None for any other name."""
         value = None if name in self.shown else self.helpers.get(name)
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         return value if is_number else None
@@ -229,7 +231,8 @@ class _Printer:
         return False
 
     def _in_degrees(self, node: ast.expr) -> ast.expr:
-        """Return a term of a sum of angles: its constant is one, ``180`` or the ``90`` of ``90 * sense``."""
+        """Return a term of a sum of angles with its constants in degrees, such as ``180`` or the ``90`` of
+        ``90 * sense``."""
         match node:
             case ast.Constant(value=int() | float() as value):
                 return ast.Constant(_Degrees(value))
@@ -340,7 +343,7 @@ class _Printer:
         return None
 
     def _helper(self, name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
-        """Return a private function that is one expression, with these arguments in place of its parameters."""
+        """Return the LaTeX of a private helper's expression, with these arguments in place of its parameters."""
         helper = self.helpers.get(name)
         try:
             body = put_in(helper, arguments)
@@ -362,7 +365,7 @@ def _times(length: ast.expr, ratio: ast.expr) -> ast.expr:
 
 
 def _added(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
-    """Return the terms with their signs as one sum; 0 where there are none."""
+    """Return the sum of the signed terms; 0 where there are none."""
     if not terms:
         return ast.Constant(0)
     (minus, total), *others = terms
@@ -373,8 +376,7 @@ def _added(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
 
 
 def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:
-    """Return a product without the sign that it begins with, and whether it has one: it stands before its
-    fraction."""
+    """Return a product without its leading sign, and whether it has one: the sign stands before the fraction."""
     match node:
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return operand, True
@@ -385,7 +387,7 @@ def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:
 
 
 def _difference_of_squares(product: ast.BinOp) -> ast.BinOp | None:
-    """Return ``a^2 - b^2`` for ``(a - b) * (a + b)``, the way to compute it that keeps its digits."""
+    """Return ``a^2 - b^2`` for ``(a - b) * (a + b)``, the form that keeps digits; None for any other product."""
     match product.left, product.right:
         case (ast.BinOp(a, ast.Sub(), b), ast.BinOp(c, ast.Add(), d)) | (
             ast.BinOp(a, ast.Add(), b),
@@ -396,8 +398,8 @@ def _difference_of_squares(product: ast.BinOp) -> ast.BinOp | None:
 
 
 def _is_segment(symbol: str) -> bool:
-    r"""Return whether a symbol is of several letters, as ``OB`` or ``\angle DOB``: side by side they would be
-    a product."""
+    r"""Return whether a symbol has several letters, as ``OB`` or ``\angle DOB``, which side by side would read
+    as a product."""
     if "(" in symbol or symbol.startswith((r"\frac", r"\num")):
         return False
     base = re.sub(r"\\mathrm\{\w*\}", "x", symbol)
@@ -407,7 +409,7 @@ def _is_segment(symbol: str) -> bool:
 
 
 def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
-    """Return LaTeX of a quantity's formula, each name shown as told; empty when words must say it."""
+    """Return LaTeX of a quantity's formula; empty when only words describe it."""
     template = getattr(function, "__formula__", None)
     if template is not None:
         return re.sub(r"<(\w+)>", lambda m: _in_template(shown, m), template)
@@ -418,8 +420,8 @@ def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
 
 
 def tree_latex(tree: ast.expr, shown: Shown, space: Mapping[str, Any]) -> str:
-    """Return LaTeX of a piece of a formula; ``space`` holds what names mean besides. Empty when words must
-    say it."""
+    """Return LaTeX of a part of a formula; ``space`` holds the meaning of other names. Empty when only words
+    describe it."""
     try:
         return _Printer(shown, space).latex(tree)
     except (NoExpression, Unprintable):
@@ -428,13 +430,12 @@ def tree_latex(tree: ast.expr, shown: Shown, space: Mapping[str, Any]) -> str:
 
 @lru_cache(maxsize=1024)
 def formula_in_symbols(function: Callable[..., Any], symbols: tuple[tuple[str, str, str], ...]) -> str:
-    """Return the same with the symbol and kind of each name: what all students of an exercise read."""
+    """Return LaTeX of a formula from the symbol and kind of each name, the same for all students."""
     return formula_latex(function, {name: Told(symbol, False, kind) for name, symbol, kind in symbols})
 
 
 def _in_template(shown: Shown, name: re.Match[str]) -> str:
-    """Return a name of a stated formula; a negative number in brackets unless an opening bracket stands
-    before it."""
+    """Return a name of a stated formula; a negative number in brackets unless an opening bracket precedes it."""
     text, is_number, *_ = shown[name.group(1)]
     if not is_number or not text.startswith((r"\num{-", "-")):
         return text
@@ -444,11 +445,8 @@ def _in_template(shown: Shown, name: re.Match[str]) -> str:
 
 
 def number_latex(value: Any, unit: str, digits: int = 5) -> str:
-    r"""Return a value as it stands in a substitution: ``
-    um{114.3}``, ``
-    um{135}^{\circ}``, ``
-    um{1}+
-    um{2}\,i``."""
+    r"""Return LaTeX of a value in a substitution: ``\num{114.3}``, ``\num{135}^{\circ}``,
+    ``\num{1}+\num{2}\,i``."""
     degree = r"^{\circ}" if unit == "deg" else ""
     if isinstance(value, (complex, np.complexfloating)):
         imaginary = significant(float(value.imag), digits)

@@ -1,4 +1,4 @@
-"""The quantity graph: plain functions whose names are quantities and whose parameters are what they need.
+"""Quantity graph: functions named after quantities, with the quantities that they need as parameters.
 
 A request for some quantities is resolved into exactly the functions it needs, in order, and each is
 called once, on scalars or on arrays that broadcast; long arrays go through the whole request piece
@@ -42,26 +42,26 @@ _Plan: TypeAlias = tuple[tuple[str, ...], list[_Step], dict[str, Value]]  #: nam
 
 
 def _place(function: Callable[..., Value]) -> str:
-    """Where a function of a course stands, for messages."""
+    """Return the location of a course function, for messages."""
     code = getattr(function, "__code__", None)
     name = getattr(function, "__name__", "a function")
     return f"{name} ({Path(code.co_filename).name}, line {code.co_firstlineno})" if code else name
 
 
 def plain_scalar(value: Value) -> Value:
-    """Return a numpy scalar as Python's own; vectors are left alone."""
+    """Convert a numpy scalar to Python's own type; leave vectors unchanged."""
     zero_dimensional = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and not value.ndim)
     return value.item() if zero_dimensional else value
 
 
 def _right(name: str) -> str:
-    """Return the name under which a replaced quantity keeps its right value."""
+    """Return the name under which the right value of a replaced quantity is stored."""
     return f"{name} (right)"
 
 
 @dataclass(frozen=True)
 class Node:
-    """One quantity: the function that gives it and the names of its arguments, in call order."""
+    """Quantity: its function and the names of its arguments, in call order."""
 
     function: Callable[..., Value]
     arguments: tuple[str, ...]
@@ -77,21 +77,21 @@ class Node:
 
     @property
     def printed(self) -> tuple[str, ...]:
-        """The names that its formula is stated with, which need not be those that the function takes."""
+        """Names in the stated formula, which may differ from the arguments of the function."""
         return tuple(re.findall(r"<(\w+)>", getattr(self.function, "__formula__", "")))
 
     @property
     def told_after(self) -> tuple[str, ...]:
-        """The names that a worked solution tells before it besides."""
+        """Names that a worked solution prints before it in addition."""
         return getattr(self.function, "__told_after__", ())
 
     @property
     def needs(self) -> frozenset[str]:
-        """The names that either function takes."""
+        """Names of the arguments of either function."""
         return frozenset(self.arguments) | (self.stable.needs if self.stable else frozenset())
 
     def renamed(self, names: Mapping[str, str]) -> Node:
-        """With arguments of other names."""
+        """Return the node with renamed arguments."""
         return Node(
             self.function,
             tuple(names.get(a, a) for a in self.arguments),
@@ -102,7 +102,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Replacement:
-    """Some quantities computed by another function: what a named mistake is.
+    """Quantities computed by another function: a named mistake.
 
     ``function`` gives the value of ``targets[0]``, or a tuple of values when there are several. A
     parameter of its that bears a target's name stands for the right value of that target.
@@ -117,7 +117,7 @@ def _is_hidden(name: str) -> bool:
 
 
 def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
-    """Call the functions of a plan in order, and put what they give among the values."""
+    """Call the functions of a plan in order, and store their results in ``values``."""
     for name, function, arguments in steps:
         try:
             values[name] = function(*[values[a] for a in arguments])
@@ -133,7 +133,7 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
 
 
 def _branches(function: Callable[..., Value], fault: Exception) -> str:
-    """What is said of a function that chooses by ``if``, where each place of an array has its own case."""
+    """Return the message for a function that branches on an array with ``if``."""
     code = getattr(function, "__code__", None)
     frames = traceback.extract_tb(fault.__traceback__)
     home = Path(code.co_filename).parent if code else Path()
@@ -145,7 +145,7 @@ def _branches(function: Callable[..., Value], fault: Exception) -> str:
 
 
 def _missing(found: Mapping[str, str]) -> MissingQuantity:
-    """What is said of quantities that are not given; with each, the one that needs it first."""
+    """Return the error for missing quantities, each with the first one that needs it."""
     names = tuple(found)
     listed = f"{', '.join(names[:-1])} and {names[-1]}" if names[1:] else names[0]
     are = "are" if names[1:] else "is"
@@ -157,7 +157,7 @@ def _missing(found: Mapping[str, str]) -> MissingQuantity:
 
 
 def _met(nodes: Mapping[str, Node], names: Iterable[str]) -> frozenset[str]:
-    """Return the names and all that they need, by the first of each node's functions."""
+    """Return the names and all their ancestors, by the first of each node's functions."""
     found: set[str] = set()
     waiting = list(names)
     while waiting:
@@ -169,7 +169,7 @@ def _met(nodes: Mapping[str, Node], names: Iterable[str]) -> frozenset[str]:
 
 
 class Graph:
-    """Quantities by name. Immutable; plans are remembered for each shape of request."""
+    """Immutable graph of quantities by name, with cached plans."""
 
     def __init__(self, functions: Mapping[str, Callable[..., Value]]):
         self._build({name: Node.of(f) for name, f in functions.items()}, frozenset())
@@ -193,17 +193,17 @@ class Graph:
         }
 
     def _ancestors(self, names: Iterable[str]) -> frozenset[str]:
-        """Return the names and all that they need, by the first of each node's functions."""
+        """Return the names and all their ancestors, by the first of each node's functions."""
         return _met(self._nodes, names)
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """The names that have a function, in the order they were defined; not the hidden ones."""
+        """Names with a function, in order of definition, without hidden ones."""
         return tuple(n for n in self._nodes if not _is_hidden(n))
 
     @cached_property
     def textbook(self) -> Graph:
-        """The same graph, every quantity by the first of its functions."""
+        """The same graph, with every quantity by the first of its functions."""
         graph = Graph.__new__(Graph)
         nodes = {name: replace(node, stable=None) for name, node in self._nodes.items()}
         graph._build(nodes, self._shadowed, self._effects)
@@ -211,8 +211,8 @@ class Graph:
 
     @cached_property
     def _on_paper(self) -> Graph:
-        """The textbook graph, where a quantity needs besides what its formula is stated with and what is told before it: it
-        is to plan with alone.
+        """Textbook graph with the names of each stated formula and of earlier steps as further arguments, for
+        planning alone.
 
         Not what would itself need the quantity: that one is found first.
         """
@@ -227,16 +227,16 @@ class Graph:
 
     @property
     def leaves(self) -> frozenset[str]:
-        """The names that functions need and no function gives."""
+        """Names that functions need and no function gives."""
         return self._leaves
 
     @property
     def names(self) -> frozenset[str]:
-        """The names that have a function, hidden ones too."""
+        """Names with a function, hidden ones included."""
         return frozenset(self._nodes)
 
     def ancestors(self, names: Iterable[str]) -> frozenset[str]:
-        """Return the names and all that they need, optional effects among it, by the first of each node's
+        """Return the names and all their ancestors, optional effects included, by the first of each node's
         functions."""
         return self._ancestors(names)
 
@@ -246,7 +246,7 @@ class Graph:
         return self._nodes[name]
 
     def effects(self) -> tuple[str, ...]:
-        """Return the quantities that a request may call for as optional effects."""
+        """Return the quantities that a request may name as optional effects."""
         return self._effects
 
     def plan(
@@ -340,7 +340,7 @@ class Graph:
         effects: Iterable[str] = (),
         found: Mapping[str, Value] | None = None,
     ) -> dict[str, Value]:
-        """Return the wanted quantities, from the given ones.
+        """Compute the requested quantities from the given ones.
 
         A given quantity is used as it is, whether or not a function could compute it. Values are
         scalars or arrays that broadcast; nothing is copied or checked but names. A function must give at
@@ -368,9 +368,9 @@ class Graph:
         effects: Iterable[str] = (),
         found: Mapping[str, Value] | None = None,
     ) -> dict[str, Value]:
-        """As :meth:`evaluate`, with all that is met on the way, hidden ones too; they may be wanted here.
+        """Compute the requested quantities and return all intermediate ones as well, hidden ones included.
 
-        Of arrays so long that they are gone through piece by piece, only what is wanted.
+        Long arrays are processed in blocks; then only the requested quantities are returned.
         """
         values = self._values(tuple(wanted), given, effects, found or {})
         return {name: value for name, value in values.items() if name in self._nodes}
@@ -378,9 +378,10 @@ class Graph:
     def walk(
         self, wanted: Sequence[str], given: Mapping[str, Value], effects: Iterable[str] = ()
     ) -> tuple[str, ...]:
-        """Return the names of every quantity that the textbook way meets on the way to the wanted ones, in
-        its order; those that a formula on the way is stated with, or that are told before it, are met before
-        it."""
+        """Return the quantities on the textbook way to the requested ones, in order.
+
+        Names in a stated formula, or printed before it, come before it.
+        """
         met = self._on_paper.plan(tuple(wanted), self._renamed(given), effects)
         return tuple(name for name in met if not _is_hidden(name))
 
@@ -436,7 +437,7 @@ class Graph:
         return reached.difference(cut)
 
     def replacing(self, replacement: Replacement) -> Graph:
-        """Return the same graph with some quantities computed by another function.
+        """Return the graph with some quantities computed by another function.
 
         Raises
         ------
@@ -470,8 +471,7 @@ class Graph:
         return graph
 
     def observed(self, observe: Callable[[str, Value], Value]) -> Graph:
-        """Return the same graph, with every value handed on as ``observe(name, value)`` gives it; hidden ones
-        as they are."""
+        """Return the graph with every value passed through ``observe(name, value)``, except hidden ones."""
 
         def wrapped(name: str, node: Node) -> Node:
             def function(*arguments: Value) -> Value:
@@ -486,7 +486,7 @@ class Graph:
         return graph
 
     def mapped(self, change: Callable[[Callable[..., Value]], Callable[..., Value]]) -> Graph:
-        """Return the same graph with every function as ``change`` gives it, hidden ones too; arguments stay."""
+        """Return the graph with ``change`` applied to every function, hidden ones included; arguments stay."""
 
         def changed(node: Node) -> Node:
             stable = changed(node.stable) if node.stable else None
@@ -498,7 +498,7 @@ class Graph:
         return graph
 
     def descendants(self, names: Iterable[str]) -> frozenset[str]:
-        """Return the names themselves and every quantity that depends on one of them."""
+        """Return the names and every quantity that depends on one of them."""
         found = set(names)
         grown = True
         while grown:
@@ -508,7 +508,7 @@ class Graph:
         return frozenset(found)
 
     def with_functions(self, functions: Mapping[str, Callable[..., Value]]) -> Graph:
-        """Return the same graph with more quantities.
+        """Return the graph with additional quantities.
 
         Raises
         ------
@@ -525,12 +525,12 @@ class Graph:
 
 
 def call_on_quantities(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
-    """Call a function that draws, or states what is drawn, with the quantities its parameters name."""
+    """Call a function that draws, or states a drawing, with the quantities named by its parameters."""
     name, graph = function.__name__, graph_of(function, helpers)
     return graph.evaluate((name,), {n: v for n, v in values.items() if n in graph.leaves})[name]
 
 
 @lru_cache(maxsize=256)
 def graph_of(function: Any, helpers: tuple = ()) -> Graph:
-    """Return the same graph for all variants, so that its plans are made once."""
+    """Return the graph of a function and its helpers, cached so that its plans are made once."""
     return Graph({**{f.__name__: f for f in helpers}, function.__name__: function})

@@ -1,4 +1,4 @@
-"""The functions of a solution as a calculator that is set to radians works them out.
+"""Functions of a solution as a calculator in radian mode evaluates them.
 
 They are the same functions, with other things behind the names that they use: sine, cosine and tangent take the number of
 degrees for radians, and inverse functions give radians, which are written down as they come, or converted first.
@@ -17,7 +17,7 @@ _RADIAN = 57.29577951308232  #: degrees
 
 
 def _taking(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function whose last argument is an angle."""
+    """Return a function that takes its last argument, an angle, as radians."""
     return lambda *values: function(*values[:-1], values[-1] * _RADIAN)
 
 
@@ -36,15 +36,15 @@ _AS_THEY_COME: Mapping[str, Callable[..., Any]] = {
 
 
 def in_radians(graph: Graph) -> tuple[Graph, ...]:
-    """Return the textbook way through a graph, worked out on a calculator that is set to radians: by who writes the angles
-    that come out as they come, and by who converts them to degrees."""
+    """Return the textbook graph on a calculator in radian mode: with resulting angles written as shown, and
+    with them converted to degrees."""
     return tuple(
         graph.textbook.mapped(_Calculator(functions).function) for functions in (_AS_THEY_COME, _TAKING)
     )
 
 
 class _Calculator:
-    """Functions of a course, each made once."""
+    """Cache of a course's functions in radian mode."""
 
     def __init__(self, functions: Mapping[str, Callable[..., Any]]) -> None:
         self._functions = functions

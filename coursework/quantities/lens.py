@@ -1,4 +1,4 @@
-"""The functions of a solution, made to take numbers that carry their units.
+"""Functions of a solution, adapted to numbers with units.
 
 They are the same functions, with other things behind the names that they use: functions of degrees that say what they
 take and give, numpy and math that follow units, and everything else looked at from without.
@@ -34,7 +34,7 @@ def _takes_degrees(function: Callable[..., Any], gives: Sizes) -> Callable[..., 
 
 
 def _gives_degrees(function: Callable[..., Any], takes: Any = None) -> Callable[..., Any]:
-    """Of a ratio, of a vector, or of two coordinates, which are alike."""
+    """Return a function that gives an angle in degrees, of a ratio, a vector, or two coordinates of one unit."""
 
     def to_angle(*values: Any) -> Any:
         if takes is None:
@@ -68,7 +68,7 @@ def _root(x: Any) -> Any:
 
 
 class _Numpy:
-    """numpy, whose arrays may be made of numbers with units."""
+    """Replacement of numpy whose arrays may hold numbers with units."""
 
     def __getattr__(self, name: str) -> Any:
         return _whole if name in ("array", "asarray", "asanyarray") else getattr(np, name)
@@ -80,7 +80,7 @@ def _whole(values: Any, *args: Any, **options: Any) -> Any:
 
 
 class _Math:
-    """math or cmath; numpy's functions where numbers carry units."""
+    """Replacement of math or cmath; numpy's functions for numbers with units."""
 
     def __init__(self, module: ModuleType):
         self._module = module
@@ -111,7 +111,8 @@ def _following(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class Lens:
-    """The functions of a course as units see them. ``constants``: the sizes of constants of its modules, by name."""
+    """Functions of a course for numbers with units. ``constants``: the sizes of constants of its modules, by
+    name."""
 
     def __init__(self, constants: Mapping[str, Sizes]):
         self._constants = constants
@@ -119,7 +120,7 @@ class Lens:
         self._kept: list[Any] = []  # so that no identity is used twice
 
     def function(self, function: Any) -> Callable[..., Any]:
-        """Return the same function, of numbers that carry their units."""
+        """Return the function for numbers with units."""
         if not isinstance(function, FunctionType):
             return opaque(function)
         space = self._space(function.__globals__, _package(function.__module__))

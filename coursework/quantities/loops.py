@@ -1,4 +1,4 @@
-"""The closed loops of a mechanism: their equations as texts, in any of the forms asked for, and the ways to err.
+"""Closed loops of a mechanism: their equations as texts in any form, and the usual errors in them.
 
 A solution states its loops once, as ``LOOPS = {"loop_1": (Vector("r2", "theta2"), …)}``: vectors
 ``sign * length * e^{i (angle + turn)}`` that add up to nothing. The quantities ``loop_1_x``, ``loop_1_y`` (projections) and
@@ -27,7 +27,7 @@ _Pieces = list[tuple[int, str]]  #: signed factors, to be multiplied by a sine, 
 
 @dataclass(frozen=True)
 class Link:
-    """A vector of a loop as somebody writes it, rightly unless told.
+    """Vector of a loop as a student may write it, right by default.
 
     ``swapped``: sine and cosine are exchanged. ``turned``: the sign before the added angle, 0 where it is left out.
     ``slips``: signs before the terms of its derivative, 0 where one is left out. ``coriolis``: the factor of that term.
@@ -41,7 +41,7 @@ class Link:
 
     @property
     def name(self) -> str:
-        """What the link is called by: its length, or its direction where the length is a number."""
+        """Name of the link: its length, or its direction where the length is a number."""
         length, angle = self.vector.length, self.vector.angle
         return length if isinstance(length, str) else str(angle)
 
@@ -93,7 +93,7 @@ class Link:
 
 
 def _quarters(angle: float) -> int | None:
-    """How many quarter turns an angle is, or None."""
+    """Return an angle in whole quarter turns; None where it is none."""
     quarters = angle / (math.pi / 2)
     return round(quarters) % 4 if abs(quarters - round(quarters)) < 1e-12 else None
 
@@ -108,7 +108,7 @@ def _times(pieces: _Pieces, sign: int, factor: str, more: int) -> _Pieces:
 
 @dataclass(frozen=True)
 class Fault:
-    """A wrong way to write a loop: what is missed, about which names, and the loop that comes of it."""
+    """Wrong way to write a loop: the kind of error, the names, and the resulting loop."""
 
     kind: str
     names: tuple[str, ...]
@@ -117,7 +117,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Loop:
-    """A closed loop.
+    """Closed loop.
 
     ``rates`` gives the first and the second derivative of what varies, by name; none is ''. ``known`` is how often
     the loop can be derived in names that the solution has.
@@ -133,7 +133,7 @@ class Loop:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Lengths, angles and added angles, in the order they are met."""
+        """Lengths, angles and added angles, in order of appearance."""
         found = (n for link in self.links for n in (*link.vector[:2], link.vector.turn))
         return tuple(dict.fromkeys(n for n in found if isinstance(n, str)))
 
@@ -153,7 +153,8 @@ class Loop:
         return tuple(r[order - 1] for n, r in self.rates.items() if n in self.names and r[order - 1])
 
     def equation(self, form: str, order: int = 0) -> str:
-        """Return the closure as text: ``x`` and ``y`` projections or ``complex``; derived ``order`` times."""
+        """Return the closure equation as text: ``x`` or ``y`` projection or ``complex``, differentiated
+        ``order`` times."""
         terms: _Pieces = []
         for link in self.links:
             pieces = self._pieces(link, order)
@@ -192,11 +193,11 @@ class Loop:
         return [p for p in radial if p[0]], [p for p in transverse if p[0]]
 
     def moves(self, order: int) -> bool:
-        """Return whether the derivative of this order is known and says anything."""
+        """Return whether the derivative of this order is known and not trivial."""
         return order == 0 or (order <= self.known and bool(self.highest(order)))
 
     def faults(self, order: int = 0) -> Iterator[Fault]:
-        """Yield the known ways to err, those of one kind together."""
+        """Yield the known errors, grouped by kind."""
         for kind in FAULTS:
             for names, links in getattr(self, f"_{kind}")(order):
                 yield Fault(kind, names, replace(self, links=tuple(links)))
@@ -204,7 +205,7 @@ class Loop:
     def _changed(
         self, change: Callable[[Link], Iterable[Link]]
     ) -> Iterator[tuple[tuple[str, ...], list[Link]]]:
-        """Yield the loop with one link in another way, for every link and every way."""
+        """Yield the loop with one link changed, for every link and every change."""
         for k, link in enumerate(self.links):
             for other in change(link):
                 yield (link.name,), [*self.links[:k], other, *self.links[k + 1 :]]
@@ -259,7 +260,7 @@ def stated(
     computed: Collection[str],
     given: Collection[str],
 ) -> dict[str, Loop]:
-    """Return the loops that a solution states, with the derivatives of what varies.
+    """Return the loops that a solution states, with the derivatives of their variables.
 
     The angle ``theta3`` has ``omega3`` and ``alpha3``, another quantity ``r6`` has ``r6_dot`` and ``r6_ddot``, as far as
     the solution knows them; ``rates`` names those that are called otherwise. A given quantity without a
@@ -291,14 +292,14 @@ def stated(
 
 
 def usual_rates(name: str, names: Collection[str]) -> tuple[str, str]:
-    """What the first and the second derivative of a quantity are called, by its own name; '' where there is none."""
+    """Return the names of the first and second derivative of a quantity; '' for one that does not exist."""
     stem = name.removeprefix("theta")
     first, second = (f"omega{stem}", f"alpha{stem}") if stem != name else (f"{name}_dot", f"{name}_ddot")
     return first if first in names else "", second if second in names else ""
 
 
 def quantities(loops: Mapping[str, Loop]) -> dict[str, Callable[[], str]]:
-    """Return the functions of no argument that give the equations, by the names of their quantities."""
+    """Return constant functions that give the equations, by the names of their quantities."""
     return {
         f"{name}_{form}{ending}": _constant(f"{name}_{form}{ending}", loop.equation(form, order))
         for name, loop in loops.items()

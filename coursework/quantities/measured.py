@@ -1,4 +1,4 @@
-"""Numbers that carry their units through a formula: what is added must be alike, an angle is what sines take."""
+"""Numbers with units that pass through a formula: addition requires equal units, sines take angles."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from coursework.quantities.sizes import (
 
 
 class Measured:
-    """A scalar or an array, and the sizes that its unit may have."""
+    """Scalar or array, with the possible sizes of its unit."""
 
     __array_priority__ = 1000.0
 
@@ -44,7 +44,7 @@ class Measured:
     __array__ = _refuse
 
     def _as_plain(self, kind: Callable[[Any], Any]) -> Any:
-        """Return a plain ratio as a number."""
+        """Convert a plain ratio to a number."""
         if not all(s.is_like(ONE) for s in self.sizes):
             self._refuse()
         return kind(self.value)
@@ -128,7 +128,7 @@ def _sizes(value: Any) -> Sizes:
 
 
 def _is_free(value: Any) -> bool:
-    """Return whether a value is of any unit: a number that is written as nought, infinite or none at all."""
+    """Return whether a value fits any unit: a number that is zero, infinite or NaN."""
     if isinstance(value, Measured):
         return False
     numbers = np.asarray(value)
@@ -136,8 +136,7 @@ def _is_free(value: Any) -> bool:
 
 
 def alike(*values: Any) -> Sizes:
-    """Return the sizes that values which are added or compared share; a plain number takes that of the
-    others.
+    """Return the sizes shared by values that are added or compared; a plain number takes those of the others.
 
     Raises
     ------
@@ -163,22 +162,21 @@ def alike(*values: Any) -> Sizes:
 
 
 def _softest(shared: Sizes, others: Sizes) -> Sizes:
-    """Of each shared size, the one that takes fewer plain degrees."""
+    """Return for each shared size the candidate with the lower power of plain degrees."""
     return distinct(
         min((s, *(o for o in others if o.is_like(s))), key=lambda one: one.powers[-1]) for s in shared
     )
 
 
 def _takes_numbers(ratio: Size) -> bool:
-    """Return whether a number may be added to a ratio: to a plain one, an angle in degrees, a share in
-    percent."""
+    """Return whether a number may be added to a ratio: to a plain one, an angle in degrees, a percentage."""
     return any(
         ratio.is_like(other) for other in (ONE, DEGREE, Size(0.01), Size(math.pi / 200), Size(2 * math.pi))
     )
 
 
 def needs(value: Any, wanted: Size, what: str) -> None:
-    """Refuse a value that cannot be of a unit; a plain number may be of any."""
+    """Refuse a value that cannot have a unit; a plain number fits any."""
     if isinstance(value, Measured) and not any(s.is_like(wanted) for s in value.sizes):
         raise UnitFault(f"{what} {told(wanted)}, and gets {told(value.sizes[0])}")
 
@@ -218,7 +216,7 @@ _TOLD = ("isnan", "isfinite", "isinf", "sign", "signbit")
 
 
 def _through(name: str, function: Callable[..., Any], inputs: Sequence[Any]) -> Any:
-    """What an operation of numbers gives, with its unit."""
+    """Return the result of an operation on numbers, with its unit."""
     values = [plain(v) for v in inputs]
     if name in _COMPARED:
         alike(*inputs)
@@ -304,7 +302,7 @@ def _array_function(function: Any, args: Sequence[Any], options: Mapping[str, An
 
 
 def stripped(value: Any) -> Any:
-    """Return the same with plain numbers, in lists and records too."""
+    """Return the value with plain numbers, in lists and records too."""
     if isinstance(value, Measured):
         return value.value
     if isinstance(value, Mapping):
@@ -315,8 +313,7 @@ def stripped(value: Any) -> Any:
 
 
 def leaves(value: Any) -> list[Any]:
-    """Return the numbers of lists of lists; the shape and axis of a function of arrays are plain ones of
-    them."""
+    """Return the numbers of nested lists."""
     if type(value) in (tuple, list):
         return [leaf for one in value for leaf in leaves(one)]
     if isinstance(value, np.ndarray) and value.dtype == object:
@@ -325,7 +322,7 @@ def leaves(value: Any) -> list[Any]:
 
 
 def gathered(value: Any) -> Any:
-    """Return a list, or an array of objects, as one array with the unit that its numbers share."""
+    """Return a list, or an array of objects, as one array with the common unit of its numbers."""
     if type(value) not in (tuple, list) and not (isinstance(value, np.ndarray) and value.dtype == object):
         return value
     found = leaves(value)

@@ -1,4 +1,4 @@
-"""Functions that take plain numbers, such as those of the numeric core: their units by what a change of units does.
+"""Functions of plain numbers, such as those of the numeric core: their units by dimensional analysis.
 
 Whatever they give is computed again with lengths, masses and times in other base units. What is multiplied by a
 power of each of those factors has those powers, and its unit follows from the units of what was handed in, which
@@ -25,7 +25,8 @@ _OTHERS = (1.375, 7.3)  #: factors that no rounded scale follows
 
 
 class Origin(NamedTuple):
-    """Where plain numbers come from: the function's name, whether it is of the numeric core, and the units handed to it."""
+    """Origin of plain numbers: the function's name, whether it belongs to the numeric core, and the units
+    passed to it."""
 
     name: str
     is_core: bool
@@ -33,7 +34,8 @@ class Origin(NamedTuple):
 
 
 class Opaque:
-    """What a function of plain numbers gave, or the function itself; kept so that it is computed in other base units."""
+    """Result of a function of plain numbers, or the function itself, ready to be computed in other base
+    units."""
 
     def __init__(self, make: Callable[[_Factors], Any], origin: Origin):
         self._make = make
@@ -71,7 +73,7 @@ class Opaque:
 
 
 def opaque(thing: Any) -> Opaque:
-    """Return a function, a class or a module whose inside is not looked into."""
+    """Return a function, a class or a module as a black box."""
     name = getattr(thing, "__name__", str(thing))
     home = getattr(thing, "__module__", None) or name
     is_core = home.startswith("coursework.kinematics")
@@ -91,7 +93,7 @@ def _handed(value: Any) -> list[Any]:
 
 
 def _plain(value: Any, factors: _Factors) -> Any:
-    """Return a value as it reads in other base units."""
+    """Return the value in other base units."""
     if isinstance(value, Measured):
         powers = value.sizes[0].hard
         factor = math.prod(f**p for f, p in zip(factors, powers, strict=True))
@@ -108,19 +110,19 @@ def _plain(value: Any, factors: _Factors) -> Any:
 
 
 def _of_plain_numbers(function: FunctionType, factors: _Factors) -> FunctionType:
-    """Return a function of the course as it was written, where one that takes plain numbers calls it."""
+    """Return a course function as originally written, for a caller that takes plain numbers."""
     cells = tuple(CellType(_plain(cell.cell_contents, factors)) for cell in function.__closure__ or ())
     space = function.__globals__[PLAIN]
     return FunctionType(function.__code__, space, function.__name__, function.__defaults__, cells)
 
 
 def unmeasured(value: Any) -> Any:
-    """Return a value without units, records and what is opaque in them too."""
+    """Return a value without units, in records and opaque results too."""
     return _plain(value, _SAME)
 
 
 def shown(make: Callable[[_Factors], Any], origin: Origin) -> Any:
-    """What is made of plain numbers: numbers with their units, texts as they are, records entry by entry."""
+    """Return a result of plain numbers: numbers with their units, texts unchanged, records entry by entry."""
     made = Opaque(make, origin)
     value = made._in_bases(_SAME)
     if value is None or isinstance(value, (str, bool, np.bool_)):
@@ -148,7 +150,7 @@ def _measured(made: Opaque, origin: Origin) -> Any:
 
 
 def _power(made: Opaque, place: int, origin: Origin) -> float:
-    """Return the power of one base unit that a result has."""
+    """Return the power of one base unit in a result."""
     if not any(size.hard[place] for size in origin.handed):
         return 0.0
     powers = {_power_of(made, place, other, origin) for other in _OTHERS}
@@ -160,7 +162,8 @@ def _power(made: Opaque, place: int, origin: Origin) -> float:
 
 
 def _power_of(made: Opaque, place: int, factor: float, origin: Origin) -> float | None:
-    """Return the same, by one factor; None where the result is not multiplied by a power of it."""
+    """Return the power of a base unit, measured by one factor; None where the result is not multiplied by a
+    power of it."""
     factors = tuple(factor if k == place else 1.0 for k in range(BASES))
     value = np.asarray(made._in_bases(_SAME))
     try:
@@ -175,7 +178,7 @@ def _power_of(made: Opaque, place: int, factor: float, origin: Origin) -> float 
 
 
 def _system(origin: Origin) -> list[float]:
-    """Return the base units, in SI, of the one system that all units are of.
+    """Return the base units, in SI, of the one system that all units belong to.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What rounding on the way does to an answer: the honest student who keeps a few digits at each step.
+"""Effect of rounding at each step on an answer, for a student who keeps a few digits.
 
 A student who writes every intermediate value down to ``digits`` significant digits does everything right, and
 lands beside the reference. How far at most is the *envelope*: the marking widens its tolerance to it.
@@ -19,7 +19,7 @@ _BEYOND_FIRST_ORDER = 1.1
 
 
 def rounded(value: Any, digits: int) -> Any:
-    """Return the numbers to significant digits, element by element; whatever is no number stays as it is."""
+    """Round numbers to significant digits, element by element; leave anything else unchanged."""
     if isinstance(value, tuple):
         parts = [rounded(part, digits) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
@@ -38,7 +38,7 @@ def rounded(value: Any, digits: int) -> Any:
 
 
 def half_step(value: Any, digits: int) -> np.ndarray:
-    """Return the half of the last of so many digits: what rounding moves a number by at most; 0 for 0.
+    """Return half of the last of ``digits`` significant digits, the largest change by rounding; 0 for 0.
 
     A number that a last bit keeps below a power of ten has the digits of the power.
     """
@@ -57,7 +57,7 @@ def _is_number(value: Any) -> bool:
 def student_who_rounds(
     graph: Graph, wanted: Sequence[str], given: Mapping[str, Any], effects: Iterable[str], digits: int
 ) -> dict[str, Any]:
-    """Return the answers of a student who takes the textbook way and rounds each value that they write down.
+    """Return the answers of a student who follows the textbook way and rounds each value written down.
 
     ``given`` holds scalars or arrays that broadcast. Errors are those of :meth:`Graph.evaluate`.
     """
@@ -73,7 +73,8 @@ def envelope(
     digits: int,
     directions: Collection[str] = (),
 ) -> dict[str, np.ndarray]:
-    """How far from the reference such a student lands at most, in the worst combination of roundings.
+    """Return the largest distance of the student's answers from the reference, in the worst combination of
+    roundings.
 
     ``given`` holds scalars or arrays of one shape ``(n,)``, cases among them. Each step is moved by half of its
     last digit, alone; the moves of an answer add up. ``directions`` are angles known up to a turn. Gives an array ``(n,)`` a quantity, in its unit:
@@ -100,7 +101,7 @@ def envelope(
 
 
 def _down(value: Any, count: int) -> Any:
-    """Return a given value as a column, so that the moves lie side by side."""
+    """Return a given value as a column, so that the moves lie along the rows."""
     if isinstance(value, str):
         return value
     return np.broadcast_to(np.asarray(value), (count,))[:, None] if np.ndim(value) else value
@@ -109,8 +110,8 @@ def _down(value: Any, count: int) -> Any:
 def _columns(
     graph: Graph, wanted: Sequence[str], given: Mapping[str, Any], effects: Iterable[str]
 ) -> tuple[dict[str, list[tuple[int, Any]]], frozenset[str]]:
-    """For each step, the columns in which it is moved, and which of its components there; and the matrices that are
-    the same whatever is given, which are not moved.
+    """Return for each step the columns in which it is moved, and the component moved there; and the constant
+    matrices, which are not moved.
 
     One column for a number, two for a complex one, one a coordinate of a vector, one an entry of a matrix.
     """
@@ -145,8 +146,8 @@ def _columns(
 
 
 def _matrix_shape(value: Any, has_axis: bool) -> tuple[int, ...] | None:
-    """Return the shape of a matrix of the first variant; ``()`` for one that does not vary with it, None for
-    no matrix.
+    """Return the shape of a matrix of the first variant; ``()`` for one that does not vary, None for no
+    matrix.
 
     Where something ``has_axis``, what varies has an axis of variants before its own, of length 1 here.
     """
@@ -182,7 +183,7 @@ def _moved(value: Any, part: Any, column: int, width: int, digits: int) -> Any:
 
 
 def _total(value: Any, count: int, is_direction: bool) -> np.ndarray:
-    """Return the moves of an answer added up: from its first column, where nothing is moved, to the others."""
+    """Return the sum of the moves of an answer, from its first column, which is not moved, to the others."""
     value = np.asarray(value)
     if value.dtype.kind not in "fc" or value.ndim < 2:
         return np.zeros(count)

@@ -1,4 +1,4 @@
-"""What one of a unit is, as a scale and powers of base units, and what a number written in a formula may stand for.
+"""Size of a unit: a scale and powers of base units; and the possible meanings of a number in a formula.
 
 A value is known by the *sizes* that it may have: several, where a number of the formula may be a conversion or a
 plain factor. What it is added to, and what the quantity declares, tell which one was meant.
@@ -23,22 +23,23 @@ _SAME = 1e-9  #: relative
 
 
 class UnitFault(Exception):
-    """A formula that units forbid: what it does, in words."""
+    """Violation of units by a formula, in words."""
 
 
 class Unprovable(Exception):
-    """Where units cannot be followed: why, in words."""
+    """Reason why units cannot be followed, in words."""
 
 
 class Size(NamedTuple):
-    """One of a unit in base units (m, kg, s, A, …), and its powers by :data:`DIMENSIONS`, then of plain degrees."""
+    """Size of a unit in base units (m, kg, s, A, …): a scale, powers by :data:`DIMENSIONS`, then of plain
+    degrees."""
 
     scale: float = 1.0
     powers: tuple[float, ...] = (0.0,) * (_BARE + 1)
 
     @property
     def hard(self) -> tuple[float, ...]:
-        """The powers that must agree wherever values meet."""
+        """Powers that must agree wherever values meet."""
         return tuple(self.powers[place] for place in _HARD)
 
     @property
@@ -50,7 +51,7 @@ class Size(NamedTuple):
         return Size(self.scale * other.scale**power, powers)
 
     def is_like(self, other: Size) -> bool:
-        """Return whether values of the two may be added."""
+        """Return whether values of the two sizes may be added."""
         return _near(self.scale, other.scale) and all(map(_near_power, self.hard, other.hard))
 
 
@@ -58,8 +59,7 @@ Sizes = tuple[Size, ...]
 
 
 def size(scale: float = 1.0, **powers: float) -> Size:
-    """Return a size by the names of its dimensions; ``bare`` counts the degrees that were taken as plain
-    numbers."""
+    """Return a size by the names of its dimensions; ``bare`` counts the degrees taken as plain numbers."""
     return Size(scale, tuple(float(powers.get(name, 0)) for name in (*DIMENSIONS, "bare")))
 
 
@@ -74,7 +74,7 @@ DEGREE = size(math.pi / 180, angle=1)
 
 
 def sizes_of(unit: str) -> Sizes:
-    """What one of a unit may be: a turn a minute is an angle, or a count."""
+    """Return the possible sizes of a unit: a turn a minute is an angular rate, or a frequency."""
     known = find_unit(unit)
     if known is None:
         raise Unprovable(f"no unit {unit!r}")
@@ -83,7 +83,7 @@ def sizes_of(unit: str) -> Sizes:
 
 
 def _counted(one: Size) -> Sizes:
-    """Return the turns of a unit as a count: of ``tr/min`` and ``tr``, not of degrees."""
+    """Return the turns of a unit as a count: for ``tr/min`` and ``tr``, not for degrees."""
     if not one.angle:
         return ()
     scale = one.scale / (2 * math.pi) ** one.angle
@@ -93,7 +93,7 @@ def _counted(one: Size) -> Sizes:
 
 
 def _turning(one: Size) -> Sizes:
-    """Return the cycles of a unit as turns: of ``Hz``."""
+    """Return the cycles of a unit as turns: for ``Hz``."""
     cycles = one.powers[_CYCLE]
     if not cycles:
         return ()
@@ -106,8 +106,11 @@ def _with(powers: Sequence[float], **changed: float) -> tuple[float, ...]:
 
 
 def fits(found: Size, declared: Size) -> bool:
-    """Return whether a value of one size may be declared in the other: radians, turns and plain numbers may
-    go unsaid, a plain 180 or a count of turns is no angle, and radians a second are no hertz."""
+    """Return whether a value of one size may be declared in the other.
+
+    Radians, turns and plain numbers need no mention; a plain 180 or a count of turns is no angle, and radians
+    a second are no hertz.
+    """
     if not found.is_like(declared):
         return False
     if declared.angle:
@@ -125,7 +128,7 @@ def _near_power(a: float, b: float) -> bool:
 
 
 def distinct(sizes: Iterable[Size]) -> Sizes:
-    """Return the same without repetition, the plainest first."""
+    """Return the sizes without repetition, the plainest first."""
     kept: list[Size] = []
     for one in sizes:
         if not any(one.powers == other.powers and _near(one.scale, other.scale) for other in kept):
@@ -143,7 +146,7 @@ _ANGULAR = (1.0, math.pi, 2 * math.pi, 180 / math.pi, 180.0)
 
 
 def meanings(number: float) -> tuple[Sizes, bool]:
-    """What a factor of a formula may be besides itself, as the sizes that multiply that of what it multiplies.
+    """Return the possible meanings of a factor of a formula, as sizes, and whether it is surely a conversion.
 
     1000 may turn metres into millimetres, 60 minutes into seconds, 180 may be degrees, 9.81 metres a second squared.
     ``180/pi`` is always a conversion.
@@ -165,7 +168,7 @@ def meanings(number: float) -> tuple[Sizes, bool]:
 
 
 def _is_conversion(value: float) -> bool:
-    """Return a power of ten; or of sixties, of pi and of degrees, with thousands."""
+    """Return whether a value is a power of ten, or a product of powers of 60, pi and 180 with thousands."""
     if _is_whole(math.log10(value)):
         return True
     for sixties, angular, sense in itertools.product((-2, -1, 0, 1, 2), _ANGULAR, (1, -1)):

@@ -1,4 +1,4 @@
-"""The proof that formulas give the units that are declared: the graph, on numbers that carry their units."""
+"""Proof that formulas give the declared units: the graph, evaluated on numbers with units."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ _NUMBERS = (int, float, complex, np.number)
 
 
 class _Unknown:
-    """A value whose unit is not known."""
+    """Value with an unknown unit."""
 
 
 @dataclass
 class Findings:
-    """What the proof says, by quantity: what is proved, what is wrong and how, what cannot be told and why."""
+    """Result of the proof by quantity: proved, wrong with the fault, or undecided with the reason."""
 
     proved: set[str] = field(default_factory=set)
     wrong: dict[str, str] = field(default_factory=dict)
     unproved: dict[str, str] = field(default_factory=dict)
 
     def merge(self, other: Findings) -> None:
-        """Add what another variant shows: a fault on one is a fault, and what is proved on one is proved."""
+        """Add the findings of another variant: a fault on one is a fault, a proof on one is a proof."""
         self.wrong = {**other.wrong, **self.wrong}
         self.proved = (self.proved | other.proved) - self.wrong.keys()
         doubts = {**other.unproved, **self.unproved}
@@ -47,8 +47,7 @@ def prove(
     effects: Collection[str] = (),
     wanted: Sequence[str] = (),
 ) -> Findings:
-    """Return whether each quantity's functions give the unit that ``units`` declares, from what is given in
-    its own.
+    """Check that each quantity's functions give its unit in ``units``, from given values in their own units.
 
     A quantity is proved by its formula and, where it has one, by its stable way; what is given and could be
     computed is proved as well. What is wrong is followed on in the declared unit, so that one fault is told once.
@@ -75,14 +74,14 @@ class _Walk:
         self.waiting: set[str] = set()
 
     def _handed_in(self, name: str, value: Any) -> Any:
-        """Return a value in its declared unit; texts and structures as they are."""
+        """Return a value in its declared unit; texts and structures unchanged."""
         is_number = isinstance(value, _NUMBERS) and not isinstance(value, (bool, np.bool_))
         if not is_number and not (isinstance(value, np.ndarray) and value.dtype.kind in "iufc"):
             return value
         return Measured(value, self.sizes[name]) if name in self.sizes else value
 
     def value(self, name: str) -> Any:
-        """Return the value of a quantity, with its unit; what its functions give is judged on the way."""
+        """Return the value of a quantity with its unit, and check its functions on the way."""
         if name in self.waiting:
             return self.values.get(name, _Unknown)
         if name in self.values and (name not in self.given or name not in self.graph.names):
@@ -115,7 +114,7 @@ class _Walk:
         return self._plainly(name, node, arguments)
 
     def _doubt(self, name: str, why: str) -> None:
-        """Note what cannot be told of a quantity that declares a unit."""
+        """Record why the unit of a quantity is undecided, if it declares one."""
         if name in self.sizes:
             self.findings.unproved.setdefault(name, why)
 
@@ -127,7 +126,7 @@ class _Walk:
         return self.value(name)
 
     def _compared(self, name: str, node: Node, found: Any) -> Any:
-        """What a function gives, in the declared unit.
+        """Return a function's result in the declared unit.
 
         Raises
         ------
@@ -152,7 +151,7 @@ class _Walk:
             raise UnitFault(f"is declared in {self.units[name]}, and its formula gives {given}")
 
     def _plainly(self, name: str, node: Node, arguments: Sequence[Any]) -> Any:
-        """What a function gives that units could not be followed through, taken in the declared unit."""
+        """Return a function's result in the declared unit, where units could not be followed through it."""
         if name not in self.sizes or any(a is _Unknown for a in arguments):
             return _Unknown
         try:
@@ -171,7 +170,7 @@ def _unknown(node: Node, arguments: Sequence[Any]) -> str:
 
 
 def _line(fault: Exception, node: Node) -> str:
-    """Return the line of the course at which units part, else that of the function."""
+    """Return the course line at which units disagree, else that of the function."""
     code = getattr(node.function, "__code__", None)
     home = Path(code.co_filename).parent if code else Path()
     frames = [

@@ -1,8 +1,8 @@
-"""The errors that students usually make in a formula, made from the formula itself: nobody need list them.
+"""Usual errors of students in a formula, derived from the formula itself.
 
-Each term of a sum left out, each of its signs turned; a factor, a square or a root forgotten; a fraction upside down; sine
-and cosine exchanged; degrees taken for radians, in one angle or in all; an arc tangent that loses its
-quadrant, the other angle of the same sine or cosine.
+Each term of a sum left out, each of its signs reversed; a factor, a square or a root forgotten; a fraction
+inverted; sine and cosine exchanged; degrees taken for radians, in one angle or in all; an arctangent that
+loses its quadrant; the other angle of the same sine or cosine.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ _RADIAN = 57.29577951308232  #: degrees
 
 @dataclass(frozen=True)
 class FormulaError:
-    """One error: its kind, what in the formula it is about, if one thing, and the formula with it."""
+    """Error of a formula: its kind, the part of the formula if it is a single one, and the wrong formula."""
 
     kind: str
     about: ast.expr | None
@@ -65,7 +65,7 @@ _Change = tuple[str, ast.expr | None, ast.expr]  #: kind, what it is about, the 
 
 @lru_cache(maxsize=1024)
 def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
-    """Return the usual errors in the formula of a quantity's function; none where words alone tell it."""
+    """Return the usual errors in the formula of a quantity's function; none where only words describe it."""
     formula = formula_of(function)
     if formula is None:
         return ()
@@ -80,7 +80,7 @@ def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
 
 
 def _whole(formula: Formula) -> Iterator[_Change]:
-    """Yield the errors in all of a formula at once."""
+    """Yield the errors that change the whole formula at once."""
     match formula.tree:
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             yield INVERSE, None, ast.BinOp(right, ast.Div(), left)
@@ -91,7 +91,7 @@ def _whole(formula: Formula) -> Iterator[_Change]:
 
 
 class _Changes:
-    """Every formula that differs from one in one place."""
+    """Generator of the formulas that differ from one in one place."""
 
     def __init__(self, formula: Formula):
         self.formula = formula
@@ -120,7 +120,7 @@ class _Changes:
     def _inside(
         self, items: Sequence[ast.expr], whole: Callable[[list[ast.expr]], ast.expr]
     ) -> Iterator[_Change]:
-        """Yield the changes of each of some trees, in the tree that they make up."""
+        """Yield the changes of each operand, within the tree that the operands form."""
         for place, item in enumerate(items):
             for kind, about, tree in self.of(item):
                 yield kind, about, whole([*items[:place], tree, *items[place + 1 :]])
@@ -192,7 +192,7 @@ _TAKE_ANGLES = ("sin", "cos", "tan", "polar")
 
 
 def _is_of_degrees(formula: Formula, node: ast.Call) -> bool:
-    """Return whether the function that is called takes, or gives, degrees."""
+    """Return whether the called function takes, or gives, degrees."""
     name = called(node)
     if not isinstance(node.func, ast.Name) or not hasattr(degrees, name):
         return False
@@ -200,12 +200,12 @@ def _is_of_degrees(formula: Formula, node: ast.Call) -> bool:
 
 
 def _in_radians(angle: ast.expr) -> ast.expr:
-    """Return the angle whose number of degrees was taken for radians."""
+    """Return the angle with its number of degrees taken for radians."""
     return ast.BinOp(angle, ast.Mult(), ast.Constant(_RADIAN))
 
 
 class _AllInRadians(ast.NodeTransformer):
-    """Degrees taken for radians wherever an angle is handed in."""
+    """Substitution of radians for degrees in every angle passed to a function."""
 
     def __init__(self, formula: Formula):
         self.formula = formula
@@ -220,7 +220,7 @@ class _AllInRadians(ast.NodeTransformer):
 
 
 def _called_as(node: ast.Call, name: str, arguments: list[ast.expr]) -> ast.Call:
-    """Return a call of the neighbour of a function: ``np.cos`` for ``np.sin``."""
+    """Return a call of a function's counterpart: ``np.cos`` for ``np.sin``."""
     function = node.func
     other = _changed(function, "attr", name) if isinstance(function, ast.Attribute) else call(name).func
     return ast.Call(other, arguments, [])
@@ -241,7 +241,7 @@ def _changed(node: ast.expr, field: str, value: Any) -> ast.expr:
 
 
 def _is_small(node: ast.expr) -> bool:
-    """Return whether a term is one thing more or less, as where something is counted."""
+    """Return whether a term is a small whole number, as in a count."""
     return isinstance(node, ast.Constant) and isinstance(node.value, int) and abs(node.value) <= _FEW
 
 
