@@ -175,6 +175,7 @@ class Judged:
     any; ``found`` what follows from the student's own answers, by quantity, in canonical units: it is told.
     ``also``: other named mistakes that explain the same answer.
     ``follows``: the answer is not the expected one, but right from an earlier answer of the student that is wrong.
+    ``slip``: what is missed that the engine tells, such as ``not_drawn``; its price is that of the course.
     """
 
     share: float = 1.0
@@ -182,6 +183,7 @@ class Judged:
     found: Mapping[str, float] = field(default_factory=dict)
     follows: bool = False
     also: tuple[str, ...] = ()
+    slip: str = ""
 
 
 def judge(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,6 +1,6 @@
 """What the drawn polygons have in common: points on paper, and the judge's words for what is wrong with them."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from coursework.polygons.hand_drawn import HUNG, Drawing, Fault, ancestors, is_scale, judge_drawing
 from coursework.polygons.polygon import Polygon
+from coursework.quantities.error_kinds import PRICES
 from coursework.solution import Judged
 
 Answers: TypeAlias = Mapping[str, Any]  #: by part id, those that were read
@@ -71,6 +72,29 @@ class Asked(NamedTuple):
 
 def verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
     """A :class:`Judged` for each answer that can be judged."""
+    said = _verdicts(answers, polygon, asked)
+    ends = {**asked.lengths, **{part: (read.start, read.end) for part, read in asked.reads.items()}}
+    drawn_ones = {asked.points[i] for i in asked.points if i in answers}
+    points = [i for i, point in asked.points.items() if point != polygon.pole]
+    undrawn = [i for i, of in ends.items() if not drawn_ones.issuperset(of)]
+    return read_off(said, points, (asked.scale, *ends), undrawn)
+
+
+def read_off(
+    said: Mapping[str, Judged], points: Sequence[str], read: Collection[str], undrawn: Collection[str] = ()
+) -> dict[str, Judged]:
+    """Return the verdicts, with little for what is ``read`` off a drawing that does not stand.
+
+    A drawing stands where half of its ``points`` at least, the pole aside, are right. What is ``undrawn`` is read off
+    nothing, whatever stands.
+    """
+    stands = 2 * sum(said[i].share == 1.0 for i in points if i in said) >= len(points)
+    nothing = undrawn if stands else read
+    little = Judged(PRICES["not_drawn"], slip="not_drawn")
+    return {i: little if verdict.share == 1.0 and i in nothing else verdict for i, verdict in said.items()}
+
+
+def _verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
     scale = _stated(answers, polygon, asked)
     found = drawn(answers, polygon, asked)
     if found is None:

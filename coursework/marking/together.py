@@ -56,6 +56,9 @@ def mark_judged(
         follows = words(variant.lang)["marking"]["found"].format(listed)
         return Said(f"{said.sentence} {follows}", {**said.pieces, **own})
 
+    if verdict.slip:
+        slip = f"slip:{verdict.slip}"
+        return made(slip, key.rules.share(verdict.slip), read_as, told(f"slip_{verdict.slip}"), (slip,))
     is_followed = found.followed or verdict.follows
     if (
         share == 1.0

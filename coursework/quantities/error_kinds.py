@@ -21,6 +21,8 @@ PRICES: Mapping[str, float] = MappingProxyType({
     "link_sign": 0.5, "link_missing": 0.0, "link_term": 0.0, "link_turn": 0.0, "link_axis": 0.0, "link_angle": 0.0,
     "frame_missing": 0.0, "angle_unit": 0.0, "other_loop": 0.0, "repeated_equation": 0.0, "says_nothing": 0.0,
     "squared": 0.0, "wrapped": 0.0, "one_projection": 0.0, "numbers": 0.0, "some_positions": 0.0, "not_derived": 0.0,
+    # what is read off a drawing that is not there, or not right
+    "not_drawn": 0.25,
     # what the author names without saying of which kind it is
     "mistake": 0.0,
 })  # fmt: skip

@@ -5,6 +5,7 @@ The judge takes B1 and B2 in either order; the angles of index 1 are those of th
 
 import cmath
 from collections.abc import Mapping
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from coursework.degrees import from_radians, polar, wrap
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
-from coursework.marking.drawn_polygons import Asked, drawn, scale_for, to_paper, turned, verdicts
+from coursework.marking.drawn_polygons import Asked, drawn, read_off, scale_for, to_paper, turned, verdicts
 from coursework.polygons import Polygon, Side
 from coursework.polygons.hand_drawn import TOLERANCE_MM, on_paper
 from coursework.solution import Judged, given, judge, mistake
@@ -131,7 +132,10 @@ def drawing(answers, r1, r2, r3, r4, theta2):
     for index, verdict in pins.items():
         said[f"b{index}"] = Judged(0.0, "too_small") if too_small else _after(verdict, said)
     right = {mode: _right_angles(r1, r2, r3, r4, theta2, mode) for mode in ("open", "crossed")}
-    return said | _angles(answers, own, right, said)
+    said |= _angles(answers, own, right, said)
+    undrawn = [name for index, names in ANGLES.items() if f"b{index}" not in answers for name in names]
+    # Where circles meet, a turned drawing is right from its own A and C.
+    return read_off(said, "ac", ("kl", *chain(*ANGLES.values())), undrawn)
 
 
 def _frame(A, r1):

@@ -4,7 +4,7 @@ import numpy as np
 
 from coursework.degrees import polar
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
-from coursework.marking.drawn_polygons import scale_for, to_paper
+from coursework.marking.drawn_polygons import read_off, scale_for, to_paper
 from coursework.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
 from coursework.solution import Judged, given, judge, mistake
 
@@ -129,7 +129,16 @@ SYMBOLS = {"rA": "r_A", "l4": r"\ell_4", "l3": r"\ell_3"}
 
 @judge
 def drawing(answers, d, r2, r3, b, theta1, omega1):
-    """Arrows as components on paper, at any scale, each from the student's own ones before it."""
+    """Arrows as components on paper, at any scale, each from the student's own ones before it; then what is read off them."""
+    said = _verdicts(answers, d, r2, r3, b, theta1, omega1)
+    of = {"omega4": "v40", "omega3": "v30"}
+    # Sums of arrows that are all turned are right from them: those whose direction is laid off tell.
+    return read_off(
+        said, ("v10", "v40", "v30"), ("kv", *of), [name for name, arrow in of.items() if arrow not in answers]
+    )
+
+
+def _verdicts(answers, d, r2, r3, b, theta1, omega1):
     pose = _pose(d, r2, r3, b, theta1)
     right = dict(zip(VECTORS, _images(pose, r2, r3, omega1), strict=True))
     drawn = {name: on_paper(*answers[name]) for name in VECTORS if name in answers}

@@ -258,9 +258,9 @@ def test_lengths_alone_are_judged_at_the_stated_scale(name):
         k = next(i for i in ("kv", "ka") if i in variant.part_ids)
         right = {i: f"{v + 1.5:.1f}" for i, v in lengths(variant, on_paper(polygon, scale, 0j)).items()}
         marking = variant.grade({k: scale, **right})
-        assert {marking[i].verdict for i in (k, *right)} == {"correct"}
+        assert {marking[i].verdict for i in (k, *right)} == {"slip:not_drawn"}
         wrong = {i: float(v) + 2 for i, v in right.items()}
-        assert "correct" not in {variant.grade({k: scale, **wrong})[i].verdict for i in wrong}
+        assert "slip:not_drawn" not in {variant.grade({k: scale, **wrong})[i].verdict for i in wrong}
 
 
 @every_polygon

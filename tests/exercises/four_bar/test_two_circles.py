@@ -78,7 +78,7 @@ def test_angles_alone_are_judged_in_either_order():
         right = {n: variant.solution()[n] for n in ANGLES}
         for answers in (right, {EXCHANGED[n]: v for n, v in right.items()}):
             marking = variant.grade({n: f"{v:.1f}" for n, v in answers.items()})
-            assert {marking[n].verdict for n in ANGLES} == {"correct"}
+            assert {marking[n].verdict for n in ANGLES} == {"slip:not_drawn"}
 
 
 def test_a_crank_drawn_at_another_angle_costs_only_A():

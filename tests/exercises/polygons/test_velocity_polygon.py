@@ -61,7 +61,8 @@ def test_a_value_that_follows_from_ones_own_wrong_length_follows():
     variant = FOUR_BAR.variant(3)
     found = variant.solution()
     long = found["pv_b"] + 15
-    given = {"kv": found["kv"], "pv_b": long, "v_B": long * found["kv"]}
+    points = {n: f"{x}; {y}" for n, (x, y) in ((n, found[n]) for n in "pab")}
+    given = {"kv": found["kv"], "pv_b": long, "v_B": long * found["kv"], **points}
     marking = variant.grade(given)
     assert marking["pv_b"].verdict == "wrong"
     assert marking["v_B"].verdict == "follow_through"
