@@ -1,4 +1,4 @@
-"""Where a student is and what comes next, in words: for notebooks and for the command line."""
+"""Progress of a student and the recommended next step in words, for notebooks and for the command line."""
 
 from __future__ import annotations
 
@@ -23,13 +23,14 @@ _SKILLS = 6  #: that are told, the last lost first
 def next_step(
     course: Course[Any], progress: Progress, on: date, order: Sequence[str] | None = None
 ) -> Advice | None:
-    """What to do next on a day; None for a course without exercises. ``order`` is its study order, read unless it is told."""
+    """Return the recommendation for a day; None for a course without exercises. ``order`` is the study order,
+    by default the course's."""
     known = course.folder.study_order if order is None else order
     return advised(progress, on, known, _Errors(course))
 
 
 class _Errors(Mapping[str, Iterable[str]]):
-    """By exercise, the named errors that it tries; a solution is loaded when it is looked at."""
+    """Named errors that each exercise tests, by exercise; a solution is loaded on first use."""
 
     def __init__(self, course: Course[Any]):
         self._course = course
@@ -48,7 +49,7 @@ class _Errors(Mapping[str, Iterable[str]]):
 
 
 def told_standings(course: Course[Any], progress: Progress, on: date, lang: str) -> str:
-    """Return a line an exercise that was begun, as a Markdown list; empty where none was."""
+    """Return a line for each exercise begun, as a Markdown list; empty where there is none."""
     said = words(lang)["study"]["progress"]
     return "\n".join(
         _line(course, s, on, lang, said) for s in standings(progress) if s.tried and s.exercise in course
@@ -70,7 +71,8 @@ def _line(course: Course[Any], one: Standing, on: date, lang: str, said: Mapping
 
 
 def told_skills(course: Course[Any], progress: Progress, lang: str, called: Called | None = None) -> str:
-    """What has cost answers, as Markdown lists: what did not come out since, and what did; ``called`` as for :func:`told_advice`."""
+    """Return the skills lost since and those recovered, as Markdown lists; ``called`` as for
+    :func:`told_advice`."""
     said = words(lang)["study"]["progress"]
     lost = sorted(
         (s for s in skills(progress) if s.last_lost), key=lambda s: s.last_lost or date.min, reverse=True
@@ -98,7 +100,7 @@ def _skill(course: Course[Any], skill: Skill, told: str, lang: str, called: Call
 
 
 def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str:
-    """What to look at for a skill, in words; empty where nothing names it here."""
+    """Return the words for a skill; empty where it has no name here."""
     family, _, name = skill.partition(":")
     said = words(lang)["study"]["skills"]
     if family == "kind":
@@ -114,7 +116,8 @@ def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str
 
 
 def told_advice(course: Course[Any], advice: Advice, lang: str, called: Called | None = None) -> str:
-    """Why this exercise now, in a sentence or two; ``called`` is how an exercise is called, by title and name unless told."""
+    """Return the reason for the recommended exercise, in a sentence or two; ``called`` names an exercise, by
+    default by title and name."""
     said = words(lang)["study"]["next"]
     skill = told_skill(course, advice.skill, advice.exercise, lang) if advice.skill else ""
     why = "new" if advice.why == "skill" and not skill else advice.why
@@ -127,7 +130,7 @@ def told_advice(course: Course[Any], advice: Advice, lang: str, called: Called |
 
 
 def title(exercise: CourseExercise[Any], lang: str) -> str:
-    """Return an exercise as a student knows it: its title, and its name."""
+    """Return the title of an exercise with its name."""
     return f"{exercise.title(lang)} (`{exercise.name}`)"
 
 

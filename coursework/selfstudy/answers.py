@@ -1,4 +1,4 @@
-"""What is said to a student alone of answers: of each, and of those that were another variant's."""
+"""Messages to a student about answers: about each, and about answers to another variant."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from coursework.selfstudy.store import Kept, is_blank
 
 
 def sign_of(mark: Mark) -> str:
-    """Return the mark at the head of a line, told apart without colour."""
+    """Return the symbol of a verdict at the head of a line, distinct without colour."""
     if mark.verdict == "correct":
         return "✓"
     if mark.verdict == "to_mark":
@@ -27,8 +27,10 @@ def sign_of(mark: Mark) -> str:
 
 
 def sentence_of(variant: Variant, mark: Mark, reveal: str) -> str:
-    """What is said to a student alone of an answer: where nobody will look at it, what to write instead; ``reveal``
-    is the call that shows the value of an open question."""
+    """Return the message about an answer; for an answer that nobody will mark, it says what to write instead.
+
+    ``reveal`` is the call that shows the value of an open question.
+    """
     if mark.verdict == "to_mark":
         part = next(p for p in variant.parts if p.id == mark.part)
         name, sentence = part_name(variant, part), words(variant.lang)["marking"]["open"]
@@ -52,10 +54,11 @@ def sentence_of(variant: Variant, mark: Mark, reveal: str) -> str:
 def same_as_another(
     variant: Variant, kept: Kept, given: Mapping[str, Any], marking: Marking
 ) -> tuple[int | None, list[str]]:
-    """Return the seed of another variant that these very answers were for, and which of them are wrong here.
+    """Return the seed of another variant for which these answers are right, and the parts that are wrong
+    here.
 
-    Two numbers at least that are wrong here, and would be others there, make a copy: what is right in both,
-    and a small whole number, may well be the same.
+    A copy needs at least two numbers that are wrong here and would differ there: an answer that is right in
+    both, or a small whole number, may well be the same.
     """
     written = {n: a for n, a in given.items() if not is_blank(a)}
     wrong = [p for p in variant.parts if p.id in written and marking[p.id].verdict != "correct"]
@@ -83,11 +86,11 @@ def is_open(variant: Variant, mark: Mark) -> bool:
 
 
 def judged_out_of(variant: Variant, marking: Marking) -> float:
-    """Return the points of what is marked here."""
+    """Return the total points of the parts that are marked here."""
     return sum(m.out_of for m in marking.values() if not is_open(variant, m))
 
 
 def quoted(text: Any) -> str:
-    """What was written, shortened, as no Markdown reader takes for markup."""
+    """Return an answer, shortened, without characters that Markdown takes for markup."""
     said = "".join(c for c in str(text) if c.isprintable() and c not in "$`*_\\<>[]#|{}")
     return said if len(said) <= 60 else f"{said[:59]}…"

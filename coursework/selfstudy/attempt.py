@@ -1,5 +1,7 @@
-"""One variant worked on alone: what was answered, what becomes of it, hints one after another. It says nothing in words of its own:
-notebooks and the site do."""
+"""Attempt of one student at one variant: answers, marking, hints one after another.
+
+It contains no words of its own; notebooks and the site add them.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Checked(NamedTuple):
-    """What became of answers."""
+    """Marked answers."""
 
     marking: Marking
     answers: Mapping[
@@ -33,41 +35,41 @@ class Checked(NamedTuple):
 
     @property
     def right(self) -> tuple[str, ...]:
-        """The parts that are right."""
+        """Parts that are right."""
         return tuple(name for name, one in self.marking.items() if one.verdict == "correct")
 
     @property
     def first_missed(self) -> str:
-        """The first part whose answer is not right, of those that were answered; empty where there is none."""
+        """First part with a wrong answer; empty where there is none."""
         passed = ("correct", "missing", "to_mark")
         return next((name for name, one in self.marking.items() if one.verdict not in passed), "")
 
 
 class Attempt:
-    """A variant, and what is kept of it."""
+    """Variant with the stored answers to it."""
 
     def __init__(self, variant: Variant, kept: Kept):
         self.variant, self.kept = variant, kept
 
     @property
     def answers(self) -> dict[str, Any]:
-        """The last answer to each question that was not blank; a file may hold those to others."""
+        """Last answer to each question that is not blank; a file may hold answers to other questions."""
         mine = self.kept.of(self.variant.seed, "answers")
         return {name: answer for name, answer in mine.items() if name in self.variant.part_ids}
 
     @property
     def predictions(self) -> dict[str, Any]:
-        """What was predicted."""
+        """Stored predictions."""
         return self.kept.of(self.variant.seed, "predictions")
 
     def marked(self) -> Checked:
-        """What becomes of the kept answers; nothing is kept anew."""
+        """Mark the stored answers, without storing anything."""
         return Checked(mark(self.variant, self.answers), self.answers)
 
     def check(self, given: Mapping[str, Any]) -> Checked:
-        """Mark answers by part, kept ones in the place of blank ones, and keep them with what becomes of them.
+        """Mark answers by part, with stored ones in place of blanks, and store them with the results.
 
-        Those that are wrong here and were given to another variant are not kept.
+        Answers that are wrong here and were given to another variant are not stored.
         """
         now = {**self.answers, **{n: a for n, a in given.items() if not is_blank(a)}}
         try:
@@ -87,11 +89,11 @@ class Attempt:
     # ---------------------------------------------------------------- right answers
 
     def own(self, checked: Checked) -> dict[str, Own]:
-        """What is right, as it was written, by quantity."""
+        """Return the right answers as the student wrote them, by quantity."""
         return right_ones(self.variant, checked.answers, checked.right)
 
     def compared(self, asked: Iterable[Prediction], own: Mapping[str, Own]) -> list[Compared]:
-        """Return the predictions beside what came out; those that were not made are left out."""
+        """Return the predictions with their outcomes; predictions that were not made are left out."""
         said, found = self.predictions, []
         for one in asked:
             mine = own.get(one.quantity)
@@ -102,15 +104,15 @@ class Attempt:
     # ------------------------------------------------------------ hints, solutions
 
     def hints(self, name: str, call: Callable[[str], str]) -> tuple[str, ...]:
-        """Return all hints for a question or a step on the way to one, as Markdown; ``call`` says how to ask
-        for those of another."""
+        """Return all hints for a question or an intermediate step, as Markdown; ``call`` gives the call for
+        hints on another one."""
         # Of what is right in another way the reference is not the student's: it stays a symbol.
         own = self.own(self.marked())
         found = {q: one.value for q, one in own.items() if one.is_usual and one.value is not None}
         return hints.steps(self.variant, name, found, call)
 
     def hints_seen(self, name: str) -> int:
-        """How many of them were shown."""
+        """Return the number of hints shown."""
         steps = [int(e.get("step", 1)) for e in self._happened(HINT) if e["part"] == name]
         return max(steps, default=0)
 
@@ -120,11 +122,12 @@ class Attempt:
 
     @property
     def is_example(self) -> bool:
-        """True if the variant was shown with its solution: it counts no more."""
+        """True if the variant was shown with its solution, so that it no longer counts."""
         return any(self._happened(EXAMPLE))
 
     def reveal(self) -> None:
-        """Keep that the whole solution is shown: what was not right yet was not found alone, and the variant counts no more."""
+        """Record that the whole solution is shown: questions not yet right were not solved alone, and the
+        variant no longer counts."""
         right = self.marked().right
         for part in self.variant.parts:
             if part.id not in right:
@@ -132,7 +135,7 @@ class Attempt:
         self.note(EXAMPLE, "", step=0)
 
     def note(self, what: str, part: str, **more: Any) -> None:
-        """Keep that something was shown; once."""
+        """Record that something was shown, once."""
         told = {"part": part, "what": what, **more}
         if not any(told.items() <= one.items() for one in self.kept.happened(self.variant.seed)):
             self.kept.note(self.variant.seed, [told])

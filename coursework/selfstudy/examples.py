@@ -29,7 +29,8 @@ _APART = 1_000  #: seeds between levels
 
 
 def example_variant(variant: Variant, base: int, level: int) -> Variant:
-    """Return the variant of an example of a level: none of those that are asked, nor of another level.
+    """Return the variant for an example of a level, different from the attempted ones and from those of other
+    levels.
 
     Raises
     ------
@@ -45,16 +46,17 @@ def example_variant(variant: Variant, base: int, level: int) -> Variant:
 
 
 def has_example(variant: Variant) -> bool:
-    """Return whether there is something to leave blank."""
+    """Return whether the solution has something to leave blank."""
     return variant.exercise.folder.has_solutions and bool(blanks(variant, 1))
 
 
 def blanks(variant: Variant, level: int, *, in_lesson: bool = False) -> tuple[Part, ...]:
-    """Return the questions that are left blank at a level: the last one, a third, two thirds, all; in the
-    order of the solution.
+    """Return the questions left blank at a level: the last one, a third, two thirds, all; in the order of the
+    solution.
 
-    In a study session not what has one answer in every variant: it would be that of the variant that is asked; nor what
-    is judged together. A lesson asks nothing else, and may leave both: what is judged together counts as one question.
+    A study session excludes a question with the same answer in every variant, since it would give away the
+    attempted one, and parts that are judged together. A lesson may leave both blank: parts judged together
+    count as one question.
     """
     places = {step.name: k for k, step in enumerate(_steps(variant))}
     may_be = _may_be_blank_in_lesson if in_lesson else _may_be_blank
@@ -74,8 +76,7 @@ def _may_be_blank(variant: Variant, part: Part) -> bool:
 
 
 def _together(parts: Iterable[Part], places: Mapping[str, int]) -> list[list[Part]]:
-    """Return the parts in the order of the solution, those that are judged together as one, at the place of
-    the first."""
+    """Group the parts that are judged together, in the order of the solution, at the position of the first."""
     groups: dict[tuple[str, str], list[Part]] = {}
     for part in sorted(parts, key=lambda p: places[p.quantity]):
         judge = part.judge or part.loop
@@ -88,8 +89,8 @@ def _steps(variant: Variant) -> Sequence[Step]:
 
 
 def _blank(variant: Variant, part: Part, step: Step, keys: Mapping[str, str], said: Any) -> str:
-    """Return the room of an answer, behind its symbol, or behind the number of its question where no symbol
-    says anything."""
+    """Return the room for an answer, after its symbol, or after the number of its question where no symbol
+    names it."""
     form = said["blank" if part.sort.has_symbol else "unnamed"]
     question, key = question_called(variant, part), f"`{keys[part.id]}`"
     return str(form.format(symbol=f"${step.symbol}$", question=question, key=key))
@@ -104,10 +105,10 @@ def told_steps(
     *,
     in_lesson: bool = False,
 ) -> str:
-    """Return the steps of the solution as Markdown: whole up to the first blank; from there on no number
-    stands in them.
+    """Return the steps of the solution as Markdown: complete up to the first blank, without numbers from
+    there on.
 
-    In a study session what has one answer in every variant is left out: it is asked, and not told.
+    A study session leaves out steps with the same answer in every variant, since they are asked.
     """
     by_quantity = {p.quantity: p for p in left}
     shared = () if in_lesson else unchanging(variant.exercise)

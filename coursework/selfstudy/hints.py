@@ -1,4 +1,5 @@
-"""Hints in steps: what a quantity depends on, the words of the course, its formula, its formula with numbers.
+"""Hints in steps: the quantities that an answer depends on, the words of the course, the formula, the formula
+with numbers.
 
 All of it is read from the solution's graph and texts. No step holds the value: numbers stand for what the statement
 gives and for what the student has found; the rest stays a symbol, to be found first.
@@ -40,7 +41,7 @@ _AROUND = re.compile(r"\^\{\\circ\}|\\left|\\right|\\ |[();\s-]")
 
 
 def quantity_of(variant: Variant, name: str) -> str:
-    """Return the quantity of a part's id, or a step on the way to one, by its own name.
+    """Return the quantity of a part's id, or of an intermediate step by its own name.
 
     Raises
     ------
@@ -60,7 +61,7 @@ def steps(
     found: Mapping[str, float] = MappingProxyType({}),
     call: Callable[[str], str] = '`hint("{}")`'.format,
 ) -> tuple[str, ...]:
-    """Return the hints for a part or a step on the way, from the vaguest on, as Markdown.
+    """Return the hints for a part or an intermediate step, the vaguest first, as Markdown.
 
     ``found`` holds the quantities that the student has right, as the student has them; ``call`` says how to ask
     for the hints of another.
@@ -82,7 +83,7 @@ def steps(
 
 
 def _asked(variant: Variant, quantity: str) -> Part | None:
-    """Return the part that asks for a quantity."""
+    """Return the part that asks for a quantity; None where there is none."""
     return next((p for p in variant.parts if p.quantity == quantity), None)
 
 
@@ -122,7 +123,7 @@ def _given(variant: Variant, name: str) -> str:
 
 
 def words_of(variant: Variant, quantity: str) -> str:
-    """Return the solution's words before the step of a quantity, where they hold no computed number."""
+    """Return the solution's words before the step of a quantity, if they hold no computed number."""
     section = variant.solution_text.sections.get(quantity)
     if section is None or not section.text:
         return ""
@@ -141,7 +142,7 @@ def words_of(variant: Variant, quantity: str) -> str:
 
 
 def _before_numbers(variant: Variant, section: str) -> str:
-    """Return the sentences of a section's words that stand before the first computed number."""
+    """Return the sentences of a section before its first computed number."""
     path = variant.exercise.texts.file("solutions", variant.lang)
     start = _COMPUTED.split(sections(path, path.stat().st_mtime_ns).get(section, ""), maxsplit=1)[0]
     ends = [found.end() for found in _SENTENCE_END.finditer(start)]
@@ -150,7 +151,7 @@ def _before_numbers(variant: Variant, section: str) -> str:
 
 
 def _against(variant: Variant, part: Part) -> str:
-    """Of a choice among three or more, why one that is wrong is none; nothing for anything else."""
+    """Return the reason against one wrong case of a choice among three or more; empty for anything else."""
     if len(part.choices) < 3:
         return ""
     step = next(s for s in answer_sheet(variant, polygons=False).steps if s.name == part.quantity)
@@ -159,7 +160,7 @@ def _against(variant: Variant, part: Part) -> str:
 
 
 def _look_again(variant: Variant, part: Part) -> str:
-    """What is left to say where nothing else is."""
+    """Return the hint of last resort: to look at the cases, or at the statement."""
     said = words(variant.lang)["study"]["hint"]
     return said["cases"] if part.choices else said["statement"]
 
@@ -172,7 +173,7 @@ def _is_free(variant: Variant, section: str) -> bool:
 
 @lru_cache(maxsize=256)
 def sections(path: Path, changed: int) -> Mapping[str, str]:
-    """What each section of a text says, as it is written."""
+    """Return the source of each section of a text."""
     from coursework.course.texts import parse
 
     return {
@@ -182,7 +183,7 @@ def sections(path: Path, changed: int) -> Mapping[str, str]:
 
 @lru_cache(maxsize=256)
 def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
-    """Return the names that each section of a text prints; a section cut by a block is left out."""
+    """Return the names that each section of a text prints; a section cut by a template block is left out."""
     import jinja2
     from jinja2 import meta
 
@@ -197,8 +198,8 @@ def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
 
 
 def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
-    """Return the formula, numbers put in for what is known; empty where words say it or it would be the
-    value."""
+    """Return the formula with numbers for known quantities; empty where only words describe it or it would be
+    the value."""
     values, units = variant.walk, variant.exercise.units
     kinds = {n: kind_of(value, units.get(n, "1")) for n, value in values.items()}
     symbols = {n: Told(_symbol(variant, n), False, kinds[n]) for n in values}
@@ -220,17 +221,17 @@ def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
 
 
 def formula(variant: Variant, quantity: str) -> str:
-    """Return the formula of a quantity in symbols alone, as Markdown; empty where words say it."""
+    """Return the formula of a quantity in symbols, as Markdown; empty where only words describe it."""
     return _formula(variant, quantity, {})
 
 
 def _is_value(latex: str) -> bool:
-    """Return whether a formula is a number, or numbers side by side, with nothing left to compute."""
+    """Return whether a formula is a number, or several numbers, with nothing left to compute."""
     return not _AROUND.sub("", _NUMBER.sub("", latex))
 
 
 def _names_something(latex: str) -> bool:
-    """Return whether a formula holds a symbol: one of numbers alone would be the value."""
+    """Return whether a formula contains a symbol: one of numbers alone would give the value."""
     without = "".join(
         t for t in tokens(latex) if t not in (r"\num", r"\times", r"\frac", r"\left", r"\right")
     )
@@ -238,13 +239,14 @@ def _names_something(latex: str) -> bool:
 
 
 def revealed(variant: Variant, name: str) -> Step:
-    """Return the whole step of the worked solution, with its value."""
+    """Return the complete step of the worked solution, with its value."""
     quantity = quantity_of(variant, name)
     return next(s for s in answer_sheet(variant).steps if s.name == quantity)
 
 
 def revealed_text(variant: Variant, name: str) -> str:
-    """Return the same as Markdown; of a question that a person marks its model answer, or that it has none."""
+    """Return the complete step as Markdown; for a question marked by a person, its model answer or a note
+    that it has none."""
     asked = next((p for p in variant.parts if p.id == name and p.sort.is_open), None)
     if asked is not None:
         models = (s.words for s in answer_sheet(variant).steps if s.name == asked.id)

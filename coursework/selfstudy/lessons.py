@@ -1,4 +1,4 @@
-"""What lessons show: predictions beside what came out, and curves."""
+"""Output of lessons: predictions with their outcomes, and curves."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NEAR_ZERO = 0.02  #: where a tenth would be nothing
 
 
 class Compared(Shown):
-    """Predictions beside what came out; ``outcome`` is what came out alone, for who reads it on paper."""
+    """Predictions with their outcomes; ``outcome`` holds the outcomes alone, for readers on paper."""
 
     outcome = ""
 
@@ -32,7 +32,7 @@ def compare(
     lang: str = "fr",
     angles: Collection[str] = (),
 ) -> Compared:
-    """Return the predictions beside what came out, as a notebook's cell shows them.
+    """Return the predictions with their outcomes, for display in a notebook cell.
 
     Numbers agree within a tenth, angles within 10°, whole turns apart or not; texts and truths when they are the
     same. Numbers may be texts with a comma and a unit, truths yes and no in any language. A prediction that is None
@@ -99,7 +99,7 @@ def plot(
     lang: str = "fr",
     at: float | None = None,
 ) -> Shown:
-    r"""Return the curves over one variable, a panel each, as a notebook's cell shows them.
+    r"""Plot curves over one variable, a panel each, for display in a notebook cell.
 
     Parameters
     ----------

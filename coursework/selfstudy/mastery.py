@@ -1,9 +1,10 @@
-"""What a student can do, read from what happened: outings, questions that come again, skills. Nothing here is kept.
+"""Mastery of a student, computed from the recorded events: outings, repetitions, skills.
 
-An *outing* is a question of one variant. It is clean where the first answer that can be read is right, without a hint and without
-the solution. A question that was not clean comes again after 1 day, and after each clean outing that was due, after 3, 7 and 16 days;
-then it is at rest, and one that is not clean begins anew. A *skill* is an error that has a name, or a kind of answer: an error is lost by making
-it, and shown not to be made by a right answer where it would have given another; what came out in two variants since it was last lost is held.
+An *outing* is a question of one variant. It is clean if the first readable answer is right, without a hint
+and without the solution. A question that was not clean returns after 1 day, and after each clean outing that
+was due, after 3, 7 and 16 days; then it rests, and an unclean outing starts the series again. A *skill* is a
+named error, or a kind of answer. Making an error loses the skill; a right answer where the error would have
+given another shows it. A skill shown in two variants since its last loss is held.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ _NO_ATTEMPT = ("missing", "unreadable", "missing_unit", "wrong_unit", "to_mark",
 
 @dataclass
 class Outing:
-    """A question of one variant."""
+    """Question of one variant."""
 
     exercise: str
     seed: int
@@ -42,18 +43,18 @@ class Outing:
 
     @property
     def is_clean(self) -> bool:
-        """Right first time, alone."""
+        """True if the first answer was right, without help."""
         return bool(self.verdicts) and self.verdicts[0] in RIGHT and not self.hints and not self.was_revealed
 
     @property
     def counts(self) -> bool:
-        """True if something can be said of it: it was answered, or its solution was asked for."""
+        """True if the outing carries information: an answer was given, or the solution was requested."""
         return bool(self.verdicts) or self.was_revealed
 
 
 @dataclass(frozen=True)
 class Question:
-    """A question over all its variants."""
+    """Question over all its variants."""
 
     exercise: str
     part: str
@@ -64,7 +65,7 @@ class Question:
 
 @dataclass(frozen=True)
 class Skill:
-    """An error that has a name, ``mistake:no_coriolis``, or a kind of answer, ``kind:rad/s``."""
+    """Named error, ``mistake:no_coriolis``, or kind of answer, ``kind:rad/s``."""
 
     id: str
     exercise: str  #: where it was last lost, or else shown
@@ -74,13 +75,13 @@ class Skill:
 
     @property
     def is_open(self) -> bool:
-        """Lost, and not held since."""
+        """True if the skill was lost and not held since."""
         return bool(self.lost) and self.shown < HELD
 
 
 def outings(progress: Progress) -> tuple[Outing, ...]:
-    """Return the outings of which something can be said, the earliest begun first; none of a variant that was
-    an example before."""
+    """Return the outings that carry information, the earliest first; none of a variant shown as an example
+    before."""
     found: dict[tuple[str, int, str], Outing] = {}
     examples = set()
     for one in progress:
@@ -108,7 +109,7 @@ def _follow(outing: Outing, one: Entry, day: date) -> None:
 
 
 def questions(progress: Progress) -> tuple[Question, ...]:
-    """Return the questions that were met, with the day on which each comes again."""
+    """Return the attempted questions, each with the day of its repetition."""
     by_question: dict[tuple[str, str], list[Outing]] = {}
     for outing in outings(progress):
         by_question.setdefault((outing.exercise, outing.part), []).append(outing)
@@ -129,7 +130,7 @@ def _question(exercise: str, part: str, met: tuple[Outing, ...]) -> Question:
 
 
 def skills(progress: Progress) -> tuple[Skill, ...]:
-    """Return the skills that were tried, those of errors and those of kinds, the first tried first."""
+    """Return the tested skills, those of errors and those of kinds, in order of their first test."""
     lost: dict[str, list[tuple[str, date]]] = {}
     shown: dict[str, dict[tuple[str, int], str]] = {}
     lost_in: dict[str, tuple[str, int]] = {}  # where a skill was lost, other answers show nothing of it
@@ -169,7 +170,7 @@ def _texts(told: Any) -> Iterable[str]:
 
 @dataclass(frozen=True)
 class Standing:
-    """Where a student is in one exercise."""
+    """Progress of a student in one exercise."""
 
     exercise: str
     variants: int  #: begun
@@ -180,7 +181,7 @@ class Standing:
 
 
 def standings(progress: Progress) -> tuple[Standing, ...]:
-    """Where a student is, exercise by exercise, the earliest begun first."""
+    """Return the progress of a student by exercise, the earliest begun first."""
     found = []
     met, asked = outings(progress), questions(progress)
     for exercise in progress.exercises:
@@ -194,7 +195,7 @@ def standings(progress: Progress) -> tuple[Standing, ...]:
 
 @dataclass(frozen=True)
 class Advice:
-    """What to do next, and why: ``due``, ``skill``, ``new`` or ``later``."""
+    """Recommendation with its reason: ``due``, ``skill``, ``new`` or ``later``."""
 
     exercise: str
     why: str
@@ -206,10 +207,11 @@ class Advice:
 def advised(
     progress: Progress, on: date, exercises: Iterable[str], errors: Mapping[str, Iterable[str]]
 ) -> Advice | None:
-    """What to do next on a day, among the exercises of a course; None where it has none.
+    """Return the recommended exercise of a course for a day; None for a course without exercises.
 
-    What was missed and is due, the most of it first; then an exercise not begun that tries what was lost and not held since; then the next not
-    begun; then what comes again first. ``errors`` are the skills that each exercise tries, by exercise.
+    In this order: the exercise with the most due questions; a new exercise that tests a skill lost and not
+    held since; the next new exercise; the question that returns first. ``errors`` are the skills that each
+    exercise tests, by exercise.
     """
     known = tuple(exercises)
     waiting: dict[str, list[Question]] = {}

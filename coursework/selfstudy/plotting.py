@@ -1,4 +1,4 @@
-"""Curves of a variant over a turn of its driver, the student's own answers marked on them."""
+"""Curves of a variant over a turn of its driver, with the student's answers marked on them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PANELS = 6  #: curves of a plot, unless some are named
 
 
 class Curves(NamedTuple):
-    """A plot, and what is to be said of it."""
+    """Plot with its notes."""
 
     plot: Plot
     driver: str  #: the angle of the driver, degrees, by name
@@ -30,13 +30,12 @@ class Curves(NamedTuple):
 
     @property
     def plain(self) -> str:
-        """What it shows, for who does not see it."""
+        """Description of the plot for readers who cannot see it."""
         return f"{', '.join(a.label for a in self.plot.panels)} / {self.driver}"
 
 
 def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
-    """Return those of some parts that are plotted unless some are named: first those of which something is
-    predicted."""
+    """Return the parts plotted by default: first those with a prediction."""
     first = [p.quantity for p in predictions.over_the_cycle(variant)]
     wanted = sorted(parts, key=lambda p: p.quantity not in first)[:PANELS]
     return tuple(p for p in parts if p in wanted)
@@ -45,7 +44,7 @@ def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
 def curves(
     variant: Variant, parts: Sequence[Part], answers: Mapping[str, Any], own: Mapping[str, Own]
 ) -> Curves:
-    """Return the parts over a turn of the driver; ``answers`` by part, ``own`` what the student has right, by
+    """Plot the parts over a turn of the driver; ``answers`` by part, ``own`` the student's right answers by
     quantity."""
     exercise, lang = variant.exercise, variant.lang
     assert exercise.spec.driver is not None  # without one no part moves
@@ -65,8 +64,8 @@ def curves(
 def _spots(
     variant: Variant, part: Part, answer: Any, mine: Own | None, at: float, values: np.ndarray
 ) -> tuple[Spot, ...]:
-    """Return the student's answer as a point, where it can be read; none where it is right, but not of this
-    curve."""
+    """Return the student's answer as a point, if it can be read; nothing for a right answer that does not lie
+    on this curve."""
     if mine is not None and not mine.is_usual:
         return ()
     if is_blank(answer):

@@ -1,7 +1,7 @@
-"""Predictions: what one can say before computing, derived from the exercise itself.
+"""Predictions before computing, derived from the exercise itself.
 
-What is worth predicting is found by looking at a few dozen variants of the exercise, never at the student's own:
-that a sign is asked says that signs differ among variants, and nothing of this one.
+A few dozen variants of the exercise, never the student's own, show what is worth predicting. A question about
+a sign says that signs differ among variants, and nothing about this one.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _UNBOUNDED = 30.0  #: times the median size over a turn
 
 @dataclass(frozen=True)
 class Prediction:
-    """Something to say beforehand about a quantity.
+    """Prediction about a quantity, made before computing.
 
     ``kind`` is ``sign``, ``quadrant``, ``compare`` (with the given quantity ``other``), ``guess`` (a case), or over the cycle ``zeros`` (how often it changes its sign) or ``highest`` (at which angle of the driver).
     """
@@ -61,7 +61,7 @@ class Prediction:
 
 @dataclass(frozen=True)
 class Compared:
-    """A prediction beside what came out; ``right`` is None where the prediction cannot be read."""
+    """Prediction with its outcome; ``right`` is None where the prediction cannot be read."""
 
     prediction: Prediction
     said: str
@@ -73,10 +73,10 @@ class Compared:
 
 
 def before_answers(variant: Variant) -> tuple[Prediction, ...]:
-    """What to predict before any computation, a part each, evenly over the parts.
+    """Return the predictions to make before any computation, one a part, spread evenly over the parts.
 
-    Only of what a body or a point has (:func:`is_of_the_mechanism`). A question itself is asked beforehand where it is a choice
-    that differs among variants: one of them, the last, which says most of the whole.
+    They concern quantities of a body or a point (:func:`is_of_the_mechanism`). A choice that differs among
+    variants is a prediction itself: only the last one, which says most about the whole.
     """
     found = [p for part in variant.parts if (p := _of_part(variant.exercise, part)) is not None]
     guesses = [p for p in found if p.kind == "guess"]
@@ -113,10 +113,11 @@ def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
 
 
 def is_of_the_mechanism(exercise: CourseExercise, part: Part) -> bool:
-    """Return whether the number that a part asks is one that a body or a point has.
+    """Return whether a part asks for a number that belongs to a body or a point.
 
-    A length, an angle, a velocity, an acceleration or an effort: no ratio, no area, and no coefficient, which is a letter
-    without an index. Not a length on paper either: what is drawn to a scale of velocities hangs on them, a length does not.
+    These are lengths, angles, velocities, accelerations and efforts; not ratios, areas, or coefficients,
+    which are letters without an index. A length on paper is excluded as well: it depends on velocities,
+    through the scale of a drawing.
     """
     if part.sort.prediction != "size" or part.unit not in _OF_BODIES or len(part.quantity) == 1:
         return False
@@ -124,8 +125,8 @@ def is_of_the_mechanism(exercise: CourseExercise, part: Part) -> bool:
 
 
 def is_seen(exercise: CourseExercise, part: Part) -> bool:
-    """Return whether the figure or the reason tells which of this number and another is larger: of a length
-    that stands in the figure, since it moves with the driver, and of an effort."""
+    """Return whether the figure or reasoning tells which of two such numbers is larger: a length in the
+    figure that moves with the driver, or an effort."""
     driver = exercise.spec.driver
     if part.unit != "mm":
         return part.unit in ("N", "N*m")
@@ -164,7 +165,7 @@ def _differ(holds: np.ndarray, values: np.ndarray) -> bool:
 
 @lru_cache(maxsize=64)
 def _sample(exercise: CourseExercise) -> Mapping[str, np.ndarray]:
-    """Return the numbers given and asked, over some variants; NaN where a variant has none."""
+    """Return the given and requested numbers over some variants; NaN where a variant lacks one."""
     asked = [p.quantity for p in exercise.spec.parts if p.sort.prediction == "size"]
     given = [n for n, spec in exercise.spec.given.items() if not spec.is_choice]
     columns: dict[str, list[float]] = {name: [] for name in dict.fromkeys([*given, *asked])}
@@ -181,7 +182,8 @@ def _sample(exercise: CourseExercise) -> Mapping[str, np.ndarray]:
 
 
 def moving(variant: Variant) -> tuple[Part, ...]:
-    """Return the parts whose number moves with the driver; none without a driver or without solutions."""
+    """Return the parts whose number depends on the driver's angle; none without a driver or without
+    solutions."""
     exercise = variant.exercise
     driver = exercise.spec.driver
     if driver is None or driver.angle not in variant.used or not exercise.folder.has_solutions:
@@ -192,7 +194,8 @@ def moving(variant: Variant) -> tuple[Part, ...]:
 
 
 def over_the_cycle(variant: Variant) -> tuple[Prediction, ...]:
-    """What to predict before the plots: how often a rate changes its sign, where a length or an effort is largest."""
+    """Return the predictions to make before the plots: the sign changes of a rate, the position of the
+    largest length or effort."""
     rates, others = [], []
     for part in moving(variant):
         if not is_of_the_mechanism(variant.exercise, part):
@@ -210,7 +213,8 @@ def over_the_cycle(variant: Variant) -> tuple[Prediction, ...]:
 
 
 def prediction_keys(variant: Variant) -> dict[str, str]:
-    """What each prediction is written under, by its id: as the answer to the same question, or ``p1``, ``p2``… over the cycle."""
+    """Return the key of each prediction by its id: that of the same question's answer, or ``p1``, ``p2``…
+    over the cycle."""
     keys = answer_keys(variant.parts)
     before = {p.id: keys[p.id] for p in before_answers(variant)}
     return before | {p.id: f"p{k}" for k, p in enumerate(over_the_cycle(variant), start=1)}
@@ -218,8 +222,8 @@ def prediction_keys(variant: Variant) -> dict[str, str]:
 
 @lru_cache(maxsize=256)
 def _is_bounded(exercise: CourseExercise, quantity: str) -> bool:
-    """Return whether a quantity stays finite over the turn, in a few variants: what grows beyond all bounds
-    at a dead point is nowhere largest."""
+    """Return whether a quantity stays finite over the turn, in a few variants; an unbounded one has no
+    largest value."""
     for variant in exercise.variants(range(_FEW)):
         try:
             sizes = np.abs(curve(variant, quantity)[1])
@@ -253,7 +257,7 @@ def _number_of(variant: Variant, prediction: Prediction) -> int:
 
 
 def options(variant: Variant, prediction: Prediction) -> str:
-    """What may be written, as plain text."""
+    """Return the possible answers to a prediction, as plain text."""
     part = next((p for p in variant.parts if p.id == prediction.id), None)
     if part is not None and prediction.choices:
         return choices(variant, part)
@@ -261,7 +265,7 @@ def options(variant: Variant, prediction: Prediction) -> str:
 
 
 def choices(variant: Variant, part: Part) -> str:
-    """Return the cases of a choice: the letter that is written, and what it is called."""
+    """Return the cases of a choice, each as its letter and its label."""
     letters = variant.letters(part)
     labels = {c: to_text(variant.label(part.id, c), variant.lang, sys.maxsize) for c in variant.cases(part)}
     return " / ".join(f"{letters[c]} ({label})" if c in letters else label for c, label in labels.items())
@@ -278,7 +282,7 @@ def is_understood(variant: Variant, prediction: Prediction, text: Any) -> bool:
 def compared(
     variant: Variant, prediction: Prediction, text: Any, own: float | None = None
 ) -> Compared | None:
-    """Return a prediction beside what comes out; None where nothing was predicted.
+    """Return a prediction with its outcome; None where nothing was predicted.
 
     ``own`` is the student's own right value, where it is not the reference's: the prediction was of that.
 
@@ -364,15 +368,15 @@ _FOUND: Mapping[str, Callable[[Variant, Prediction, Any, Any], Outcome]] = {
 
 
 def zeros(values: np.ndarray) -> int:
-    """How often a curve over a full turn changes its sign; its ends are one place."""
+    """Count the sign changes of a curve over a full turn; its ends are one point."""
     signs = np.sign(values[:-1])
     signs = signs[np.isfinite(signs) & (signs != 0)]
     return int(np.sum(signs != np.roll(signs, 1)))
 
 
 def curve(variant: Variant, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return the driver's angle over a turn, from 0 to 360 degrees, and the quantity at each; NaN where
-    nothing closes."""
+    """Return the driver's angle over a turn, from 0 to 360 degrees, and the quantity at each; NaN where the
+    mechanism does not close."""
     angles = np.linspace(0.0, 360.0, INSTANTS)
     exercise = variant.exercise
     driver = exercise.spec.driver

@@ -1,4 +1,4 @@
-"""What a student has done, over all exercises: the format of ``progress.json``.
+"""Progress of a student over all exercises: the format of ``progress.json``.
 
 One JSON object::
 
@@ -41,15 +41,15 @@ Entry = Mapping[str, Any]
 
 
 class NotProgress(ValueError):
-    """A text that is no progress."""
+    """Text that is not in the progress format."""
 
 
 class LaterVersion(ValueError):
-    """The progress of a later version: it may say what this one would not keep."""
+    """Progress written by a later version, which this version might not preserve."""
 
 
 class Progress:
-    """Entries, each once, in the order of their dates."""
+    """Entries in the order of their dates, each once."""
 
     def __init__(self, entries: Iterable[Entry] = ()):
         self._entries = {_identity(entry): entry for entry in entries}
@@ -59,7 +59,7 @@ class Progress:
         return tuple(sorted(self._entries.values(), key=date_of))
 
     def __iter__(self) -> Iterator[Entry]:
-        """From the earliest on; those of one instant as they came."""
+        """Iterate from the earliest entry on; entries of one instant in order of arrival."""
         return iter(self._in_order)
 
     def __len__(self) -> int:
@@ -75,18 +75,18 @@ class Progress:
 
     @property
     def exercises(self) -> tuple[str, ...]:
-        """Those of which there is something, the earliest begun first."""
+        """Exercises with entries, the earliest begun first."""
         return tuple(dict.fromkeys(str(e["exercise"]) for e in self))
 
     def text(self) -> str:
-        """Return the JSON text, an entry a line."""
+        """Return the JSON text, one entry a line."""
         head = f'{{"format": {json.dumps(FORMAT)}, "version": {VERSION}, "entries": ['
         text = head + ",".join(f"\n{_identity(one)}" for one in self) + "\n]}\n"
         return text.encode("utf-8", "replace").decode("utf-8")  # halves of characters stand in no file
 
     @classmethod
     def read(cls, text: str) -> Progress:
-        """Return the progress that a text holds.
+        """Parse a progress text.
 
         Raises
         ------
@@ -110,13 +110,13 @@ class Progress:
 
 
 class TooLong(ValueError):
-    """Progress of more entries than are taken."""
+    """Progress with more entries than accepted."""
 
 
 def read_brought(data: bytes, most: int) -> tuple[type[ValueError] | None, tuple[Entry, ...]]:
-    """Return the entries of a file that somebody brings, or why it is not taken: the fault's class.
+    """Return the entries of an uploaded file, or the class of the error for which it is refused.
 
-    Of a number that no database of JSON takes, no entry is.
+    An entry with a number that no JSON database accepts is dropped.
     """
     try:
         found = Progress.read(data.decode("utf-8-sig"))
@@ -129,18 +129,18 @@ def read_brought(data: bytes, most: int) -> tuple[type[ValueError] | None, tuple
 
 
 def entry(at: datetime, exercise: str, seed: int, part: str, what: str, **more: Any) -> dict[str, Any]:
-    """Return the something that happens now, as it is kept."""
+    """Return an entry for an event, as it is stored."""
     told = at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
     return {"at": told, "exercise": exercise, "seed": seed, "part": part, "what": what, **more}
 
 
 def date_of(one: Entry) -> datetime:
-    """When it happened."""
+    """Return the date of an entry."""
     return datetime.fromisoformat(str(one["at"]).replace("Z", "+00:00"))
 
 
 def _checked(one: Any) -> Entry:
-    """Return an entry that can be used.
+    """Return an entry if it is valid.
 
     Raises
     ------

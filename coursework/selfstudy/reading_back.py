@@ -1,4 +1,4 @@
-"""What is read in an answer, said before it counts."""
+"""Readings of an answer, shown before it counts."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 
 
 def read_back(variant: Variant, part: Part, text: str) -> tuple[bool, tuple[str, ...]]:
-    """Return whether an answer can be read, and its readings as Markdown, else why it cannot; nothing of a
-    blank one, or of one that a person marks. Nothing is computed of the variant."""
+    """Return whether an answer can be read, and its readings as Markdown, or else the reason.
+
+    A blank answer, or one that a person marks, has no readings. Nothing of the variant is computed.
+    """
     reading = read(variant, part, text)
     if reading.status == "missing" or part.sort.is_open:
         return True, ()

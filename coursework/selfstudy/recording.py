@@ -1,4 +1,4 @@
-"""What is kept of a marking: each answer with its verdict, and the named errors that it shows were not made."""
+"""Records of a marking: each answer with its verdict, and the named errors that it disproves."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def marked_answers(
     variant: Variant, answers: Mapping[str, Any], marking: Marking, before: Sequence[Entry]
 ) -> list[dict[str, Any]]:
-    """What there is to keep of a marking, of answers that are new or are marked otherwise than ``before``."""
+    """Return the records of a marking, for answers that are new or marked differently from ``before``."""
     last = {e["part"]: (e.get("answer"), e.get("verdict")) for e in before if e["what"] == ANSWER}
     found = []
     for part in variant.parts:
@@ -38,8 +38,10 @@ def marked_answers(
 
 
 def mark_what_came_unmarked(course: Course[Any], file: Keeper) -> None:
-    """Give their verdicts to answers that were kept without: by an earlier version, or while there were no solutions; with the date of
-    the answer."""
+    """Mark the stored answers without a verdict, with the date of the answer.
+
+    An earlier version, or a course without solutions, stored them.
+    """
     last = {(e["exercise"], e["seed"], e["part"]): e for e in file.progress if e["what"] == ANSWER}
     unmarked: dict[tuple[str, int], list[Entry]] = {}
     for (exercise, seed, _), one in last.items():
@@ -60,7 +62,7 @@ def mark_what_came_unmarked(course: Course[Any], file: Keeper) -> None:
 
 
 def skill_of_kind(part: Part) -> str:
-    """What sort of answer it is: by its unit where it has one, else by its kind."""
+    """Return the kind of an answer: its unit if it has one, else its kind."""
     return part.unit if part.unit != "1" else part.kind
 
 

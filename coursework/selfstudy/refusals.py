@@ -1,4 +1,4 @@
-"""What a session refuses, said in its language: what was asked, what was found, what would do."""
+"""Errors of a session in its language: the request, the problem, the remedy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from coursework.language.words import words
 
 
 def expect(lang: str, kind: str, name: object, known: Collection[str]) -> None:
-    """Nothing, where a name is one of the known ones.
+    """Refuse a name that is not one of the known ones.
 
     ``kind`` says of what: ``exercise``, ``question``, ``prediction``, ``curve`` or ``effect``.
 
@@ -36,17 +36,17 @@ def would_do(lang: str, name: str, known: Collection[str]) -> str:
 
 
 class UnknownMethod(UnknownName, AttributeError):
-    """Something that a session cannot do."""
+    """Method that a session does not have."""
 
 
 def no_method(lang: str, name: str, known: Collection[str]) -> UnknownMethod:
-    """Return the error for a method that is not there."""
+    """Return the error for an unknown method."""
     said = words(lang)["study"]["refused"]["method"].format(name=name)
     return UnknownMethod(f"{said} {would_do(lang, name, known)}")
 
 
 def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
-    """What a call is told, by name.
+    """Return the argument of a call as a dictionary by name.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
 
 
 def counted(lang: str, why: str, told: object, most: int | None = None) -> int:
-    """Return a whole number from 1 on, up to ``most`` where that is told.
+    """Return a whole number from 1 to ``most``.
 
     Raises
     ------
@@ -72,5 +72,5 @@ def counted(lang: str, why: str, told: object, most: int | None = None) -> int:
 
 
 def refused(lang: str, why: str, **told: object) -> BadInput:
-    """Return the error for anything else that would not do."""
+    """Return the error for another invalid argument."""
     return BadInput(words(lang)["study"]["refused"][why].format(**told))

@@ -1,4 +1,4 @@
-"""What a student has right, as the student wrote it: near the reference, or right in another way."""
+"""Right answers as the student wrote them: near the reference, or right in another way."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NEAR_ANGLE = 10.0  #: degrees
 
 @dataclass(frozen=True)
 class Own:
-    """A right answer: its number where it is one; ``is_usual`` where it is the reference but for its rounding.
+    """Right answer with its number, if it has one; ``is_usual`` if it equals the reference up to rounding.
 
     An answer may be right without that: the other assembly first, another scale of the drawing.
     """
@@ -29,7 +29,7 @@ class Own:
 
 
 def right_ones(variant: Variant, answers: Mapping[str, Any], right: Collection[str]) -> dict[str, Own]:
-    """Of the parts that are right, the student's own, by quantity."""
+    """Return the student's own answers to the right parts, by quantity."""
     return {p.quantity: _own(variant, p, answers.get(p.id)) for p in variant.parts if p.id in right}
 
 

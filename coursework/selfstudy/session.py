@@ -1,4 +1,4 @@
-"""A study session: one exercise for a student alone, in a notebook or a terminal."""
+"""Study session: one exercise for a student working alone, in a notebook or a terminal."""
 
 from __future__ import annotations
 
@@ -50,7 +50,8 @@ def open_session(
     folder: str | Path,
     clock: Clock = now,
 ) -> StudySession:
-    """Return a study session of an exercise of an open course; ``named`` is how the course was asked for.
+    """Return a study session of an exercise of an open course; ``named`` is the course as requested by the
+    caller.
 
     Raises
     ------
@@ -71,8 +72,8 @@ def open_session(
 
 
 def course_folder(course: str | Path | None, lang: str) -> Path | None:
-    """Return the folder of a course that is asked for by it, or by its name, beside or above the place where
-    we are; none for the built-in course.
+    """Return the folder of a course given by path, or by its name beside or above the current folder; None
+    for the built-in course.
 
     Raises
     ------
@@ -92,10 +93,10 @@ def course_folder(course: str | Path | None, lang: str) -> Path | None:
 
 
 class StudySession:
-    """One variant to be worked on: predictions, answers, feedback, hints, plots.
+    """Study session on one variant: predictions, answers, feedback, hints, plots.
 
-    What is written and done is kept in a file beside the notebook, for all exercises; nothing there is ever erased. Each
-    method gives what a notebook's cell shows; ``print`` gives it as plain text.
+    Entries are stored in a file beside the notebook, for all exercises; none is ever erased. Each method
+    returns an object for display in a notebook cell; ``print`` gives it as plain text.
     """
 
     _called = ""  #: what the notebook calls this session, where it is neither the first nor another variant
@@ -133,7 +134,8 @@ class StudySession:
         return self._shown(*pieces)
 
     def _cover(self) -> Shown:
-        """What a session shows of itself: why it is proposed, where it is, else its statement."""
+        """Return the display of the session itself: the reason for which it is proposed, if any, else its
+        statement."""
         return self._shown(self._opening) if self._opening else self.statement()
 
     def _ipython_display_(self) -> None:
@@ -146,7 +148,7 @@ class StudySession:
 
     @property
     def figure(self) -> figures.Figure | figures.Picture | None:
-        """The figure to scale, or the picture; the first where there are several."""
+        """Figure to scale, or picture; the first where there are several."""
         return self.variant.figure
 
     def motion(self, *effects: str) -> Shown:
@@ -187,16 +189,16 @@ class StudySession:
 
     @property
     def _asked_under(self) -> dict[str, str]:
-        """What each prediction is written under, by its id."""
+        """Key of each prediction by its id."""
         return predictions.prediction_keys(self.variant)
 
     @property
     def predictions(self) -> dict[str, Any]:
-        """What was predicted for this variant."""
+        """Stored predictions for this variant."""
         return self._kept.of(self.variant.seed, "predictions")
 
     def predict(self, predicted: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
-        """Keep predictions, to be compared once the answers are right, or the curves are seen.
+        """Store predictions, to be compared once the answers are right or the curves are shown.
 
         What cannot be read is said at once. Without predictions, which there are.
 
@@ -233,7 +235,8 @@ class StudySession:
     def _told(
         self, method: str, kind: str, told: Any, named: Mapping[str, Any], known: Collection[str]
     ) -> dict[str, Any]:
-        """What a method is told, by the names that it knows: a dictionary, or names of its own."""
+        """Return the named arguments of a method, checked against the known names, from a dictionary or
+        keywords."""
         found: dict[str, Any] = {}
         under = self._asked_under if kind == "prediction" else self._keys
         by_key = {key: name for name, key in under.items()}
@@ -252,8 +255,8 @@ class StudySession:
         return found
 
     def _is_passed_over(self, kind: str, name: Any) -> bool:
-        """Return whether a name is of this exercise and not asked here: theory in another variant, what an
-        older notebook predicts."""
+        """Return whether a name belongs to this exercise but is not asked here: theory in another variant, or
+        a prediction of an older notebook."""
         ids = {p.id for p in self.variant.exercise.spec.parts}
         if kind == "question":
             return name in theory(self.variant.exercise) and name not in self.variant.part_ids
@@ -264,7 +267,7 @@ class StudySession:
         )
 
     def _named(self, question: Any) -> Any:
-        """Return a question's name, where its number is told: ``5``, ``"5"``, ``"question 5"``."""
+        """Return the name of a question given by number: ``5``, ``"5"``, ``"question 5"``."""
         ids = self._numbered
         number = question if isinstance(question, int) and not isinstance(question, bool) else None
         if isinstance(question, str) and question not in ids:
@@ -276,19 +279,19 @@ class StudySession:
 
     @property
     def _keys(self) -> Mapping[str, str]:
-        """What each answer is written under, by the id of its question."""
+        """Key of each answer by the id of its question."""
         return answer_keys(self.variant.parts)
 
     @property
     def _numbered(self) -> tuple[str, ...]:
-        """The questions in the order of their numbers."""
+        """Questions in the order of their numbers."""
         return self.variant.part_ids
 
     def _left(self, names: Iterable[str]) -> str:
         return self._said["left"].format(names=_names(names))
 
     def _compared(self, names: Iterable[str], own: Mapping[str, Own]) -> str:
-        """Return the predictions beside what came out, as a list."""
+        """Return the predictions with their outcomes, as a list."""
         lines = []
         for found in self._attempt.compared([self._asked[name] for name in names], own):
             mark = {True: "✓", False: "✗", None: "?"}[found.right]
@@ -303,15 +306,16 @@ class StudySession:
 
     @property
     def answers(self) -> dict[str, Any]:
-        """The last answer to each question of this variant that was not blank."""
+        """Last answer to each question of this variant that is not blank."""
         return self._attempt.answers
 
     def _asked_of(self, variant: Variant) -> dict[str, Any]:
-        """Return the kept answers to a variant that it asks: a file may hold others."""
+        """Return the stored answers to a variant that it asks for: a file may hold others."""
         return {n: a for n, a in self._kept.of(variant.seed, "answers").items() if n in variant.part_ids}
 
     def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
-        """Mark answers, by the name or the number of the question, and say what to look at; kept ones fill what is blank.
+        """Mark answers, by the name or number of the question, and give feedback; stored answers fill in for
+        blank ones.
 
         An entry ``student`` is no answer. The value of an answer is never told. ``check(rA="238")`` does as well.
 
@@ -360,7 +364,7 @@ class StudySession:
 
     @property
     def _own(self) -> dict[str, Own]:
-        """What the student has right, by quantity."""
+        """Right answers of the student, by quantity."""
         return self._attempt.own(self._attempt.marked())
 
     # -------------------------------------------------------------------- hints
@@ -370,7 +374,7 @@ class StudySession:
         return sentence.format(names=names, call=self._call(method, self.variant.part_ids[0]))
 
     def hint(self, question: str | int = "", step: int | None = None) -> Shown:
-        """Return a hint, and one step more at each call; without a question, which there are.
+        """Return a hint, one step further at each call; without a question, list the questions.
 
         ``step`` goes to a step at once. No hint holds the value: :meth:`reveal` does.
 
@@ -406,8 +410,7 @@ class StudySession:
         return self._shown(*pieces, f"*{closing}*")
 
     def reveal(self, question: str | int = "") -> Shown:
-        """Return the whole step of the worked solution, with its value: for who asks for it by name or
-        number.
+        """Return the complete step of the worked solution with its value, for a question by name or number.
 
         Raises
         ------
@@ -424,13 +427,13 @@ class StudySession:
         return self._shown(told, self._trouble)
 
     def _note(self, what: str, part: Any, **more: Any) -> None:
-        """Keep that something was shown; once."""
+        """Record that something was shown, once."""
         self._attempt.note(what, str(part), **more)
 
     # -------------------------------------------------------------------- plots
 
     def plot(self, *names: str | int) -> Shown:
-        """Return the quantities over a turn of the driver, the student's own answers marked; then the
+        """Plot the quantities over a turn of the driver, with the student's answers marked; then compare the
         predictions about them.
 
         A curve tells the answer at the position of the statement: it is drawn once the question is answered right, or its solution was
@@ -482,8 +485,8 @@ class StudySession:
     # ----------------------------------------------------------- other variants
 
     def fresh(self, number: int | None = None) -> StudySession:
-        """Return the another variant: the first, second… after the notebook's own; without a number, the next
-        one not begun.
+        """Return another variant: the first, second… after the notebook's own; without a number, the next one
+        not begun.
 
         Only variants that are worth issuing count, as for a class.
 
@@ -514,8 +517,10 @@ class StudySession:
         return any(e["what"] == EXAMPLE for e in self._kept.happened(seed))
 
     def example(self, level: int | None = None) -> ExampleSession | Shown:
-        """Return the worked solution of another variant, with blanks to fill: at level 1 the last question,
-        at level 4 all; without a level, the one after the last that was seen.
+        """Return the worked solution of another variant, with blanks to fill: the last question at level 1,
+        all at level 4.
+
+        Without a level, the one after the last level shown.
 
         Raises
         ------
@@ -544,8 +549,11 @@ class StudySession:
         return ExampleSession(variant, self._kept, self._base, level)
 
     def next(self) -> StudySession:
-        """What to do next, in this course: what was missed and comes again today, what cost answers before, or what is new; on a
-        variant not begun. It says why; its statement is asked for."""
+        """Return a session for the recommended next exercise of the course, on a variant not begun.
+
+        It proposes first what was missed and is due, then what cost answers before, then what is new, and
+        states the reason.
+        """
         course = self._course
         self._kept.file.refresh()
         mark_what_came_unmarked(self._course, self._kept.file)
@@ -569,8 +577,8 @@ class StudySession:
         return self._kept.file.clock().date()
 
     def progress(self) -> Shown:
-        """Return the variants begun, and what is right in each; then the other exercises, what has cost
-        answers, and what came out since."""
+        """Return the variants begun with their results; then the other exercises, the skills lost, and those
+        recovered since."""
         if missing := self._missing():
             return self._shown(missing)
         self._kept.file.refresh()
@@ -596,23 +604,23 @@ class StudySession:
     # ------------------------------------------------------------------- common
 
     def __getattr__(self, name: str) -> Any:
-        """Return a method that is none is refused in the session's language, with the nearest."""
+        """Refuse an unknown method in the session's language, with the nearest name."""
         if name.startswith("_"):
             raise AttributeError(name)
         known = [n for n in dir(type(self)) if not n.startswith("_")]
         raise refusals.no_method(self.variant.lang, name, known)
 
     def _call(self, method: str, name: str) -> str:
-        """How the notebook calls a method, as code in Markdown."""
+        """Return the call of a method in the notebook, as code in Markdown."""
         return f'`{self._name}.{method}("{self._keys.get(name, name)}")`'
 
     @property
     def _name(self) -> str:
-        """What the notebook calls this session."""
+        """Variable that holds this session in the notebook."""
         return self._called or ("study" if self.variant.seed == self._base else "again")
 
     def _missing(self) -> str:
-        """What to say where the course folder has no solution of this exercise; empty when it has one."""
+        """Return the message for a course folder without a solution of this exercise; empty when it has one."""
         try:
             self.variant.exercise.solution  # noqa: B018
         except NoSolution:
@@ -621,7 +629,7 @@ class StudySession:
 
     @property
     def _trouble(self) -> str:
-        """What to say of the file of answers, if anything."""
+        """Message about a problem with the file of answers; empty without one."""
         texts = self._said["trouble"]
         return texts[self._kept.trouble].format(file=self._kept.file.troubled) if self._kept.trouble else ""
 
@@ -630,7 +638,7 @@ class StudySession:
 
 
 class ExampleSession(StudySession):
-    """A worked solution with blanks; each is answered, hinted and revealed as a question is."""
+    """Worked solution with blanks; each is answered, hinted and revealed like a question."""
 
     _called = "example"
 

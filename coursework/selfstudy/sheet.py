@@ -1,4 +1,5 @@
-"""What a self-study notebook holds beside the handout: the predictions to make, and what it can run."""
+"""Content of a self-study notebook beside the handout: the predictions to make, and the calls that it can
+run."""
 
 from __future__ import annotations
 
@@ -44,8 +45,7 @@ def study_sheet(variant: Variant, student: str = "") -> StudySheet:
 
 
 def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -> list[Variant]:
-    """Return the first variants after that of a seed that are worth issuing, all different from it and each
-    other; they ask no theory.
+    """Return the first valid variants after that of a seed, all distinct, without theory questions.
 
     Raises
     ------

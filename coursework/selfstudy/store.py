@@ -1,4 +1,4 @@
-"""What a student wrote and did, kept in one small file beside the notebooks, for all exercises."""
+"""Storage of a student's answers and events in one small file beside the notebooks, for all exercises."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def now() -> datetime:
 
 
 class Keeper(Protocol):
-    """Where progress is kept: in a file beside notebooks, or elsewhere."""
+    """Interface of a progress store: a file beside notebooks, or another one."""
 
     progress: Progress
     clock: Clock
@@ -46,18 +46,18 @@ class Keeper(Protocol):
     troubled: str
 
     def refresh(self) -> None:
-        """Take in what came since."""
+        """Read the entries added by others since."""
 
     def add(self, entries: Iterable[Entry]) -> None:
-        """Keep what happened."""
+        """Store new entries."""
 
     def take_over(self, exercise: str) -> None:
-        """Add what an earlier version kept of an exercise elsewhere, if it did."""
+        """Import the entries of an exercise from an earlier version's file, if there is one."""
 
 
 class ProgressFile:
-    """The progress of a folder, read when it is opened and again before it is written: of two notebooks open at once neither
-    loses what the other wrote.
+    """Progress file of a folder, read when opened and again before each write, so that two open notebooks
+    lose nothing.
 
     ``trouble`` says why nothing is written, or why an older file was set aside; it is empty when all is well, and ``troubled`` is the
     name of that file.
@@ -71,7 +71,7 @@ class ProgressFile:
         self.progress = self._read()
 
     def _read(self) -> Progress:
-        """What the file holds; one that cannot be read is set aside."""
+        """Return the content of the file; one that cannot be read is set aside."""
         try:
             return Progress.read(self.path.read_text("utf-8"))
         except FileNotFoundError:
@@ -84,12 +84,12 @@ class ProgressFile:
         return Progress()
 
     def refresh(self) -> None:
-        """Take in what another notebook has written since."""
+        """Read the entries that another notebook has written since."""
         if self._is_kept:
             self.progress = self._read() | self.progress
 
     def set_aside(self, why: str, path: Path) -> None:
-        """A file under a name that no older one has."""
+        """Rename a damaged file to an unused name."""
         names = (path.with_suffix(f".damaged{n or ''}.json") for n in itertools.count())
         self._tell(why, path)
         try:
@@ -102,7 +102,7 @@ class ProgressFile:
         self.trouble, self.troubled = why, path.name
 
     def add(self, entries: Iterable[Entry]) -> None:
-        """Keep what happened."""
+        """Store new entries."""
         new = Progress(entries)
         if not len(new):
             return
@@ -120,8 +120,11 @@ class ProgressFile:
             self._tell("unwritable", self.path)
 
     def take_over(self, exercise: str) -> None:
-        """Add what ``EXERCISE.study.json``, the file of an earlier version, holds beside this one, and of which nothing is kept here
-        yet; a file that cannot be read is set aside."""
+        """Import ``EXERCISE.study.json``, the file of an earlier version beside this one, unless entries of
+        the exercise exist.
+
+        A file that cannot be read is set aside.
+        """
         path = self.path.parent / f"{exercise}{EARLIER}"
         if not path.exists():
             return
@@ -155,7 +158,7 @@ class ProgressFile:
 
 @contextmanager
 def _alone(path: Path) -> Iterator[None]:
-    """While nobody else writes a file, as far as everybody asks; a lock that is left behind by somebody is passed by."""
+    """Hold the advisory lock of a file; a lock that somebody left behind is ignored after a while."""
     lock = path.with_suffix(".lock")
     until = time.monotonic() + _WAIT
     while True:
@@ -177,10 +180,10 @@ def _alone(path: Path) -> Iterator[None]:
 
 
 class Kept:
-    """What is kept of one exercise: answers and predictions by seed, and all that happened.
+    """Stored data of one exercise: answers and predictions by seed, and all events.
 
-    A blank never takes the place of what was written before. What a file of an earlier version holds is taken over once, with that
-    file's date, and the file itself is left as it is.
+    A blank never replaces an earlier answer. The file of an earlier version is imported once, with its date,
+    and left unchanged.
     """
 
     def __init__(self, file: Keeper, exercise: str):
@@ -188,12 +191,12 @@ class Kept:
         self.file.take_over(exercise)
 
     def beside(self, exercise: str) -> Kept:
-        """What is kept of another exercise in the same file."""
+        """Return the stored data of another exercise in the same file."""
         return Kept(self.file, exercise)
 
     @property
     def progress(self) -> Progress:
-        """All that happened, of every exercise."""
+        """Progress in every exercise."""
         return self.file.progress
 
     @property
@@ -202,38 +205,38 @@ class Kept:
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """The variants of which something was written, in order."""
+        """Seeds of the variants with answers or predictions, in order."""
         written = (e for e in self.progress.of(self.exercise) if e["what"] in _KINDS.values())
         return tuple(sorted({int(e["seed"]) for e in written}))
 
     def of(self, seed: int, kind: str) -> dict[str, Any]:
-        """What was written last for a variant: its ``answers`` or its ``predictions``."""
+        """Return the last stored ``answers`` or ``predictions`` for a variant."""
         return {e["part"]: e.get("answer") for e in self.happened(seed) if e["what"] == _KINDS[kind]}
 
     def happened(self, seed: int) -> tuple[Entry, ...]:
-        """What happened with a variant, in order."""
+        """Return the events of a variant, in order."""
         return tuple(e for e in self.progress.of(self.exercise) if e["seed"] == seed)
 
     def add(self, seed: int, kind: str, texts: dict[str, Any]) -> None:
-        """Keep what is not blank, and not what was written last."""
+        """Store the texts that are neither blank nor unchanged."""
         known = self.of(seed, kind)
         new = {n: t for n, t in texts.items() if not is_blank(t) and (n not in known or known[n] != t)}
         self.note(seed, [{"part": n, "what": _KINDS[kind], "answer": t} for n, t in new.items()])
 
     def note(self, seed: int, happened: Iterable[dict[str, Any]]) -> None:
-        """Keep what happens now with a variant: after all that happened with it, whatever the clock says."""
+        """Store new events of a variant, dated after all its earlier ones whatever the clock says."""
         before = self.happened(seed)
         at = max([self.file.clock(), *(date_of(e) + timedelta(microseconds=1) for e in before[-1:])])
         self.file.add([entry(at, self.exercise, seed, **each) for each in happened])
 
 
 def _seed(text: str) -> int:
-    """Return a seed as it is written; anything else is none."""
+    """Parse a seed; refuse any other spelling."""
     if not re.fullmatch(r"0|[1-9][0-9]{0,99}", text):
         raise ValueError(text)
     return int(text)
 
 
 def is_blank(text: Any) -> bool:
-    """Return whether nothing was written."""
+    """Return whether an answer is empty."""
     return text is None or (isinstance(text, str) and not text.strip())

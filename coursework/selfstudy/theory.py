@@ -1,4 +1,4 @@
-"""Which questions are *theory*: they have one answer whatever the numbers, so that another variant asks nothing new."""
+"""*Theory* questions: they have the same answer in every variant, so that another variant asks nothing new."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _SAMPLE = range(48)  #: what changes in one variant of six is met in all but one
 
 @lru_cache(maxsize=64)
 def theory(exercise: CourseExercise[Any]) -> frozenset[str]:
-    """Return the ids of the parts that every variant asks and whose reference is the same in all.
+    """Return the ids of the parts that every variant asks with the same reference.
 
-    Not those of an exercise where all are: there is nothing else to ask. A question that only some variants ask is drawn, and rotates; one
-    that is judged together with others is asked with them.
+    None in an exercise with such parts alone. A question that only some variants ask is excluded, since it
+    rotates; one that is judged together with others is asked with them.
     """
     if not exercise.folder.has_solutions:
         return frozenset()
@@ -33,7 +33,7 @@ def theory(exercise: CourseExercise[Any]) -> frozenset[str]:
 
 @lru_cache(maxsize=64)
 def unchanging(exercise: CourseExercise[Any]) -> frozenset[str]:
-    """Return the ids of the parts whose reference is the same in every variant that asks them."""
+    """Return the ids of the parts with the same reference in every variant that asks them."""
     variants = exercise.variants(_SAMPLE)
     judged = (p for p in exercise.spec.parts if not p.sort.is_open)
     return frozenset(
@@ -52,7 +52,7 @@ def _is_same(variants: list[Variant], quantity: str) -> bool:
 
 
 def _agree(one: Any, other: Any) -> bool:
-    """Return whether two references are one, but for the last digits."""
+    """Return whether two references are equal up to the last digits."""
     if isinstance(one, (int, float, complex, np.ndarray, list, tuple)):
         try:
             return bool(np.allclose(one, other, rtol=1e-9, atol=1e-9))
@@ -62,6 +62,6 @@ def _agree(one: Any, other: Any) -> bool:
 
 
 def without_theory(variant: Variant) -> Variant:
-    """Return the variant without the questions that another one has answered already."""
+    """Return the variant without the questions that another variant has already asked."""
     known = theory(variant.exercise)
     return variant.asking([p for p in variant.parts if p.id not in known]) if known else variant

@@ -1,4 +1,4 @@
-"""What a student says in words: a sign, a comparison, a quadrant, a number, a yes; in any language of the engine."""
+"""Answers in words: a sign, a comparison, a quadrant, a number, a yes; in any language of the engine."""
 
 from __future__ import annotations
 
@@ -17,8 +17,7 @@ _UNITS = ("deg", "mm", "rad/s", "rad/s^2", "mm/s", "mm/s^2", "N", "N*m", "mm^2",
 
 
 def unwrapped(value: Any) -> Any:
-    """Return a value as plain Python: numbers of numpy as numbers, arrays as lists, anything else as its
-    text."""
+    """Return a value as plain Python: numpy numbers as numbers, arrays as lists, anything else as its text."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, (list, tuple)):
@@ -27,7 +26,7 @@ def unwrapped(value: Any) -> Any:
 
 
 def folded(text: Any) -> str:
-    """Return a text without case, accents and what closes a sentence."""
+    """Return a text without case, accents and closing punctuation."""
     bare = unicodedata.normalize("NFKD", str(text).translate(_DASHES)).casefold().replace("’", "'")
     return " ".join("".join(c for c in bare if not unicodedata.combining(c)).strip(" .!,;").split())
 
@@ -42,7 +41,7 @@ def _one_of(text: str, kinds: tuple[str, ...]) -> str:
 
 
 def sign(text: Any) -> str:
-    """Return ``+`` or ``-``; empty where neither is said, or both."""
+    """Return ``+`` or ``-``; empty where neither or both are stated."""
     said = folded(text)
     if found := re.fullmatch(r"([+-])\s*(?:[\d.,]*|\([^()]*\))|([<>])\s*0", said):
         return found[1] or {">": "+", "<": "-"}[found[2]]
@@ -50,7 +49,7 @@ def sign(text: Any) -> str:
 
 
 def comparison(text: Any) -> str:
-    """Return ``>``, ``<`` or ``=``; empty where none is said."""
+    """Return ``>``, ``<`` or ``=``; empty where none is stated."""
     said = folded(text)
     if found := re.fullmatch(r"([<>=])[^<>=]*", said):
         return found[1]
@@ -61,7 +60,7 @@ def comparison(text: Any) -> str:
 
 
 def quadrant(text: Any) -> int | None:
-    """Return 1 to 4: a digit, a Roman numeral, an ordinal, in words or not."""
+    """Return 1 to 4 from a digit, a Roman numeral or an ordinal, in figures or words."""
     said = re.sub(
         r"\b(?:quadrant|le|la|l'|dans|in|the|q|n°)(?![a-z])|(?<=\bq)(?=[1-4]$)|^q(?=[1-4]$)",
         " ",
@@ -80,7 +79,7 @@ def quadrant(text: Any) -> int | None:
 
 
 def count(text: Any) -> int | None:
-    """Return a whole number from 0 on, in digits or in words, with or without ``times``."""
+    """Return a whole number from 0 on, in figures or words, with or without ``times``."""
     said = folded(text)
     for times in sorted(_called("times"), key=len, reverse=True):
         said = said.removesuffix(f" {times}")
@@ -96,15 +95,15 @@ def count(text: Any) -> int | None:
 
 
 def truth(text: Any) -> bool | None:
-    """Return the yes or no; None where neither is said."""
+    """Return True for a yes, False for a no, None for neither."""
     if isinstance(text, bool):
         return text
     return {"yes": True, "no": False}.get(_one_of(folded(text), ("yes", "no")))
 
 
 def numbers(text: Any) -> tuple[tuple[float, ...], bool]:
-    """Return the honest readings of a number, with or without a unit, in the course's unit; whether it is in
-    degrees."""
+    """Return the possible readings of a number, with or without a unit, in the course's unit; and whether it
+    is in degrees."""
     if isinstance(text, str):
         if (whole := count(text)) is not None:
             return (float(whole),), False
@@ -117,7 +116,7 @@ def numbers(text: Any) -> tuple[tuple[float, ...], bool]:
 
 
 def without_about(text: Any) -> Any:
-    """Return an angle or a number without a word that says only that it is not exact."""
+    """Return an angle or a number without a word for "about"."""
     return (
         re.sub(r"^\s*(?:vers|autour de|towards|near|around)\b", "", text, flags=re.I)
         if isinstance(text, str)

@@ -1,4 +1,5 @@
-"""Worked examples of a lesson: a drawn variant with its whole solution, then with blanks, then bare; and the mistakes to expect."""
+"""Worked examples of a lesson: a variant with its complete solution, then with blanks, then bare; and the
+mistakes to expect."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ BARE = LEVELS  #: the level that tells nothing but what is asked
 
 
 class Worked(Shown):
-    """A worked example, as a cell shows it; :meth:`check` marks what was put into its blanks."""
+    """Worked example, for display in a cell; :meth:`check` marks the answers in its blanks."""
 
     def __init__(self, variant: Variant, level: int, parts: Sequence[Part]):
         self.variant, self.level, self.parts, self.lang = variant, level, tuple(parts), variant.lang
@@ -40,7 +41,7 @@ class Worked(Shown):
 
     @property
     def _left(self) -> tuple[Part, ...]:
-        """The questions that are left to who reads."""
+        """Questions left to the reader."""
         if self.level == BARE:
             return self.parts
         return blanks(self._asking, self.level, in_lesson=True) if self.level else ()
@@ -50,7 +51,7 @@ class Worked(Shown):
         return answer_keys(self.parts)  # questions are numbered as they stand here
 
     def _posed(self) -> list[str | Picture]:
-        """Return the statement, the figure, the data, and what is asked."""
+        """Return the statement, the figure, the data, and the questions."""
         sheet, said = handout(self._asking), words(self.lang)["sheet"]
         told = words(self.lang)["lesson"]["levels"]
         head = told["whole" if not self.level else "bare" if self.level == BARE else "part"]
@@ -73,7 +74,7 @@ class Worked(Shown):
         return f"{_named(question)}{cases}"
 
     def _told(self) -> str:
-        """Return the solution, as far as it is told."""
+        """Return the part of the solution that is shown."""
         if self.level == BARE:
             return ""
         title = f"**{words(self.lang)['lesson']['solution']}.**"
@@ -90,7 +91,7 @@ class Worked(Shown):
 
     @property
     def right(self) -> tuple[str, ...]:
-        """The right answers to what is left, a line of Markdown each."""
+        """Right answers to the blanks, one line of Markdown each."""
         questions = {q.id: q for q in handout(self.variant).questions}
         values = self.variant.walk
         return tuple(
@@ -103,7 +104,7 @@ class Worked(Shown):
         return f"{' '.join(question.prompt.split())} **{text}**"
 
     def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
-        """Mark answers to what is left, by the name of the question; what is blank is passed over.
+        """Mark answers to the blanks, by the name of the question; blank ones are ignored.
 
         Raises
         ------
@@ -126,7 +127,7 @@ class Worked(Shown):
 
 
 def _named(question: Question) -> str:
-    """What is asked, with its unit, and its symbol where the words do not hold it."""
+    """Return a question with its unit, and its symbol where the words lack it."""
     prompt = " ".join(question.prompt.split())
     if not question.symbol:
         return prompt
@@ -189,7 +190,7 @@ def _explained(exercise: Any, name: str, lang: str, seed: int) -> str:
 
 
 def mistakes(course: Course[Any], exercise: str, names: Sequence[str], lang: str, seed: int) -> Shown:
-    """What an exercise tells students who make its named mistakes, a line each.
+    """Return the messages for an exercise's named mistakes, one line each.
 
     Raises
     ------
