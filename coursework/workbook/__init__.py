@@ -1,1 +1,1 @@
-"""The workbook: lessons read and run, and a whole course as one book, as pages and as notebooks."""
+"""Workbook: lessons with executed cells, and a whole course as one book, as pages and as notebooks."""

@@ -1,4 +1,4 @@
-"""A course bound into one book: its chapters, in each the lessons read and run, and a variant of each exercise."""
+"""Book of a course: its chapters, each with its lessons and a variant of each exercise."""
 
 from __future__ import annotations
 
@@ -72,12 +72,12 @@ def bound(
 
 
 def pieces_of(course: Course[Any]) -> int:
-    """How many lessons and exercises the whole book has."""
+    """Count the lessons and exercises of the whole book."""
     return len(course.folder.lessons) + len(course.folder.names)
 
 
 def chapters_of(course: Course[Any], lang: str) -> Iterator[Chapter]:
-    """Yield those of the course, and one of what stands in none."""
+    """Yield the chapters of the course, then one with everything outside them."""
     folder = course.folder
     yield from folder.chapters
     lessons = [n for n in folder.lessons if not any(n in c.lessons for c in folder.chapters)]
@@ -108,8 +108,8 @@ def _chapter(
 
 
 def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant:
-    """Return the first that is worth issuing for a book; of a students' copy, which cannot tell, that of its
-    own number."""
+    """Return the first valid variant for a book; in a students' copy, which cannot validate, that of the
+    seed."""
     if not exercise.folder.has_solutions:
         return exercise.variant(seed, lang)
     return distinct_variants(exercise, _FAR + _APART * seed, 1, lang)[0]

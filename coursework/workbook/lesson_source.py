@@ -1,4 +1,4 @@
-"""A lesson's file read: prose, cells, answers to questions, and pictures, in the order in which they stand.
+"""Parser of a lesson's file: prose, cells, answers to questions, and pictures, in order.
 
 A lesson is Markdown. A ```` ```python ```` fence is a cell, with ``{tags=…}`` after the word; a ```` ```answer ```` fence is the answer to the question
 above it; a picture stands on a line of its own, ``![caption](figure:NAME)`` or ``![caption](exercise:NAME?seed=3)``. Links lead to
@@ -29,7 +29,7 @@ class Prose:
 
 @dataclass(frozen=True)
 class Cell:
-    """Code; ``line`` is that of its first line in the file."""
+    """Code cell; ``line`` is that of its first line in the file."""
 
     code: str
     tags: tuple[str, ...]
@@ -38,7 +38,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Answer:
-    """The answer to the question above it, Markdown; ``line`` is that of its first line in the file."""
+    """Answer to the question above it, Markdown; ``line`` is that of its first line in the file."""
 
     text: str
     line: int = field(default=0, compare=False)
@@ -46,7 +46,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class Image:
-    """A picture on a line of its own: what it is, by ``kind`` and name, what is asked of it, and its caption."""
+    """Picture on a line of its own: its ``kind`` and name, its options, and its caption."""
 
     caption: str
     kind: str  #: figure or exercise
@@ -68,7 +68,7 @@ _TARGET = re.compile(r"(figure|exercise):(\w+)(?:\?(\S*))?")
 
 
 def blocks(text: str, file: str) -> tuple[Block, ...]:
-    """Return the blocks of a lesson's text; ``file`` is what messages call it.
+    """Parse a lesson's text into blocks; ``file`` is its name in messages.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def _line(text: str, start: int, piece: str) -> int:
 
 
 def _check_fences(text: str, file: str) -> None:
-    """Stop at a fence that is never closed, or whose word is nearly one that says something."""
+    """Refuse a fence that is never closed, or whose word nearly matches a known one."""
     opened, at = "", 0
     for number, line in enumerate(text.split("\n"), 1):
         mark = _MARK.match(line)
@@ -138,7 +138,7 @@ def _check_fences(text: str, file: str) -> None:
 
 
 def _check_opening(said: str, place: str) -> None:
-    """What stands behind the opening of a fence."""
+    """Refuse a malformed opening of a fence."""
     known = _OPENED.fullmatch(said)
     if known is None:
         raise BadCourse(

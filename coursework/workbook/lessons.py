@@ -1,4 +1,4 @@
-"""A lesson read, drawn and run: as a book prints it."""
+"""Lesson with its pictures drawn and its cells run, as a book prints it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HEAD = re.compile(r"^(##+) +(?:(\d+)\. +)?(.*?) *$", re.MULTILINE)
 
 
 class Opened(NamedTuple):
-    """A lesson's file, read once: what messages call it, its text, and its blocks, whose words can be printed."""
+    """Lesson file: its name in messages, its text, and its proofread blocks."""
 
     file: str
     text: str
@@ -34,12 +34,12 @@ class Opened(NamedTuple):
 
     @property
     def terms(self) -> tuple[str, ...]:
-        """The entries of the index that the lesson has, each once."""
+        """Index entries of the lesson, each once."""
         return tuple(dict.fromkeys(link.name for link in links(self.text) if link.kind == TERM))
 
 
 def opened(course: Course[Any], name: str, lang: str) -> Opened:
-    """Return a lesson's file, proofread.
+    """Read and proofread a lesson's file.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def _told(course: Course[Any], name: str, lang: str, lesson: Opened) -> LessonTe
 
 
 def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
-    """Yield the blocks without the title, with which the first one begins."""
+    """Yield the blocks without the title at the start of the first one."""
     first, *others = blocks
     assert isinstance(first, source.Prose)  # proofread
     yield replace(first, text=_TITLE.sub("", first.text))
@@ -93,7 +93,7 @@ def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
 
 
 class _Lesson:
-    """The pieces of a lesson as they come."""
+    """Pieces of a lesson, in order."""
 
     def __init__(self, course: Course[Any], name: str, lang: str, session: Session):
         self._course, self._name, self._lang, self._session = course, name, lang, session
@@ -128,7 +128,7 @@ class _Lesson:
 
 
 def _parted(text: str) -> Iterator[Piece]:
-    """Yield the running text, its headings apart."""
+    """Yield the running text, with its headings as separate pieces."""
     end = 0
     for head in _HEAD.finditer(text):
         if before := text[end : head.start()].strip():
@@ -153,8 +153,10 @@ def _check_link(folder: Folder, link: Link, lang: str, place: str) -> None:
 
 
 def faults(course: Course[Any], name: str) -> tuple[str, ...]:
-    """What is wrong with a lesson, in a sentence each: a language in which it cannot be read, drawn or run, and languages of which
-    one has other cells, pictures or answers than another."""
+    """Return the faults of a lesson, a sentence each.
+
+    A language may fail to be read, drawn or run, or have other cells, pictures or answers than another.
+    """
     found, shapes = [], {}
     for lang in course.folder.languages:
         try:
@@ -172,8 +174,8 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
 
 
 def order_faults(course: Course[Any]) -> tuple[str, ...]:
-    """What is wrong with the order of a course, in a sentence each: titles that a language lacks, and what ``[lessons]`` names
-    that there is not."""
+    """Return the faults in the order of a course, a sentence each: missing titles, and unknown names in
+    ``[lessons]``."""
     folder = course.folder
     found = [
         f"exercises/course.toml: chapter {chapter.number}{where} has no title in {lang!r}"
@@ -192,7 +194,7 @@ def order_faults(course: Course[Any]) -> tuple[str, ...]:
 
 
 def _titles(chapter: Chapter) -> Iterator[tuple[str, Mapping[str, str]]]:
-    """Yield the titles of a chapter, and those of its sections that have one."""
+    """Yield the titles of a chapter, and those of its sections with one."""
     yield "", chapter.titles
     for number, section in enumerate(chapter.sections, 1):
         if section.titles:
@@ -200,7 +202,7 @@ def _titles(chapter: Chapter) -> Iterator[tuple[str, Mapping[str, str]]]:
 
 
 def _cut_formulas(text: str, name: str, lang: str) -> list[str]:
-    """Return the rows of tables in which a bar of a formula ends a cell."""
+    """Return the table rows in which a bar inside a formula ends the cell."""
     return [
         f"{name}, {lang}, line {k}: a bar inside a formula ends the cell of a table; write \\lvert, \\rvert or \\mid: {line.strip()}"
         for k, line in enumerate(text.splitlines(), 1)

@@ -1,4 +1,4 @@
-"""A lesson as a notebook: its pictures in it, its answers folded away, its links to the notebooks beside it."""
+"""Lesson as a notebook, with embedded pictures, collapsed answers, and links to the notebooks beside it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PPI = 150
 
 
 def notebook_name(name: str, lang: str) -> str:
-    """Return the file of a lesson's or an exercise's notebook."""
+    """Return the file name of a lesson's or an exercise's notebook."""
     return f"{name}.{lang}.ipynb"
 
 
@@ -71,7 +71,7 @@ def _written(
 
 
 def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -> str:
-    """Return the text with links to the notebooks beside this one; terms in italics."""
+    """Return the text with links to the notebooks beside this one, and with terms in italics."""
 
     def write(link: Link) -> str:
         if link.kind == TERM:
@@ -89,7 +89,7 @@ def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -
 
 
 def _attached(shown: Drawn) -> Mapping[str, str]:
-    """Return a picture by its type: what moves is SVG, which moves in a notebook as well."""
+    """Return a picture by MIME type; a moving one is SVG, which moves in a notebook too."""
     if shown.svg:
         return {"image/svg+xml": base64.b64encode(shown.svg.encode()).decode()}
     assert shown.figure is not None  # a picture is one or the other
@@ -103,7 +103,7 @@ def _picture(file: str, shown: Drawn, lang: str) -> str:
 
 
 def _practise(course: Course[Any], name: str, lang: str, there: Collection[str]) -> list[str]:
-    """Return the exercises of the lesson, each a link to its notebook."""
+    """Return the exercises of the lesson, each as a link to its notebook."""
     exercises = [one for one in practised(course.folder, name, lang) if one in there]
     if not exercises:
         return []

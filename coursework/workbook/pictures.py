@@ -1,4 +1,4 @@
-"""The pictures of a lesson: figures that its module draws, figures of exercises, and either in motion."""
+"""Pictures of a lesson: figures from its module, figures of exercises, and either in motion."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _call(folder: Folder, lesson: str, name: str) -> Any:
 
 
 def _moving(frames: Sequence[Figure], said: str, caption: str, lang: str) -> Drawn:
-    """Return the figures that follow one another, the first after the last."""
+    """Return figures in a cycle, the first after the last."""
     elements, count = [frame.elements for frame in frames], len(frames)
     shown, small = drawing(elements), drawing(elements, paper_mm=_CELL)
     told = {"title": said, "words": said, "lang": lang}
@@ -106,5 +106,5 @@ def _of_exercise(course: Course[Any], lesson: str, image: Image, lang: str) -> D
 
 
 def moving(animation: Animation, caption: str = "") -> Drawn:
-    """Return an exercise's mechanism in motion, and instants of it for paper."""
+    """Return an exercise's mechanism in motion, and its stills for paper."""
     return Drawn(animation.words, caption, svg=animation.svg(), stills=animation.stills(STILLS, _CELL))

@@ -1,4 +1,4 @@
-"""What of a lesson's words no book could print as it was meant, said with file and line."""
+"""Checks of a lesson's words for what a book cannot print, reported with file and line."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SECTION = re.compile(r"^## +(\d+)\.", re.MULTILINE)
 
 
 def proofread(found: Sequence[source.Block], file: str) -> None:
-    """Stop at what of a lesson's words cannot be printed as it was meant.
+    """Refuse words of a lesson that cannot be printed as intended.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def proofread(found: Sequence[source.Block], file: str) -> None:
 
 
 def lines_of_words(found: Sequence[source.Block]) -> Iterator[tuple[str, int]]:
-    """Yield the texts of a lesson, each with the line of its first line."""
+    """Yield the texts of a lesson, each with its first line number."""
     for block in found:
         if isinstance(block, source.Image):
             yield block.caption, block.line
@@ -55,14 +55,14 @@ def lines_of_words(found: Sequence[source.Block]) -> Iterator[tuple[str, int]]:
 
 
 def place_of(words: str, line: int, file: str, piece: str) -> str:
-    """Where a piece of some words stands: the file, and the line of its own first line."""
+    """Return the file and the line of a piece of some words."""
     first = piece.split("\n")[0]
     further = next((k for k, one in enumerate(words.split("\n")) if first in one), 0)
     return f"{file}, line {line + further}"
 
 
 def _check_title(found: Sequence[source.Block], file: str) -> None:
-    """A lesson begins with its title, and has no other."""
+    """Refuse a lesson without exactly one title at its beginning."""
     first = found[0] if found else None
     if not isinstance(first, source.Prose) or not first.text.startswith("# "):
         raise BadCourse(f"{file}, line 1: a lesson begins with its title, # TITLE")
@@ -91,7 +91,7 @@ def _check_leads(words: str, place: Callable[[str], str]) -> None:
 
 
 def _sections(words: str, before: Set[str], place: Callable[[str], str]) -> set[str]:
-    """Return the numbers of sections that begin in some words, each new."""
+    """Return the section numbers that begin in some words; refuse a repeated one."""
     found: set[str] = set()
     for number in _SECTION.findall(words):
         if number in before | found:

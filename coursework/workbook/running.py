@@ -1,4 +1,4 @@
-"""The cells of a lesson run for its book: what each prints, and what its last line shows."""
+"""Execution of a lesson's cells for its book: their printed output, and the value of each last line."""
 
 from __future__ import annotations
 
@@ -32,15 +32,16 @@ _UNSEEN = re.compile(r"\x1b\[[0-9;]*[A-Za-z]|\r(?=\n)|[\x00-\x08\x0b-\x1f\x7f]")
 
 @dataclass(frozen=True)
 class Shows:
-    """What a cell shows: pieces that stand where it stands, and pieces that are told later, as answers are."""
+    """Output of a cell: pieces in its place, and pieces for later, with the answers."""
 
     now: tuple[Piece, ...] = ()
     later: tuple[Piece, ...] = ()
 
 
 class Session:
-    """A lesson's cells, run one after another in one namespace, as in a notebook that stands in a folder: an empty one, beside the
-    course's own, so that nothing is read or left where the book is bound.
+    """Execution of a lesson's cells one after another in one namespace, as in a notebook.
+
+    The folder is an empty one beside the course's, so that nothing is read or left where the book is bound.
 
     Parameters
     ----------
@@ -83,7 +84,7 @@ class Session:
         return Shows((*told, *now), shown.later)
 
     def _value(self, cell: Cell) -> Any:
-        """What the last line gives, once the cell is run."""
+        """Run the cell and return the value of its last line."""
         # Line numbers are those of the lesson's file.
         tree = ast.parse("\n" * (cell.line - 1) + cell.code, self._file)
         last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
@@ -93,7 +94,7 @@ class Session:
         return eval(compile(ast.Expression(last.value), self._file, "eval"), self._names)
 
     def _said(self, fault: BaseException, cell: Cell) -> str:
-        """Return a fault in one line."""
+        """Return a fault as one line."""
         if isinstance(fault, SyntaxError) and fault.filename == self._file:
             return f"{self._file}, line {fault.lineno}: the cell is no Python: {fault.msg}"
         place = f"{self._file}, line {self._line(fault, cell)}"
@@ -112,7 +113,7 @@ class Session:
         return own[-1] or cell.line if own else cell.line
 
     def _clean(self, piece: Piece, cell: Cell) -> Iterator[Piece]:
-        """What a cell shows as a book may hold it: the same for ever, and not without end."""
+        """Yield the output of a cell, refused if it differs between runs or is too long."""
         if not isinstance(piece, Printed):
             yield piece
             return
@@ -130,7 +131,8 @@ class Session:
         )
 
     def _of_here(self, text: str) -> str:
-        """What of a text holds for this machine, or this moment, alone: a place in memory, a folder."""
+        """Return a part of a text that holds for this machine or this moment alone: a memory address, a
+        folder."""
         here = [self._kept.name, str(Path(self._kept.name).resolve()), str(self._root)]
         places = [line for line in text.splitlines() if any(one in line for one in here)]
         objects = _IN_MEMORY.findall(text)
@@ -138,7 +140,7 @@ class Session:
 
 
 def _beside(root: Path, place: Path) -> Path:
-    """Return a folder beside which the course stands, under its name."""
+    """Return a folder beside which the course appears under its name."""
     try:
         (place / root.name).symlink_to(root, target_is_directory=True)
     except OSError:  # a system, or a user, without links
@@ -147,7 +149,7 @@ def _beside(root: Path, place: Path) -> Path:
 
 
 def shows(value: Any) -> Shows:
-    """What the value of a cell's last line shows."""
+    """Return the output for the value of a cell's last line."""
     if value is None:
         return Shows()
     if isinstance(value, Compared):

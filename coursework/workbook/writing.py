@@ -1,4 +1,4 @@
-"""The files of a workbook: one PDF, pages, and notebooks that lead to one another."""
+"""Files of a workbook: one PDF, pages, and notebooks with links to one another."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def files(
     paper: str = "a4",
     apart: bool = False,
 ) -> Iterator[File]:
-    """Yield the files of a book: the same bytes for the same course, language and seed.
+    """Yield the files of a book; the same course, language and seed give the same bytes.
 
     Parameters
     ----------
