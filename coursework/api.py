@@ -1,4 +1,4 @@
-"""The public face: open a course, and what can be done with a variant."""
+"""Public API: open a course, and work with its variants."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def open_course(folder: str | Path | None = None) -> Course[Variant]:
-    """Open a course folder; the built-in course unless told.
+    """Open a course folder; by default the built-in course.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def worked(
     parts: Sequence[str] = (),
     course: str | Path | None = None,
 ) -> Worked:
-    """Return a variant of an exercise as a worked example, as a notebook's cell shows it.
+    """Return a variant of an exercise as a worked example, for display in a notebook cell.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def worked(
 def mistakes(
     exercise: str, *names: str, seed: int = 0, lang: str | None = None, course: str | Path | None = None
 ) -> Shown:
-    """What an exercise tells students who make its named mistakes, as a notebook's cell shows it.
+    """Return the messages for an exercise's named mistakes, for display in a notebook cell.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def _course_of(course: str | Path | None, lang: str | None) -> Course[Variant]:
 
 
 class Variant(numbers.Variant):
-    """One student's version of an exercise: its numbers, its sheets, its marks.
+    """Variant of an exercise for one student: its numbers, its sheets, its marks.
 
     What each verb needs is loaded when it is first used.
     """
@@ -175,7 +175,7 @@ class Variant(numbers.Variant):
         return mark(self, answers)
 
     def handout(self, student: str = "") -> Handout:
-        """What the student's sheet shows."""
+        """Return the student's sheet."""
         from coursework.sheets.handout import handout
 
         return handout(self, student)
@@ -187,7 +187,7 @@ class Variant(numbers.Variant):
         return answer_sheet(self, student, polygons=polygons)
 
     def study_sheet(self, student: str = "") -> StudySheet:
-        """What the self-study notebook of this variant shows."""
+        """Return the self-study notebook of this variant."""
         from coursework.selfstudy.sheet import study_sheet
 
         return study_sheet(self, student)
@@ -215,7 +215,7 @@ class Variant(numbers.Variant):
 
 
 def show_motion(variant: numbers.Variant, effects: Sequence[str] = (), count: int = 72) -> DisplayedAnimation:
-    """Return a variant's mechanism in motion: as the last line of a notebook's cell, it is shown moving."""
+    """Return a variant's mechanism in motion, for display in a notebook cell."""
     from coursework.rendering.displayed import DisplayedAnimation
 
     return DisplayedAnimation(variant, effects, count)

@@ -21,8 +21,7 @@ def _is_scalar(*values: Any) -> bool:
 
 
 def _digits_of(*values: Any) -> Any:
-    """Return the mpmath context of the first number that has one: it computes with as many digits as it is
-    told."""
+    """Return the mpmath context, with its precision, of the first value that has one; None otherwise."""
     for value in values:
         context = getattr(value, "context", None)
         if context is not None:
@@ -36,7 +35,7 @@ def _floating(values: Any) -> np.ndarray:
 
 
 def _sine_of_quarters(theta: Angle, quarters: int) -> Angle:
-    """Return the sine of ``theta + 90 quarters``, the quarters of a turn taken out exactly first."""
+    """Return the sine of ``theta + 90 quarters``, reduced exactly by quarter turns first."""
     if isinstance(theta, (float, int)):
         if not math.isfinite(theta):
             return math.nan
@@ -80,7 +79,7 @@ def polar(length: Any, theta: Angle) -> Any:
 
 
 def angle(vector: Any) -> Angle:
-    """Return the direction of a complex vector, in (-180, 180]: by its quadrant, never by a quotient."""
+    """Return the direction of a complex vector, in (-180, 180], by its quadrant rather than by a quotient."""
     if _is_scalar(vector):
         found = math.degrees(cmath.phase(vector))
         return 180.0 if found == -180.0 else found
@@ -104,17 +103,17 @@ def atan2(y: Any, x: Any) -> Angle:
 
 
 def atan(x: Any) -> Angle:
-    """Return arctangent, in (-90, 90): loses the quadrant of a quotient."""
+    """Return the arctangent, in (-90, 90); of a quotient y/x it loses the quadrant."""
     return _inverse("atan", x)
 
 
 def asin(x: Any) -> Angle:
-    """Return arcsine, in [-90, 90]."""
+    """Return the arcsine, in [-90, 90]."""
     return _inverse("asin", x)
 
 
 def acos(x: Any) -> Angle:
-    """Return arccosine, in [0, 180]."""
+    """Return the arccosine, in [0, 180]."""
     return _inverse("acos", x)
 
 
@@ -142,7 +141,7 @@ def sqrt(x: Any) -> Any:
 
 
 def wrap(theta: Angle) -> Angle:
-    """Return the same direction in (-180, 180]."""
+    """Return the angle reduced to (-180, 180]."""
     if _is_scalar(theta):
         rest = math.remainder(theta, 360.0)
         return 180.0 if rest == -180.0 else rest

@@ -1,4 +1,4 @@
-"""What an exercise says of itself: given quantities, conditions, parts. Immutable; no answers.
+"""Model of an exercise: given quantities, constraints, parts. Immutable, without answers.
 
 ``exercises/NAME.py`` states one :class:`Exercise` under the name ``EXERCISE``::
 
@@ -35,7 +35,7 @@ Bound = float | Callable[..., Any]  #: a number, or a function of quantities dra
 
 @dataclass(frozen=True)
 class GivenSpec:
-    """How one given quantity varies, and what values a request may give it."""
+    """Specification of a given quantity: its random variation, and the values accepted in a request."""
 
     unit: str
     low: Bound | None = None
@@ -71,7 +71,7 @@ def drawn(
     nonzero: bool = False,
     shown: bool = True,
 ) -> GivenSpec:
-    """Return a quantity drawn on the grid of multiples of ``step`` in [low, high].
+    """Declare a quantity drawn from the multiples of ``step`` in [low, high].
 
     A bound may be a function of quantities declared before it; its parameters name them. ``positive``
     says whether a request may only give positive values; unless told, it follows from a positive
@@ -88,12 +88,12 @@ def drawn(
 
 
 def fixed(value: float, *, unit: str = "1") -> GivenSpec:
-    """Return a quantity with the same value in every variant; a request may give it another."""
+    """Declare a quantity with the same value in every variant; a request may give another."""
     return GivenSpec(unit, default=value)
 
 
 def chosen(*choices: str, shown: bool = True) -> GivenSpec:
-    """Return a quantity drawn among named cases, all equally likely; ``shown`` is that of :func:`drawn`."""
+    """Declare a quantity drawn among named cases, all equally likely; ``shown`` as in :func:`drawn`."""
     return GivenSpec("1", choices=tuple(choices), shown=shown)
 
 
@@ -104,7 +104,7 @@ _OF_ITS_KIND: Any = None  #: stands for a margin until the part has taken that o
 
 @dataclass(frozen=True)
 class Part:
-    """One question: which quantity, in which unit, for how many points, how judged.
+    """Question: its quantity, unit, points and marking.
 
     ``kind``, a file of :mod:`coursework.kinds`, is ``number``, ``angle`` (compared modulo 360), ``integer``, ``choice`` (of ``choices``),
     ``point`` (by its distance to the reference), ``point_on_line`` (a point of the line through the reference
@@ -190,7 +190,7 @@ class Part:
             object.__setattr__(self, "id", self.quantity)
 
     def _check_room(self, sort: Kind) -> None:
-        """Take the room of the kind where none is stated; refuse room where it has no place."""
+        """Set the default answer space of the kind; refuse space for a kind that has none."""
         if sort.room is None and self.room is not None:
             raise BadCourse(
                 f"part {self.quantity!r}: 'room' goes with kinds that leave some; {self.kind!r} has none"
@@ -211,17 +211,17 @@ class Part:
 
     @property
     def is_exact(self) -> bool:
-        """Judged by identity: no tolerance."""
+        """True if answers are compared exactly, without a tolerance."""
         return self.sort.is_exact
 
     @property
     def has_margin(self) -> bool:
-        """Right within a margin about its reference."""
+        """True if answers are right within a margin about the reference."""
         return not self.is_exact and not self.judge
 
     @property
     def loop_form(self) -> tuple[str, int]:
-        """For an equation of a loop: ``x``, ``y`` or ``complex``, and how often it is derived."""
+        """Form of a loop equation, ``x``, ``y`` or ``complex``, and its order of differentiation."""
         found = _loop_form(self)
         if found is None:
             raise BadCourse(f"part {self.quantity!r} closes no loop")
@@ -232,7 +232,7 @@ class Part:
         return max(self.atol, self.rtol * abs(reference))
 
     def is_asked(self, given: Mapping[str, Any]) -> bool:
-        """Return whether a variant with these given values asks the part; so too when they do not tell."""
+        """Return whether a variant with these given values asks the part; True where they do not decide."""
         if self.when is None:
             return True
         names = _parameters(self.when)
@@ -289,7 +289,7 @@ def loop_equations(
 
 @dataclass(frozen=True)
 class Driver:
-    """What drives the mechanism when it is simulated, by names of quantities.
+    """Driver of the mechanism in a simulation, by names of quantities.
 
     ``angle`` in degrees, ``speed`` in rad/s and ``acceleration`` in rad/s^2 of the driving crank; a name
     is empty where the exercise has no such quantity. ``effort`` (N*m, along ``angle``) is what the drive
@@ -310,7 +310,7 @@ class Driver:
 
 @dataclass(frozen=True)
 class Exercise:
-    """An exercise without its answers.
+    r"""Exercise without its answers.
 
     Parameters
     ----------
@@ -331,7 +331,7 @@ class Exercise:
     version
         Raised when a change alters what a seed draws, or what is asked; records keep theirs.
     symbols
-        LaTeX of quantities whose name does not say it (``rA_dot`` does: ``\\dot{r}_A``).
+        LaTeX of quantities whose name does not say it (``rA_dot`` does: ``\dot{r}_A``).
     either_order
         Groups of part ids that a student may exchange as wholes: two assembly modes.
     driver
@@ -396,7 +396,7 @@ class Exercise:
                     raise BadCourse(f"either_order names no part {i!r}{nearest(i, ids)}")
 
     def told(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What the statement's text may use besides the given values."""
+        """Return the values that the statement may use beside the given ones."""
         return {} if self.tells is None else self.tells(*[given[n] for n in _parameters(self.tells)])
 
     def part(self, part_id: str) -> Part | None:
@@ -404,7 +404,7 @@ class Exercise:
         return next((p for p in self.parts if p.id == part_id), None)
 
     def symbol(self, name: str) -> str:
-        """Return LaTeX of a quantity."""
+        """Return the LaTeX symbol of a quantity."""
         return self.symbols.get(name) or symbol_of(name)
 
 
@@ -419,7 +419,7 @@ _GREEK = (
 
 @lru_cache(maxsize=4096)
 def symbol_of(name: str) -> str:
-    r"""Return LaTeX of a public name: ``theta4`` -> ``\theta_4``, ``rA_dot`` -> ``\dot{r}_A``.
+    r"""Return the LaTeX symbol of a public name: ``theta4`` -> ``\theta_4``, ``rA_dot`` -> ``\dot{r}_A``.
 
     >>> symbol_of("theta3_open")
     '\\theta_{3,\\mathrm{open}}'

@@ -1,4 +1,4 @@
-"""What a solution module holds: a function a quantity, named mistakes, known cases, a residual.
+"""Loader of a solution module: quantities as functions, named mistakes, known cases, a residual.
 
 ``solutions/NAME.py`` is read by these rules:
 
@@ -48,8 +48,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A named wrong way: what it replaces, and what of a part's points it still earns: the price of errors of its
-    ``kind``, unless it says a ``share``."""
+    """Named mistake: the quantities it replaces, and the share of a part's points that it earns.
+
+    Without a ``share``, the penalty is that of its ``kind``.
+    """
 
     name: str
     replacement: Replacement
@@ -90,7 +92,7 @@ def mistake(
 
 
 def formula(latex: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    r"""Say how a quantity's formula is printed, where its code does not read as one.
+    r"""State the printed formula of a quantity whose code does not read as one.
 
     ``<name>`` stands for the quantity of that name: its symbol in the formula, its number in the
     substitution. ``@formula(r"\operatorname{arg}(<arm>)")``.
@@ -104,7 +106,7 @@ def formula(latex: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
 
 
 def told_after(*names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Say which quantities the worked solution tells before this one, where its words speak of what its code does not take.
+    """State which quantities the worked solution prints before this one, beyond those that its code takes.
 
         @told_after("transmitted")
         def rs(_combined): ...
@@ -120,7 +122,7 @@ def told_after(*names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]
 
 
 def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Say how a quantity is computed where its textbook formula would lose digits.
+    """State how a quantity is computed where its textbook formula would lose digits.
 
     The decorated function is the formula of the course: it is what the worked solution prints, and what
     computes when one of its own arguments is given or mistaken. ``function`` gives the same
@@ -141,23 +143,23 @@ def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Calla
 
 @dataclass(frozen=True)
 class Case:
-    """The given values of a known case, and the effects that it calls for: None where they are the exercise's own."""
+    """Given values of a known case, and its effects; None for those of the exercise."""
 
     values: Mapping[str, Any]
     effects: tuple[str, ...] | None = None
 
     def under(self, *effects: str) -> Case:
-        """Return the same under these effects, or under none."""
+        """Return the case under these effects, or under none."""
         return Case(self.values, effects)
 
     def gives(self, **expected: Any) -> tuple[Any, ...]:
-        """Return the case as ``KNOWN`` lists it, with what is known to come out."""
+        """Return the entry of ``KNOWN``, with the expected values."""
         case = (self.values, expected)
         return case if self.effects is None else (*case, self.effects)
 
 
 def given(**values: Any) -> Case:
-    """Return a known case by its given values; ``KNOWN`` reads as a list of sentences::
+    """Return a known case by its given values; ``KNOWN`` then reads as a list of sentences::
 
     KNOWN = (
         given(r1=200, r2=100, theta2=90).gives(rA=300, theta4=90),
@@ -169,7 +171,7 @@ def given(**values: Any) -> Case:
 
 @dataclass(frozen=True)
 class Judged:
-    """What a judge says of one answer.
+    """Judgement of one answer.
 
     ``share``, 0 to 1, is the part of the points that it earns; ``mistake`` the named mistake that it shows, if
     any; ``found`` what follows from the student's own answers, by quantity, in canonical units: it is told.
@@ -206,7 +208,7 @@ def judge(function: Callable[..., Any]) -> Callable[..., Any]:
 
 @dataclass(frozen=True)
 class Moving:
-    """A point in motion: complex numbers, in mm, mm/s and mm/s^2; None for what is not shown.
+    """Point in motion: complex numbers, in mm, mm/s and mm/s^2; None for one that is not shown.
 
     ``coriolis`` is the Coriolis term of the point's acceleration, seen from the body it slides on. Each is a
     scalar or an array over the driver's angles.
@@ -218,14 +220,14 @@ class Moving:
     coriolis: Any = None
 
     def over(self, count: int) -> Moving:
-        """Return the same as arrays of ``count`` instants."""
+        """Return the motion as arrays of ``count`` instants."""
         values = (self.position, self.velocity, self.acceleration, self.coriolis)
         return Moving(*(v if v is None else np.broadcast_to(v, (count,)).astype(complex) for v in values))
 
 
 @dataclass(frozen=True)
 class Film:
-    """An animation in a picture of its own, where nothing would move in the statement's figure.
+    """Animation with a picture of its own, for a statement whose figure cannot move.
 
     ``angle`` names the driving angle, degrees: 0 in the first picture, so no given quantity. ``speed`` names its rate,
     whose sign says which way it turns. ``figure`` is a function of that angle and of any quantities of the
@@ -242,7 +244,7 @@ class Film:
 
 @dataclass(frozen=True)
 class Solution:
-    """A loaded solution."""
+    """Loaded solution."""
 
     name: str
     source: str  #: its file, for messages
@@ -264,7 +266,7 @@ class Solution:
 
     @staticmethod
     def of(name: str, module: ModuleType, source: str) -> Solution:
-        """Read a solution module; ``source`` is what messages call its file.
+        """Read a solution module; ``source`` is the name of its file in messages.
 
         Raises
         ------
@@ -348,7 +350,7 @@ class Solution:
         return self._reached[name]
 
     def depending_on(self, quantity: str) -> frozenset[str]:
-        """Return the quantities that change with one."""
+        """Return the quantities that depend on one."""
         if quantity not in self._dependants:
             self._dependants[quantity] = self.graph.textbook.descendants((quantity,))
         return self._dependants[quantity]
@@ -367,7 +369,7 @@ class Solution:
 
     @cached_property
     def in_radians(self) -> tuple[Graph, ...]:
-        """The graph as a calculator that is set to radians works it out: :func:`~coursework.quantities.in_radians.in_radians`."""
+        """Graphs of a calculator in radian mode: :func:`~coursework.quantities.in_radians.in_radians`."""
         return in_radians(self.graph)
 
     @cached_property
@@ -422,7 +424,7 @@ def _effects(source: str, module: ModuleType, graph: Graph) -> Mapping[str, tupl
 
 
 def _belongs(function: Any, module: ModuleType) -> bool:
-    """Return whether a function is the module's own, or comes from a module that solutions share:
+    """Return whether a function is the module's own, or from a module that solutions share, such as
     ``_strokes``."""
     home = getattr(function, "__module__", None) or ""
     if home == module.__name__:
@@ -433,8 +435,8 @@ def _belongs(function: Any, module: ModuleType) -> bool:
 
 
 def _hidden(functions: Mapping[str, Callable[..., Any]], module: ModuleType) -> dict[str, Callable[..., Any]]:
-    """Return the functions of hidden names that quantities take as parameters: the module's, or those that
-    stand beside a shared quantity."""
+    """Return the hidden functions that quantities take as parameters: the module's, or those of a shared
+    module."""
     found: dict[str, Callable[..., Any]] = {}
     waiting = list(functions.values())
     while waiting:
