@@ -290,9 +290,11 @@ def issued_content(
 
 def _items(connection: Connection, number: int, *whose: ColumnElement[bool]) -> list[dict[str, Any]]:
     given = _dealt(number).where(*whose)
-    found = select(variant).where(variant.c.assignment_id == number)
-    if whose:
-        found = found.where(variant.c.id.in_(given.with_only_columns(dealt.c.variant_id).order_by(None)))
+    if whose:  # few rows: one query
+        return [
+            _issued_item(row, row.record) for row in connection.execute(given.add_columns(variant.c.record))
+        ]
+    found = select(variant.c.id, variant.c.record).where(variant.c.assignment_id == number)
     records = {row.id: row.record for row in connection.execute(found)}
     return [_issued_item(row, records[row.variant_id]) for row in connection.execute(given)]
 

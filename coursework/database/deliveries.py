@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, Select, distinct, func, insert, select, tuple_, update
 
 from coursework.database.assignments import issued_of
-from coursework.database.outdated import outdate_person, outdate_rows
+from coursework.database.outdated import outdate, outdate_rows
 from coursework.database.store import insert_unless_there
 from coursework.database.tables import answer, dealt, delivery, marking, rejected, seen, variant
 from coursework.gradebook.placing import Refused, student_of
@@ -79,7 +79,7 @@ def deliver(
     if person_id is None:
         outdate_rows(connection, assignment_id)
     else:
-        outdate_person(connection, assignment_id, person_id)
+        outdate(connection, assignment_id, [row.student for row in came_rows if isinstance(row, Row)])
     return Delivery(made, True, source, number, receipt, late, came)
 
 
@@ -180,19 +180,25 @@ def deliveries(connection: Connection, assignment_id: int, person_id: int | None
     return [_delivery(row, is_new=False) for row in connection.execute(found)]
 
 
-def tries_used(connection: Connection, assignment_id: int, person_id: int) -> int:
-    """How often somebody handed in the paper that is theirs to do: a make-up, where there is one, is another paper."""
+def tries_used(connection: Connection, assignment_id: int, person_id: int, done: Sequence[Delivery]) -> int:
+    """How often somebody handed in the paper that is theirs to do: a make-up, where there is one, is another paper.
+
+    ``done`` are the person's :func:`deliveries`.
+    """
+    if not done:
+        return 0
     theirs = variant.c.assignment_id == assignment_id, dealt.c.person_id == person_id
     papers = select(dealt.c.sitting, variant.c.exercise, variant.c.seed).join(variant).where(*theirs)
     issued = [tuple(row) for row in connection.execute(papers)]
     last = max((sitting for sitting, *_ in issued), default=1)
-    tries = select(func.count(distinct(delivery.c.id))).where(
-        delivery.c.assignment_id == assignment_id, delivery.c.person_id == person_id, delivery.c.number > 0
+    tries = [one.id for one in done if one.number > 0]
+    if last == 1:
+        return len(tries)
+    sheets = [(exercise, seed) for sitting, exercise, seed in issued if sitting == last]
+    of_last = answer.c.delivery_id.in_(tries), tuple_(answer.c.exercise, answer.c.seed).in_(sheets)
+    return int(
+        connection.execute(select(func.count(distinct(answer.c.delivery_id))).where(*of_last)).scalar_one()
     )
-    if last > 1:
-        sheets = [(exercise, seed) for sitting, exercise, seed in issued if sitting == last]
-        tries = tries.join(answer).where(tuple_(answer.c.exercise, answer.c.seed).in_(sheets))
-    return int(connection.execute(tries).scalar_one())
 
 
 def rows_of(

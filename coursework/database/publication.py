@@ -11,9 +11,11 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import datetime, timedelta
 from enum import Enum
+from functools import cache
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, insert, select, update
 
 from coursework.database.outdated import outdate_all, outdate_person
 from coursework.database.tables import assignment, dealt, delivery, extension, variant
@@ -297,6 +299,7 @@ class Place(NamedTuple):
     student: str  #: the person's name as issued
     publication: Publication | None
     extension: Extension | None
+    asked: Mapping[str, Any] = MappingProxyType({})  #: what its file says, where it is of one
 
     @property
     def own(self) -> Publication:
@@ -307,26 +310,27 @@ class Place(NamedTuple):
 
 def places(connection: Connection, person: int, number: int | None = None) -> list[Place]:
     """The assignments that somebody was issued, the latest first; of these the one of a number, where it is told."""
-    theirs = select(variant.c.assignment_id, dealt.c.student).join(variant).where(dealt.c.person_id == person)
-    mine = theirs.distinct().subquery()
-    columns = (
-        assignment.c.id,
-        assignment.c.name,
-        assignment.c.stated,
-        assignment.c.published,
-        mine.c.student,
-    )
-    found = select(*columns).join(mine, mine.c.assignment_id == assignment.c.id)
-    if number is not None:
-        found = found.where(assignment.c.id == number)
+    told = {"person": person} if number is None else {"person": person, "number": number}
     return [
         Place(
             row.id, row.name, row.stated or {}, row.student,
             None if row.published is None else Publication.of(row.published),
             extension_of(connection, row.id, person),
+            row.asked or {},
         )
-        for row in connection.execute(found.order_by(assignment.c.id.desc()))
+        for row in connection.execute(_places_query(number is not None), told)
     ]  # fmt: skip
+
+
+@cache
+def _places_query(is_of_one: bool) -> Select[Any]:
+    """The query of :func:`places`, put together once: requests ask it again and again."""
+    theirs = select(variant.c.assignment_id, dealt.c.student).join(variant)
+    mine = theirs.where(dealt.c.person_id == bindparam("person")).distinct().subquery()
+    one = assignment.c
+    found = select(one.id, one.name, one.stated, one.published, one.asked, mine.c.student)
+    found = found.join(mine, mine.c.assignment_id == one.id).order_by(one.id.desc())
+    return found.where(one.id == bindparam("number")) if is_of_one else found
 
 
 def extension_of(connection: Connection, number: int, person: int) -> Extension | None:

@@ -8,9 +8,10 @@ from __future__ import annotations
 import hashlib
 import secrets
 from datetime import datetime, timedelta
+from functools import cache
 from typing import Any
 
-from sqlalchemy import Connection, delete, exists, insert, or_, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, exists, insert, or_, select, update
 
 from coursework.database.people import found_people
 from coursework.database.tables import account, person, session
@@ -55,17 +56,22 @@ def session_of(connection: Connection, token: str, at: datetime) -> Any | None:
     """
     if len(token) != TOKEN_LENGTH:
         return None
+    return connection.execute(_session_query(), {"digest": digest_of(token), "at": at}).first()
+
+
+@cache
+def _session_query() -> Select[Any]:
+    """The query of :func:`session_of`: every request asks it, and to put it together costs as much as its answer."""
     own = [session.c[name].label(f"session_{name}") for name in ("id", "created", "seen")]
     former = account.alias()
     is_closed = exists().where(former.c.person_id == person.c.id, former.c.closed.is_not(None))
-    found = (
+    return (
         found_people()
         .add_columns(*own)
         .join(session, session.c.person_id == person.c.id)
-        .where(session.c.digest == digest_of(token), session.c.until > at)
+        .where(session.c.digest == bindparam("digest"), session.c.until > bindparam("at"))
         .where(or_(account.c.id.is_not(None), ~is_closed))
     )
-    return connection.execute(found).first()
 
 
 def touch_session(connection: Connection, number: int, created: datetime, at: datetime) -> None:

@@ -31,7 +31,7 @@ from coursework.site.papers.being_marked import being_marked
 from coursework.site.papers.feedback import charged_text, feedback_of
 from coursework.site.papers.handing_in import IN_A_FILE, ON_THE_PAGE, hand_in, pass_dates, sheet_of
 from coursework.site.papers.opening import filled_in, made
-from coursework.site.papers.own_assignment import State, own_assignment, state_of
+from coursework.site.papers.own_assignment import State, own_assignment, own_sheet, state_of
 from coursework.site.papers.own_paper import OwnPaper, counts, read_lines
 
 _FILES = (".ipynb", ".json", ".csv")
@@ -225,15 +225,15 @@ def confirm(visit: Visit) -> Reply:
     """Hand in what was read back, once."""
     if not visit.posted:
         raise Refused("method", 405)
-    state, own = own_assignment(visit)
+    place, own = own_sheet(visit)
     number = visit.form.text("_number")
     if not re.fullmatch("[1-9][0-9]{0,5}", number):
         raise Refused("bad_request", 400)
     texts = own.texts(visit.form)
     source = IN_A_FILE if visit.form.text("_source") == IN_A_FILE else ON_THE_PAGE
-    made = hand_in(visit.site, state.place, own, visit.who.id, texts, int(number), visit.at, source)
+    made = hand_in(visit.site, place, own, visit.who.id, texts, int(number), visit.at, source)
     again = "" if made.is_new else "?again=other" if made.differs else "?again=same"
-    return Reply(goto=f"{state.address}/receipts/{made.delivery.receipt}{again}")
+    return Reply(goto=f"/assignments/{place.id}/receipts/{made.delivery.receipt}{again}")
 
 
 def receipt(visit: Visit) -> Reply:

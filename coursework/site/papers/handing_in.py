@@ -111,7 +111,7 @@ def _check(
     if not own.phase(now).takes:
         raise Refused("not_open", 409)
     rescued = sum(one.source == AS_SAVED for one in done)
-    if own.tries is not None and tries_used(connection, place.id, person_id) - rescued >= own.tries:
+    if own.tries is not None and tries_used(connection, place.id, person_id, done) - rescued >= own.tries:
         raise Refused("no_try_left", 409)
     return fresh, now
 

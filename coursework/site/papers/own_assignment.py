@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -80,7 +81,7 @@ def state_of(visit: Visit, place: Place, connection: Connection) -> State:
     assert place.publication is not None
     done = deliveries(connection, place.id, visit.who.id)
     ends = last_end(place.publication, list(extensions(connection, place.id).values()))
-    used = tries_used(connection, place.id, visit.who.id)
+    used = tries_used(connection, place.id, visit.who.id, done)
     now = place.publication.counted(visit.at, visit.site.clock())
     return State(place, visit.lang, now, done, ends, used)
 
@@ -109,11 +110,28 @@ def own_place(visit: Visit, connection: Connection) -> Place:
 
 def own_assignment(visit: Visit) -> tuple[State, OwnPaper]:
     """Where it stands, and the paper; nothing of it before it opens."""
+    with _opened(visit) as (connection, place, own):
+        return state_of(visit, place, connection), own
+
+
+def own_sheet(visit: Visit) -> tuple[Place, OwnPaper]:
+    """The paper alone, for who hands it in: whether it is taken is asked when it is stored."""
+    with _opened(visit) as (_, place, own):
+        return place, own
+
+
+@contextmanager
+def _opened(visit: Visit) -> Iterator[tuple[Connection, Place, OwnPaper]]:
     pass_dates(visit.site, int(visit.path["number"]), visit.at)
-    with visit.site.store.reading() as connection:
+    site = visit.site
+    with site.store.reading() as connection:
         place = own_place(visit, connection)
-        state = state_of(visit, place, connection)
-        if state.phase is Phase.TO_COME:
-            raise Refused("not_yet", 409, state.moment(place.own.opens))
-        site = visit.site
-        return state, own_paper(connection, site.course, place, visit.who.id, visit.lang, site.shelf)
+        assert place.publication is not None
+        if place.own.phase(place.publication.counted(visit.at, site.clock())) is Phase.TO_COME:
+            opens = place.own.opens
+            raise Refused("not_yet", 409, moment_text(opens, visit.lang) if opens else "")
+        yield (
+            connection,
+            place,
+            own_paper(connection, site.course, place, visit.who.id, visit.lang, site.shelf),
+        )

@@ -8,14 +8,13 @@ from functools import cached_property, partial
 from json import dumps
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_content
 from coursework.database.prepared import Pieces
 from coursework.database.publication import Place
 from coursework.database.states import page_state
-from coursework.database.tables import assignment
 from coursework.gradebook.feedback_sheets import heading_of
 from coursework.making.assignment import text_in
 from coursework.making.issued import Issued
@@ -173,8 +172,7 @@ def own_paper(
 ) -> OwnPaper:
     """The paper of a person, who was issued one; its variants are kept on a shelf, where one is told."""
     content = issued_content(connection, place.id, person)
-    asked = connection.execute(select(assignment.c.asked).where(assignment.c.id == place.id)).scalar() or {}
-    told = asked.get("instructions") or {}
+    told = place.asked.get("instructions") or {}
     instructions = {"": told} if isinstance(told, str) else told
     kept = Shelf(_VARIANTS) if shelf is None else shelf
     return OwnPaper(course, content, place.student, lang, instructions, kept)
