@@ -14,13 +14,22 @@ from coursework.language.words import words
 from coursework.system.writing import write_whole
 
 
-def new_assignment(path: Path, course: Course[Any], names: Sequence[str], langs: Sequence[str]) -> Path:
+def new_assignment(
+    path: Path,
+    course: Course[Any],
+    names: Sequence[str],
+    langs: Sequence[str] | None = None,
+    around: str = "",
+) -> Path:
     """Write an assignment of some exercises; gives the file.
+
+    Its sheets are in ``langs``; unless told, in the language ``around`` where all its exercises speak it, else in the course's
+    own. Its titles stand in every language of the exercises, for students whose line of the roster says another.
 
     Raises
     ------
     BadInput
-        There is such a file, or no exercise is named.
+        There is such a file, no exercise is named, or one does not speak a language that is told.
     UnknownName
         An exercise that the course does not have.
     """
@@ -30,11 +39,20 @@ def new_assignment(path: Path, course: Course[Any], names: Sequence[str], langs:
     if path.exists():
         raise BadInput(f"{path} exists already; choose another name")
     asked = "".join(_asked(course, name) for name in names)
-    write_whole(path, (_head(path.stem, course, langs) + asked).encode("utf-8"))
+    for lang in langs or ():
+        if silent := [name for name in names if lang not in course[name].languages]:
+            speaks = ", ".join(course[silent[0]].languages)
+            raise BadInput(f"{silent[0]} is not written in {lang!r}; it is in {speaks}")
+    common = [one for one in course.folder.languages if all(one in course[n].languages for n in names)]
+    chosen = tuple(
+        langs or [one for one in (around, course.folder.language) if one in common][:1] or common[:1]
+    )
+    head = _head(path.stem, course, chosen, tuple(dict.fromkeys((*chosen, *common))))
+    write_whole(path, (head + asked).encode("utf-8"))
     return path
 
 
-def _head(stem: str, course: Course[Any], langs: Sequence[str]) -> str:
+def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence[str]) -> str:
     said = {lang: words(lang)["assignment"] for lang in langs}
     title = _texts({lang: f"{s['title']} ({stem})" for lang, s in said.items()})
     return "\n".join([
@@ -48,7 +66,7 @@ def _head(stem: str, course: Course[Any], langs: Sequence[str]) -> str:
         'versions = "each"      # 4: versions A to D, dealt out; 1: the same for all',
         '# identity = ["number", "group"]      # columns of the roster',
         '# roster = "class.csv"',
-        f'lang = "{",".join(langs[:1])}"',
+        f'lang = "{",".join(sheets)}"',
         f'out = "{stem}"',
         *(f"# {said[lang]['secret_line']}" for lang in langs),
         f'secret = "{Secret.new().text}"',

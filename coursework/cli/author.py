@@ -85,7 +85,8 @@ def check(
     "--lang",
     "langs",
     type=Lists(known_languages, unknown_language),
-    help="Languages of a new course; unless told, that of the environment (LANG), else all.",
+    help="Languages of a new course, or of the sheets of a new assignment; unless told, that of the environment (LANG), else all "
+    "those of a course, and a course's own for an assignment.",
 )
 @click.option(
     "--example", metavar="NAME", help="Copy a whole course that comes with the package: engineering."
@@ -111,7 +112,7 @@ def new(
         _new_example(folder, example, exercise or source or renamed or langs)
         return
     if str(folder) == "assignment" and exercise is not None and exercise.endswith(".toml"):
-        _new_assignment(context, Path(exercise), asked)
+        _new_assignment(context, Path(exercise), asked, langs)
         return
     if asked:
         raise BadInput(f"one exercise at a time: coursework new {folder} {exercise}")
@@ -148,12 +149,13 @@ def _new_example(folder: Path, name: str, more: object) -> None:
     click.echo(f"try: coursework --course {folder} check")
 
 
-def _new_assignment(context: click.Context, path: Path, asked: Sequence[str]) -> None:
+def _new_assignment(
+    context: click.Context, path: Path, asked: Sequence[str], langs: Sequence[str] | None
+) -> None:
     from coursework.authoring.new_assignment import new_assignment
+    from coursework.language.environment import language_of
 
-    course = opened(context)
-    langs = course[asked[0]].languages if asked else ()
-    made = new_assignment(path, course, asked, langs)
+    made = new_assignment(path, opened(context), asked, langs, language_of(os.environ))
     own = f"--course {context.obj} " if context.obj else ""
     click.echo(f"wrote {made}")
     click.echo(f"try: coursework {own}build {made}")
