@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -186,11 +186,11 @@ class Variant(numbers.Variant):
 
         return answer_sheet(self, student, polygons=polygons)
 
-    def study_sheet(self, student: str = "") -> StudySheet:
-        """Return the self-study notebook of this variant."""
+    def study_sheet(self, student: str = "", beside: Collection[str] = ()) -> StudySheet:
+        """Return the self-study notebook of this variant, with links to the lessons whose notebooks stand ``beside`` it."""
         from coursework.selfstudy.sheet import study_sheet
 
-        return study_sheet(self, student)
+        return study_sheet(self, student, beside)
 
     def polygons(self) -> tuple[DisplayedConstruction, ...]:
         """Return the velocity and acceleration polygons that the solution states, drawn to scale.

@@ -15,6 +15,7 @@ from coursework.cli.options import (
     Whole,
     decimal_option,
     exercise_argument,
+    is_typed,
     json_option,
     lang_option,
     opened,
@@ -88,7 +89,7 @@ def simulate(
 
     A scene is a file, or an exercise with options; values that are not set are those of the variant of --seed.
     """
-    typed = {name for name in (*told, "tolerance") if _is_typed(context, name)}
+    typed = {name for name in (*told, "tolerance") if is_typed(context, name)}
     if plan and budget:
         raise WrongValue("--plan says what would be done, --budget does it; give one of them")
     if "tolerance" in typed and not budget:
@@ -102,11 +103,6 @@ def simulate(
         _tell_budget(told_file, tolerance, out, decimal, as_json)
     else:
         _tell_table(told_file, out, decimal, as_json)
-
-
-def _is_typed(context: click.Context, option: str) -> bool:
-    """Whether an option was given, and does not merely hold its default."""
-    return context.get_parameter_source(option) is click.core.ParameterSource.COMMANDLINE
 
 
 def _scene_file(course: Any, exercise: str, told: dict[str, Any], typed: set[str]) -> SceneFile:

@@ -227,6 +227,11 @@ seed_option = click.option(
 )
 
 
+def is_typed(context: click.Context, option: str) -> bool:
+    """Return whether an option was given, and does not merely hold its default."""
+    return context.get_parameter_source(option) is click.core.ParameterSource.COMMANDLINE
+
+
 def writes(context: click.Context, folder: Path) -> None:
     """This command alone writes into a folder, until it ends.
 

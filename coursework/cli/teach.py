@@ -17,6 +17,7 @@ from coursework.cli.options import (
     Whole,
     exercise_names,
     exercises_argument,
+    is_typed,
     known_languages,
     lang_option,
     opened,
@@ -146,26 +147,44 @@ def notebook(
 ) -> None:
     """Write self-study notebooks: predictions, instant feedback, hints, plots, fresh variants.
 
-    One for each exercise named, else for every exercise of the course.
+    One for each exercise named, else for every exercise of the course; and the lessons that teach them, which they lead to.
     """
+    from coursework.course.lessons import taught_by
     from coursework.making.issuing import distinct_variants
     from coursework.rendering.renderer import renderer_of
     from coursework.system.writing import write_whole
-    from coursework.workbook.notebooks import notebook_name
+    from coursework.workbook.notebooks import lesson_notebook, notebook_name
 
     course = opened(context)
     wheel = course.folder.wheel
     writes(context, out)
-    paths = {
-        (name, lang): out / notebook_name(name, lang)
-        for name in exercise_names(course, exercises)
-        for lang in langs
-    }
+    names = exercise_names(course, exercises)
+    paths = {(name, lang): out / notebook_name(name, lang) for name in names for lang in langs}
     _spare(list(paths.values()), overwrite)
+    beside = {
+        lang: {one.name for name in names for one in taught_by(course.folder, name, lang)} for lang in langs
+    }
+    other: dict[str, int] = {}
     for (name, lang), path in paths.items():
         (variant,) = distinct_variants(course[name], seed, 1, lang)
-        write_whole(path, renderer_of(course.folder).study(variant.study_sheet()).encode("utf-8"))
+        if variant.seed != seed:
+            other[name] = variant.seed
+        sheet = variant.study_sheet(beside=beside[lang])
+        write_whole(path, renderer_of(course.folder).study(sheet).encode("utf-8"))
         click.echo(str(path))
+    for lang, lessons in beside.items():
+        for name in sorted(lessons):
+            path = out / notebook_name(name, lang)
+            if overwrite or not path.exists():  # somebody may have written in one that is there
+                write_whole(path, lesson_notebook(course, name, lang, lessons | {*names}).encode("utf-8"))
+                click.echo(str(path))
+    if is_typed(context, "seed"):
+        tell(
+            [
+                f"{name}: seed {seed} is not worth issuing; the notebook has seed {found}, the next that is"
+                for name, found in other.items()
+            ]
+        )
     if wheel is not None:
         write_whole(out / wheel.name, wheel.read_bytes())
         click.echo(str(out / wheel.name))

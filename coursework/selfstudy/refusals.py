@@ -20,10 +20,14 @@ def expect(lang: str, kind: str, name: object, known: Collection[str]) -> None:
     UnknownName
         The name is none of them; the message has the nearest, or all.
     """
-    if isinstance(name, str) and name in known:
-        return
+    if not (isinstance(name, str) and name in known):
+        raise stranger(lang, kind, name, known)
+
+
+def stranger(lang: str, kind: str, name: object, known: Collection[str]) -> UnknownName:
+    """Return the error for a name that is none of the known ones."""
     said = words(lang)["study"]["refused"]
-    raise UnknownName(f"{said[kind].format(name=name)} {would_do(lang, str(name), known)}")
+    return UnknownName(f"{said[kind].format(name=name)} {would_do(lang, str(name), known)}")
 
 
 def would_do(lang: str, name: str, known: Collection[str]) -> str:

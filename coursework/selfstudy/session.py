@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 from coursework.course.answer_keys import answer_keys
 from coursework.course.course import Course
 from coursework.course.variant import Variant
-from coursework.errors import BadCourse, NoSolution, Starved, WrongValue
+from coursework.errors import BadCourse, NoSolution, Starved, UnknownName, WrongValue
 from coursework.language.words import words
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import Picture, Shown
@@ -210,7 +210,7 @@ class StudySession:
             No dictionary.
         """
         asked = self._asked
-        predicted = self._told("predict", "prediction", predicted, named, asked)
+        predicted, strange = self._told("predict", "prediction", predicted, named, asked)
         if not predicted:
             under = tuple(self._asked_under.values())
             example = f'`{self._name}.predict({{"{under[0]}": "…"}})`' if under else ""
@@ -230,14 +230,20 @@ class StudySession:
             )
             for n in unread
         ]
-        return self._shown(*lines, self._trouble)
+        return self._shown(*strange, *lines, self._trouble)
 
     def _told(
         self, method: str, kind: str, told: Any, named: Mapping[str, Any], known: Collection[str]
-    ) -> dict[str, Any]:
-        """Return the named arguments of a method, checked against the known names, from a dictionary or
-        keywords."""
+    ) -> tuple[dict[str, Any], list[str]]:
+        """Return what a method is told, by the names that it knows, and what is said of names that it does not know.
+
+        Raises
+        ------
+        UnknownName
+            It knows none of the names.
+        """
         found: dict[str, Any] = {}
+        strange: list[UnknownName] = []
         under = self._asked_under if kind == "prediction" else self._keys
         by_key = {key: name for name, key in under.items()}
         given = refusals.by_name(self.variant.lang, f"{self._name}.{method}", {} if told is None else told)
@@ -249,10 +255,12 @@ class StudySession:
             if self._is_passed_over(kind, name):
                 continue
             if not isinstance(name, str) or name not in known:
-                refusals.expect(self.variant.lang, kind, name, tuple(by_key))
-            if is_blank(found.get(name)):
+                strange.append(refusals.stranger(self.variant.lang, kind, name, tuple(by_key)))
+            elif is_blank(found.get(name)):
                 found[name] = wording.unwrapped(value)
-        return found
+        if strange and not found:
+            raise strange[0]
+        return found, [str(one) for one in strange]
 
     def _is_passed_over(self, kind: str, name: Any) -> bool:
         """Return whether a name belongs to this exercise but is not asked here: theory in another variant, or
@@ -326,10 +334,10 @@ class StudySession:
         BadInput
             No dictionary.
         """
-        given = self._told("check", "question", answers, named, self.variant.part_ids)
+        given, strange = self._told("check", "question", answers, named, self.variant.part_ids)
         if missing := self._missing():
             self._kept.add(self.variant.seed, "answers", given)
-            return self._shown(missing, self._trouble)
+            return self._shown(*strange, missing, self._trouble)
         checked = self._attempt.check(given)
         marking, now = checked.marking, checked.answers
         lines, unanswered = [], []
@@ -355,6 +363,7 @@ class StudySession:
         after += [self._said["try_hint"].format(call=self._call("hint", first))] if first else []
         asked_before = [p.id for p in predictions.before_answers(self.variant) if p.id in checked.right]
         return self._shown(
+            *strange,
             "\n".join(lines),
             f"**{total}**",
             " ".join(after),

@@ -3,6 +3,7 @@ run."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from coursework.course.builtin import builtin_root
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 
-def study_sheet(variant: Variant, student: str = "") -> StudySheet:
-    """Return the self-study notebook of a variant, before it is printed."""
+def study_sheet(variant: Variant, student: str = "", beside: Collection[str] = ()) -> StudySheet:
+    """Return the self-study notebook of a variant, before it is printed, with links to the lessons that stand ``beside`` it."""
     exercise = variant.exercise
     own = exercise.folder.root != builtin_root().resolve()
     return StudySheet(
@@ -41,6 +42,7 @@ def study_sheet(variant: Variant, student: str = "") -> StudySheet:
         theory=theory(exercise),
         has_example=has_example(variant),
         lessons=taught_by(exercise.folder, exercise.name, variant.lang),
+        beside=frozenset(beside),
     )
 
 

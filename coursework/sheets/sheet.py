@@ -200,3 +200,6 @@ class StudySheet:
     theory: frozenset[str] = frozenset()  #: ids of questions that no other variant asks anew
     has_example: bool = False  #: whether the solution of another variant can be shown with blanks
     lessons: tuple[Lesson, ...] = ()  #: that teach it
+    beside: frozenset[str] = (
+        frozenset()
+    )  #: the lessons whose notebooks stand beside it: links lead to these alone

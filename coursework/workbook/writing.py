@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -74,13 +74,13 @@ def _notebooks(course: Course[Any], book: Book) -> Iterator[File]:
         make = partial(lesson_notebook, course, lesson.name, book.lang, there)
         yield File(folder / notebook_name(lesson.name, book.lang), partial(_encoded, make))
     for one in exercises:
-        make = partial(_study, course, one.handout.exercise, one.handout.seed, book.lang)
+        make = partial(_study, course, one.handout.exercise, one.handout.seed, book.lang, there)
         yield File(folder / notebook_name(one.handout.exercise, book.lang), partial(_encoded, make))
     wheel = course.folder.wheel
     if wheel is not None:
         yield File(folder / wheel.name, wheel.read_bytes)
 
 
-def _study(course: Course[Any], exercise: str, seed: int, lang: str) -> str:
-    sheet = course[exercise].variant(seed, lang).study_sheet()
+def _study(course: Course[Any], exercise: str, seed: int, lang: str, beside: Collection[str]) -> str:
+    sheet = course[exercise].variant(seed, lang).study_sheet(beside=beside)
     return renderer_of(course.folder).study(sheet)

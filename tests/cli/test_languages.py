@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import tomllib
 
 import nbformat
 import pytest
@@ -136,3 +137,46 @@ def test_a_new_course_speaks_the_language_of_the_environment(told, tmp_path, lan
 
 def test_no_test_depends_on_the_language_of_the_machine():
     assert [os.environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG")] == [None, None, "C.UTF-8"]
+
+
+@pytest.mark.parametrize(
+    ("around", "options", "lang", "first"),
+    [("fr_FR.UTF-8", (), "fr", "fr"), ("en_GB.UTF-8", (), "en", "en"), ("C", (), "fr", "fr"), ("de_DE", (), "fr", "fr"),
+     ("fr_FR.UTF-8", ("--lang", "en"), "en", "en"), ("C", ("--lang", "en,fr"), "en,fr", "en")],
+)  # fmt: skip
+def test_a_new_assignment_is_in_the_language_that_is_told_else_that_of_the_environment(
+    told, tmp_path, around, options, lang, first
+):
+    path = tmp_path / "dm.toml"
+    assert told("new", "assignment", path, "grashof", "mobility", *options, lang=around)[0] == 0
+    stated = tomllib.loads(path.read_text("utf-8"))
+    assert (stated["lang"], next(iter(stated["title"]))) == (lang, first)
+    assert stated["title"].keys() == {"en", "fr"}
+
+
+def test_a_new_assignment_in_a_language_that_an_exercise_lacks_is_refused(english, told, tmp_path):
+    status, _, err = told(
+        "--course", english, "new", "assignment", tmp_path / "dm.toml", "crank_pin", "--lang", "fr"
+    )
+    assert status == 2
+    assert "crank_pin is not written in 'fr'; it is in en" in err
+    assert (
+        told("--course", english, "new", "assignment", tmp_path / "dm.toml", "crank_pin", lang="fr_FR")[0]
+        == 0
+    )
+    assert tomllib.loads((tmp_path / "dm.toml").read_text("utf-8"))["lang"] == "en"
+
+
+def test_notebooks_lead_to_notebooks_that_are_there(told, tmp_path):
+    """And a seed that is not worth issuing is told, where it was asked for."""
+    for asked in (("slotted_mechanism", "--seed", "3", "--lang", "fr,en"), ("quick_return", "--lang", "en")):
+        status, _, err = told("notebook", *asked, "--out", tmp_path)
+        assert status == 0
+        text = "".join(nbformat.read(tmp_path / f"{asked[0]}.en.ipynb", 4).cells[1].source)
+        (seed,) = re.findall(r"seed=(\d+)", text)
+        assert (f"seed {seed}" in err) == ("--seed" in asked and seed != "3")
+    notebooks = list(tmp_path.glob("*.ipynb"))
+    assert len(notebooks) > 6
+    for path in notebooks:
+        found = re.findall(r"\]\(([\w.]+\.ipynb)", path.read_text("utf-8"))
+        assert {*found} <= {one.name for one in notebooks}, path.name

@@ -286,3 +286,13 @@ def test_a_file_that_cannot_be_of_this_exercise_is_set_aside_and_told(content, w
         assert told[:40] in str(session.progress()).replace("\n", " ")
         assert not path.exists()
         assert json.loads((here / f"slotted_mechanism.study.damaged{number}.json").read_text()) == content
+
+
+@pytest.mark.parametrize("lang", ["en", "fr"])
+def test_one_mistyped_name_is_told_and_the_other_answers_are_checked(lang):
+    session = coursework.study("slotted_mechanism", seed=42, lang=lang)
+    told = str(session.check({"rA": "12", "tehta4": "12", "zzz": "3"}))
+    assert {name for name in ("tehta4", "theta4", "zzz") if name in told} == {"tehta4", "theta4", "zzz"}
+    assert session.answers == {"rA": "12"}
+    assert "thta4" in str(session.predict({"rA": ">", "thta4": "1"}))
+    assert session.predictions == {"rA": ">"}
