@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +16,12 @@ from coursework.system.limits import check_size
 from coursework.system.tables import as_written, delimiter_of, open_csv, said_twice
 
 CHANGES_COLUMNS = (
-    "student", "exercise", "seed", "part", "answer",
-    "verdict_before", "verdict_now", "points_before", "points_now",
+    "date", "student", "exercise", "seed", "part", "answer",
+    "verdict_before", "verdict_now", "points_before", "points_now", "mark_before", "mark_now",
 )  # fmt: skip
 _PLACE = ("student", "exercise", "seed", "part")
+_TURN = ("verdict_before", "verdict_now", "points_before", "points_now")
+_USUAL_MARK = 20  #: out of what marks are told where no assignment states it
 
 
 def _number(text: str) -> float:
@@ -91,8 +93,57 @@ class Before:
     def gone(self) -> Iterator[dict[str, Any]]:
         """Marks that are no more."""
         for place, before in self._marks.items():
-            row = dict(zip(_PLACE, place.split("\0"), strict=False))
+            row = dict(zip((*_PLACE, "sitting"), place.split("\0"), strict=False))
             yield _change({**row, "student": self._names[row["student"]], "answer": ""}, before, ("", ""))
+
+
+class History:
+    """The changes of earlier markings of a folder, to which those of this one are added.
+
+    Each has its day, and the student's mark of the summary before and now, out of 20 where no assignment states a scale.
+    """
+
+    def __init__(self, folder: Path, day: str) -> None:
+        path, summary = folder / "changes.csv", folder / "summary.csv"
+        self._day = day
+        self._earlier = [_plain_row(row) for row in rows_of(path)] if path.exists() else []
+        self._last = {_place(row): row for row in self._earlier}
+        self._marks = _marks_in(rows_of(summary)) if summary.exists() else {}
+        self._new: list[dict[str, Any]] = []
+
+    def add(self, change: dict[str, Any]) -> None:
+        """Add a change, but where the last of that answer is the same: a marking that was stopped wrote it already."""
+        last = self._last.get(_place(change))
+        if last is None or any(last[column] != str(change[column]) for column in _TURN):
+            self._new.append(change)
+
+    def rows(self, summary: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+        """All changes, the earlier first; ``summary`` are the rows of the summary of now."""
+        marks = _marks_in(summary)
+        yield from self._earlier
+        for change in self._new:
+            who = folded(change["student"])
+            told = {"mark_before": self._marks.get(who, ""), "mark_now": marks.get(who, "")}
+            yield {"date": self._day, **change, **told}
+
+
+def _plain_row(row: Mapping[str, str]) -> dict[str, str]:
+    """An earlier row, its numbers with a decimal point; a table of before there were dates and marks has none."""
+    found = {column: row.get(column, "") for column in CHANGES_COLUMNS}
+    for column in ("points_before", "points_now", "mark_before", "mark_now"):
+        found[column] = found[column].replace(",", ".")
+    return found
+
+
+def _marks_in(summary: Iterable[Mapping[str, Any]]) -> dict[str, str]:
+    """The marks of a summary by student."""
+    found = {}
+    for row in summary:
+        if not (mark := str(row.get("mark", "")).replace(",", ".")):
+            points, out_of = _number(str(row.get("points", ""))), _number(str(row.get("out_of", "")))
+            mark = f"{_USUAL_MARK * points / out_of:.4g}" if out_of > 0 and math.isfinite(points) else ""
+        found[folded(str(row.get("student", "")))] = mark
+    return found
 
 
 def _place(row: Mapping[str, Any]) -> str:
@@ -105,6 +156,7 @@ def _place(row: Mapping[str, Any]) -> str:
 def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str]) -> dict[str, Any]:
     return {
         **{c: row[c] for c in (*_PLACE, "answer")},
+        "sitting": row.get("sitting", ""),
         "verdict_before": before[0],
         "verdict_now": now[0],
         "points_before": before[1],

@@ -6,6 +6,7 @@ and each is seen to be replaceable.
 
 from __future__ import annotations
 
+import datetime
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from coursework.errors import BadInput
 from coursework.gradebook import book as gradebook
 from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.book import Gradebook, Sitting
-from coursework.gradebook.changes import CHANGES_COLUMNS, Before
+from coursework.gradebook.changes import CHANGES_COLUMNS, Before, History
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
 from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
@@ -112,6 +113,7 @@ def write_marks(
     """Write the files of :func:`grade_files` of sheets that are marked as they are asked for; ``charged`` are the shares that
     are taken off of what came late."""
     before = Before(out / "marks.csv")
+    history = History(out, _day(form))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     book.seen, book.charged = told_seen(sheets.seen), charged or {}
     shown: list[Graded] = []
@@ -126,20 +128,20 @@ def write_marks(
             book.add(graded)
             for row in gradebook.marks_rows(graded):
                 marks.write(row)
-                if changes is not None and (change := before.changed(row)) is not None:
-                    changes.write(change)
+                if before.exists and (change := before.changed(row)) is not None:
+                    history.add(change)
+                    book.changes += 1
             if feedback:
                 shown.append(graded)
             progress(done, sheets.count)
-        if changes is not None:
-            for change in before.gone():
-                changes.write(change)
-            book.changes = changes.rows
+        for change in before.gone():
+            history.add(change)
+            book.changes += 1
         book.faults, notes = by_hand.unfollowed(issued, dict.fromkeys(s for s, _ in book.students))
         book.warnings += notes
         book.waiting = by_person.waiting
         _list_to_mark(by_person, tables, book)
-        _write_counts(book, summary, rejected)
+        _write_counts(book, summary, rejected, changes, history)
         stood = (out / BY_HAND).exists()
         edited = not is_as_written(out / _WRITTEN, marks.path) and before.edited(out / "summary.csv")
         if book.changes and (stood or edited):
@@ -154,9 +156,19 @@ def write_marks(
     return book
 
 
-def _write_counts(book: Gradebook, summary: Table, rejected: Table) -> None:
-    for row in gradebook.summary_rows(book):
+def _day(form: Form) -> str:
+    return (form.today or datetime.date.today()).isoformat()
+
+
+def _write_counts(
+    book: Gradebook, summary: Table, rejected: Table, changes: Table | None, history: History
+) -> None:
+    rows = list(gradebook.summary_rows(book))
+    for row in rows:
         summary.write(row)
+    if changes is not None:
+        for change in history.rows(rows):
+            changes.write(change)
     for row in gradebook.rejected_rows(book.rejected):
         rejected.write(row)
 
@@ -194,20 +206,24 @@ def grade_standing(
     standing.refuse(sheets.rejected[earlier:])
     book = Gradebook(issued, sheets.rows_in, 0, sheets.rejected, sheets.warnings)
     shown = []
+    history = History(out, _day(form))
     with Tables(out, spreadsheet) as tables:
         summary = tables.open("summary.csv", summary_columns(issued))
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
-        changes, by_hand = (tables.open(name, CHANGES_COLUMNS) for name in ("changes.csv", BY_HAND))
+        changes = tables.open("changes.csv", CHANGES_COLUMNS)
+        by_hand = tables.open(
+            BY_HAND, [c for c in CHANGES_COLUMNS if c not in ("date", "mark_before", "mark_now")]
+        )
         for graded in machine:
             shown.append(standing.of(graded))
             book.add(shown[-1])
             lang = str(graded.record.get("lang", "fr"))
             for change in differs(accepted.apply(by_person.apply(graded, lang), lang), shown[-1]):
-                changes.write(change)
+                history.add(change)
                 by_hand.write(change)
-        book.changes = changes.rows
+        book.changes = by_hand.rows
         book.waiting = sum(line.verdict == TO_MARK for one in shown for line in one.lines.values())
-        _write_counts(book, summary, rejected)
+        _write_counts(book, summary, rejected, changes, history)
         if feedback:
             renew_feedback(course, book, shown, out, progress, form, tables.ready)
         tables.keep()

@@ -217,6 +217,7 @@ def differs(machine: Graded, stands: Graded) -> Iterator[dict[str, Any]]:
                 "exercise": stands.exercise,
                 "seed": stands.seed,
                 "part": part,
+                "sitting": stands.sitting,
                 "answer": now.answer,
                 "verdict_before": was[0],
                 "verdict_now": is_now[0],

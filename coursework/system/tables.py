@@ -176,7 +176,7 @@ _PLAIN = SPREADSHEETS["point"]
 
 #: Columns whose texts are numbers; what a student wrote stays as it was written.
 _NUMBERS = frozenset(
-    ("points", "out_of", "percent", "mark", "points_before", "points_now", "value", "tolerance")
+    "points out_of percent mark points_before points_now mark_before mark_now value tolerance".split()
 )
 _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?")
 

@@ -6,6 +6,7 @@ import csv
 import json
 import shutil
 import sys
+from datetime import date
 
 import pytest
 
@@ -152,7 +153,14 @@ def test_an_answer_accepted_by_hand_stays_accepted(small_course, issued, capsys)
     ada = table(issued / "marks" / "summary.csv")[0]
     assert (ada["student"], ada["points"], ada["accepted"]) == ("Ada", "3.5", "1")
     assert grade(small_course, issued) == 0
-    assert table(issued / "marks" / "changes.csv") == []
+    assert table(issued / "marks" / "changes.csv") == [change], "the same run once more empties nothing"
+    kept.write_text("student,exercise,part,points\nada,crank_pin,y,1\n", "utf-8")
+    assert grade(small_course, issued) == 0
+    first, second = table(issued / "marks" / "changes.csv")
+    assert first == change
+    assert date.fromisoformat(second["date"]) >= date.fromisoformat(first["date"])
+    assert [(c["points_before"], c["points_now"]) for c in (first, second)] == [("0", "0.5"), ("0.5", "1")]
+    assert [(c["mark_before"], c["mark_now"]) for c in (first, second)] == [("15", "17.5"), ("17.5", "20")]
 
 
 @pytest.mark.parametrize(
