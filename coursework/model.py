@@ -337,7 +337,7 @@ class Exercise:
     driver
         What drives it when it is simulated; none for an exercise that does not move.
     effects
-        The optional effects that the exercise's own parts call for; a request has only those it names.
+        The optional effects that the exercise's own parts call for, and a request that names none.
     kept_by_solution
         Whether further conditions, those on answers, stand beside the solution, as ``KEEP`` and ``HELPERS`` of
         ``_NAME_keep.py``, which the solution imports so that it goes where the solution goes. A

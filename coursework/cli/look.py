@@ -157,11 +157,21 @@ def _with_answers(drawn: Any) -> dict[str, Any]:
 @exercise_argument
 @click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
 @click.option("--only", default="", metavar="Q,Q", help="The quantities wanted; every part's unless told.")
-@click.option("--effects", default="", metavar="E,E", help="Optional effects to call for.")
+@click.option(
+    "--effects",
+    default=None,
+    metavar="E,E",
+    help="Optional effects to call for, '' for none; those of the exercise's questions unless told.",
+)
 @json_option
 @click.pass_context
 def solve(
-    context: click.Context, exercise: str, settings: Sequence[str], only: str, effects: str, as_json: bool
+    context: click.Context,
+    exercise: str,
+    settings: Sequence[str],
+    only: str,
+    effects: str | None,
+    as_json: bool,
 ) -> None:
     """Solve an exercise for one's own numbers."""
     from coursework.language.numbers import significant, unit_text
@@ -170,7 +180,8 @@ def solve(
     one = opened(context)[exercise]
     given = settings_given(settings)
     try:
-        found = one.solve(**given, only=split_list(only) or None, effects=split_list(effects))
+        called = None if effects is None else split_list(effects)
+        found = one.solve(**given, only=split_list(only) or None, effects=called)
     except MissingQuantity as fault:
         raise BadInput(fault.advising(" ".join(f"--set {n}=…" for n in fault.names))) from fault
     used = {n: one.spec.given[n].default for n in one.spec.given if one.spec.given[n].default is not None}

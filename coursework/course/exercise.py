@@ -108,8 +108,11 @@ class CourseExercise(Generic[V]):
         """LaTeX of a quantity of the statement."""
         return self.spec.symbol(name)
 
-    def plan(self, only: Sequence[str] | None = None, *, effects: Iterable[str] = ()) -> tuple[str, ...]:
-        """The quantities that a request evaluates, in order."""
+    def plan(
+        self, only: Sequence[str] | None = None, *, effects: Iterable[str] | None = None
+    ) -> tuple[str, ...]:
+        """The quantities that a request evaluates, in order; ``effects`` as for :meth:`solve`."""
+        effects = self.spec.effects if effects is None else effects
         return self.solution.graph.plan(
             self._wanted(only), frozenset(self.spec.given) & self.quantity_names, effects
         )
@@ -143,7 +146,7 @@ class CourseExercise(Generic[V]):
         self,
         *,
         only: Sequence[str] | str | None = None,
-        effects: Iterable[str] = (),
+        effects: Iterable[str] | None = None,
         **given: Any,
     ) -> dict[str, Any]:
         """Quantities from given values, in canonical units (degrees for angles).
@@ -153,7 +156,7 @@ class CourseExercise(Generic[V]):
         only
             The quantities wanted, and nothing else is computed; every part's unless told.
         effects
-            Optional effects that the request calls for.
+            Optional effects that the request calls for; unless told, those of the exercise's own questions. None with ``()``.
         **given
             Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). The driver's angle and those of
             the loops count modulo whole turns, which cost no digit. Any quantity may be
@@ -181,7 +184,8 @@ class CourseExercise(Generic[V]):
         wanted = self._wanted(only)
         if arrays:
             _check_shapes(values)
-        found = self.solution.graph.evaluate(wanted, values, effects)
+        called = self.spec.effects if effects is None else effects
+        found = self.solution.graph.evaluate(wanted, values, called)
         if not arrays:
             asked = {n: values[n] for n in given if n in values}
             found = {name: self.existing(name, value, asked) for name, value in found.items()}

@@ -49,7 +49,7 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
     if effects_of:
         posed = {} if reel.film is not None else exercise.posed(reel.variant.given, reel.angles)
         given = {**reel.variant.used, **posed}
-        found = exercise.solve(**given, only=tuple(effects_of))
+        found = exercise.solve(**given, only=tuple(effects_of), effects=())
     told = [
         _gauge(
             reel,

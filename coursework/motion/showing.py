@@ -155,7 +155,9 @@ class Showing(Staged):
         output = self.driver.output
         if not output or not self.driver.speed:
             raise WrongValue(f"{self.exercise.name}: its driver names no output, so no advantage is known")
-        speed = np.abs(np.asarray(self.exercise.solve(**driven, only=output)[output], dtype=float))
+        speed = np.abs(
+            np.asarray(self.exercise.solve(**driven, only=output, effects=())[output], dtype=float)
+        )
         with np.errstate(divide="ignore"):
             ratio = abs(self._speed) / speed
         return {ADVANTAGE: np.where(speed > 0, ratio * (1000.0 if self._output_slides else 1.0), np.nan)}

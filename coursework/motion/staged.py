@@ -176,7 +176,7 @@ class Staged:
                 raise BadCourse(
                     f"{self.exercise.solution.source}: MECHANISM names no quantity by {name!r}{nearest(name, known)}"
                 )
-        values = self.exercise.solve(**self.given, only=wanted) if wanted else {}
+        values = self.exercise.solve(**self.given, only=wanted, effects=()) if wanted else {}
         values |= {n: self._accepted[n] for n in mechanism.named if n in self._accepted}
         linkage = Linkage(mechanism, values, self.driver.angle)
         linkage.check()
@@ -210,7 +210,7 @@ class Staged:
         named = dict.fromkeys((*linkage.mechanism.angles, *shifting))
         wanted = tuple(n for n in named if n != self.driver.angle and n not in self.exercise.spec.given)
         degrees = np.degrees(angles)
-        found = self.exercise.solve(**self._driven(degrees), only=wanted) if wanted else {}
+        found = self.exercise.solve(**self._driven(degrees), only=wanted, effects=()) if wanted else {}
         turned = {**self._accepted, self.driver.angle: degrees, **found}
         turns = np.repeat(linkage.constant_turns[:, None], len(angles), axis=1)
         for own, body in enumerate(bodies):
@@ -226,7 +226,7 @@ class Staged:
         names = self._rates_by_name[order - 1]
         if names is None or not self.driver.speed:
             return None
-        found = self.exercise.solve(**self._at_unit_speed(degrees), only=names) if names else {}
+        found = self.exercise.solve(**self._at_unit_speed(degrees), only=names, effects=()) if names else {}
         return np.array([np.broadcast_to(found[n], degrees.shape) for n in names]).reshape(
             len(names), len(degrees)
         )
@@ -304,7 +304,7 @@ class Staged:
     def _position(self, name: str, angles: np.ndarray) -> np.ndarray:
         """Return a quantity of the exercise at driver's angles, radians."""
         degrees = np.degrees(angles)
-        return np.asarray(self.exercise.solve(**self._driven(degrees), only=name)[name])
+        return np.asarray(self.exercise.solve(**self._driven(degrees), only=name, effects=())[name])
 
     # -------------------------------------------------------------------- flywheel
 

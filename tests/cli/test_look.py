@@ -8,6 +8,11 @@ import sys
 
 import pytest
 
+import coursework
+
+COURSE = coursework.open_course()
+FORCES = [name for name in COURSE.names if COURSE[name].spec.effects]
+
 
 def test_list_names_every_exercise(cli, course):
     status, out, _ = cli("list", "--json")
@@ -93,3 +98,19 @@ def test_help_answers_without_loading_the_heavy_libraries():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "build" in done.stdout
+
+
+@pytest.mark.parametrize("name", FORCES)
+def test_solve_bears_the_forces_that_an_exercise_asks_about(cli, course, name):
+    """Without ``--effects`` the answers are those of the variant of these very numbers."""
+    record = json.loads(cli("variant", name, "--seed", 2, "--solution", "--json")[1])
+    given = {n: f"{v['value']} {v['unit'] if v['unit'] != '1' else ''}" for n, v in record["given"].items()}
+    settings = [word for n, text in given.items() for word in ("--set", f"{n}={text}")]
+    status, out, err = cli("solve", name, *settings, "--json")
+    assert status == 0, err
+    found = json.loads(out)["quantities"]
+    of_part = {p.id: p.quantity for p in course[name].spec.parts}
+    wanted = {of_part[i]: a["value"] for i, a in record["answers"].items() if isinstance(a["value"], float)}
+    assert {n: found[n]["value"] for n in wanted} == pytest.approx(wanted, rel=1e-9)
+    none = json.loads(cli("solve", name, *settings, "--effects", "", "--json")[1])["quantities"]
+    assert any(none[n]["value"] != found[n]["value"] for n in wanted)
