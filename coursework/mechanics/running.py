@@ -204,7 +204,7 @@ class Running:
         if not inertia > 0:
             where = f"{math.degrees(angle):.6g} degrees"
             raise Undefined(
-                f"the mechanism does not close at {where}"
+                f"the mechanism does not close at {where}, or a guide lies on its own pivot there"
                 if inertia != inertia
                 else f"no inertia resists at {where}"
             )

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -49,6 +50,7 @@ _KEYS = (
     "friction", "slides", "flywheel",
 )  # fmt: skip
 _STEPS = 360
+_BARE = re.compile(r"\s*[+-]?\d+([.,]\d*)?(e[+-]?\d+)?\s*", re.IGNORECASE)  #: a number that says no unit
 _EXAMPLES = {"drive": 'drive = { torque = "5 N*m" }', "gravity": 'gravity = { acceleration = "9.8 m/s^2" }'}
 
 Path_ = tuple[str | int, ...]
@@ -196,13 +198,16 @@ class _Reader:
         return tuple(found)
 
     def _amount(self, at: Path_, unit: str, otherwise: Any = None) -> Any:
-        """Return a number in a unit; a bare number is in that unit already."""
+        """Return a number that stands with its unit, in the unit that is told."""
         found = self._at(at)
         return otherwise if found is None else self._number(at, found, unit)
 
     def _number(self, at: Path_, found: Any, unit: str) -> float:
-        if isinstance(found, (int, float)) and not isinstance(found, bool) and math.isfinite(found):
+        is_bare = isinstance(found, (int, float)) and not isinstance(found, bool) and math.isfinite(found)
+        if is_bare and unit == "1":
             return float(found)
+        if is_bare or (isinstance(found, str) and unit != "1" and _BARE.fullmatch(found)):
+            raise self.refused(at, f'{at[-1]} has a unit: {at[-1]} = "{found} {unit}"; found {found!r}')
         reading = read_number(found, unit) if isinstance(found, str) else None
         if reading is not None and reading.status == "read" and len(reading.values) == 1:
             return reading.values[0]
@@ -230,6 +235,9 @@ class _Reader:
                     ("given", name),
                     f"{exercise.name} has no given quantity {name!r}{nearest(name, exercise.spec.given)}",
                 )
+            unit = exercise.units.get(name, "1")
+            if isinstance(value, (int, float)) and not isinstance(value, bool) and unit != "1":
+                self._number(("given", name), value, unit)
             found[name] = self._told(("given", name), exercise.intake.value, name, value)
         return found
 
@@ -314,6 +322,10 @@ class _Reader:
         by = str(own.get("by", ""))
         body = str(own.get("body", ""))
         pairs = self._pairs(at, kind, by, exercise)
+        if kind == "force" and not {"angle", "against"} & own.keys():
+            raise self.refused(
+                at, 'a force has a direction: angle = "180 deg", from the x axis, or against = "motion"'
+            )
         return Load(
             str(own["on"]), against="against" in own, during=during, by=by, table=pairs, body=body, **values
         )

@@ -14,13 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from coursework.errors import CourseworkError, WrongValue, counted
+from coursework.errors import CourseworkError, Undefined, WrongValue, counted
 from coursework.mechanics.running import Motion, Running
 from coursework.motion.added import Motor
 from coursework.motion.effects import OF_FORCES
 from coursework.motion.showing import Showing
 from coursework.motion.staged import FLYWHEEL, FRICTION, INERTIA
 from coursework.system.limits import MOST_STEPS
+
+_MOST_ASKED = 500  #: angles at which it is asked why a position does not exist
 
 
 @dataclass(frozen=True)
@@ -102,8 +104,7 @@ class Scene(Showing):
             yield from self._flywheel_notes()
             return
         is_open = self._is_open(columns, angles)
-        if is_open.any():
-            yield f"the mechanism does not close at {int(is_open.sum())} of {len(gaps)} angles"
+        yield from self._open_notes(columns, np.degrees(angles[is_open]), len(gaps))
         if not (left := gaps & ~is_open).any():
             return
         listed = ", ".join(f"{angle:.6g}" for angle in np.degrees(angles[left])[:6])
@@ -115,6 +116,23 @@ class Scene(Showing):
             yield f"the mechanism jams at {self.driver.angle} = {listed} deg{more}: its friction outgrows what overcomes it"
         else:
             yield f"not everything exists at {self.driver.angle} = {listed} deg{more}: a dead centre"
+
+    def _open_notes(self, columns: Mapping[str, np.ndarray], angles: np.ndarray, of: int) -> Iterator[str]:
+        """Say why positions do not exist at some angles: loops do not close, or a place is undefined by itself."""
+        names = tuple(name for name in columns if name in self.exercise.quantity_names)
+        undefined: dict[str, list[str]] = {}
+        for angle in angles[:_MOST_ASKED]:
+            try:
+                self.exercise.solve(**self._driven(float(angle)), only=names, effects=())
+            except Undefined as fault:
+                undefined.setdefault(str(fault), []).append(f"{angle:.6g}")
+            except CourseworkError:
+                pass
+        for why, where in undefined.items():
+            more = f" and {len(where) - 6} more" if len(where) > 6 else ""
+            yield f"{why}, at {self.driver.angle} = {', '.join(where[:6])} deg{more}"
+        if left := len(angles) - sum(map(len, undefined.values())):
+            yield f"the mechanism does not close at {left} of {of} angles"
 
     def _empty_effects(self) -> Iterator[str]:
         """Yield the requested effects for which the scene has no data."""
@@ -185,7 +203,7 @@ class Scene(Showing):
     def _output_pace(self, angles: np.ndarray) -> np.ndarray:
         """Return the rate of the output per unit of the driver's speed: 0 at a dead centre."""
         output, given = self.driver.output, self._at_unit_speed(np.degrees(angles))
-        return np.broadcast_to(self.exercise.solve(**given, only=output)[output], angles.shape)
+        return np.broadcast_to(self.exercise.solve(**given, only=output, effects=())[output], angles.shape)
 
     def in_time(
         self, drive: Motor | float, duration: float, *, rtol: float = 1e-9, count: int = 500

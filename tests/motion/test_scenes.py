@@ -335,3 +335,12 @@ def test_a_start_from_rest_shows_the_forces_of_its_start(course):
         size = np.abs(columns[name]).max()
         assert abs(columns[name][0] - columns[name][1]) < 0.02 * size
     assert abs(columns["T_B"][0]) > 1.0
+
+
+def test_a_guide_through_its_own_pivot_is_told_as_such(course):
+    """And not as a linkage that does not close."""
+    given = {**course["slotted_mechanism"].variant(0).given, "r1": 100.0, "r2": 100.0, "theta1": 90.0}
+    table = Scene(course["slotted_mechanism"], given).over_cycle(8)
+    (note,) = [note for note in table.notes if "270" in note]
+    assert "pivot" in note
+    assert not any("does not close" in note for note in table.notes)
