@@ -16,10 +16,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import inspect
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, lru_cache
 from typing import Any
@@ -146,6 +147,7 @@ class Part:
     millimetre: bool = False
     ordered: bool = False
     shuffled: bool = False
+    takes_turns: bool = False  #: asked of some variants alone, unless it is named: :func:`in_turn`
     sort: Kind = field(init=False, repr=False, compare=False)  #: what its kind says of it
 
     def __post_init__(self) -> None:
@@ -247,6 +249,45 @@ def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
 def _loop_form(part: Part) -> tuple[str, int] | None:
     match = re.fullmatch(rf"{re.escape(part.loop)}_(x|y|complex)(?:_(d?dot))?", part.quantity)
     return (match[1], {None: 0, "dot": 1, "ddot": 2}[match[2]]) if part.loop and match else None
+
+
+def in_turn(count: int, by: Sequence[str], *groups: Part | Sequence[Part]) -> tuple[Part, ...]:
+    """Return parts of which a variant asks some: ``count`` of the groups, told by the given quantities ``by``.
+
+    Questions that have one answer in every variant are asked in turn, so that no sheet tells another. A group is a part
+    or several that are asked together.
+
+    Raises
+    ------
+    BadCourse
+        The groups are not worth the same, so that variants would be out of different points.
+    """
+    parts = [(group,) if isinstance(group, Part) else tuple(group) for group in groups]
+    worth = {sum(part.points for part in group) for group in parts}
+    if len(worth) > 1:
+        told = ", ".join(f"{group[0].id} {sum(p.points for p in group):g}" for group in parts)
+        raise BadCourse(f"groups that are asked in turn are worth the same; found {told} points")
+    names = [group[0].id for group in parts]
+    return tuple(
+        replace(part, takes_turns=True, when=_turn_of(group[0].id, names, count, tuple(by)))
+        for group in parts
+        for part in group
+    )
+
+
+def _turn_of(name: str, names: Sequence[str], count: int, by: Sequence[str]) -> Callable[..., bool]:
+    """Return the function of given quantities that says whether it is a group's turn."""
+
+    def is_asked(*values: Any) -> bool:
+        told = "/".join(v if isinstance(v, str) else f"{float(v):.9g}" for v in values)
+        order = sorted(
+            names, key=lambda one: hashlib.shake_128(f"coursework/turn/{one}/{told}".encode()).digest(8)
+        )
+        return name in order[:count]
+
+    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    is_asked.__signature__ = inspect.Signature([inspect.Parameter(n, kind) for n in by])  # type: ignore[attr-defined]
+    return is_asked
 
 
 def loop_equations(

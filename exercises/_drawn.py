@@ -19,15 +19,16 @@ from coursework.figures import (
 )
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.language.numbers import significant
-from coursework.model import Part, chosen, drawn
+from coursework.model import Part, chosen, drawn, in_turn
 
 PAPER_MM = (160, 90)  #: the box of millimetre paper to draw in
 KNOWN = ("both", "direction", "length", "neither")
 
 
-def known(quantity):
-    """What is known of a vector before it is drawn: a row of the table."""
-    return Part(quantity, kind="choice", choices=KNOWN)
+def known(*quantities, count=2):
+    """What is known of a vector before it is drawn: so many rows of the table, in turn."""
+    rows = (Part(quantity, kind="choice", choices=KNOWN) for quantity in quantities)
+    return in_turn(count, ("r2", "theta2", "omega2"), *rows)
 
 
 def of_drawing(quantity, unit="mm", kind="number", points=1):

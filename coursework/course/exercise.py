@@ -364,7 +364,8 @@ class CourseExercise(Generic[V]):
                 raise unknown("part", part_id, known, self.name)
         judges = {p.judge for p in self.spec.parts if p.judge and p.id in parts}
         return tuple(
-            p
+            # One that is named is asked of every variant, whose turn it would be or not.
+            replace(p, when=None) if p.takes_turns and (ALL in parts or p.id in parts) else p
             for p in self.spec.parts
             if ALL in parts or p.id in parts or (not p.by_request and (USUAL in parts or p.judge in judges))
         )

@@ -81,8 +81,14 @@ class Records:
                     f"{self.name}: a record of {'an older' if older else 'this'} version asks {gone[0]!r}, which the "
                     f"course {'no longer has' if older else 'does not have'}; mark it with the course it was issued from"
                 )
-            found = tuple(p for p in self.spec.parts if p.id in points)
-            found = tuple(p if p.points == points[p.id] else replace(p, points=points[p.id]) for p in found)
+            # A record asks what it lists, in its order, whatever the exercise asks of these values now.
+            known = {p.id: p for p in self.spec.parts}
+            found = tuple(
+                p
+                if p.points == points[p.id] and p.when is None
+                else replace(p, points=points[p.id], when=None)
+                for p in map(known.__getitem__, points)
+            )
             self._parts[asked, older] = found
         return self._parts[asked, older]
 

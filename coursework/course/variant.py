@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -54,7 +55,7 @@ class Variant:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """In another process it is made anew of the exercise there; what its key has computed goes along."""
-        chosen = None if self.chosen is None else {part.id: part.points for part in self.chosen}
+        chosen = None if self.chosen is None else {part.id: part.points for part in self.parts}
         numbers = None if self._key is None else self._key.numbers
         return _made_anew, (
             type(self), self.exercise, self.seed, dict(self.given), self.lang, chosen, self._issued, numbers,
@@ -333,7 +334,7 @@ def _made_anew(
     numbers: KeyNumbers | None,
     orders: Mapping[str, Sequence[str]] | None,
 ) -> Variant:
-    parts = None if chosen is None else exercise.parts_worth(chosen)
+    parts = None if chosen is None else [replace(p, when=None) for p in exercise.parts_worth(chosen)]
     variant = kind(exercise, seed, given, lang, parts, issued, orders)
     if numbers is not None:
         from coursework.course.answer_key import Key

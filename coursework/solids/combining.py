@@ -35,6 +35,11 @@ def in_series(joints: Iterable[Joint | Mapping[str, Any]]) -> Series:
     return Series(read_joints(joints))
 
 
+def _turns(twists: np.ndarray) -> int:
+    """Return the dimension of the space of rotation vectors of these independent motions."""
+    return int(np.linalg.matrix_rank(twists[:, :3], tol=1e-9)) if len(twists) else 0
+
+
 def _unit_rows(rows: list[list[float]]) -> np.ndarray:
     matrix = np.array(rows).reshape(-1, 6)
     return matrix / np.linalg.norm(matrix, axis=1, keepdims=True)
@@ -98,6 +103,11 @@ class Parallel:
             return "both" if self.linear else "directions"
         return "positions" if self.linear else "none"
 
+    @property
+    def turns(self) -> int:
+        """Number of independent rotation vectors of the motions that all joints leave free."""
+        return _turns(self._spaces[2])
+
     @cached_property
     def equivalent(self) -> Equivalent:
         _, wrenches, twists = self._spaces
@@ -148,6 +158,11 @@ class Series:
     def h(self) -> int:
         """Static indeterminacy, 0: each joint's action equals that of the whole, so it is known."""
         return 0
+
+    @property
+    def turns(self) -> int:
+        """Number of independent rotation vectors of the last body with respect to the first."""
+        return _turns(self._spaces[1])
 
     @cached_property
     def equivalent(self) -> Equivalent:

@@ -223,10 +223,21 @@ def table_of(joints, bodies):
 
 
 def axis_parts(has_direction, has_line):
-    """The questions about the axis of an equivalent joint, each asked where the joint has one."""
+    """The questions about the axis of an equivalent joint, each asked where the joint has one; where it has none, others
+    worth as much, about the motions that it allows."""
+
+    def without(has):
+        def lacks(*given):
+            return not has(*given)
+
+        lacks.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in GIVEN])
+        return lacks
+
     return (
         Part("axis_dir", kind="direction", points=1, when=has_direction),
         Part(
             "axis_point", unit="mm", kind="point_on_line", along="axis_dir", atol=1.0, points=1, when=has_line
         ),
+        Part("turns", kind="integer", points=1, when=without(has_line)),
+        Part("slides", kind="integer", points=1, when=without(has_direction)),
     )

@@ -17,7 +17,7 @@ from coursework.figures import (
     slot_link,
     vector,
 )
-from coursework.model import Driver, Exercise, Part, drawn
+from coursework.model import Driver, Exercise, Part, drawn, in_turn
 
 LENGTHS = ("R", "h", "e")
 
@@ -98,13 +98,17 @@ EXERCISE = Exercise(
         lean_of_the_fork_tells_in_the_rate,
     ),
     parts=(
-        Part("perpendicular", kind="choice", choices=("x3", "y3", "z3"), points=1),
+        *in_turn(
+            1,
+            ("R", "h", "theta1"),
+            Part("perpendicular", kind="choice", choices=("x3", "y3", "z3"), points=1),
+            Part("angular", kind="choice", choices=("contact", "sum", "law"), points=1),
+        ),
         Part("closure_y", kind="equation", variables=(*LENGTHS, "q", "theta1", "theta3"), points=1),
         Part("closure_z", kind="equation", variables=(*LENGTHS, "q", "theta1", "theta3"), points=1),
         Part("law", kind="equation", variables=(*LENGTHS, "theta1", "theta3"), parameters=LENGTHS, points=2),
         Part("theta3", unit="deg", kind="angle", points=1),
         Part("q", unit="mm", points=1),
-        Part("angular", kind="choice", choices=("contact", "sum", "law"), points=1),
         Part("closure_angle", kind="equation", variables=("theta1", "theta3", "epsilon"), points=1),
         Part("epsilon", unit="deg", points=1),
         Part(
@@ -119,7 +123,7 @@ EXERCISE = Exercise(
         Part("swing", unit="deg", points=1),
     ),
     figure=figure,
-    version=2,
+    version=3,
     symbols={
         "perpendicular": r"\mathrm{perpendicular}",
         "angular": r"\mathrm{angular}",

@@ -63,7 +63,7 @@ EXERCISE = Exercise(
         *axis_parts(has_direction, has_line),
         Part("condition", kind="choice", choices=CONDITIONS, ordered=True, points=2),
     ),
-    version=2,
+    version=3,
     tells=tells,
     figure=figure,
     symbols={

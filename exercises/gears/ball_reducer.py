@@ -3,7 +3,7 @@
 import numpy as np
 
 from coursework.figures import Figure, ball, centre_line, contact, dimension, point, section
-from coursework.model import Exercise, Part, drawn
+from coursework.model import Exercise, Part, drawn, in_turn
 
 NATURES = ("rotation", "translation", "helical")
 NO_SLIP_SYMBOLS = ("R", "r", "omega", "phi_dot", "psi_dot", "theta_dot")
@@ -93,6 +93,13 @@ def _nature(motion):
     return Part(f"nature_{motion}", kind="choice", choices=NATURES, points=1)
 
 
+OMEGA_WHY = Part(
+    "omega_why",
+    kind="choice",
+    choices=("equal_distances", "A_and_B_at_rest", "O3_on_a_circle", "no_slip_on_shafts"),
+    points=1,
+)
+
 EXERCISE = Exercise(
     given={
         "R": drawn(20, 80, unit="mm"),
@@ -102,19 +109,14 @@ EXERCISE = Exercise(
     },
     keep=(input_turns_visibly, input_accelerates_visibly, acceleration_unlike_velocity),
     parts=(
-        Part("graph", kind="graph", room=2, points=2),
-        Part("bases", kind="drawing", room=(150, 45), points=2, by_request=True),
-        Part(
-            "omega_why",
-            kind="choice",
-            choices=("equal_distances", "A_and_B_at_rest", "O3_on_a_circle", "no_slip_on_shafts"),
-            points=1,
+        *in_turn(
+            1,
+            ("R", "r", "psi_dot"),
+            Part("graph", kind="graph", room=2, points=2),
+            (OMEGA_WHY, Part("mobility", kind="integer", points=1)),
         ),
-        _no_slip("A"),
-        _no_slip("B"),
-        _no_slip("C"),
-        _no_slip("D"),
-        Part("mobility", kind="integer", points=1),
+        Part("bases", kind="drawing", room=(150, 45), points=2, by_request=True),
+        *in_turn(3, ("r", "psi_dot", "R"), *map(_no_slip, "ABCD")),
         Part("omega", unit="rad/s", points=1),
         Part("phi_dot", unit="rad/s", points=1),
         Part("theta_dot", unit="rad/s", points=1),
@@ -122,17 +124,14 @@ EXERCISE = Exercise(
         Part("v_O3", unit="mm/s", points=1),
         Part("a_O3_x", unit="mm/s^2", points=1),
         Part("a_O3_y", unit="mm/s^2", points=1),
-        *_axis("30"),
-        *_axis("31"),
-        *_axis("32"),
-        _nature("30"),
-        _nature("31"),
-        _nature("32"),
+        *in_turn(
+            2, ("psi_dot", "R", "r"), *((*_axis(motion), _nature(motion)) for motion in ("30", "31", "32"))
+        ),
         Part("rolling_D", unit="rad/s", points=1),
         Part("spin_D", unit="rad/s", points=1),
     ),
     figure=figure,
-    version=2,
+    version=3,
     symbols={
         "mobility": "m",
         "v_O3": r"v_{O_3}",

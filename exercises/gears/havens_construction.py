@@ -1,7 +1,7 @@
 """Havens planetary gear, constructed: five velocities drawn from that of A1, each with its reason."""
 
 from coursework.degrees import polar
-from coursework.model import Exercise, Part, drawn
+from coursework.model import Exercise, Part, drawn, in_turn
 
 from .._drawn import told_angle, told_number
 from .havens_planetary import arm, figure
@@ -49,6 +49,12 @@ def _read(quantity, unit):
     return Part(quantity, unit=unit, judge="drawing")
 
 
+WHY = in_turn(
+    3,
+    ("r2", "theta1", "omega1"),
+    *map(_reason, ("why_v40", "why_v14", "why_v24", "why_v20", "why_v30")),
+)
+
 EXERCISE = Exercise(
     given={
         "r2": drawn(20, 40, step=2, unit="mm"),
@@ -64,21 +70,22 @@ EXERCISE = Exercise(
         _read("kv", "mm/s/mm"),
         _vector("v10"),
         _vector("v40", 2),
-        _reason("why_v40"),
+        WHY[0],
         _vector("v14", 2),
-        _reason("why_v14"),
+        WHY[1],
         _vector("v24", 1),
-        _reason("why_v24"),
+        WHY[2],
         _vector("v20", 2),
-        _reason("why_v20"),
+        WHY[3],
         _vector("v30", 2),
-        _reason("why_v30"),
+        WHY[4],
         _read("omega4", "rad/s"),
         _read("omega3", "rad/s"),
     ),
     figure=figure,
     tells=tells,
     drawing_mm=(160, 80),
+    version=2,
     symbols={
         "kv": "k_v",
         "v10": r"\vec V_{1/0}(A_1)",

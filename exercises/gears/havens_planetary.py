@@ -16,7 +16,7 @@ from coursework.figures import (
     slot_link,
     vector,
 )
-from coursework.model import Driver, Exercise, Part, drawn, loop_equations
+from coursework.model import Driver, Exercise, Part, drawn, in_turn, loop_equations
 
 REASONS = ("fixed_pivot", "slot", "translation", "composition", "no_slip")
 
@@ -76,14 +76,12 @@ EXERCISE = Exercise(
     helpers=(arm,),
     keep=(guide_turns_fully, crank_off_the_axes, crank_turns_visibly),
     parts=(
-        Part(
-            "nature_42", kind="choice", choices=("rotation", "translation", "general"), ordered=True, points=1
+        *in_turn(
+            3,
+            ("r2", "theta1", "omega1"),
+            Part("nature_42", kind="choice", choices=("rotation", "translation", "general"), shuffled=True),
+            *map(_reason, ("why_v_40_A1", "why_v_14_A1", "why_v_24_B2", "why_v_20_B2", "why_v_30_I")),
         ),
-        _reason("why_v_40_A1"),
-        _reason("why_v_14_A1"),
-        _reason("why_v_24_B2"),
-        _reason("why_v_20_B2"),
-        _reason("why_v_30_I"),
         Part("theta4", unit="deg", kind="angle", points=1),
         Part("rA", unit="mm", points=1),
         Part("omega4", unit="rad/s", points=1),
@@ -97,6 +95,7 @@ EXERCISE = Exercise(
         *loop_equations("loop_1", ("d", "r2", "r3", "theta1", "rA", "theta4")),
     ),
     figure=figure,
+    version=2,
     symbols={
         "v_A1_4": "V_{4/0}(A_1)",
         "v_slide": "V_{1/4}(A_1)",

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
+from coursework.model import Driver, Exercise, Part, chosen, drawn, in_turn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
     "r1", "r2", "r3", "r4", "r5", "r6", "theta2", "theta3", "theta4", "theta5",
@@ -110,8 +110,7 @@ EXERCISE = Exercise(
     helpers=(pin_A, pin_B, pin_P),
     keep=(crank_across_the_frame, coefficient_c_not_small),
     parts=(
-        Part("mobility", kind="integer", points=1),
-        Part("cycles", kind="integer", points=1),
+        *in_turn(1, ("r2", "theta2", "omega2"), *(Part(i, kind="integer") for i in ("mobility", "cycles"))),
         *_equations("loop_1"),
         *_equations("loop_2"),
         Part("a", unit="mm^2", points=1),
@@ -133,6 +132,7 @@ EXERCISE = Exercise(
         Part("r6_ddot", unit="mm/s^2", points=1),
     ),
     figure=figure,
+    version=2,
     symbols={"mobility": "w", "cycles": r"\gamma"},
     driver=Driver("theta2", "omega2", output="r6_dot"),
     kept_by_solution=True,

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import angle, cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
+from coursework.model import Driver, Exercise, Part, chosen, drawn, in_turn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
     "xC", "yC", "xD", "yD", "r2", "r3", "r4", "r5", "r6", "beta", "r7", "d3",
@@ -155,8 +155,7 @@ EXERCISE = Exercise(
         crank_turns_visibly,
     ),
     parts=(
-        Part("w", kind="integer", points=1),
-        Part("gamma", kind="integer", points=1),
+        *in_turn(1, ("r2", "theta2", "omega2"), *(Part(i, kind="integer") for i in ("w", "gamma"))),
         *_equations("loop_1"),
         *_equations("loop_2"),
         *_equations("loop_3"),
@@ -181,7 +180,7 @@ EXERCISE = Exercise(
         Part("x8_ddot", unit="mm/s^2", points=1),
     ),
     figure=figure,
-    version=2,
+    version=3,
     driver=Driver("theta2", "omega2", output="x8_dot"),
     kept_by_solution=True,
 )

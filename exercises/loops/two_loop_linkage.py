@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import angle, cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.kinematics.dyads import rrr, side_of
-from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
+from coursework.model import Driver, Exercise, Part, chosen, drawn, in_turn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
     "xC", "yC", "xF", "yF", "r2", "r3", "r4", "r5", "beta", "r6", "r7",
@@ -165,11 +165,15 @@ EXERCISE = Exercise(
         crank_turns_visibly,
     ),
     parts=(
-        Part("mobility", kind="integer", points=1),
-        Part("cycles", kind="integer", points=1),
+        *in_turn(
+            2,
+            ("r2", "theta2", "omega2"),
+            Part("mobility", kind="integer", points=1),
+            Part("cycles", kind="integer", points=1),
+            Part("third_loop", kind="choice", choices=("sum", "difference", "new"), points=1),
+        ),
         *_equations("loop_1"),
         *_equations("loop_2"),
-        Part("third_loop", kind="choice", choices=("sum", "difference", "new"), points=1),
         *_equations("loop_3", ("x",)),
         Part("theta3", unit="deg", kind="angle", points=2),
         Part("theta4", unit="deg", kind="angle", points=1),
@@ -185,7 +189,7 @@ EXERCISE = Exercise(
         Part("alpha7", unit="rad/s^2", points=1),
     ),
     figure=figure,
-    version=2,
+    version=3,
     symbols={
         "mobility": "w",
         "cycles": r"\gamma",

@@ -34,10 +34,7 @@ EXERCISE = Exercise(
     helpers=(bars, rates),
     keep=(crank_turns_visibly, lines_cross_clearly),
     parts=(
-        known("known_BA_n"),
-        known("known_BA_t"),
-        known("known_B_n"),
-        known("known_B_t"),
+        *known("known_BA_n", "known_BA_t", "known_B_n", "known_B_t"),
         of_drawing("ka", "mm/s^2/mm"),
         of_drawing("p", kind="point"),
         of_drawing("a", kind="point", points=2),
@@ -53,6 +50,7 @@ EXERCISE = Exercise(
     figure=four_bar_figure,
     tells=tells,
     drawing_mm=PAPER_MM,
+    version=2,
     symbols={"ka": "k_a", "p": "p_a", "n": "b'", "m": "b''", "bb_t": "b' b", "pa_b": "p_a b", "a_B": "a_B"},
     kept_by_solution=True,
 )

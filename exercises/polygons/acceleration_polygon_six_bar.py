@@ -31,10 +31,7 @@ EXERCISE = Exercise(
     helpers=HELPERS,
     keep=(crank_off_the_axes,),
     parts=(
-        known("known_BA_n"),
-        known("known_BA_t"),
-        known("known_B_n"),
-        known("known_C"),
+        *known("known_BA_n", "known_BA_t", "known_B_n", "known_C"),
         of_drawing("ka", "mm/s^2/mm"),
         of_drawing("p", kind="point"),
         of_drawing("a", kind="point", points=2),
@@ -51,6 +48,7 @@ EXERCISE = Exercise(
     figure=figure,
     tells=tells,
     drawing_mm=PAPER_MM,
+    version=2,
     symbols={
         "ka": "k_a",
         "p": "p_a",

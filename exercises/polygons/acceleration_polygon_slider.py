@@ -29,15 +29,12 @@ def tells(r2, r3, e, theta2, omega2):
 
 
 EXERCISE = Exercise(
-    version=2,
+    version=3,
     given=SLIDER_CRANK,
     helpers=(rod,),
     keep=(crank_turns_visibly, offset_is_none_or_visible, rod_reaches_all_turn),
     parts=(
-        known("known_A"),
-        known("known_BA_n"),
-        known("known_BA_t"),
-        known("known_B"),
+        *known("known_A", "known_BA_n", "known_BA_t", "known_B"),
         of_drawing("ka", "mm/s^2/mm"),
         of_drawing("p", kind="point"),
         of_drawing("a", kind="point", points=2),

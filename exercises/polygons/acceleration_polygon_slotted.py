@@ -32,10 +32,7 @@ EXERCISE = Exercise(
     helpers=(guided,),
     keep=(crank_turns_visibly,),
     parts=(
-        known("known_c"),
-        known("known_s"),
-        known("known_n"),
-        known("known_t"),
+        *known("known_c", "known_s", "known_n", "known_t"),
         of_drawing("ka", "mm/s^2/mm"),
         of_drawing("p", kind="point"),
         of_drawing("a", kind="point", points=2),
@@ -50,6 +47,7 @@ EXERCISE = Exercise(
     figure=slotted_figure,
     tells=tells,
     drawing_mm=PAPER_MM,
+    version=2,
     symbols={
         "ka": "k_a",
         "p": "p_a",

@@ -25,9 +25,7 @@ EXERCISE = Exercise(
     helpers=(bars,),
     keep=(crank_turns_visibly, lines_cross_clearly),
     parts=(
-        known("known_A"),
-        known("known_BA"),
-        known("known_B"),
+        *known("known_A", "known_BA", "known_B"),
         of_drawing("kv", "mm/s/mm"),
         of_drawing("p", kind="point"),
         of_drawing("a", kind="point", points=2),
@@ -41,6 +39,7 @@ EXERCISE = Exercise(
     figure=four_bar_figure,
     tells=tells,
     drawing_mm=PAPER_MM,
+    version=2,
     symbols={"kv": "k_v", "p": "p_v", "ab": "a b", "pv_b": "p_v b", "v_B": "V_B"},
     kept_by_solution=True,
 )

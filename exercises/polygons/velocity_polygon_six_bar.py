@@ -21,10 +21,7 @@ EXERCISE = Exercise(
     helpers=HELPERS,
     keep=(crank_turns_visibly, crank_off_the_axes, crank_not_square_to_the_coupler),
     parts=(
-        known("known_BA"),
-        known("known_B"),
-        known("known_CB"),
-        known("known_C"),
+        *known("known_A", "known_BA", "known_B", "known_CB", "known_C", count=3),
         of_drawing("kv", "mm/s/mm"),
         of_drawing("p", kind="point"),
         of_drawing("a", kind="point", points=2),
@@ -42,6 +39,7 @@ EXERCISE = Exercise(
     figure=figure,
     tells=tells,
     drawing_mm=PAPER_MM,
+    version=2,
     symbols={
         "kv": "k_v",
         "p": "p_v",

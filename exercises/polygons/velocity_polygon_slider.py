@@ -21,14 +21,12 @@ def tells(r2, r3, e, theta2):
 
 
 EXERCISE = Exercise(
-    version=2,
+    version=3,
     given=SLIDER_CRANK,
     helpers=(rod,),
     keep=(crank_turns_visibly, offset_is_none_or_visible, rod_reaches_all_turn),
     parts=(
-        known("known_A"),
-        known("known_BA"),
-        known("known_B"),
+        *known("known_A", "known_BA", "known_B"),
         of_drawing("kv", "mm/s/mm"),
         of_drawing("p", kind="point"),
         of_drawing("a", kind="point", points=2),

@@ -30,9 +30,7 @@ EXERCISE = Exercise(
     helpers=(guided,),
     keep=(crank_turns_visibly, guide_is_unlike_the_crank),
     parts=(
-        known("known_A"),
-        known("known_B"),
-        known("known_BA"),
+        *known("known_A", "known_B", "known_BA"),
         of_drawing("kv", "mm/s/mm"),
         of_drawing("p", kind="point"),
         of_drawing("a", kind="point", points=2),
@@ -45,6 +43,7 @@ EXERCISE = Exercise(
     figure=slotted_figure,
     tells=tells,
     drawing_mm=PAPER_MM,
+    version=2,
     symbols={
         "kv": "k_v",
         "p": "p_v",

@@ -18,16 +18,23 @@ from .quick_return_shaper import (
 )
 
 STEP = 5  #: degrees between the crank angles of the table
+TOLD = 30  #: degrees between the bounds that the statement tells: the middle of so many is seldom right
 
 
 def tells(r1, r2, r4, r5, h):
-    """The steps of the table within which the torque rises above its mean, and falls below it: as the ram goes to the left
+    """Bounds within which the torque rises above its mean, and falls below it: as the ram goes to the left
     faster than a stroke for the radian, or not, a tenth of a degree before to a tenth after."""
     theta = np.arange(-90.0, 271.0, STEP)
     before, after = (C(P(arm(r1, r2, at), r4), r5, h).real for at in (theta - 0.1, theta + 0.1))
     above = (before - after) / np.radians(0.2) * math.pi * r1 > r4 * r2
     rise, fall = -90 + STEP * np.flatnonzero(above[1:] != above[:-1])
-    return {"rise": (int(rise), int(rise) + STEP), "fall": (int(fall), int(fall) + STEP)}
+    return {"rise": _bounds(int(rise)), "fall": _bounds(int(fall))}
+
+
+def _bounds(step):
+    """Of the step of the table that begins here."""
+    low = step // TOLD * TOLD
+    return low, low + TOLD
 
 
 def crank_on_the_working_stroke(theta2, r1, r2):

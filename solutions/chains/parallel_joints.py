@@ -58,6 +58,17 @@ def equivalent(_combined):
     return each_stacked(lambda one: one.equivalent.name, _combined)
 
 
+@told_after("equivalent")
+def turns(_combined):
+    """Of the independent motions, those that differ in their rotation vectors."""
+    return each_stacked(lambda one: one.turns, _combined)
+
+
+def slides(m, turns):
+    """The others can be taken without any rotation."""
+    return m - turns
+
+
 def axis_dir(_combined):
     """Along the axis, or along the normal of a joint without axis."""
     return each_stacked(_direction, _combined)

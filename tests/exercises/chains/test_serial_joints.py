@@ -11,7 +11,7 @@ EXERCISE = coursework.open_course()["serial_joints"]
 
 
 def test_ranks_are_those_of_whole_numbers():
-    for variant in EXERCISE.variants(range(150)):
+    for variant in EXERCISE.variants(range(150), parts=["usual", "m", "h"]):
         answers = variant.solution()
         rows = [row for joint in arrangement(variant.given) for row in motions(*joint)]
         rank = exact_rank(rows)

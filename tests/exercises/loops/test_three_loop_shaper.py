@@ -185,7 +185,7 @@ def test_freedoms_and_cycles_are_those_of_the_graph_of_figure_14():
     ],
 )
 def test_counts_that_leave_something_out_are_told(part, answer, verdict):
-    assert EXERCISE.variant(0).grade({part: answer})[part].verdict == verdict
+    assert EXERCISE.variant(0, parts=[part]).grade({part: answer})[part].verdict == verdict
 
 
 def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
