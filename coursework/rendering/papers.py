@@ -21,7 +21,7 @@ from coursework.rendering import answer_pages, feedback, html, latex, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
 from coursework.sheets.paper import FeedbackPaper, Logo, Paper, SolutionPaper
-from coursework.sheets.sheet import AnswerSheet, FeedbackSheet
+from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
 
 AnyPaper: TypeAlias = Paper | SolutionPaper | FeedbackPaper
 
@@ -29,6 +29,7 @@ AnyPaper: TypeAlias = Paper | SolutionPaper | FeedbackPaper
 TEMPLATES = {Paper: "paper", SolutionPaper: "paper_solution", FeedbackPaper: "paper_feedback"}
 BODIES = {Paper: "_sheet_body", SolutionPaper: "_solution_body", FeedbackPaper: "_feedback_body"}
 _KINDS = {Paper: "sheet", SolutionPaper: "solution", FeedbackPaper: "feedback"}
+_START_MM = 55  #: that an exercise to fill in needs to begin: what does not fit below stands on the next page
 _LINE = 75  #: characters of a footer that leave room for a student's name
 
 #: Height of an exercise's heading with its first question, of a line of text, and letters in one, roughly.
@@ -133,7 +134,8 @@ def _start_mm(sheet: views.Sheet) -> int:
     handout, figure = views.handout_of(sheet), views.figure_of(sheet)
     text = sheet.introduction if isinstance(sheet, AnswerSheet) else handout.statement
     drawn = figure.size_mm[1] if figure else 0.0
-    return round(_HEAD_MM + _LINE_MM * len(text) / _LETTERS + drawn)
+    room = _HEAD_MM + _LINE_MM * len(text) / _LETTERS + drawn
+    return round(min(room, _START_MM) if isinstance(sheet, Handout) else room)
 
 
 def title(paper: AnyPaper) -> str:
