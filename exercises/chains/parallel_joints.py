@@ -71,5 +71,7 @@ EXERCISE = Exercise(
         "rs": "r_s",
         "axis_dir": r"\vec{u}",
         "axis_point": "P",
+        "turns": "n_r",
+        "slides": "n_t",
     },
 )

@@ -120,5 +120,7 @@ EXERCISE = Exercise(
         "m_internal": "m_i",
         "axis_dir": r"\vec{e}",
         "axis_point": "P",
+        "turns": "n_r",
+        "slides": "n_t",
     },
 )
