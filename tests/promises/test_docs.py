@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import re
 import shlex
+import tomllib
 from dataclasses import fields
 from pathlib import Path
 
@@ -14,6 +15,8 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.cli.commands import commands as cli
+from coursework.course.marking_rules import Rules
+from coursework.gradebook.class_marking import _waiting
 from coursework.making.assignment import OPTIONS, read_assignment
 from coursework.markup.mathml import to_mathml
 from coursework.rendering.renderer import renderer_of
@@ -156,6 +159,35 @@ def test_what_check_is_shown_to_print_is_what_it_prints(page, course, tmp_path, 
     capsys.readouterr()
     assert run(shlex.split(command)) == 0
     assert capsys.readouterr().out == printed
+
+
+def test_the_marks_of_the_first_hour_are_those_that_marking_gives():
+    """Those on the variant whose seed its answers name."""
+    text = (DOCS / "first_hour.md").read_text("utf-8")
+    row = r"^\| (durand|mbaye) \| `(\w+)` \| (.*?) \| (.*?) \| `([\w:]+)` \| ([\d.]+) \| (.*) \|$"
+    told = [tuple(cell.strip("` ") for cell in cells) for cells in re.findall(row, text, re.M)]
+    assert len(told) == 7
+    variant = COURSE["slotted_mechanism"].variant(1, "fr")
+    found = []
+    for student in ("durand", "mbaye"):
+        marks = variant.grade({part: answer for who, part, answer, *_ in told if who == student})
+        found += [
+            (who, part, answer, m.read_as, m.verdict, f"{m.points:g}", m.feedback)
+            for who, part, answer, *_ in told
+            for m in [_waiting(marks[part])]
+            if who == student
+        ]
+    assert found == told
+
+
+def test_the_marking_that_the_readme_states_is_that_of_a_course_that_states_none():
+    if (readme := ROOT / "README.md").exists():
+        (stated,) = (tomllib.loads(b)["marking"] for b in blocks(readme, "toml") if "[marking]" in b)
+        slip = COURSE["slotted_mechanism"].variant(1).grade({"omega4": "1.96"})["omega4"]
+        assert slip.verdict == "slip:sign"
+        assert stated == {name: getattr(Rules(), name) for name in stated} | {
+            "slip": slip.points / slip.out_of
+        }
 
 
 # ------------------------------------------------------------------------- code

@@ -289,7 +289,7 @@ def test_a_file_that_cannot_be_of_this_exercise_is_set_aside_and_told(content, w
 
 
 @pytest.mark.parametrize("lang", ["en", "fr"])
-def test_one_mistyped_name_is_told_and_the_other_answers_are_checked(lang):
+def test_one_mistyped_name_is_told_and_the_other_answers_are_checked(here, lang):
     session = coursework.study("slotted_mechanism", seed=42, lang=lang)
     told = str(session.check({"rA": "12", "tehta4": "12", "zzz": "3"}))
     assert {name for name in ("tehta4", "theta4", "zzz") if name in told} == {"tehta4", "theta4", "zzz"}
