@@ -22,7 +22,7 @@ from coursework.errors import BadInput, counted, nearest
 from coursework.making.assignment import AskedExercise, Assignment
 from coursework.making.flaws import try_judges
 from coursework.making.issued import secret_of
-from coursework.making.issuing import Issue, drawn_by
+from coursework.making.issuing import Issue, check_languages, drawn_by, whose_languages
 from coursework.making.roster import Student
 from coursework.making.students import called, file_stems, folded
 from coursework.model import Part
@@ -259,10 +259,8 @@ class _Hand:
         return f"version {letter}" if letter else student.who if student.name else self.of(student)
 
     def _check_languages(self, exercise: CourseExercise[Any], students: Iterable[Student]) -> None:
-        for lang in {*self.langs, *(s.lang for s in students if s.lang)}:
-            if lang not in exercise.languages:
-                have = ", ".join(exercise.languages) or "none"
-                raise BadInput(f"{exercise.name} has no text in {lang!r}; it has {have}")
+        check_languages(exercise, self.langs)
+        check_languages(exercise, *whose_languages(list(students)))
 
     def _drawn(
         self,

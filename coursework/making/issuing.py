@@ -240,7 +240,8 @@ def issue(
     asked = chosen_parts(course, names, parts)
     for name in names:
         exercise = course[name]
-        check_languages(exercise, {*langs, *(s.lang for s in students if s.lang)})
+        check_languages(exercise, langs)
+        check_languages(exercise, *whose_languages(students))
         variants: list[Any]
         if roster:
             people = [student.who for student in roster]
@@ -259,8 +260,16 @@ def issue(
     return issues
 
 
-def check_languages(exercise: CourseExercise[Any], langs: Collection[str]) -> None:
-    """Stop at a language that an exercise has no text in.
+def whose_languages(students: Sequence[Student]) -> tuple[dict[str, str], str]:
+    """Return the first student of each language that lines of a roster say, and words that tell whose line it is."""
+    first = {student.lang: student.name for student in reversed(students) if student.lang}
+    return first, ", which the line of {name} in the roster asks for"
+
+
+def check_languages(
+    exercise: CourseExercise[Any], langs: Collection[str] | Mapping[str, str], whose: str = ""
+) -> None:
+    """Stop at a language that an exercise has no text in; ``whose`` tells whose ``langs[lang]`` it is.
 
     Raises
     ------
@@ -270,7 +279,8 @@ def check_languages(exercise: CourseExercise[Any], langs: Collection[str]) -> No
     for lang in langs:
         if lang not in exercise.languages:
             have = ", ".join(exercise.languages) or "none"
-            raise BadInput(f"{exercise.name} has no text in {lang!r}; it has {have}")
+            asked = whose.format(name=langs[lang]) if isinstance(langs, Mapping) else ""
+            raise BadInput(f"{exercise.name} has no text in {lang!r}{asked}; it has {have}")
 
 
 def chosen_parts(

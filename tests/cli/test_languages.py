@@ -180,3 +180,14 @@ def test_notebooks_lead_to_notebooks_that_are_there(told, tmp_path):
     for path in notebooks:
         found = re.findall(r"\]\(([\w.]+\.ipynb)", path.read_text("utf-8"))
         assert {*found} <= {one.name for one in notebooks}, path.name
+
+
+def test_a_line_in_a_language_that_an_exercise_lacks_is_told_by_its_student(told, tmp_path):
+    new_course(tmp_path / "mine", ("fr",))
+    (tmp_path / "class.csv").write_text("student,lang\nAda,fr\nZoé,en\n", "utf-8")
+    assert told("--course", tmp_path / "mine", "new", "assignment", tmp_path / "dm.toml", "crank_pin")[0] == 0
+    for asked in ("crank_pin", tmp_path / "dm.toml"):
+        build = ("build", asked, "--roster", tmp_path / "class.csv", "--out", tmp_path / "out")
+        status, _, err = told("--course", tmp_path / "mine", *build)
+        assert status == 2
+        assert "'en', which the line of Zoé in the roster asks for; it has fr" in err
