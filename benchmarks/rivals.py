@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.mechanics.linkage import Held, Linkage
+from coursework.mechanics.linkage import BodyPoint, Linkage
 from coursework.mechanics.wrenches import GRAVITY
 from coursework.motion.scenes import Scene
 
@@ -53,10 +53,10 @@ class Exudyn:
         for mass in sorted(self.linkage.masses):
             nodes.append(self._add_body(system, mass))
         for mass in self.linkage.masses:
-            at = self._marker(system, Held(mass.body, mass.centre))
+            at = self._marker(system, BodyPoint(mass.body, mass.centre))
             weight = [0, -mass.mass * GRAVITY, 0]
             system.AddLoad(LoadForceVector(markerNumber=at, loadVector=weight))
-        driven = self._marker(system, Held(self.linkage.driven, self._centre(self.linkage.driven)))
+        driven = self._marker(system, BodyPoint(self.linkage.driven, self._centre(self.linkage.driven)))
         system.AddLoad(LoadTorqueVector(markerNumber=driven, loadVector=[0, 0, self.torque]))
         self._join(system)
         system.Assemble()
@@ -65,7 +65,7 @@ class Exudyn:
     def _add_body(self, system: Any, mass: Any) -> Any:
         from exudyn.itemInterface import NodeRigidBody2D, ObjectRigidBody2D
 
-        held = Held(mass.body, mass.centre)
+        held = BodyPoint(mass.body, mass.centre)
         place, rate = complex(self.stance.place(held)[0]), complex(self.stance.rate(held)[0]) * self.speed
         turn, turning = float(self.stance.turns[mass.body, 0]), float(self.stance.rates[mass.body, 0])
         node = system.AddNode(
@@ -78,7 +78,7 @@ class Exudyn:
         self._bodies.append(system.AddObject(body))
         return node
 
-    def _marker(self, system: Any, held: Held) -> Any:
+    def _marker(self, system: Any, held: BodyPoint) -> Any:
         from exudyn.itemInterface import MarkerBodyRigid
 
         on_ground = held.body == -1
@@ -95,7 +95,7 @@ class Exudyn:
         for slide in self.linkage.slides:
             under = complex(self.stance.place(slide.of)[0]) - complex(self.stance.origins[slide.on, 0])
             under *= complex(self.stance.headings[slide.on, 0]).conjugate()
-            markers = [self._marker(system, held) for held in (Held(slide.on, under), slide.of)]
+            markers = [self._marker(system, held) for held in (BodyPoint(slide.on, under), slide.of)]
             along = slide.along
             across = 1j * along * complex(self.stance.headings[slide.on, 0])
             across *= complex(self.stance.headings[slide.of.body, 0]).conjugate()
@@ -148,7 +148,7 @@ class Kane:
         own = self.linkage.coordinates[body]
         return self.sympy.Integer(0) if own == -1 else self.angles[own]
 
-    def _arm(self, held: Held) -> Any:
+    def _arm(self, held: BodyPoint) -> Any:
         """A place from the origin of its body, as a column of two."""
         turn, x, y = self._turn(held.body), held.place.real, held.place.imag
         cos, sin = self.sympy.cos(turn), self.sympy.sin(turn)
@@ -160,7 +160,7 @@ class Kane:
             self._origins[body] = self._place(held)
         return self._origins
 
-    def _place(self, held: Held) -> Any:
+    def _place(self, held: BodyPoint) -> Any:
         return self._origins[held.body] + self._arm(held)
 
     def _constraints(self) -> list[Any]:
@@ -170,7 +170,7 @@ class Kane:
             if pin.closes:
                 found += list(self._place(pin.of) - self._place(pin.on))
         for slide in self.linkage.slides:
-            across = self._arm(Held(slide.on, 1j * slide.along))
+            across = self._arm(BodyPoint(slide.on, 1j * slide.along))
             gap = (self._place(slide.of) - self._origins[slide.on]).dot(across)
             found.append(gap - gap.subs(self._at_start))
         return found
@@ -210,7 +210,7 @@ class Kane:
         fixed = mechanics.Point("fixed")
         fixed.set_vel(frame, 0)
         for mass in self.linkage.masses:
-            x, y = self._place(Held(mass.body, mass.centre))
+            x, y = self._place(BodyPoint(mass.body, mass.centre))
             centre = fixed.locatenew(f"G{mass.body}", x * frame.x + y * frame.y)
             rates = [c.diff(self.time).subs(moving) for c in (x, y)]
             centre.set_vel(frame, rates[0] * frame.x + rates[1] * frame.y)

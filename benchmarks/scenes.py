@@ -24,7 +24,7 @@ from timing import machine, median_ratio, print_table, times_in_turn
 import coursework
 from coursework.mechanics.equilibrium import PIECE, Equilibrium
 from coursework.mechanics.statement import Load, Mechanism
-from coursework.motion.added import Added, Motor, Weighed
+from coursework.motion.added import BodyMass, Motor, SceneData
 from coursework.motion.scenes import Scene
 
 COURSE = coursework.open_course()
@@ -47,7 +47,7 @@ CASES = {
 WITH_REACTIONS = ("+ reactions", "+ friction")
 
 
-def added_to(mechanism: Mechanism) -> Added:
+def added_to(mechanism: Mechanism) -> SceneData:
     """A mass and an inertia for every body, a load on the last one, friction in slides, or in pins where there are none."""
     last = mechanism.bodies[-1]
     load = (
@@ -56,8 +56,8 @@ def added_to(mechanism: Mechanism) -> Added:
         else Load(last.name, moment=5.0, against=True)
     )
     friction: dict[str, Any] = {slide.at: 0.1 for slide in mechanism.slides}
-    return Added(
-        {name: Weighed(1.0, 0.002, 20 + 5j) for name in mechanism.names},
+    return SceneData(
+        {name: BodyMass(1.0, 0.002, 20 + 5j) for name in mechanism.names},
         (load,),
         friction or {pin.at: (0.1, 5.0) for pin in mechanism.pins},
     )
@@ -183,12 +183,12 @@ class Case:
     exercise: str
     shape: str
     given: dict[str, Any]
-    bodies: dict[str, Weighed]
+    bodies: dict[str, BodyMass]
 
     def scene(self) -> Scene:
         exercise = COURSE[self.exercise]
         given = {**exercise.variant(0).used, **self.given, "theta2": START, "omega2": SPEED, "alpha2": 0.0}
-        return Scene(exercise, given, ("gravity", "inertia"), (), Added(self.bodies))
+        return Scene(exercise, given, ("gravity", "inertia"), (), SceneData(self.bodies))
 
 
 MOTIONS = (
@@ -197,9 +197,9 @@ MOTIONS = (
         "four_bar",
         {"r1": 235.0, "r2": 60.0, "r3": 255.0, "r4": 170.0, "mode": "open"},
         {
-            "2": Weighed(1.0, 0.01, 20 + 5j),
-            "3": Weighed(0.8, 0.004, 100 + 5j),
-            "4": Weighed(1.2, 0.006, 60 + 5j),
+            "2": BodyMass(1.0, 0.01, 20 + 5j),
+            "3": BodyMass(0.8, 0.004, 100 + 5j),
+            "4": BodyMass(1.2, 0.006, 60 + 5j),
         },
     ),
     Case(
@@ -207,9 +207,9 @@ MOTIONS = (
         "slider_crank",
         {"r2": 45.0, "r3": 155.0, "e": 5.0},
         {
-            "2": Weighed(1.0, 0.01, 20 + 5j),
-            "3": Weighed(0.8, 0.004, 100 + 5j),
-            "4": Weighed(1.2, 0.001),
+            "2": BodyMass(1.0, 0.01, 20 + 5j),
+            "3": BodyMass(0.8, 0.004, 100 + 5j),
+            "4": BodyMass(1.2, 0.001),
         },
     ),
 )

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from coursework.marking.mark import Marking
-    from coursework.markup.shown import Shown
+    from coursework.markup.shown import NotebookDisplay
     from coursework.rendering.displayed import DisplayedAnimation, DisplayedConstruction
     from coursework.selfstudy.session import StudySession
-    from coursework.selfstudy.worked import Worked
+    from coursework.selfstudy.worked import WorkedExample
     from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
 
 
@@ -89,7 +89,7 @@ def worked(
     level: int = 0,
     parts: Sequence[str] = (),
     course: str | Path | None = None,
-) -> Worked:
+) -> WorkedExample:
     """Return a variant of an exercise as a worked example, for display in a notebook cell.
 
     Parameters
@@ -125,7 +125,7 @@ def worked(
 
 def mistakes(
     exercise: str, *names: str, seed: int = 0, lang: str | None = None, course: str | Path | None = None
-) -> Shown:
+) -> NotebookDisplay:
     """Return the messages for an exercise's named mistakes, for display in a notebook cell.
 
     Parameters

@@ -37,7 +37,7 @@ import numpy as np
 from coursework.errors import BadCourse, CourseworkError, nearest, unknown
 from coursework.mechanics.statement import Mechanism
 from coursework.quantities.error_kinds import PRICES
-from coursework.quantities.graph import Graph, Node, Replacement
+from coursework.quantities.graph import Graph, QuantityNode, Replacement
 from coursework.quantities.in_radians import in_radians
 from coursework.quantities.loops import Loop, quantities, stated
 from coursework.reading.units import check_unit
@@ -288,7 +288,7 @@ class Solution:
         if not functions:
             raise BadCourse(f"{source} defines no quantity; a quantity is a function of its name")
         functions |= _hidden(functions, module)
-        needed = frozenset().union(*(Node.of(f).needs for f in functions.values()))
+        needed = frozenset().union(*(QuantityNode.of(f).needs for f in functions.values()))
         loops = stated(
             source,
             getattr(module, "LOOPS", {}),
@@ -441,7 +441,7 @@ def _hidden(functions: Mapping[str, Callable[..., Any]], module: ModuleType) -> 
     waiting = list(functions.values())
     while waiting:
         function = waiting.pop()
-        for name in Node.of(function).needs:
+        for name in QuantityNode.of(function).needs:
             hidden = getattr(module, name, function.__globals__.get(name)) if name.startswith("_") else None
             if callable(hidden) and name not in found:
                 found[name] = hidden

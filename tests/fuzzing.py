@@ -454,10 +454,10 @@ def _course(path: Path) -> None:
 
 
 def _progress(path: Path) -> None:
-    from coursework.selfstudy.store import Kept, ProgressFile
+    from coursework.selfstudy.store import ExerciseStore, ProgressFile
 
     before = path.read_bytes()
-    Kept(ProgressFile(path.parent), "coil").add(3, "answers", {"Z": "4"})
+    ExerciseStore(ProgressFile(path.parent), "coil").add(3, "answers", {"Z": "4"})
     kept = [file.read_bytes() for file in path.parent.iterdir()]
     assert len(ProgressFile(path.parent).progress) >= 1 or before in kept
 

@@ -13,7 +13,7 @@ import numpy as np
 from coursework.accuracy.conditioning import unavoidable
 from coursework.accuracy.hard_places import VANISHING, HardPlace
 from coursework.accuracy.motion import motion_rows
-from coursework.accuracy.reference import Closing
+from coursework.accuracy.reference import ClosureResidual
 from coursework.accuracy.subject import (
     MOTION,
     WHATS,
@@ -36,7 +36,7 @@ _TIMED = 10_000
 
 
 @dataclass(frozen=True)
-class Row:
+class Measurement:
     """Measurement of one way at one kind of place.
 
     ``max_error`` is the largest, over places and quantities, against the reference: radians for angles; for the rest parts
@@ -104,7 +104,7 @@ def subject_of(exercise: CourseExercise) -> Subject:
     return Subject(exercise)
 
 
-def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
+def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Measurement]:
     """Yield the rows of an exercise as they are measured.
 
     Raises
@@ -126,13 +126,13 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
             yield from _Trial(subject, what, quick).rows()
     if subject.study.motion is not None:
         for m in motion_rows(exercise, subject.study, quick):
-            yield Row(
+            yield Measurement(
                 exercise.name, MOTION, f"{m.method}-{m.setting:g}", m.place, 1e9 * m.times.median, m.error, 1, 0, m.method,
                 m.setting, 1e9 * m.times.low, 1e9 * m.times.high, m.times.rounds, m.build and 1e9 * m.build,
             )  # fmt: skip
 
 
-def checked(subject: Subject, seeds: Sequence[int] = (0, 1)) -> Closing | None:
+def checked(subject: Subject, seeds: Sequence[int] = (0, 1)) -> ClosureResidual | None:
     """Check the reference by the stated equations; None where the solution states none.
 
     Raises
@@ -159,7 +159,7 @@ class _Trial:
         self.timed = subject.generic(_TIMED)
         self.compared = _first(self.timed, 60 if quick else 400)
 
-    def rows(self) -> Iterator[Row]:
+    def rows(self) -> Iterator[Measurement]:
         subject = self.subject
         fixed = subject.base if subject.driver else None
         own = list(ways(subject, self.what, fixed))
@@ -188,7 +188,7 @@ class _Trial:
 
     def _hard_rows(
         self, own: Sequence[Way], times: Sequence[Times], scales: Mapping[str, float]
-    ) -> Iterator[Row]:
+    ) -> Iterator[Measurement]:
         """Yield the rows at the places with the largest loss.
 
         A way that needs a fixed mechanism takes part only where the driver moves.
@@ -210,7 +210,9 @@ class _Trial:
                 yield self._row(way, HARD, spent, error, count, failed)
         if worst:
             count = max(n for _, _, n in worst.values())
-            yield Row(self.subject.exercise.name, self.what, DATA, HARD, 0.0, least, count, 0, DATA, None)
+            yield Measurement(
+                self.subject.exercise.name, self.what, DATA, HARD, 0.0, least, count, 0, DATA, None
+            )
 
     @property
     def _places(self) -> list[HardPlace]:
@@ -219,8 +221,10 @@ class _Trial:
         driven = [p for p in self.subject.hard if p.moved == self.subject.driver]
         return (driven or list(self.subject.hard))[:_PLACES_OF_A_SORT]
 
-    def _row(self, way: Way, place: str, spent: Times, error: float | None, count: int, failed: int) -> Row:
-        return Row(
+    def _row(
+        self, way: Way, place: str, spent: Times, error: float | None, count: int, failed: int
+    ) -> Measurement:
+        return Measurement(
             self.subject.exercise.name, self.what, way.name, place, 1e9 * spent.median, error, count, failed, way.family,
             way.setting, 1e9 * spent.low, 1e9 * spent.high, spent.rounds, way.build and 1e9 * way.build,
         )  # fmt: skip

@@ -1,7 +1,7 @@
 """Accuracy of motion in time: cost and error of a tolerance, a fixed step or a table.
 
 One small interface: a *method* is a function of a scene, an effort, a duration and whether time is short, that yields a
-:class:`Run` for each of its settings. What stands in :data:`METHODS` is measured, with friction and without.
+:class:`MotionRun` for each of its settings. What stands in :data:`METHODS` is measured, with friction and without.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _ROUNDS = 3
 _FINE = 800  #: equal steps where a table makes each of them cheap
 
 
-class Run(NamedTuple):
+class MotionRun(NamedTuple):
     """Motion by one method at one setting.
 
     ``end`` integrates it, each time anew, to where its driver stands at the end, degrees, not reduced, and how fast it turns
@@ -51,10 +51,10 @@ class MotionRow:
     build: float | None = None
 
 
-Method = Callable[[Scene, float, float, bool], Iterator[Run]]
+Method = Callable[[Scene, float, float, bool], Iterator[MotionRun]]
 
 
-def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
+def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[MotionRun]:
     """Yield the scene's own integration at each relative tolerance."""
     driver = scene.driver
     # A quick look takes a few; with friction each digit costs so much that it stops halfway.
@@ -66,27 +66,27 @@ def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> I
             columns = scene.in_time(effort, duration, rtol=rtol, count=1).columns
             return float(columns[driver.angle][-1]), float(columns[driver.speed][-1])
 
-        yield Run("integration", rtol, end)
+        yield MotionRun("integration", rtol, end)
 
 
-def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
+def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[MotionRun]:
     """Yield the classical Runge-Kutta method at equal steps, with the mechanism computed anew at each of its
     four stages."""
     counts = (50, 100, 200, 400, 800)
     most = len(counts) if not quick else 2 if FRICTION in scene.effects else 3
     rate = _Acceleration(scene, effort)
     for steps in counts[:most]:
-        yield Run("steps", steps, partial(_ended, rate, duration, steps))
+        yield MotionRun("steps", steps, partial(_ended, rate, duration, steps))
 
 
-def by_table(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
+def by_table(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[MotionRun]:
     """Yield the Runge-Kutta method at fine steps, with coefficients from a table of the cycle by Fourier
     interpolation."""
     for nodes in (32, 64) if quick else (16, 32, 64, 128):
         start = clock()
         rate = _Tabulated(_Acceleration(scene, effort), nodes)
         build = clock() - start
-        yield Run("cycle_table", nodes, partial(_ended, rate, duration, _FINE), build)
+        yield MotionRun("cycle_table", nodes, partial(_ended, rate, duration, _FINE), build)
 
 
 def _ended(rate: Any, duration: float, steps: int) -> tuple[float, float]:

@@ -28,8 +28,8 @@ _RIGHT = 2e-15  #: relative: right to the last digits
 
 
 @dataclass(frozen=True)
-class Line:
-    """Results of one exercise; errors are relative as in :class:`~coursework.accuracy.measuring.Row`.
+class OverviewLine:
+    """Results of one exercise; errors are relative as in :class:`~coursework.accuracy.measuring.Measurement`.
 
     ``lack`` of the equation that vouches for the reference, in parts of its terms; None where none is stated. At the hard
     places two errors: the solver's and the textbook formula's;
@@ -60,7 +60,7 @@ class Line:
         return asdict(self)
 
 
-def overview(exercise: CourseExercise, *, quick: bool = False) -> Line | None:
+def overview(exercise: CourseExercise, *, quick: bool = False) -> OverviewLine | None:
     """Return the results of an exercise; None where it asks for no number.
 
     Raises
@@ -75,9 +75,9 @@ def overview(exercise: CourseExercise, *, quick: bool = False) -> Line | None:
     try:
         closing = checked(subject)
     except BadCourse as fault:
-        return Line(exercise.name, len(subject.numbers), wrong=str(fault))
+        return OverviewLine(exercise.name, len(subject.numbers), wrong=str(fault))
     if not subject.reference.wanted:
-        return Line(exercise.name, 0, lacking=subject.reference.lacking)
+        return OverviewLine(exercise.name, 0, lacking=subject.reference.lacking)
     return _Survey(subject, quick).line(closing)
 
 
@@ -88,7 +88,7 @@ class _Survey:
         graph = subject.exercise.solution.graph
         self.graphs = {"stable": graph, "textbook": twinned(graph.textbook)}
 
-    def line(self, closing: Any) -> Line:
+    def line(self, closing: Any) -> OverviewLine:
         compared = self.subject.generic(40 if self.quick else 200)
         reference = right_values(self.subject, compared, self.wanted)
         scales = usual_sizes(self.subject, self.wanted, reference)
@@ -97,7 +97,7 @@ class _Survey:
             for way in self.graphs
         }
         times = self._times()
-        return Line(
+        return OverviewLine(
             self.subject.exercise.name,
             len(self.wanted),
             len(self.subject.hard),

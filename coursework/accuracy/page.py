@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import Any
 
 from coursework.accuracy.hard_places import HardPlace
-from coursework.accuracy.measuring import DATA, GENERIC, HARD, Row
+from coursework.accuracy.measuring import DATA, GENERIC, HARD, Measurement
 from coursework.accuracy.motion import FREE, RUBBING
 from coursework.accuracy.subject import ACCELERATION, MOTION, OTHER, POSITION, RATE, Subject
 from coursework.accuracy.verdicts import Rows, Words, cheapest, enough, halves, listed, paid_after
@@ -23,7 +23,7 @@ _MANY_TIMES = 10
 _MOTION_LIMITS = (1e-3, 1e-6)
 
 
-def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
+def report(course: Course, rows: Sequence[Measurement], lang: str) -> Report:
     """Return the report, a section for each exercise and kind of quantity, in the order of the rows."""
     said = words(lang)["accuracy"]
     sections = []
@@ -55,7 +55,7 @@ def no_charts(said: Words) -> str:
 # ------------------------------------------------------------------------ sections
 
 
-def _quantities(title: str, rows: Sequence[Row], data: str, said: Words, what: str) -> Section:
+def _quantities(title: str, rows: Sequence[Measurement], data: str, said: Words, what: str) -> Section:
     own = Rows(rows)
     charts: list[Chart] = []
     for place in own.places if what in (POSITION, RATE) else ():
@@ -89,7 +89,7 @@ def _rate_charts(rows: Rows, place: str, said: Words) -> tuple[Chart, ...]:
     return charts_of({**_series(differences, said, _set), **levels}, heading, said["step"], said)
 
 
-def _motion(title: str, rows: Sequence[Row], said: Words) -> Section:
+def _motion(title: str, rows: Sequence[Measurement], said: Words) -> Section:
     charts: list[Chart] = []
     text: list[str] = []
     tables = []
@@ -104,7 +104,7 @@ def _motion(title: str, rows: Sequence[Row], said: Words) -> Section:
     return Section(title, _paragraphs(text), tuple(charts), tuple(tables))
 
 
-def _motion_table(rows: Sequence[Row], where: str, said: Words) -> Table:
+def _motion_table(rows: Sequence[Measurement], where: str, said: Words) -> Table:
     lines = [
         (
             _method(r, said),
@@ -118,7 +118,7 @@ def _motion_table(rows: Sequence[Row], where: str, said: Words) -> Table:
     return Table(heads, tuple(lines), (False, True, True, True), where)
 
 
-def _read_motion(rows: Sequence[Row], where: str, said: Words) -> list[str]:
+def _read_motion(rows: Sequence[Measurement], where: str, said: Words) -> list[str]:
     reading, found = said["reading"], []
     tolerances = [r for r in rows if r.family == "integration"]
     if tolerances:
@@ -259,7 +259,9 @@ def _read_rates(rows: Rows, said: Words) -> list[str]:
 # -------------------------------------------------------------------------- pieces
 
 
-def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[list[float], list[float]]]:
+def _series(
+    rows: Sequence[Measurement], said: Words, across: Any
+) -> dict[str, tuple[list[float], list[float]]]:
     """Return the points by family; points of one family are joined."""
     found: dict[str, tuple[list[float], list[float]]] = {}
     for row in rows:
@@ -282,7 +284,7 @@ def charts_of(
 
 def _table(rows: Rows, said: Words) -> Table:
     """Return the table of the methods, with both kinds of places side by side."""
-    by_method: dict[str, dict[str, Row]] = {}
+    by_method: dict[str, dict[str, Measurement]] = {}
     for row in rows.rows:
         by_method.setdefault(row.method, {})[row.place] = row
     has_tables = bool(rows.of("table"))
@@ -304,31 +306,31 @@ def _table(rows: Rows, said: Words) -> Table:
     return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))
 
 
-def _spread(row: Row) -> str:
+def _spread(row: Measurement) -> str:
     """Return the interquartile range in percent of the median."""
     return f"{number(100 * (row.high - row.low) / row.median)}\N{NO-BREAK SPACE}%"
 
 
-def _paid(row: Row | None, rows: Rows, said: Words) -> str:
+def _paid(row: Measurement | None, rows: Rows, said: Words) -> str:
     if row is None or row.build_ns is None:
         return ""
     uses = paid_after(row, rows.one("stable"))
     return said["never_paid"] if uses is None else said["paid"].format(number(uses))
 
 
-def _set(row: Row) -> float:
+def _set(row: Measurement) -> float:
     """Return the setting of a method that has one."""
     assert row.setting is not None
     return row.setting
 
 
-def _measured(row: Row) -> float:
+def _measured(row: Measurement) -> float:
     """Return the error of a method that has answers."""
     assert row.max_error is not None
     return row.max_error
 
 
-def _error_cell(row: Row | None, said: Words) -> str:
+def _error_cell(row: Measurement | None, said: Words) -> str:
     if row is None:
         return ""
     if row.family == DATA:
@@ -337,11 +339,11 @@ def _error_cell(row: Row | None, said: Words) -> str:
     return ", ".join(filter(None, (_error(row, said), failed)))
 
 
-def _error(row: Row, said: Words) -> str:
+def _error(row: Measurement, said: Words) -> str:
     return said["none"] if row.max_error is None else number(row.max_error)
 
 
-def _method(row: Row, said: Words) -> str:
+def _method(row: Measurement, said: Words) -> str:
     return said["methods"][row.family].format("" if row.setting is None else _setting(row.setting))
 
 

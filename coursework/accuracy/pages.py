@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from coursework.accuracy.hard_places import HardPlace
-from coursework.accuracy.overview import Line
+from coursework.accuracy.overview import OverviewLine
 from coursework.accuracy.page import charts_of, no_charts, number, told_place
 from coursework.accuracy.paper import PLAIN, PaperRow, Share, total
 from coursework.accuracy.subject import Subject
@@ -21,7 +21,9 @@ _MOST_DIGITS = 16
 _HALF = 8
 
 
-def overview_report(course: Course, lines: Sequence[Line], without: Sequence[str], lang: str) -> Report:
+def overview_report(
+    course: Course, lines: Sequence[OverviewLine], without: Sequence[str], lang: str
+) -> Report:
     """Return the overview, a row for each exercise: digits, times, the hardest place, the check of the
     reference."""
     said = words(lang)["accuracy"]
@@ -39,7 +41,9 @@ def overview_report(course: Course, lines: Sequence[Line], without: Sequence[str
     )
 
 
-def _short(course: Course, lines: Sequence[Line], without: Sequence[str], told: Words, lang: str) -> str:
+def _short(
+    course: Course, lines: Sequence[OverviewLine], without: Sequence[str], told: Words, lang: str
+) -> str:
     right = [line for line in lines if not line.wrong and line.quantities]
     losing = [_titled(course, line, lang) for line in right if line.beyond > 1]
     key = "keeps_but" if losing else "keeps_all"
@@ -60,11 +64,11 @@ def _short(course: Course, lines: Sequence[Line], without: Sequence[str], told: 
     return "\n\n".join(found)
 
 
-def _titled(course: Course, line: Line, lang: str) -> str:
+def _titled(course: Course, line: OverviewLine, lang: str) -> str:
     return course[line.exercise].title(lang)
 
 
-def _digits_table(course: Course, lines: Sequence[Line], told: Words, lang: str) -> Table:
+def _digits_table(course: Course, lines: Sequence[OverviewLine], told: Words, lang: str) -> Table:
     heads = [
         told[key] for key in ("exercise", "generic", "generic_textbook", "hard", "hard_textbook", "allowed")
     ]
@@ -96,7 +100,7 @@ def _shown(error: float | None, failed: int = 0) -> str:
     return "–" if error is None or failed else str(_digits(error))
 
 
-def _allowed(line: Line, told: Words) -> str:
+def _allowed(line: OverviewLine, told: Words) -> str:
     if not line.places:
         return "–"
     if line.beyond <= 1:
@@ -109,7 +113,7 @@ def _nanoseconds(times: Times | None) -> str:
     return "–" if times is None else number(1e9 * times.median)
 
 
-def _places_table(course: Course, lines: Sequence[Line], said: Words, lang: str) -> Table:
+def _places_table(course: Course, lines: Sequence[OverviewLine], said: Words, lang: str) -> Table:
     told = said["overview"]
     rows = []
     for line in lines:
@@ -120,7 +124,7 @@ def _places_table(course: Course, lines: Sequence[Line], said: Words, lang: str)
     return Table((told["exercise"], told["place"]), tuple(rows), (False, False))
 
 
-def _vouched_table(course: Course, lines: Sequence[Line], told: Words, lang: str) -> Table:
+def _vouched_table(course: Course, lines: Sequence[OverviewLine], told: Words, lang: str) -> Table:
     rows = [
         (
             _titled(course, line, lang),

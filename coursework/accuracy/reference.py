@@ -31,7 +31,7 @@ _FAILURES = (CourseworkError, NotFollowed, TypeError, ValueError, ArithmeticErro
 
 
 @dataclass(frozen=True)
-class Closing:
+class ClosureResidual:
     """Largest residual of values in independently stated equations, with the name of the equation; the first
     of those that do not close."""
 
@@ -160,7 +160,7 @@ class Reference:
 
     # ------------------------------------------------------------------ closing
 
-    def closing(self, places: Iterable[Mapping[str, Any]]) -> Closing | None:
+    def closing(self, places: Iterable[Mapping[str, Any]]) -> ClosureResidual | None:
         """Return the residual of the values in the loops, their derivatives and ``residual`` at some places;
         None where the solution states no equation that can be followed."""
         lacks: dict[str, float] = {}
@@ -176,7 +176,7 @@ class Reference:
         equation = open_ones[0] if open_ones else max(lacks, key=lambda name: lacks[name])
         worst = lacks[equation]
         in_doubles = in_doubles and not (worst > _ROUNDED and _DOUBLES not in equation)
-        return Closing(worst, equation.removesuffix(_DOUBLES), self.held, in_doubles)
+        return ClosureResidual(worst, equation.removesuffix(_DOUBLES), self.held, in_doubles)
 
     def lacks(self, given: Mapping[str, Any]) -> dict[str, float]:
         """Return the residual of each stated equation, relative to its terms."""

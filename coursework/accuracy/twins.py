@@ -38,14 +38,14 @@ def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
     return corner(one, third, other)
 
 
-class FourBar:
+class TextbookFourBar:
     """Angles and rates of a four-bar by the intersection of two circles."""
 
     def __init__(self, ground: Any, crank: Any, coupler: Any, rocker: Any, mode: Any = "open") -> None:
         self.lengths = ground, crank, coupler, rocker
         self.side = side_of(mode) if isinstance(mode, str) or np.asarray(mode).dtype.kind == "U" else mode
 
-    def at(self, crank_angle: Any) -> _Pose:
+    def at(self, crank_angle: Any) -> _TextbookPose:
         d, a, b, c = self.lengths
         crank = degrees.polar(a, _degrees_of(crank_angle))
         line = d - crank
@@ -53,10 +53,10 @@ class FourBar:
         along = (squared + b**2 - c**2) / (2 * squared)
         across = degrees.sqrt(b**2 / squared - along**2)
         coupler = line * (along + 1j * self.side * across)
-        return _Pose(crank, coupler, crank + coupler - d)
+        return _TextbookPose(crank, coupler, crank + coupler - d)
 
 
-class _Pose:
+class _TextbookPose:
     """Vectors of a four-bar at one crank angle; rates by their projections."""
 
     def __init__(self, crank: Any, coupler: Any, rocker: Any) -> None:
@@ -70,7 +70,7 @@ class _Pose:
         self.rocker_gain = -_dot(pull, coupler) / area
 
 
-class SliderCrank:
+class TextbookSliderCrank:
     def __init__(self, crank: Any, rod: Any, offset: Any) -> None:
         self.lengths = crank, rod, offset
 
@@ -88,7 +88,9 @@ def _dot(u: Any, v: Any) -> Any:
 
 
 _CORE = "coursework.kinematics."
-_TWINS: dict[str, Any] = {f.__name__: f for f in (third_side, corner, corner_beside, FourBar, SliderCrank)}
+_TWINS: dict[str, Any] = {
+    f.__name__: f for f in (third_side, corner, corner_beside, TextbookFourBar, TextbookSliderCrank)
+}
 
 
 class Twinned:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
-from coursework.accuracy.measuring import DATA, GENERIC, HARD, Row
+from coursework.accuracy.measuring import DATA, GENERIC, HARD, Measurement
 from coursework.accuracy.timing import is_busy, overlap
 
 LIMITS = (1e-3, 1e-6, 1e-12)
@@ -19,7 +19,7 @@ _REFERENCES = ("mpmath", DATA)
 Words = Mapping[str, Any]
 
 
-def cheapest(rows: Iterable[Row]) -> list[Row]:
+def cheapest(rows: Iterable[Measurement]) -> list[Measurement]:
     """Return the rows whose times are indistinguishable from the shortest, shortest first."""
     by_time = sorted(rows, key=lambda row: row.median)
     return [row for row in by_time if overlap(by_time[0], row)]
@@ -28,22 +28,22 @@ def cheapest(rows: Iterable[Row]) -> list[Row]:
 class Rows:
     """Rows of one kind, looked up by family, place and setting."""
 
-    def __init__(self, rows: Sequence[Row]) -> None:
+    def __init__(self, rows: Sequence[Measurement]) -> None:
         self.rows = rows
 
-    def of(self, family: str, place: str = GENERIC) -> list[Row]:
+    def of(self, family: str, place: str = GENERIC) -> list[Measurement]:
         found = [r for r in self.rows if r.family == family and r.place == place]
         return sorted(found, key=lambda r: (r.setting is not None, r.setting))
 
-    def answered(self, family: str, place: str = GENERIC) -> list[Row]:
+    def answered(self, family: str, place: str = GENERIC) -> list[Measurement]:
         """Return the rows with an answer somewhere, and so an error."""
         return [r for r in self.of(family, place) if r.max_error is not None]
 
-    def one(self, family: str, place: str = GENERIC) -> Row | None:
+    def one(self, family: str, place: str = GENERIC) -> Measurement | None:
         found = self.of(family, place)
         return found[0] if found else None
 
-    def within(self, limit: float, places: Sequence[str]) -> list[Row]:
+    def within(self, limit: float, places: Sequence[str]) -> list[Measurement]:
         """Return the generic rows of the ways that stay below a limit at all of these places, without
         references."""
         found = []
@@ -95,14 +95,14 @@ def _answers(rows: Rows, said: Words, name: Any, limit: float) -> list[tuple[str
     return found
 
 
-def _cheaper_at_generic_places(rows: Rows, limit: float, best: Sequence[Row]) -> list[Row]:
+def _cheaper_at_generic_places(rows: Rows, limit: float, best: Sequence[Measurement]) -> list[Measurement]:
     """Return the ways that suffice at generic places and are clearly cheaper than the best that suffice
     everywhere."""
     generic = cheapest(rows.within(limit, (GENERIC,)))
     return [] if {row.method for row in best} & {row.method for row in generic} else generic
 
 
-def listed(rows: Sequence[Row], said: Words, name: Any) -> str:
+def listed(rows: Sequence[Measurement], said: Words, name: Any) -> str:
     """Return the names of the methods in alphabetical order, since their times give no order."""
     return _and(sorted(f"*{name(row)}*" for row in rows), said)
 
@@ -111,7 +111,7 @@ def _and(words: Sequence[str], said: Words) -> str:
     return str(said["reading"]["and"]).join([", ".join(words[:-1]), words[-1]]) if words[1:] else words[0]
 
 
-def paid_after(row: Row, stable: Row | None) -> float | None:
+def paid_after(row: Measurement, stable: Measurement | None) -> float | None:
     """Return the number of uses after which a table pays off; None where it is not clearly cheaper than the
     solver."""
     if row.build_ns is None or stable is None or overlap(row, stable) or row.median > stable.median:
@@ -119,7 +119,7 @@ def paid_after(row: Row, stable: Row | None) -> float | None:
     return row.build_ns / (stable.median - row.median)
 
 
-def halves(rows: Sequence[Row]) -> bool:
+def halves(rows: Sequence[Measurement]) -> bool:
     """Return whether each step of Newton's method only halves the error, as it does where two solutions meet."""
     return len(rows) > 1 and all(
         a.max_error and b.max_error and 0.3 < b.max_error / a.max_error < 0.7 for a, b in pairwise(rows)

@@ -32,8 +32,8 @@ from coursework.system.limits import MOST_STEPS
 if TYPE_CHECKING:
     from coursework.motion.added import Motor
     from coursework.motion.scene_files import SceneFile
-    from coursework.motion.scenes import Scene, Table
-    from coursework.motion.worth import Budget
+    from coursework.motion.scenes import Scene, SceneTable
+    from coursework.motion.worth import EffectBudget
 
 # --------------------------------------------------------------------- simulate
 
@@ -140,7 +140,7 @@ def _seconds(text: str | None) -> float:
     return reading.values[0]
 
 
-def _run(told: SceneFile, scene: Scene) -> Table:
+def _run(told: SceneFile, scene: Scene) -> SceneTable:
     """A scene as its file says: over a cycle, or in time."""
     if told.drive is None:
         return scene.over_cycle(told.steps)
@@ -214,7 +214,7 @@ def _each_effect_once(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, str]
         yield shown
 
 
-def _budget_rows(found: Budget) -> Iterator[dict[str, Any]]:
+def _budget_rows(found: EffectBudget) -> Iterator[dict[str, Any]]:
     """A row an effect and output."""
     for worth in found.worths:
         time = {"effect": worth.effect, "time [ms]": 1e3 * worth.seconds, "spread [ms]": 1e3 * worth.spread}
@@ -236,7 +236,7 @@ def _budget_rows(found: Budget) -> Iterator[dict[str, Any]]:
             }  # fmt: skip
 
 
-def _write_budget_plot(found: Budget, title: str, stem: Path) -> None:
+def _write_budget_plot(found: EffectBudget, title: str, stem: Path) -> None:
     """A bar an effect: what leaving it out changes at most, and what it costs."""
     from coursework.figures.charts import bars
     from coursework.system.writing import write_whole
@@ -264,7 +264,7 @@ def _write_rows(rows: Sequence[dict[str, Any]], stem: Path, decimal: str) -> Non
     write_whole(stem.parent / f"{stem.name}.csv", csv_file(rows, list(rows[0]), SPREADSHEETS[decimal]))
 
 
-def _write_plot(table: Table, title: str, stem: Path) -> None:
+def _write_plot(table: SceneTable, title: str, stem: Path) -> None:
     """The curves of a scene as ``STEM.svg``."""
     from coursework.figures.charts import curves
     from coursework.system.writing import write_whole

@@ -34,11 +34,11 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
     from dataclasses import asdict
 
     from coursework.language.words import words
-    from coursework.markup.shown import Shown
+    from coursework.markup.shown import NotebookDisplay
     from coursework.selfstudy import advice
     from coursework.selfstudy.mastery import skills, standings
     from coursework.selfstudy.recording import mark_what_came_unmarked
-    from coursework.selfstudy.store import EARLIER, Kept, ProgressFile, now
+    from coursework.selfstudy.store import EARLIER, ExerciseStore, ProgressFile, now
 
     course = opened(context)
     if not folder.is_dir():
@@ -46,7 +46,7 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
     on = now() if day is None else day.replace(tzinfo=UTC)
     file = ProgressFile(folder, lambda: on)
     for path in sorted(folder.glob(f"*{EARLIER}")):
-        Kept(file, path.name.removesuffix(EARLIER))
+        ExerciseStore(file, path.name.removesuffix(EARLIER))
     mark_what_came_unmarked(course, file)
     said = words(lang)["study"]
     if file.trouble:
@@ -65,7 +65,7 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
     pieces = [lines or said["progress"]["nothing"], advice.told_skills(course, file.progress, lang)]
     if step is not None:
         pieces.append(advice.told_advice(course, step, lang))
-    click.echo(str(Shown(lang, *pieces)))
+    click.echo(str(NotebookDisplay(lang, *pieces)))
 
 
 def _plain(told: dict[str, object]) -> dict[str, object]:

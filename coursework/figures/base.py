@@ -13,7 +13,7 @@ from coursework.errors import CourseworkError, WrongValue
 from coursework.figures.ink import EDGE, PINS, WHITE, Disc, turn
 
 if TYPE_CHECKING:
-    from coursework.figures.paper import Paper
+    from coursework.figures.paper import FigurePaper
 
 PIN = 1.1  #: radius of a pin, mm on paper
 BLOCK = complex(3.2, 1.7)  #: half-length and half-height of a slider's block
@@ -67,7 +67,7 @@ class Element:
         """Return the segments of links, which labels and pin supports avoid."""
         return ()
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         raise NotImplementedError
 
 
@@ -137,5 +137,5 @@ def arc_points(center: complex, radius: float, start: float, end: float) -> tupl
     return tuple(center + radius * turn(start + (end - start) * k / steps) for k in range(steps + 1))
 
 
-def ring(paper: Paper, p: complex) -> None:
+def ring(paper: FigurePaper, p: complex) -> None:
     paper.draw(Disc(p, PIN, EDGE, WHITE, layer=PINS))

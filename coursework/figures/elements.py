@@ -35,7 +35,7 @@ from coursework.figures.ink import (
 from coursework.language.numbers import rounded
 
 if TYPE_CHECKING:
-    from coursework.figures.paper import Paper
+    from coursework.figures.paper import FigurePaper
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class ground_pivot(Element):
     label: str | None = None
     toward: float | None = None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p = paper.at(self.p)
         down = paper.ground_side(p)
         aside = 1j * down
@@ -67,7 +67,7 @@ class pin(Element):
     label: str | None = None
     toward: float | None = None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         ring(paper, paper.at(self.p))
         paper.around(self.label, paper.at(self.p), NEAR, toward=self.toward)
 
@@ -80,7 +80,7 @@ class point(Element):
     label: str | None = None
     toward: float | None = None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p = paper.at(self.p)
         paper.draw(Disc(p, 0.55, 0, BLACK, layer=MARKS))
         paper.around(self.label, p, 0.9, toward=self.toward)
@@ -94,7 +94,7 @@ class contact(Element):
     label: str | None = None
     toward: float | None = None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p = paper.at(self.p)
         paper.draw(Disc(p, 0.8, 0, BLACK, layer=MARKS))
         paper.around(self.label, p, 1.2, toward=self.toward)
@@ -112,7 +112,7 @@ class bar(Element):
         closing = (self.points[-1], self.points[0])
         return (*pairwise(self.points), *((closing,) if len(self.points) > 2 and not self.weld else ()))
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         points = tuple(map(paper.at, self.points))
         plate = len(points) > 2 and not self.weld
         paper.draw(Path(points, BAR, TINT if plate else NONE, closed=plate, layer=FILLS if plate else BARS))
@@ -130,7 +130,7 @@ class bar(Element):
             paper.beside(self.label, *longest, AWAY)
 
 
-def _gusset(paper: Paper, before: complex, corner: complex, after: complex) -> None:
+def _gusset(paper: FigurePaper, before: complex, corner: complex, after: complex) -> None:
     """Draw a small filled triangle in a corner: the two bars are one body."""
     legs = [corner + 2.6 * (z - corner) / (abs(z - corner) or 1.0) for z in (before, after)]
     paper.draw(Path((corner, *legs), THIN, BLACK, closed=True, layer=BARS))
@@ -156,7 +156,7 @@ class slot_link(Element):
     def bars(self) -> Bars:
         return ((self.p, self.q),)
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p, q = paper.at(self.p), paper.at(self.q)
         heading = math.degrees(cmath.phase(q - p))
         ends = ((q, heading - 90), (p, heading + 90))
@@ -174,7 +174,7 @@ class slider(Element):
     direction: float = 0.0
     label: str | None = None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p, way = paper.at(self.p), turn(paper.degrees(self.direction))
         half = (BLOCK, BLOCK.conjugate(), -BLOCK, -BLOCK.conjugate())
         paper.draw(Path(tuple(p + way * z for z in half), EDGE, TINT, closed=True, layer=BLOCKS))
@@ -192,7 +192,7 @@ class rail(Element):
     p: complex
     q: complex
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p, q = paper.at(self.p), paper.at(self.q)
         if p == q:
             return
@@ -214,7 +214,7 @@ class section(Element):
     angle: float = 45.0
     spacing: Positive = 2.0
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         points = tuple(map(paper.at, self.points))
         from coursework.figures.text import read
 
@@ -293,7 +293,7 @@ class ball(Element):
     def reach(self) -> tuple[complex, ...]:
         return circle_points(self.center, self.radius)
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         center, radius = paper.at(self.center), paper.length(self.radius)
         disc = Disc(center, radius, EDGE, TINT, layer=GUIDES)
         paper.draw(disc)
@@ -311,7 +311,7 @@ class wheel(Element):
     def reach(self) -> tuple[complex, ...]:
         return circle_points(self.center, self.radius)
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         center, radius = paper.at(self.center), paper.length(self.radius)
         disc = Disc(center, radius, EDGE, TINT, layer=FILLS)
         paper.draw(disc)
@@ -325,7 +325,7 @@ class profile(Element):
     points: tuple[complex, ...]
     label: str | None = None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         points = tuple(map(paper.at, self.points))
         paper.draw(Path(points, EDGE, TINT, closed=True, layer=FILLS))
         paper.around(self.label, added(points) / len(points), 0.9, area=(*points, points[0]))

@@ -14,7 +14,7 @@ from coursework.figures.ink import MARKS, THIN, Ink, Path
 from coursework.language.numbers import rounded, settled
 
 if TYPE_CHECKING:
-    from coursework.figures.paper import Paper
+    from coursework.figures.paper import FigurePaper
     from coursework.figures.placing import Label
     from coursework.figures.writing import Lettering, Letters
 
@@ -198,13 +198,13 @@ class Figure:
             raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
         return settled(min(scales))
 
-    def _drawn(self, scale: float) -> tuple[Paper, list[int], list[int]]:
+    def _drawn(self, scale: float) -> tuple[FigurePaper, list[int], list[int]]:
         """Return the ink and the label requests at a scale, and for each the index of its element."""
-        from coursework.figures.paper import Paper
+        from coursework.figures.paper import FigurePaper
 
         low, high = self._extent
         bars = [bar for element in self._settled for bar in element.bars()]
-        paper = Paper(scale, bars, (low + high) / 2)
+        paper = FigurePaper(scale, bars, (low + high) / 2)
         drew: list[int] = []
         wished: list[int] = []
         for number, element in enumerate(self._settled):

@@ -23,7 +23,7 @@ from coursework.figures.ink import (
 )
 
 if TYPE_CHECKING:
-    from coursework.figures.paper import Paper
+    from coursework.figures.paper import FigurePaper
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class note(Element):
     p: complex
     label: str | None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         from coursework.figures.text import read
 
         text = read(self.label) if self.label else None
@@ -52,7 +52,7 @@ class line(Element):
     thin: bool = True
     label: str | None = None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p, q = paper.at(self.p), paper.at(self.q)
         paper.draw(Path((p, q), THIN if self.thin else EDGE, dash=DASHED if self.dashed else ""))
         paper.beside(self.label, p, q, AWAY)
@@ -66,7 +66,7 @@ class centre_line(Element):
     q: complex
     label: str | None = None
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p, q = paper.at(self.p), paper.at(self.q)
         paper.draw(Path((p, q), THIN, dash=CHAIN))
         paper.toward(self.label, q, q - p, 0.6, SIDES)
@@ -84,7 +84,7 @@ class circle(Element):
     def reach(self) -> tuple[complex, ...]:
         return circle_points(self.center, self.radius)
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         center, radius = paper.at(self.center), paper.length(self.radius)
         paper.draw(Disc(center, radius, THIN, dash=DASHED if self.dashed else ""))
         paper.toward(self.label, center, turn(45), radius + 0.7, SIDES)
@@ -103,7 +103,7 @@ class arc(Element):
     def reach(self) -> tuple[complex, ...]:
         return arc_points(self.center, self.radius, self.from_deg, self.to_deg)
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         ends = paper.degrees(self.from_deg), paper.degrees(self.to_deg)
         radius = paper.length(self.radius)
         paper.draw(Arc(paper.at(self.center), radius, *ends, THIN, DASHED if self.dashed else ""))
@@ -120,7 +120,7 @@ class axes(Element):
     def reach(self) -> tuple[complex, ...]:
         return self.origin, self.origin + self.length, self.origin + 1j * self.length
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         origin, length = paper.at(self.origin), paper.length(self.length)
         for way, label in zip((1, 1j), self.labels, strict=True):
             paper.arrow(origin, origin + length * way, THIN, HEAD * 0.8)
@@ -140,7 +140,7 @@ class rotation_arrow(Element):
     def reach(self) -> tuple[complex, ...]:
         return arc_points(self.center, self.radius, self.from_deg, self.to_deg)
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         center, radius = paper.at(self.center), paper.length(self.radius)
         start, end = paper.degrees(self.from_deg), paper.degrees(self.to_deg)
         paper.arc_arrow(center, radius, start, end, HEAD)
@@ -164,7 +164,7 @@ class angle_mark(Element):
     def reach(self) -> tuple[complex, ...]:
         return (self.center, *arc_points(self.center, self.radius or 0.0, self.from_deg, self.to_deg))
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         center = paper.at(self.center)
         radius = paper.length(self.radius) if self.radius else min(9.0, max(4.0, 0.6 * paper.room(center)))
         start, end = paper.degrees(self.from_deg), paper.degrees(self.to_deg)
@@ -194,7 +194,7 @@ class dimension(Element):
     def _normal(p: complex, q: complex) -> complex:
         return 1j * (q - p) / (abs(q - p) or 1.0)
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p, q = paper.at(self.p), paper.at(self.q)
         normal = self._normal(p, q)
         gap = paper.aside(p, q) if self.offset is None else round(self.offset * paper.scale, 1)
@@ -207,7 +207,7 @@ class dimension(Element):
         paper.beside(self.label, a, b, 0.7, way)
 
 
-def _measured(paper: Paper, a: complex, b: complex) -> None:
+def _measured(paper: FigurePaper, a: complex, b: complex) -> None:
     """Draw a line with a head at each end; the heads point inwards from outside when there is no room
     between."""
     if a == b:
@@ -235,7 +235,7 @@ class vector(Element):
     def reach(self) -> tuple[complex, ...]:
         return self.p, self.p + self.v
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p, tip = paper.at(self.p), paper.at(self.p + self.v)
         paper.arrow(p, tip, 0.45, 2.8)
         paper.beside(self.label, p, tip, AWAY)
@@ -252,7 +252,7 @@ class scale_bar(Element):
     def reach(self) -> tuple[complex, ...]:
         return self.p, self.p + self.length
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         p, q = paper.at(self.p), paper.at(self.p + self.length)
         paper.draw(Path((p, q), BAR), *(Path((z - 1j, z + 1j), EDGE) for z in (p, q)))
         paper.beside(self.label, p, q, AWAY, -1j)
@@ -265,5 +265,5 @@ class trace(Element):
     points: tuple[complex, ...]
     dotted: bool = True
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         paper.draw(Path(tuple(map(paper.at, self.points)), THIN, dash=DOTTED if self.dotted else ""))

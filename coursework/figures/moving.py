@@ -37,8 +37,8 @@ from coursework.figures.ink import (
     turn,
 )
 from coursework.figures.marks import centre_line, line, rotation_arrow
-from coursework.figures.paper import Paper
-from coursework.figures.placing import Wish
+from coursework.figures.paper import FigurePaper
+from coursework.figures.placing import LabelRequest
 from coursework.figures.riding import ride
 from coursework.figures.text import read
 from coursework.figures.writing import accents, as_outlines, baseline
@@ -54,7 +54,7 @@ _RIM = 30  #: white round letters, hundredths of their size
 
 
 @dataclass(frozen=True)
-class Track:
+class MotionTrack:
     """Drawn line or mark over the instants.
 
     ``numbers`` has a row an instant, mm on paper, y down, from the top left corner: of a ``path`` the coordinates
@@ -103,7 +103,7 @@ class Arrow:
 
 
 @dataclass(frozen=True)
-class Spot:
+class TracedPoint:
     """Point over the instants, and its path; ``closed`` if the path returns to its start."""
 
     p: np.ndarray
@@ -112,7 +112,7 @@ class Spot:
 
 
 @dataclass(frozen=True)
-class Key:
+class LegendKey:
     """Line of the legend: an arrow of this many mm of mechanism, and its words."""
 
     effect: str
@@ -121,15 +121,15 @@ class Key:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class MovingDrawing:
     """Tracks in painting order, and the size of the paper in mm."""
 
-    tracks: tuple[Track, ...]
+    tracks: tuple[MotionTrack, ...]
     size: tuple[float, float]
     scale: float
 
 
-class _Stage(Paper):
+class _Stage(FigurePaper):
     """Paper for one instant, without rounding; the same marks are drawn whatever their size."""
 
     def __init__(
@@ -181,11 +181,11 @@ def drawing(
     frames: Frames,
     *,
     arrows: Sequence[Arrow] = (),
-    spots: Sequence[Spot] = (),
-    keys: Sequence[Key] = (),
+    spots: Sequence[TracedPoint] = (),
+    keys: Sequence[LegendKey] = (),
     closed: bool = True,
     paper_mm: tuple[float, float] = PAPER_MM,
-) -> Drawing:
+) -> MovingDrawing:
     """Draw the elements at every instant, with vectors and paths of points, to one scale.
 
     ``closed``: the last instant is followed by the first.
@@ -210,7 +210,7 @@ def drawing(
 
 
 def extent(
-    frames: Frames, arrows: Sequence[Arrow] = (), spots: Sequence[Spot] = ()
+    frames: Frames, arrows: Sequence[Arrow] = (), spots: Sequence[TracedPoint] = ()
 ) -> tuple[complex, complex]:
     """Return the corners of all that is visible at some instant, mm of mechanism."""
     points = [np.array([z for elements in frames for e in elements for z in e.reach()])]
@@ -306,25 +306,25 @@ def _free_side(taken: Sequence[Sequence[complex]]) -> complex:
 # ----------------------------------------------------------------------- lines
 
 
-def _drawn(stages: Sequence[_Stage]) -> list[Track]:
+def _drawn(stages: Sequence[_Stage]) -> list[MotionTrack]:
     """Return a track for each drawn line or mark of the elements."""
     count = min(len(stage.ink) for stage in stages)
     return [_track([stage.ink[i] for stage in stages]) for i in range(count)]
 
 
-def _track(things: Sequence[Ink]) -> Track:
+def _track(things: Sequence[Ink]) -> MotionTrack:
     first = things[0]
     discs = [thing for thing in things if isinstance(thing, Disc)]
     if isinstance(first, Disc) and [disc.radius for disc in discs] == [first.radius] * len(things):
         mark = f'<circle r="{number(first.radius)}"{_paint(first.width, first.fill, first.dash)}/>'
-        return Track(_flat([[disc.center] for disc in discs]), mark=mark, layer=first.layer)
+        return MotionTrack(_flat([[disc.center] for disc in discs]), mark=mark, layer=first.layer)
     closed = isinstance(first, Path) and first.closed
     fill = first.fill if isinstance(first, Path | Disc) else "none"
     points = [_points_of(thing) for thing in things]
     most = max(map(len, points))
     # A path with fewer points stands on its last one for the rest.
     points = [[*row, *[row[-1]] * (most - len(row))] for row in points]
-    return Track(_flat(points), _paint(first.width, fill, first.dash), closed, layer=first.layer)
+    return MotionTrack(_flat(points), _paint(first.width, fill, first.dash), closed, layer=first.layer)
 
 
 def _points_of(thing: Ink) -> list[complex]:
@@ -342,16 +342,16 @@ def _flat(points: Sequence[Sequence[complex]] | np.ndarray) -> np.ndarray:
     return np.stack([grid.real, grid.imag], axis=-1).reshape(len(grid), -1)
 
 
-def _moving_marks(arrows: Sequence[Arrow], spots: Sequence[Spot], scale: float) -> list[Track]:
+def _moving_marks(arrows: Sequence[Arrow], spots: Sequence[TracedPoint], scale: float) -> list[MotionTrack]:
     tracks = [track for spot in spots for track in _spot_tracks(spot, scale)]
     return tracks + [track for arrow in arrows for track in _arrow_tracks(arrow, scale)]
 
 
-def _spot_tracks(spot: Spot, scale: float) -> list[Track]:
+def _spot_tracks(spot: TracedPoint, scale: float) -> list[MotionTrack]:
     """Return the path of a point, under the links, and its dot, on them."""
     colour, count = COLOURS["position"], len(spot.p)
     way = spot.p * scale
-    path = Track(
+    path = MotionTrack(
         np.repeat(_flat(way[None]), count, axis=0),
         f' stroke="{colour}"{_paint(0.25, "none")}',
         spot.closed,
@@ -360,10 +360,10 @@ def _spot_tracks(spot: Spot, scale: float) -> list[Track]:
         point=spot.point,
     )
     dot = f'<circle r="0.7" fill="{colour}" stroke="none"/>'
-    return [path, Track(_flat(way[:, None]), mark=dot, layer=PINS, effect="position", point=spot.point)]
+    return [path, MotionTrack(_flat(way[:, None]), mark=dot, layer=PINS, effect="position", point=spot.point)]
 
 
-def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
+def _arrow_tracks(arrow: Arrow, scale: float) -> list[MotionTrack]:
     tail = arrow.p * scale
     v = np.where(np.isfinite(arrow.v), arrow.v, 0) * scale
     length = np.abs(v)
@@ -374,7 +374,7 @@ def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
     colour = COLOURS[arrow.effect]
     shaft = f' stroke="{colour}"{_paint(ARROW, "none")}'
     head = f' stroke="none" fill="{colour}"'
-    named = partial(Track, layer=MARKS, effect=arrow.effect, point=arrow.point)
+    named = partial(MotionTrack, layer=MARKS, effect=arrow.effect, point=arrow.point)
     return [
         named(_flat(np.stack([tail, tip - 0.8 * way * size], axis=-1)), shaft),
         named(_flat(np.stack([tip, base + wing, base - wing], axis=-1)), head, True),
@@ -384,15 +384,17 @@ def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
 # ---------------------------------------------------------------------- labels
 
 
-def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float, closed: bool) -> list[Track]:
+def _labels(
+    stages: Sequence[_Stage], spots: Sequence[TracedPoint], scale: float, closed: bool
+) -> list[MotionTrack]:
     """Return the tracks of the labels, which move with their elements."""
     segments = _segments([stage.ink for stage in stages])
     count = min(len(stage.wishes) for stage in stages)
     rows = [[stage.wishes[i] for stage in stages] for i in range(count)]
-    rows += [[Wish(s.point, z * scale, 1j, 1.2, NAMES) for z in s.p] for s in spots]
+    rows += [[LabelRequest(s.point, z * scale, 1j, 1.2, NAMES) for z in s.p] for s in spots]
     points = [""] * count + [s.point for s in spots]
     return [
-        Track(
+        MotionTrack(
             _flat(centres[:, None]),
             mark=_letters(row[0].label, BLACK),
             layer=MARKS,
@@ -428,7 +430,7 @@ def _sides(thing: Ink) -> list[tuple[complex, complex]]:
 # ----------------------------------------------------------------------- frame
 
 
-def _framed(tracks: Sequence[Track], keys: Sequence[Key], scale: float) -> Drawing:
+def _framed(tracks: Sequence[MotionTrack], keys: Sequence[LegendKey], scale: float) -> MovingDrawing:
     """Return the drawing of all tracks in the coordinates of its frame, with the legend below."""
     xs = np.concatenate([t.numbers[:, 0::2].ravel() for t in tracks])
     ys = np.concatenate([t.numbers[:, 1::2].ravel() for t in tracks])
@@ -445,7 +447,7 @@ def _framed(tracks: Sequence[Track], keys: Sequence[Key], scale: float) -> Drawi
         legend += _key_tracks(key, count, corner, indent, scale)
     height = rounded(top - bottom + _ROW * len(keys), 1)
     flip = [replace(t, numbers=_downwards(t.numbers, left, top)) for t in [*tracks, *legend]]
-    return Drawing(tuple(sorted(flip, key=lambda t: t.layer)), (width, height), scale)
+    return MovingDrawing(tuple(sorted(flip, key=lambda t: t.layer)), (width, height), scale)
 
 
 def _downwards(numbers: np.ndarray, left: float, top: float) -> np.ndarray:
@@ -455,11 +457,13 @@ def _downwards(numbers: np.ndarray, left: float, top: float) -> np.ndarray:
     return moved
 
 
-def _key_tracks(key: Key, count: int, corner: complex, indent: float, scale: float) -> list[Track]:
+def _key_tracks(
+    key: LegendKey, count: int, corner: complex, indent: float, scale: float
+) -> list[MotionTrack]:
     """Return an arrow of a round length and its words, for the legend."""
     start = corner / scale
     arrow = Arrow(np.full(count, start), np.full(count, key.length + 0j), key.effect, "")
     centre = start * scale + indent + read(key.words).box[0] / 2
     mark = _letters(key.words, COLOURS[key.effect])
-    words = Track(_flat([[centre]] * count), mark=mark, layer=MARKS, effect=key.effect)
+    words = MotionTrack(_flat([[centre]] * count), mark=mark, layer=MARKS, effect=key.effect)
     return [replace(track, key=True) for track in (*_arrow_tracks(arrow, scale), words)]

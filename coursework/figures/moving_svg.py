@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from coursework.figures.moving import Drawing, Track
+from coursework.figures.moving import MotionTrack, MovingDrawing
 
 
 def moving_svg(
-    shown: Drawing,
+    shown: MovingDrawing,
     *,
     order: Sequence[int],
     first: int,
@@ -51,12 +51,14 @@ def moving_svg(
     return _whole(shown, lines, title, words, lang, style)
 
 
-def still_svg(shown: Drawing, instant: int, *, title: str, words: str, lang: str) -> str:
+def still_svg(shown: MovingDrawing, instant: int, *, title: str, words: str, lang: str) -> str:
     """Return the drawing at one instant as SVG."""
     return _whole(shown, (track.svg(instant) for track in shown.tracks), title, words, lang)
 
 
-def _whole(shown: Drawing, lines: Iterable[str], title: str, words: str, lang: str, style: str = "") -> str:
+def _whole(
+    shown: MovingDrawing, lines: Iterable[str], title: str, words: str, lang: str, style: str = ""
+) -> str:
     width, height = (f"{x:.6g}" for x in shown.size)
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
@@ -70,7 +72,7 @@ def _whole(shown: Drawing, lines: Iterable[str], title: str, words: str, lang: s
     ])  # fmt: skip
 
 
-def _animate(track: Track, order: Sequence[int], times: str, seconds: float) -> str:
+def _animate(track: MotionTrack, order: Sequence[int], times: str, seconds: float) -> str:
     values = ";".join(track.value(k) for k in order)
     timing = f' keyTimes="{times}"' if times else ""
     loop = f'dur="{seconds:g}s" repeatCount="indefinite"{timing} values="{values}"'

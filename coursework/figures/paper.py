@@ -22,11 +22,11 @@ from coursework.figures.ink import (
     Path,
     turn,
 )
-from coursework.figures.placing import Wish, distance
+from coursework.figures.placing import LabelRequest, distance
 from coursework.language.numbers import rounded
 
 
-class Paper:
+class FigurePaper:
     """Paper coordinates in mm, y up, origin at the mechanism's origin.
 
     Points of the mechanism are rounded to 0.1 mm, and everything is built from the
@@ -37,7 +37,7 @@ class Paper:
     def __init__(self, scale: float, bars: Iterable[tuple[complex, complex]], middle: complex) -> None:
         self.scale = scale
         self.ink: list[Ink] = []
-        self.wishes: list[Wish] = []
+        self.wishes: list[LabelRequest] = []
         self.middle = self.at(middle)
         self._bars = [(self.at(p), self.at(q)) for p, q in bars]
 
@@ -99,7 +99,7 @@ class Paper:
         if label:
             gap = _widest_gap([*self.directions(p), *taken])
             way = gap if toward is None else turn(toward)
-            self.wishes.append(Wish(label, p, way, start, NAMES, area=area))
+            self.wishes.append(LabelRequest(label, p, way, start, NAMES, area=area))
 
     def toward(
         self,
@@ -111,12 +111,12 @@ class Paper:
         area: tuple[complex, ...] = (),
     ) -> None:
         if label:
-            self.wishes.append(Wish(label, p, way / (abs(way) or 1.0), start, rank, area=area))
+            self.wishes.append(LabelRequest(label, p, way / (abs(way) or 1.0), start, rank, area=area))
 
     def inside(self, label: str, center: complex, height: float) -> None:
         """Request a label centred on a point of a hatched area."""
         # Starting half a height below, the first place tried is the point itself.
-        self.wishes.append(Wish(label, center, 1j, -height / 2, INSIDE, inside=True))
+        self.wishes.append(LabelRequest(label, center, 1j, -height / 2, INSIDE, inside=True))
 
     def beside(
         self, label: str | None, p: complex, q: complex, start: float, way: complex | None = None
@@ -132,7 +132,7 @@ class Paper:
         # Above or to the left when the bar passes through the middle of the figure.
         rule = outer.real if abs(outer.real) > 1 else (normal.imag or -normal.real)
         way = way or (normal if rule >= 0 else -normal)
-        self.wishes.append(Wish(label, (p + q) / 2, way, start, SIDES, (p, q)))
+        self.wishes.append(LabelRequest(label, (p + q) / 2, way, start, SIDES, (p, q)))
 
     def aside(self, p: complex, q: complex) -> float:
         """Return the distance to the left of p→q at which a dimension line meets no bar, outer side first."""

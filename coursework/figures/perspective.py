@@ -16,7 +16,7 @@ from coursework.figures.placing import distance
 from coursework.language.numbers import rounded
 
 if TYPE_CHECKING:
-    from coursework.figures.paper import Paper
+    from coursework.figures.paper import FigurePaper
 
 Place: TypeAlias = Sequence[float]  #: x, y and z, mm
 See: TypeAlias = Callable[[Place], complex]  #: where a point is seen; a mm across the line of sight is a mm
@@ -49,7 +49,7 @@ class _face(Element):
 
     points: tuple[complex, ...]
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         points = tuple(
             complex(rounded(z.real, 2), rounded(z.imag, 2)) for z in (p * paper.scale for p in self.points)
         )
@@ -63,7 +63,7 @@ class _ball(Element):
     center: complex
     radius: Positive
 
-    def draw(self, paper: Paper) -> None:
+    def draw(self, paper: FigurePaper) -> None:
         paper.draw(Disc(paper.at(self.center), paper.length(self.radius), EDGE, TINT, layer=BLOCKS))
 
 

@@ -15,7 +15,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from coursework.figures.ink import ANGLES, BAR, NAMES, THIN, Ink, turn
-from coursework.figures.text import Text, read
+from coursework.figures.text import LabelText, read
 
 _CLEAR = 0.45  #: least white between a label and a line, mm
 _AIRY = 0.8  #: the white a label prefers
@@ -36,7 +36,7 @@ _RAYS = 2 * len(_FRACTIONS) + _ROUND  #: on which places lie, at most
 _MORE = 8.0  #: mm round a place in which lines are looked up with it
 
 
-class Place(NamedTuple):
+class LabelPosition(NamedTuple):
     """Candidate position of a label, relative to its element: one list serves every label of a kind."""
 
     way: complex  #: from the preferred direction, a unit complex number
@@ -48,7 +48,7 @@ class Place(NamedTuple):
 
 
 @lru_cache(maxsize=4)
-def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
+def _places(beside: bool, angle: bool) -> tuple[LabelPosition, ...]:
     """Return all candidate positions for a kind of label, cheapest first; costs are in mm from the best
     position."""
     costed: list[tuple[float, tuple[complex, float, float | None]]] = []
@@ -68,7 +68,7 @@ def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
     for _, (way, _, along) in costed:
         rays.setdefault((way, along), len(rays))
     tries = [
-        (round(cost + more, 6), number, Place(*place, clear, number, rays[place[0], place[2]]))
+        (round(cost + more, 6), number, LabelPosition(*place, clear, number, rays[place[0], place[2]]))
         for number, (cost, place) in enumerate(costed)
         for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
     ]
@@ -80,7 +80,7 @@ class Label:
     """Placed label: its box on paper, mm, y up, and its leader line if it has one."""
 
     label: str
-    text: Text
+    text: LabelText
     center: complex
     width: float
     height: float
@@ -93,7 +93,7 @@ class Label:
 
 
 @dataclass(frozen=True)
-class Wish:
+class LabelRequest:
     """Request for a label around a point, or beside a segment when ``along`` has its two ends."""
 
     label: str
@@ -110,7 +110,7 @@ class Wish:
         """Point that the label must be in sight of: on its arc for an angle."""
         return self.anchor + self.toward * max(0.0, self.start) if self.rank == ANGLES else self.anchor
 
-    def places(self) -> tuple[Place, ...]:
+    def places(self) -> tuple[LabelPosition, ...]:
         """Return the candidate positions of the label, the best first."""
         return _places(self.along is not None, self.rank == ANGLES)
 
@@ -120,7 +120,7 @@ class Wish:
         center = self.center(self.places()[0], half)
         return center - half, center + half
 
-    def center(self, place: Place, half: complex) -> complex:
+    def center(self, place: LabelPosition, half: complex) -> complex:
         """Return the centre of a box of these half-sides at a place."""
         way, foot = self.toward * place.way, self.anchor
         if self.along and place.fraction is not None:
@@ -326,7 +326,7 @@ def distance(z: complex, a: complex, b: complex) -> float:
     return abs(z - a - t * d)
 
 
-def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...], tuple[int, ...]]:
+def place(wishes: Sequence[LabelRequest], ink: Sequence[Ink]) -> tuple[tuple[Label, ...], tuple[int, ...]]:
     """Place every label, in order of rank, then of appearance; return the labels and the index of each one's
     request."""
     obstacles = Obstacles(ink)
@@ -342,7 +342,10 @@ class _Rivals:
     areas."""
 
     def __init__(
-        self, wish: Wish, wishes: Sequence[Wish], sides: Mapping[tuple[complex, complex], Line]
+        self,
+        wish: LabelRequest,
+        wishes: Sequence[LabelRequest],
+        sides: Mapping[tuple[complex, complex], Line],
     ) -> None:
         same = (wish.along, wish.along[::-1]) if wish.along else () if wish.area else sides
         self.own = sides[wish.along] if wish.along else None
@@ -407,7 +410,7 @@ def _crosses(line: Line, a: complex, b: complex) -> bool:
     return _meet(a, b, middle - way, middle + way)
 
 
-def _choose(wish: Wish, obstacles: Obstacles, rivals: _Rivals) -> Label:
+def _choose(wish: LabelRequest, obstacles: Obstacles, rivals: _Rivals) -> Label:
     text = read(wish.label)
     width, height = text.box
     half = complex(width, height) / 2
@@ -453,7 +456,7 @@ def _choose(wish: Wish, obstacles: Obstacles, rivals: _Rivals) -> Label:
     return _outside(wish, text, obstacles)
 
 
-def _leader(wish: Wish, center: complex, half: complex) -> tuple[complex, complex] | None:
+def _leader(wish: LabelRequest, center: complex, half: complex) -> tuple[complex, complex] | None:
     """Return a thin line from the anchor to the box, when the label is far from its element."""
     if wish.along and distance(center, *wish.along) <= _support(half, wish.toward) + _LEADER:
         return None
@@ -468,7 +471,7 @@ def _leader(wish: Wish, center: complex, half: complex) -> tuple[complex, comple
     return foot + way * start, center - way * (edge + _APART)
 
 
-def _outside(wish: Wish, text: Text, obstacles: Obstacles) -> Label:
+def _outside(wish: LabelRequest, text: LabelText, obstacles: Obstacles) -> Label:
     """Return the label at a position beyond everything drawn, for want of a free one."""
     right = max([obstacles.right, *(label.corners[1].real for label in obstacles.labels)])
     width, height = text.box

@@ -13,7 +13,7 @@ import numpy as np
 
 from coursework.errors import UnknownName, WrongValue
 from coursework.figures.ink import number
-from coursework.figures.text import SIZE, Text, read
+from coursework.figures.text import SIZE, LabelText, read
 from coursework.figures.writing import accents, as_outlines
 from coursework.language.numbers import localise, significant
 
@@ -25,7 +25,7 @@ LINE, RIGHT, WRONG, GRID = "#1b3a57", "#1b7a4b", "#b3261e", "#d5d9de"
 
 
 @dataclass(frozen=True)
-class Spot:
+class AnswerPoint:
     """Point of somebody's answer beside a curve. ``right`` is None when it is not judged.
 
     ``written``: the number to print where the point is outside its panel; ``y`` by default.
@@ -46,7 +46,7 @@ class Axis:
     values: np.ndarray
 
     @property
-    def title(self) -> Text:
+    def title(self) -> LabelText:
         raised = _RAISED.sub(_exponent, self.unit)
         unit = rf"\ \ [\mathrm{{{raised}}}]" if self.unit else ""
         try:
@@ -101,7 +101,7 @@ class Plot:
         panels: Sequence[Axis],
         lang: str = "en",
         at: float | None = None,
-        spots: Sequence[Sequence[Spot]] = (),
+        spots: Sequence[Sequence[AnswerPoint]] = (),
     ):
         if not panels:
             raise WrongValue("a plot has one curve at least; found none")
@@ -202,7 +202,7 @@ class Plot:
                 out += self._outside(s, y(s.y), s.y > high)
         return out
 
-    def _outside(self, spot: Spot, edge: float, is_above: bool) -> list[str]:
+    def _outside(self, spot: AnswerPoint, edge: float, is_above: bool) -> list[str]:
         """Return an arrow at the panel's edge with the number of a point outside the panel."""
         x, out = self._x(spot.x), -1 if is_above else 1
         to_left = x > _LEFT + _WIDTH * 0.8
@@ -229,7 +229,7 @@ def _dot(x: float, y: float, right: bool | None) -> str:
     return f'<circle cx="{number(x)}" cy="{number(y)}" r="1.3" fill="{fill}" stroke="{RIGHT if right else LINE}" stroke-width="0.4"/>'
 
 
-def _letters(text: Text, at: complex, anchor: str, size: float = 1.0) -> str:
+def _letters(text: LabelText, at: complex, anchor: str, size: float = 1.0) -> str:
     """Return a text as outlines; ``at`` is its start, middle or end on the baseline."""
     width = text.width * SIZE * size
     start = at - {"start": 0.0, "middle": width / 2, "end": width}[anchor]

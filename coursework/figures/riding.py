@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from coursework.figures.ink import ANGLES, NAMES, turn
-from coursework.figures.placing import Wish
+from coursework.figures.placing import LabelRequest
 from coursework.figures.text import read
 
 _ON_LINE = 6.0  #: what it costs to lie on a line, in mm away from the best place
@@ -26,7 +26,7 @@ _LOOKED_AT = 216  #: instants at which places are compared; between them labels 
 Segments = tuple[np.ndarray, np.ndarray]
 
 
-def ride(rows: Sequence[Sequence[Wish]], segments: Segments, closed: bool) -> list[np.ndarray]:
+def ride(rows: Sequence[Sequence[LabelRequest]], segments: Segments, closed: bool) -> list[np.ndarray]:
     """Return the centres of the labels at every instant, mm on paper.
 
     ``rows`` has for each label its wish at every instant; ``segments`` the ends of everything drawn, a row an
@@ -52,7 +52,7 @@ def ride(rows: Sequence[Sequence[Wish]], segments: Segments, closed: bool) -> li
     return [found[index][0] for index in range(len(rows))]
 
 
-def _places(wishes: Sequence[Wish], half: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
+def _places(wishes: Sequence[LabelRequest], half: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
     """Yield the candidate positions of a label: a cost, and its centre at every instant."""
     anchor = np.array([wish.anchor for wish in wishes])
     start = np.array([wish.start for wish in wishes])

@@ -57,7 +57,7 @@ _LOW = frozenset("acegmnopqrsuvwxyzαεγηικμνοπρστυχω.,:·−+=×-
 
 
 @dataclass(frozen=True)
-class Run:
+class LetterRun:
     """Letters of one style; lengths in em of the label's own size."""
 
     text: str
@@ -82,7 +82,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class Accent:
+class LabelAccent:
     """Accent over the runs ``first`` to ``last - 1``: dot, ddot, arrow or bar."""
 
     kind: str
@@ -91,11 +91,11 @@ class Accent:
 
 
 @dataclass(frozen=True)
-class Text:
+class LabelText:
     """A parsed label; lengths in em."""
 
-    runs: tuple[Run, ...]
-    accents: tuple[Accent, ...]
+    runs: tuple[LetterRun, ...]
+    accents: tuple[LabelAccent, ...]
 
     @cached_property
     def width(self) -> float:
@@ -121,38 +121,38 @@ class Text:
         return self.width * SIZE * _SLACK + 0.2, (self.top - self.bottom) * SIZE
 
 
-def advance(runs: Sequence[Run]) -> float:
+def advance(runs: Sequence[LetterRun]) -> float:
     """Return the total width of letters set one after the other."""
     return added(run.width - run.back for run in runs)
 
 
 @lru_cache(maxsize=2048)
-def read(label: str) -> Text:
+def read(label: str) -> LabelText:
     """Parse a label; UnknownName for an unknown command, WrongValue for stray braces."""
     label = label.strip().removeprefix("$").removesuffix("$").strip()
     if not re.search(r"[\\_^{}]", label) and re.search(r"\s|[^\W\d]{3,}", label):
-        return Text((Run(label, italic=False),), ())
-    reader = _Reader(label)
-    reader.sequence(Run("", italic=True), stop=None)
+        return LabelText((LetterRun(label, italic=False),), ())
+    reader = _LabelParser(label)
+    reader.sequence(LetterRun("", italic=True), stop=None)
     if not reader.runs:
         raise WrongValue(f"label {label!r} has no letter to print")
-    return Text(tuple(reader.runs), tuple(reader.accents))
+    return LabelText(tuple(reader.runs), tuple(reader.accents))
 
 
-class _Reader:
+class _LabelParser:
     """Parser of one formula, which appends runs from left to right."""
 
     def __init__(self, label: str) -> None:
         self.label = label
         # A space after a command only ends its name.
         self.tokens = [a or b for a, b in re.findall(r"(\\[A-Za-z]+)\s*|(\\.|.)", label)][::-1]
-        self.runs: list[Run] = []
-        self.accents: list[Accent] = []
+        self.runs: list[LetterRun] = []
+        self.accents: list[LabelAccent] = []
         self.barrier = 0  # runs before this one are complete: accents, indices and exponents count on them
         # The index or the exponent that was just read, if there is one: its sign, _ or ^, and its first run.
         self.script: tuple[str, int] | None = None
 
-    def sequence(self, style: Run, stop: str | None) -> None:
+    def sequence(self, style: LetterRun, stop: str | None) -> None:
         while self.tokens and self.tokens[-1] != stop:
             self.atom(style)
         if stop is not None and not self.tokens:
@@ -160,7 +160,7 @@ class _Reader:
         if stop is not None:
             self.tokens.pop()
 
-    def atom(self, style: Run) -> None:
+    def atom(self, style: LetterRun) -> None:
         if not self.tokens:
             raise WrongValue(f"label {self.label!r} ends where a symbol is expected")
         token = self.tokens.pop()
@@ -181,7 +181,7 @@ class _Reader:
         self.script = None
 
     def index_or_exponent(
-        self, token: str, style: Run, before: tuple[str, int] | None
+        self, token: str, style: LetterRun, before: tuple[str, int] | None
     ) -> tuple[str, int] | None:
         """Read a subscript, an exponent, or primes; a subscript and an exponent in a row are stacked."""
         first = self.barrier = len(self.runs)
@@ -210,12 +210,12 @@ class _Reader:
             first, second = second, first
         self.runs[low:] = [*first, replace(second[0], back=advance(first)), *second[1:]]
 
-    def command(self, name: str, style: Run) -> None:
+    def command(self, name: str, style: LetterRun) -> None:
         if name in _ACCENTS:
             first = self.barrier = len(self.runs)
             self.atom(style)
             self.barrier = len(self.runs)
-            self.accents.append(Accent(_ACCENTS[name], first, self.barrier))
+            self.accents.append(LabelAccent(_ACCENTS[name], first, self.barrier))
         elif name in _UPRIGHT:
             self.atom(replace(style, italic=False))
         elif name in GREEK or name in _SIGNS:
@@ -224,7 +224,7 @@ class _Reader:
             known = [*GREEK, *_SIGNS, *_ACCENTS, *_UPRIGHT]
             raise unknown("label command", name, known, f"label {self.label!r}")
 
-    def letters(self, text: str, style: Run) -> None:
+    def letters(self, text: str, style: LetterRun) -> None:
         style = replace(style, italic=style.italic and text.isalpha())
         last = self.runs[-1] if len(self.runs) > self.barrier else None
         if last is not None and replace(last, text="", back=0.0) == style:
@@ -233,8 +233,8 @@ class _Reader:
             self.runs.append(replace(style, text=text))
 
 
-def _moved(accent: Accent, low: int, middle: int, end: int) -> Accent:
+def _moved(accent: LabelAccent, low: int, middle: int, end: int) -> LabelAccent:
     """Return an accent after the runs from ``middle`` to the end were moved before those from ``low`` to
     ``middle``."""
     shift = 0 if accent.first < low else end - middle if accent.first < middle else low - middle
-    return Accent(accent.kind, accent.first + shift, accent.last + shift)
+    return LabelAccent(accent.kind, accent.first + shift, accent.last + shift)

@@ -8,12 +8,12 @@ from typing import NamedTuple, TypeAlias
 
 from coursework.figures.ink import BLACK, FONT, Ink, number, pair
 from coursework.figures.placing import Label
-from coursework.figures.text import SIZE, Accent, Run, Text, advance
+from coursework.figures.text import SIZE, LabelAccent, LabelText, LetterRun, advance
 
 _FALLBACK = f"{FONT}, Linux Libertine O, Times New Roman, serif"
 
 #: What writes the letters of a text, given the middle of its baseline, mm, y down; accents are drawn in any case.
-Lettering: TypeAlias = Callable[[Text, complex], str]
+Lettering: TypeAlias = Callable[[LabelText, complex], str]
 
 
 class Letters(NamedTuple):
@@ -22,7 +22,7 @@ class Letters(NamedTuple):
 
     x: float
     y: float
-    runs: tuple[Run, ...]
+    runs: tuple[LetterRun, ...]
 
 
 def pieces(
@@ -50,7 +50,7 @@ def _from(corner: complex, z: complex) -> complex:
     return complex(z.real - corner.real, corner.imag - z.imag)
 
 
-def baseline(text: Text, center: complex) -> complex:
+def baseline(text: LabelText, center: complex) -> complex:
     """Return the middle of the baseline of a text whose box has this centre, y down."""
     return center + 1j * SIZE * (text.top + text.bottom) / 2
 
@@ -72,12 +72,12 @@ def written(
     ])  # fmt: skip
 
 
-def left_out(text: Text, at: complex) -> str:
+def left_out(text: LabelText, at: complex) -> str:
     """Return no letters: the caller sets them over the drawing."""
     return ""
 
 
-def as_text(text: Text, at: complex) -> str:
+def as_text(text: LabelText, at: complex) -> str:
     """Return the letters as SVG text, in the reader's font."""
     if len(text.runs) == 1 and text.runs[0].size == 1:
         italic = ' font-style="italic"' if text.runs[0].italic else ""
@@ -90,7 +90,7 @@ def as_text(text: Text, at: complex) -> str:
     return f'<text x="{number(at.real)}" y="{number(at.imag)}"{italic}>{body}</text>'
 
 
-def _tspan(run: Run, rise: float) -> str:
+def _tspan(run: LetterRun, rise: float) -> str:
     style = ' font-style="italic"' if run.italic else ""
     style += f' font-size="{number(run.size * SIZE)}"' if run.size != 1 else ""
     style += f' dx="{number(-run.back * SIZE)}"' if run.back else ""
@@ -98,7 +98,7 @@ def _tspan(run: Run, rise: float) -> str:
     return f"<tspan{style}>{escape(run.text)}</tspan>"
 
 
-def as_outlines(text: Text, at: complex) -> str:
+def as_outlines(text: LabelText, at: complex) -> str:
     """Return the letters as outlines, independent of installed fonts."""
     from coursework.figures.typesetting import glyph
 
@@ -107,7 +107,7 @@ def as_outlines(text: Text, at: complex) -> str:
     for index, run in enumerate(text.runs):
         at = left + SIZE * complex(text.start(index), -run.rise)
         for letter in run.text:
-            one = Run(letter, run.italic, run.size)
+            one = LetterRun(letter, run.italic, run.size)
             scale = _fine(run.size * SIZE / 100)
             if outline := glyph(letter, run.italic):
                 move = f"translate({pair(at)}) scale({scale} -{scale})"
@@ -121,13 +121,13 @@ def _fine(x: float) -> str:
     return f"{x:.5f}".rstrip("0")
 
 
-def accents(text: Text, at: complex) -> str:
+def accents(text: LabelText, at: complex) -> str:
     """Return the accents over a text, given the middle of its baseline, without combining characters."""
     left = at - SIZE * text.width / 2
     return "".join(_accent(text, accent, left) for accent in text.accents)
 
 
-def _accent(text: Text, accent: Accent, left: complex) -> str:
+def _accent(text: LabelText, accent: LabelAccent, left: complex) -> str:
     """Return an accent: dots as discs, bars and arrows as lines."""
     runs = text.runs[accent.first : accent.last]
     start = left.real + SIZE * text.start(accent.first)

@@ -49,7 +49,7 @@ class Pose(NamedTuple):
     converged: Any
 
 
-class Chain:
+class ClosedChain:
     """Closed chain of any number of loops, with two unknowns a loop.
 
     Raises

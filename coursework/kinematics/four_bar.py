@@ -45,7 +45,7 @@ class FourBarMotion(NamedTuple):
     rocker_jerk: Any = None
 
 
-class _Linkage(NamedTuple):
+class _FourBarLengths(NamedTuple):
     """Combinations of the scaled lengths (at most 1) that the formulas use, computed once a linkage."""
 
     stretched: Any  # E+
@@ -205,12 +205,12 @@ class FourBar:
         heading, parts = taken_apart(crank_angle)
         rates = tuple(np.asarray(rate, dtype=float)[()] for rate in rates)
         sweeping = signed_sweep if self.smooth else sweep
-        last = len(_Linkage._fields)
+        last = len(_FourBarLengths._fields)
         extra = {} if order is None else {"order": order}
 
         def kernel(*inputs: Any) -> tuple:
-            linkage, angle = _Linkage(*inputs[:last]), heading(*inputs[last : last + len(parts)])
-            pose = _Pose(linkage, sweeping(angle, linkage.reach))
+            linkage, angle = _FourBarLengths(*inputs[:last]), heading(*inputs[last : last + len(parts)])
+            pose = _ScaledFourBar(linkage, sweeping(angle, linkage.reach))
             return formula(pose, angle, *inputs[last + len(parts) :], **extra)
 
         found = in_blocks(kernel, *self._linkage, *parts, *rates)
@@ -226,7 +226,7 @@ class FourBar:
         """Return the error that explains a NaN of scalar arguments."""
         t = self._linkage
         heading, parts = taken_apart(crank_angle)
-        pose = _Pose(t, sweep(heading(*parts), t.reach))
+        pose = _ScaledFourBar(t, sweep(heading(*parts), t.reach))
         if not math.isfinite(pose.swept.both):
             return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
         m, stretch, fold = float(pose.squared_line), float(pose.close.stretch), float(pose.close.fold)
@@ -262,7 +262,7 @@ class FourBarPose:
         self._linkage, self._crank_angle = linkage, crank_angle
         with np.errstate(all="ignore"):
             swept = sweeping(heading(*parts), linkage._linkage.reach)
-            self._pose = _Pose(linkage._linkage, swept)
+            self._pose = _ScaledFourBar(linkage._linkage, swept)
 
     @property
     def coupler_angle(self) -> Any:
@@ -353,9 +353,9 @@ def _side(mode: Any) -> Any:
     return side if side.ndim else float(side)
 
 
-def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _Linkage:
+def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _FourBarLengths:
     stretched, folded = grashof_margins(d, a, b, c)
-    return _Linkage(
+    return _FourBarLengths(
         stretched=stretched,
         folded=folded,
         reach=4 * a * d,
@@ -375,10 +375,10 @@ def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _Linkage:
     )
 
 
-class _Pose:
+class _ScaledFourBar:
     """Linkage at a crank angle, with scaled lengths. Each property is computed once, on first use."""
 
-    def __init__(self, linkage: _Linkage, swept: Sweep):
+    def __init__(self, linkage: _FourBarLengths, swept: Sweep):
         self.linkage, self.swept = linkage, swept
         t = linkage
         # Sides much shorter than ground and crank: the margin is then the difference that loses nothing.
@@ -472,11 +472,11 @@ class _Pose:
         return excess
 
 
-def _angles(pose: _Pose, _: Any) -> tuple[Any, Any]:
+def _angles(pose: _ScaledFourBar, _: Any) -> tuple[Any, Any]:
     return pose.angles
 
 
-def _pins(pose: _Pose, angle: Any) -> tuple[Any, Any]:
+def _pins(pose: _ScaledFourBar, angle: Any) -> tuple[Any, Any]:
     t, swept = pose.linkage, pose.swept
     cos, sin = full_angle(angle)
     crank_pin = t.crank * (cos + 1j * sin)
@@ -485,17 +485,17 @@ def _pins(pose: _Pose, angle: Any) -> tuple[Any, Any]:
     return crank_pin, crank_pin + line * turned
 
 
-def _transmission_angle(pose: _Pose, _: Any) -> tuple[Any]:
+def _transmission_angle(pose: _ScaledFourBar, _: Any) -> tuple[Any]:
     return (2 * np.arctan2(np.sqrt(pose.close.fold), np.sqrt(pose.close.stretch)),)
 
 
-def _conditioning(pose: _Pose, _: Any) -> tuple[Any]:
+def _conditioning(pose: _ScaledFourBar, _: Any) -> tuple[Any]:
     return (pose.linkage.twice_bc / np.sqrt(pose.close.product),)
 
 
-def _motion(pose: _Pose, _: Any, *rates: Any) -> tuple:
+def _motion(pose: _ScaledFourBar, _: Any, *rates: Any) -> tuple:
     return pose.angles + (in_time(pose.derivatives(len(rates)), rates) if rates else ())
 
 
-def _coefficients(pose: _Pose, _: Any, *, order: int) -> tuple:
+def _coefficients(pose: _ScaledFourBar, _: Any, *, order: int) -> tuple:
     return tuple(itertools.chain.from_iterable(pose.derivatives(order)))

@@ -38,7 +38,7 @@ class SliderCrankMotion(NamedTuple):
     jerk: Any = None
 
 
-class _Linkage(NamedTuple):
+class _SliderCrankLengths(NamedTuple):
     """Lengths scaled to at most 1; the first four as in :mod:`closing`."""
 
     stretched: Any  # l - r - e
@@ -78,7 +78,7 @@ class SliderCrank:
         self.smooth = smooth
         self._exponent = exponent_of(*self.lengths)
         r, l, e = (_plain(scaled(x, -self._exponent)) for x in self.lengths)
-        self._linkage = _Linkage(
+        self._linkage = _SliderCrankLengths(
             exact_sum(l, -r, -e), exact_sum(l, -r, e), 2 * r, _plain(np.asarray(side, dtype=float)), r, l, e
         )
 
@@ -169,12 +169,12 @@ class SliderCrank:
         heading, parts = taken_apart(crank_angle)
         rates = tuple(np.asarray(rate, dtype=float)[()] for rate in rates)
         sweeping = _signed_sweep if self.smooth else _sweep
-        last = len(_Linkage._fields)
+        last = len(_SliderCrankLengths._fields)
 
         def kernel(*inputs: Any) -> tuple:
             angle = heading(*inputs[last : last + len(parts)])
             cos, sin = full_angle(angle)
-            linkage = _Linkage(*inputs[:last])
+            linkage = _SliderCrankLengths(*inputs[:last])
             return formula(
                 linkage,
                 sweeping(angle, cos, sin, linkage.reach),
@@ -253,20 +253,20 @@ def _signed_sweep(angle: Any, cos: Any, sin: Any, w: Any) -> Sweep:
     )
 
 
-def _closing(t: _Linkage, swept: Sweep) -> Closing:
+def _closing(t: _SliderCrankLengths, swept: Sweep) -> Closing:
     """Return the margins P = l + p and Q = l - p; S is the distance from the crank pin to the slider."""
     return closing(t.stretched, t.folded, t.side, swept)
 
 
-def _position(t: _Linkage, swept: Sweep, cos: Any, *_: Any) -> tuple[Any]:
+def _position(t: _SliderCrankLengths, swept: Sweep, cos: Any, *_: Any) -> tuple[Any]:
     return (t.crank * cos + _closing(t, swept).determinant,)
 
 
-def _run(t: _Linkage, swept: Sweep, *_: Any) -> tuple[Any]:
+def _run(t: _SliderCrankLengths, swept: Sweep, *_: Any) -> tuple[Any]:
     return (_closing(t, swept).determinant,)
 
 
-def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) -> tuple:
+def _motion(t: _SliderCrankLengths, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) -> tuple:
     close = _closing(t, swept)
     run, r_cos, r_sin = close.determinant, t.crank * cos, t.crank * sin
     rise = t.offset - r_sin
@@ -288,7 +288,7 @@ def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) 
     return found + in_time(by_angle, rates)
 
 
-def _opening_rate(t: _Linkage, close: Closing, swept: Sweep, r_sin: Any) -> Any:
+def _opening_rate(t: _SliderCrankLengths, close: Closing, swept: Sweep, r_sin: Any) -> Any:
     """Return the first derivative of rho for a linkage that keeps its side: as in :class:`Opening`, and exact
     near its zeros.
 
@@ -300,7 +300,7 @@ def _opening_rate(t: _Linkage, close: Closing, swept: Sweep, r_sin: Any) -> Any:
     return 0.5 * total / (close.product * close.determinant)
 
 
-def _displacement(t: _Linkage, swept: Sweep, cos: Any, sin: Any, angle: Any) -> tuple[Any]:
+def _displacement(t: _SliderCrankLengths, swept: Sweep, cos: Any, sin: Any, angle: Any) -> tuple[Any]:
     """Return the displacement from dead centre: differences of cosines and of square roots as products, each
     zero with the angle."""
     half_cos, half_sin = half_angle(angle)
@@ -318,14 +318,14 @@ def _displacement(t: _Linkage, swept: Sweep, cos: Any, sin: Any, angle: Any) -> 
     return (2 * t.crank * past * (mean_sin - mean_cos * rises / runs),)
 
 
-def _outer(t: _Linkage) -> Any:
+def _outer(t: _SliderCrankLengths) -> Any:
     total = t.rod + t.crank
     return np.sqrt((total - t.offset) * (total + t.offset))
 
 
-def _pressure_angle(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any) -> tuple[Any]:
+def _pressure_angle(t: _SliderCrankLengths, swept: Sweep, cos: Any, sin: Any, _: Any) -> tuple[Any]:
     return (np.arctan2(np.abs(t.offset - t.crank * sin), np.abs(_closing(t, swept).determinant)),)
 
 
-def _conditioning(t: _Linkage, swept: Sweep, *_: Any) -> tuple[Any]:
+def _conditioning(t: _SliderCrankLengths, swept: Sweep, *_: Any) -> tuple[Any]:
     return (t.rod / np.abs(_closing(t, swept).determinant),)

@@ -77,7 +77,7 @@ def motion(
     )
 
     def kernel(d: Any, r: Any, *inputs: Any) -> tuple:
-        return _motion(_Pose(d, r, heading(*inputs[: len(parts)])), *inputs[len(parts) :])
+        return _motion(_ScaledGuide(d, r, heading(*inputs[: len(parts)])), *inputs[len(parts) :])
 
     found: list[Any] = list(in_blocks(kernel, d, r, *parts, *rates))
     found[1::2] = [scaled(value, exponent) for value in found[1::2]]
@@ -107,7 +107,7 @@ class SlottedGuidePose:
         d, r, self._exponent = _scaled_lengths(ground, crank)
         heading, parts = taken_apart(crank_angle)
         with np.errstate(all="ignore"):
-            self._pose = _Pose(d, r, heading(*parts))
+            self._pose = _ScaledGuide(d, r, heading(*parts))
 
     @property
     def guide_angle(self) -> Any:
@@ -138,7 +138,7 @@ class SlottedGuidePose:
 
     def _said(self, order: int, which: int) -> Any:
         with np.errstate(all="ignore"):
-            value = getattr(self._pose, _Pose.ORDERS[order])[which]
+            value = getattr(self._pose, _ScaledGuide.ORDERS[order])[which]
         if which:
             value = scaled(value, self._exponent)[()]
         return value if np.ndim(value) else _defined([float(value)])[0]
@@ -160,7 +160,7 @@ def _scaled_lengths(ground: Any, crank: Any) -> tuple[Any, Any, Any]:
     return scaled(d, -exponent)[()], scaled(r, -exponent)[()], exponent
 
 
-class _Pose:
+class _ScaledGuide:
     """Guide angle and arm with their derivatives by the crank angle, lengths scaled."""
 
     ORDERS = ("position", "first", "second", "third")
@@ -223,8 +223,8 @@ class _Pose:
         )
 
 
-def _motion(pose: _Pose, *rates: Any) -> tuple:
+def _motion(pose: _ScaledGuide, *rates: Any) -> tuple:
     if not rates:
         return pose.position
-    by_angle = [getattr(pose, name) for name in _Pose.ORDERS[1 : 1 + len(rates)]]
+    by_angle = [getattr(pose, name) for name in _ScaledGuide.ORDERS[1 : 1 + len(rates)]]
     return pose.position + in_time(by_angle, rates)

@@ -6,7 +6,14 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from coursework.polygons.hand_drawn import HUNG, Drawing, Fault, ancestors, is_scale, judge_drawing
+from coursework.polygons.hand_drawn import (
+    HUNG,
+    DrawingFault,
+    JudgedDrawing,
+    ancestors,
+    is_scale,
+    judge_drawing,
+)
 from coursework.polygons.polygon import Polygon
 from coursework.quantities.error_kinds import PRICES
 from coursework.solution import Judged
@@ -115,7 +122,7 @@ def _verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Jud
     return said | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
 
 
-def drawn(answers: Answers, polygon: Polygon, asked: Asked) -> tuple[Drawing, bool] | None:
+def drawn(answers: Answers, polygon: Polygon, asked: Asked) -> tuple[JudgedDrawing, bool] | None:
     """The judged drawing of these answers, and whether its scale is stated upside down; None unless the pole and
     another point are drawn."""
     points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
@@ -136,12 +143,12 @@ def _stated(answers: Answers, polygon: Polygon, asked: Asked) -> float | None:
     return scale if scale is not None and is_scale(polygon, scale) else None
 
 
-def _fits(drawing: Drawing) -> bool:
+def _fits(drawing: JudgedDrawing) -> bool:
     """Whether the drawing is at the stated scale, and the first vector from the pole right at it."""
     return drawing.fits_stated_scale and drawing.is_right(next(iter(drawing.polygon.hangs)))
 
 
-def _of_scale(scale: float | None, upside_down: bool, drawing: Drawing) -> Judged:
+def _of_scale(scale: float | None, upside_down: bool, drawing: JudgedDrawing) -> Judged:
     if scale is None:
         return Judged(0.0)
     if upside_down:
@@ -149,7 +156,7 @@ def _of_scale(scale: float | None, upside_down: bool, drawing: Drawing) -> Judge
     return Judged() if drawing.fits_stated_scale else Judged(0.0, "scale_not_drawn")
 
 
-def _of_point(point: str, drawing: Drawing, asked: Asked) -> Judged:
+def _of_point(point: str, drawing: JudgedDrawing, asked: Asked) -> Judged:
     if point == drawing.polygon.pole:
         # Any pole is right from which something was drawn; what is wrong about that is another point's.
         others = [q for q in drawing.points if q != point]
@@ -168,7 +175,7 @@ _ATTEMPT = (
 )
 
 
-def _is_drawn_from(pole: str, point: str, drawing: Drawing) -> bool:
+def _is_drawn_from(pole: str, point: str, drawing: JudgedDrawing) -> bool:
     """Whether a point is right, or at least about as far from the pole as it should be."""
     images = drawing.polygon.points
     length = abs(drawing.points[point] - drawing.points[pole]) * drawing.scale
@@ -176,14 +183,14 @@ def _is_drawn_from(pole: str, point: str, drawing: Drawing) -> bool:
     return drawing.is_right(point) or right / _ATTEMPT <= length <= _ATTEMPT * right
 
 
-def _of_fault(point: str, drawing: Drawing, asked: Asked) -> Judged:
+def _of_fault(point: str, drawing: JudgedDrawing, asked: Asked) -> Judged:
     fault = drawing.faults[point]
     names = [_named(point, f, asked) for f in fault.explanations]
     known = [name for name in names if name]
     return Judged(0.0, known[0], also=tuple(known[1:]))
 
 
-def _named(point: str, fault: Fault, asked: Asked) -> str:
+def _named(point: str, fault: DrawingFault, asked: Asked) -> str:
     """The mistake that a fault is; none where a vector hangs on a point of which no mistake tells."""
     parts = {image: i for i, image in asked.points.items()}
     if fault.side is None:
@@ -195,7 +202,7 @@ def _named(point: str, fault: Fault, asked: Asked) -> str:
     return name if name in asked.hung else ""
 
 
-def _lengths(answers: Answers, drawing: Drawing, asked: Asked) -> dict[str, Judged]:
+def _lengths(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str, Judged]:
     said: dict[str, Judged] = {}
     for part, (start, end) in asked.lengths.items():
         if part not in answers:
@@ -211,7 +218,7 @@ def _lengths(answers: Answers, drawing: Drawing, asked: Asked) -> dict[str, Judg
     return said
 
 
-def _reads(answers: Answers, drawing: Drawing, asked: Asked) -> dict[str, Judged]:
+def _reads(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str, Judged]:
     """Right to the millimetres that the drawing may be off, a tenth at most; or as read off the student's own
     drawing, or from the student's own length."""
     said = {}
@@ -228,7 +235,7 @@ def _right_reads(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, 
     return {part: verdict for part, verdict in said.items() if verdict.share == 1.0}
 
 
-def _of_value(found: float, read: Read, drawing: Drawing, answers: Answers, asked: Asked) -> Judged:
+def _of_value(found: float, read: Read, drawing: JudgedDrawing, answers: Answers, asked: Asked) -> Judged:
     ends, scale, images = (read.start, read.end), drawing.scale, drawing.polygon.points
     right = read.value(images[read.end] - images[read.start])
     millimetre = scale * read.gain
@@ -255,7 +262,7 @@ def _of_value(found: float, read: Read, drawing: Drawing, answers: Answers, aske
     return Judged(0.0, first, also=tuple(names[1:]))
 
 
-def _wrong_ways(found: float, read: Read, values: Sequence[float], drawing: Drawing) -> Iterator[str]:
+def _wrong_ways(found: float, read: Read, values: Sequence[float], drawing: JudgedDrawing) -> Iterator[str]:
     """The mistakes that explain a value, from the right drawing or the student's own."""
     near = 2 * drawing.tolerance * drawing.scale * read.gain
     if any(abs(found + value) <= min(near, _MOST * abs(value)) for value in values):

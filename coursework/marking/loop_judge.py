@@ -26,7 +26,7 @@ import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError
 from coursework.marking.judges import Verdict
-from coursework.quantities.loops import Fault, Loop
+from coursework.quantities.loops import Loop, LoopFault
 from coursework.reading.equations import Equation, parse_equation, value_or_nan
 from coursework.reading.equivalence import same_equation
 from coursework.reading.reading import Reading
@@ -284,7 +284,7 @@ class LoopJudge:
         return bool(np.all(np.isfinite(values)) and np.all(np.abs(values) <= 10 * _ZERO * usual))
 
     @cached_property
-    def _faulty(self) -> tuple[list[Fault], _Points, list[tuple[Fault, Equation]]]:
+    def _faulty(self) -> tuple[list[LoopFault], _Points, list[tuple[LoopFault, Equation]]]:
         """The faults; places at which the equations of each hold; those that have none, with their equations.
 
         Where both equations together have no places, each has some of its own.
@@ -448,7 +448,7 @@ def _missed_beside(
     return "", ()
 
 
-def fault_answers(exercise: CourseExercise, part: Part) -> Iterator[tuple[Fault, str]]:
+def fault_answers(exercise: CourseExercise, part: Part) -> Iterator[tuple[LoopFault, str]]:
     """Each known way to err with the answer that it gives to a part."""
     form, order = part.loop_form
     for fault in exercise.solution.loops[part.loop].faults(order):

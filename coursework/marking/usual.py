@@ -13,7 +13,7 @@ from coursework.kinds.nearness import gaps
 from coursework.language.words import listed, words
 from coursework.marking.feedback import symbol
 from coursework.model import Part
-from coursework.quantities.formula_latex import Told, tree_latex
+from coursework.quantities.formula_latex import PrintedName, tree_latex
 from coursework.quantities.rounding import half_step
 from coursework.quantities.usual_errors import formula_errors
 from coursework.reading.reading import Reading
@@ -165,7 +165,9 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
     node = variant.exercise.solution.graph.textbook.node(error.source)
     found = formula_errors(node.function)[error.place]
     shown = {
-        name: Told(symbol(variant, name), False, "angle" if variant.exercise.units.get(name) == "deg" else "")
+        name: PrintedName(
+            symbol(variant, name), False, "angle" if variant.exercise.units.get(name) == "deg" else ""
+        )
         for name in found.formula.names
     }
     term = "" if found.about is None else tree_latex(found.about, shown, found.formula.space)

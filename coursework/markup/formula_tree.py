@@ -111,7 +111,7 @@ class Name:
 
 
 @dataclass(frozen=True)
-class Text:
+class FormulaText:
     text: str
 
 
@@ -121,7 +121,7 @@ class Space:
 
 
 @dataclass(frozen=True)
-class Row:
+class FormulaRow:
     items: tuple[Node, ...]
 
 
@@ -174,7 +174,19 @@ class Grid:
 
 
 Node: TypeAlias = (
-    Symbol | Num | Name | Text | Space | Row | Styled | Fraction | Root | Accent | Script | Fence | Grid
+    Symbol
+    | Num
+    | Name
+    | FormulaText
+    | Space
+    | FormulaRow
+    | Styled
+    | Fraction
+    | Root
+    | Accent
+    | Script
+    | Fence
+    | Grid
 )
 
 
@@ -184,20 +196,20 @@ def _upright(node: Node) -> Node:
     A dot between two units stands as close as their letters.
     """
     if isinstance(node, Symbol) and (node.kind in ("letter", "digits") or node.text == "/"):
-        return Text(node.text)
+        return FormulaText(node.text)
     if node == Symbol(BINARY["cdot"], "binary"):
-        return Text("·")
+        return FormulaText("·")
     if isinstance(node, Script):
         return Script(_upright(node.base), node.below, node.above, node.primes)
-    if not isinstance(node, Row):
+    if not isinstance(node, FormulaRow):
         return node
     items: list[Node] = []
     for item in map(_upright, node.items):
-        if items and isinstance(item, Text) and isinstance(items[-1], Text):
-            items[-1] = Text(items[-1].text + item.text)
+        if items and isinstance(item, FormulaText) and isinstance(items[-1], FormulaText):
+            items[-1] = FormulaText(items[-1].text + item.text)
         else:
             items.append(item)
-    return items[0] if len(items) == 1 else Row(tuple(items))
+    return items[0] if len(items) == 1 else FormulaRow(tuple(items))
 
 
 _TOKEN = re.compile(r"\\(?:[A-Za-z]+|.)|\s+|.", re.DOTALL)
@@ -210,15 +222,15 @@ def tokens(tex: str) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=4096)
-def parse(tex: str) -> Row:
+def parse(tex: str) -> FormulaRow:
     """Return the tree of a formula.
 
     Raises :class:`BadStatement` naming the macro that is not in the list, or what is missing.
     """
-    return _Parser(tex).formula()
+    return _FormulaParser(tex).formula()
 
 
-class _Parser:
+class _FormulaParser:
     def __init__(self, tex: str) -> None:
         self.tex = tex
         self.tokens: list[str] = []  #: those that are not blank, and an empty one at the end
@@ -266,7 +278,7 @@ class _Parser:
         raise self.refuse(f"the brace after {macro} is not closed")
 
     # -- the grammar --------------------------------------------------------------------------
-    def formula(self) -> Row:
+    def formula(self) -> FormulaRow:
         row = self.row(())
         if self.peek():
             raise self.refuse(f"{self.peek()} without its beginning")
@@ -274,16 +286,16 @@ class _Parser:
             raise self.refuse(r"\begin{aligned} stands alone in its formula; \begin{cases} may follow others")
         return row
 
-    def row(self, stops: tuple[str, ...]) -> Row:
+    def row(self, stops: tuple[str, ...]) -> FormulaRow:
         """Return the items up to one of the stops, which stays in the stream, or to the end."""
         items: list[Node] = []
         closers = ("}", "&", r"\\", r"\right", r"\end")
         while (token := self.peek()) and token not in stops and token not in closers:
             items.append(self.scripted())
-        return Row(tuple(items))
+        return FormulaRow(tuple(items))
 
     def scripted(self) -> Node:
-        base: Node = Row(()) if self.peek() in ("^", "_", "'") else self.atom()
+        base: Node = FormulaRow(()) if self.peek() in ("^", "_", "'") else self.atom()
         below = above = None
         primes = 0
         while (token := self.peek()) in ("^", "_", "'") and token:
@@ -309,7 +321,7 @@ class _Parser:
             self.take()
             return Symbol(token, "digits")
         node = self.atom()
-        return node.items[0] if isinstance(node, Row) and len(node.items) == 1 else node
+        return node.items[0] if isinstance(node, FormulaRow) and len(node.items) == 1 else node
 
     def atom(self) -> Node:
         token = self.take()
@@ -369,7 +381,7 @@ class _Parser:
             case "operatorname":
                 return Name(self.words(r"\operatorname"))
             case "text":
-                return Text(self.words(r"\text"))
+                return FormulaText(self.words(r"\text"))
             case "num":
                 return self.num()
             case "left":
@@ -430,10 +442,10 @@ class _Parser:
         self.expect(r"\end", rf"\begin{{{kind}}}")
         if (end := self.raw_group(r"\end")) != kind:
             raise self.refuse(rf"\begin{{{kind}}} ends as {end}")
-        empty = (Row(()),)
+        empty = (FormulaRow(()),)
         return Grid(kind, tuple(r for r in rows[:-1]) + (() if rows[-1] == empty else (rows[-1],)))
 
-    def cells(self) -> Iterator[Row]:
+    def cells(self) -> Iterator[FormulaRow]:
         yield self.row(())
         while self.peek() == "&":
             self.take()

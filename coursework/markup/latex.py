@@ -22,18 +22,18 @@ from coursework.markup.formula_tree import (
     RELATIONS,
     Accent,
     Fence,
+    FormulaRow,
+    FormulaText,
     Fraction,
     Grid,
     Name,
     Node,
     Num,
     Root,
-    Row,
     Script,
     Space,
     Styled,
     Symbol,
-    Text,
     parse,
     tokens,
 )
@@ -153,11 +153,11 @@ def _latex(node: Node, lang: str) -> str:
         case Name(text, limits):
             star = "*" if limits else ""
             return f"\\{text}" if text in _NAMES else rf"\operatorname{star}{{{plain_latex(text)}}}"
-        case Text(text):
+        case FormulaText(text):
             return rf"\textnormal{{{plain_latex(text)}}}"
         case Space(width):
             return rf"\mkern{width}mu"
-        case Row(items):
+        case FormulaRow(items):
             return " ".join(map(of, items))
         case Styled(style, body):
             return _STYLES[style] % of(body)

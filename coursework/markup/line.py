@@ -8,18 +8,18 @@ from collections.abc import Mapping
 from coursework.markup.formula_tree import (
     Accent,
     Fence,
+    FormulaRow,
+    FormulaText,
     Fraction,
     Grid,
     Name,
     Node,
     Num,
     Root,
-    Row,
     Script,
     Space,
     Styled,
     Symbol,
-    Text,
     parse,
 )
 from coursework.markup.formulas import SUBSCRIPTS, SUPERSCRIPTS, number_text
@@ -57,7 +57,7 @@ def _line(node: Node, lang: str) -> str:
             return f" {text} "
         case Symbol(",", _):
             return ", "
-        case Symbol(text, _) | Text(text):
+        case Symbol(text, _) | FormulaText(text):
             return text
         case Num(negative, digits, exponent):
             return number_text(
@@ -67,7 +67,7 @@ def _line(node: Node, lang: str) -> str:
             return f"{text} "
         case Space(width):
             return " " if width > 0 else ""
-        case Row(items):
+        case FormulaRow(items):
             return "".join(map(of, items)).replace(" (", "(") if items else ""
         case Styled(_, body):
             return of(body)

@@ -9,18 +9,18 @@ from coursework.language.numbers import MINUS, localise
 from coursework.markup.formula_tree import (
     Accent,
     Fence,
+    FormulaRow,
+    FormulaText,
     Fraction,
     Grid,
     Name,
     Node,
     Num,
     Root,
-    Row,
     Script,
     Space,
     Styled,
     Symbol,
-    Text,
     parse,
 )
 from coursework.markup.number_holes import once_for_all_numbers
@@ -188,7 +188,7 @@ def _is_tall(node: Node) -> bool:
             return True
         case Symbol(_, kind):
             return kind == "big"
-        case Row(items):
+        case FormulaRow(items):
             return any(map(_is_tall, items))
         case Styled(_, body) | Accent(_, body) | Fence(_, body, _) | Script(body):
             return _is_tall(body)
@@ -206,12 +206,12 @@ def _mathml(node: Node, lang: str) -> str:
             return _mathml_num(node, lang)
         case Name(text, _):
             return _tag("mi", escape(text), **{"class": "name"})
-        case Text(text):
+        case FormulaText(text):
             # A blank at the edge of a text counts; a page drops it unless it cannot break.
             return _tag("mtext", escape(text).replace(" ", "\N{NO-BREAK SPACE}"))
         case Space(width):
             return _tag("mspace", width=f"{width / 18:.3f}em")
-        case Row(items):
+        case FormulaRow(items):
             return _mathml_row(items, lang)
         case Styled("display", body):
             return _tag("mstyle", of(body), displaystyle="true")

@@ -12,7 +12,7 @@ from coursework.markup.markdown import to_notebook_markdown, to_text
 
 
 @dataclass(frozen=True)
-class Picture:
+class SvgPicture:
     """SVG drawing with its description for readers who cannot see it."""
 
     svg: str
@@ -25,14 +25,14 @@ class Picture:
         return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.said)}">'
 
 
-class Shown:
+class NotebookDisplay:
     """Pieces of an answer in order: texts in the Markdown of statements, and pictures.
 
     The last line of a notebook cell displays it piece by piece, since some front ends set no formulas inside
     HTML. ``str()`` gives plain text.
     """
 
-    def __init__(self, lang: str, *pieces: str | Picture):
+    def __init__(self, lang: str, *pieces: str | SvgPicture):
         self.lang = lang
         self.pieces = tuple(p for p in pieces if p)
 
@@ -47,7 +47,7 @@ class Shown:
 
     __repr__ = __str__
 
-    def _plain(self, piece: str | Picture) -> str:
+    def _plain(self, piece: str | SvgPicture) -> str:
         if isinstance(piece, str):
             return to_text(piece, self.lang)
         said = words(self.lang)["sheet"]
@@ -74,7 +74,7 @@ class Shown:
     def _repr_markdown_(self) -> str:
         return self.markdown
 
-    def __add__(self, other: Any) -> Shown:
-        if not isinstance(other, Shown):
+    def __add__(self, other: Any) -> NotebookDisplay:
+        if not isinstance(other, NotebookDisplay):
             return NotImplemented
-        return Shown(self.lang, *self.pieces, *other.pieces)
+        return NotebookDisplay(self.lang, *self.pieces, *other.pieces)

@@ -10,18 +10,18 @@ from coursework.language.words import words
 from coursework.markup.formula_tree import (
     Accent,
     Fence,
+    FormulaRow,
+    FormulaText,
     Fraction,
     Grid,
     Name,
     Node,
     Num,
     Root,
-    Row,
     Script,
     Space,
     Styled,
     Symbol,
-    Text,
     parse,
 )
 from coursework.markup.number_holes import once_for_all_numbers
@@ -39,13 +39,13 @@ def spoken(tex: str, lang: str) -> str:
 def is_simple(node: Node) -> bool:
     """Return whether the words of a node need no end mark: a symbol, alone or with a subscript."""
     match node:
-        case Row(items):
+        case FormulaRow(items):
             return len(items) <= 1 and all(map(is_simple, items))
         case Script(base, _, None, 0):
             return is_simple(base)
         case Accent(_, body):
             return is_simple(body)
-    return isinstance(node, (Symbol, Num, Name, Text))
+    return isinstance(node, (Symbol, Num, Name, FormulaText))
 
 
 def _spoken(node: Node, lang: str, say: dict) -> str:
@@ -66,11 +66,11 @@ def _spoken(node: Node, lang: str, say: dict) -> str:
             return f" {minus}{localise(digits, lang)} {power} "
         case Name(text, _):
             return f" {say['functions'].get(text, text)} "
-        case Text(text):
+        case FormulaText(text):
             return text
         case Space():
             return " "
-        case Row(items):
+        case FormulaRow(items):
             return "".join(map(of, items))
         case Styled(_, body):
             return of(body)

@@ -8,18 +8,18 @@ from coursework.language.numbers import MINUS, localise
 from coursework.markup.formula_tree import (
     Accent,
     Fence,
+    FormulaRow,
+    FormulaText,
     Fraction,
     Grid,
     Name,
     Node,
     Num,
     Root,
-    Row,
     Script,
     Space,
     Styled,
     Symbol,
-    Text,
     parse,
 )
 from coursework.markup.number_holes import once_for_all_numbers
@@ -87,11 +87,11 @@ def _typst(node: Node, lang: str) -> str:
             return _typst_num(node, lang)
         case Name(text, limits):
             return f"op({_typst_string(text)}{', limits: #true' if limits else ''})"
-        case Text(text):
+        case FormulaText(text):
             return _typst_string(text)
         case Space(width):
             return f"#h({width / 18:.4f}em)"
-        case Row(items):
+        case FormulaRow(items):
             return _typst_join(map(of, items))
         case Styled(style, body):
             return _TYPST_STYLES[style].format(of(body))

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from coursework.mechanics.rates import Stance, solved
-from coursework.mechanics.wrenches import Wrench
+from coursework.mechanics.wrenches import BodyWrenches
 
 PIECE = (
     4096  #: instants whose equations are set up and solved together: fewer calls, and matrices of some 10 MB
@@ -49,42 +49,44 @@ class Equilibrium:
             found[:, :, number] = self._rows(wrench)
         return found
 
-    def _rows(self, wrench: Wrench) -> np.ndarray:
+    def _rows(self, wrench: BodyWrenches) -> np.ndarray:
         """Return a wrench as rows of the equations, shape ``(n, 3 bodies)``, without the ground."""
         parts = (wrench.forces.real[:-1], wrench.forces.imag[:-1], wrench.moments[:-1])
         return np.stack(parts, axis=1).reshape(3 * self.bodies, -1).T
 
-    def _of_pins(self) -> list[Wrench]:
+    def _of_pins(self) -> list[BodyWrenches]:
         return [
-            Wrench.none(self.stance).push(pin.of, force).push(pin.on, -force)
+            BodyWrenches.none(self.stance).push(pin.of, force).push(pin.on, -force)
             for pin in self.linkage.pins
             for force in (1.0, 1j)
         ]
 
-    def _of_slides(self) -> list[Wrench]:
+    def _of_slides(self) -> list[BodyWrenches]:
         found = []
         for slide in self.linkage.slides:
-            found.append(Wrench.none(self.stance).rub(slide, 1j * self.stance.direction(slide)))
-            found.append(Wrench.none(self.stance).turn(slide.of.body, 1.0).turn(slide.on, -1.0))
+            found.append(BodyWrenches.none(self.stance).rub(slide, 1j * self.stance.direction(slide)))
+            found.append(BodyWrenches.none(self.stance).turn(slide.of.body, 1.0).turn(slide.on, -1.0))
         return found
 
-    def _of_gears(self) -> list[Wrench]:
+    def _of_gears(self) -> list[BodyWrenches]:
         found = []
         for gear in self.linkage.gears:
             one, other = (self.stance.place(centre) for centre in gear.centres)
             line = (other - one) / sum(gear.radii)
             touching, tangent = one + gear.radii[0] * line, 1j * line
-            wrench = Wrench.none(self.stance).push_at(gear.first, self._arm(gear.first, touching), tangent)
+            wrench = BodyWrenches.none(self.stance).push_at(
+                gear.first, self._arm(gear.first, touching), tangent
+            )
             found.append(wrench.push_at(gear.second, self._arm(gear.second, touching), -tangent))
         return found
 
     def _arm(self, body: int, place: np.ndarray) -> np.ndarray:
         return place - self.stance.origins[body]
 
-    def _of_drive(self) -> Wrench:
-        return Wrench.none(self.stance).turn(self.linkage.driven, 1.0)
+    def _of_drive(self) -> BodyWrenches:
+        return BodyWrenches.none(self.stance).turn(self.linkage.driven, 1.0)
 
-    def under(self, *wrenches: Wrench) -> np.ndarray:
+    def under(self, *wrenches: BodyWrenches) -> np.ndarray:
         """Return the unknowns under each of some wrenches alone, shape ``(n, unknowns, wrenches)``; NaN at a
         dead point."""
         right = -np.stack([self._rows(wrench) for wrench in wrenches], axis=-1)

@@ -15,16 +15,16 @@ import numpy as np
 from coursework.mechanics.equilibrium import PIECE, Equilibrium
 from coursework.mechanics.friction import Contact, Rubbing
 from coursework.mechanics.linkage import Linkage
-from coursework.mechanics.loads import Acting, Strokes, strokes
+from coursework.mechanics.loads import AppliedLoad, Strokes, strokes
 from coursework.mechanics.rates import Stance
-from coursework.mechanics.wrenches import Wrench, inertia_at_rate, inertia_at_start, weight
+from coursework.mechanics.wrenches import BodyWrenches, inertia_at_rate, inertia_at_start, weight
 
 Pose = Callable[[np.ndarray], Stance]  #: a mechanism at driver's angles, radians
 _STEPS = 1440  #: of a turn, to find how long strokes are
 
 
 @dataclass(frozen=True)
-class Borne:
+class ForceResults:
     """Results at ``n`` instants: the drive's effort (N m), and the joint unknowns by name, on request.
 
     ``rubs``: the friction of each contact, by joint, along its direction.
@@ -48,7 +48,7 @@ class Forces:
     downwards: complex = 0j
     inertia: bool = False
     flywheel: float = 0.0
-    loads: tuple[Acting, ...] = ()
+    loads: tuple[AppliedLoad, ...] = ()
     contacts: tuple[Contact, ...] = ()
 
     @property
@@ -94,9 +94,9 @@ class Forces:
 
     def applied(
         self, stance: Stance, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
-    ) -> Wrench:
+    ) -> BodyWrenches:
         """Return the total wrench without friction and joint reactions."""
-        total = Wrench.none(stance)
+        total = BodyWrenches.none(stance)
         for acting, size in zip(self.loads, self.load_sizes(stance, driver, np.sign(speed)), strict=True):
             total = total + acting.pull(stance) * size
         if self.downwards:
@@ -107,26 +107,28 @@ class Forces:
 
     def over(
         self, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray, *, joints: bool = False
-    ) -> Borne:
+    ) -> ForceResults:
         """Compute the forces at angles (radians), speeds and accelerations of the driver, shape ``(n,)``; NaN
         where the mechanism jams or does not close."""
         found = [
             self._piece(driver[k], speed[k], acceleration[k], joints)
             for k in _pieces(len(driver), PIECE if joints or self.contacts else 16 * PIECE)
         ]
-        return Borne(
+        return ForceResults(
             np.concatenate([f.effort for f in found]),
             {n: np.concatenate([f.joints[n] for f in found]) for n in found[0].joints},
             {n: np.concatenate([f.rubs[n] for f in found]) for n in found[0].rubs},
         )
 
-    def _piece(self, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray, joints: bool) -> Borne:
+    def _piece(
+        self, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray, joints: bool
+    ) -> ForceResults:
         stance = self.pose(driver)
         with np.errstate(all="ignore"):
             applied = self.applied(stance, driver, speed, acceleration)
             spun = self.flywheel * acceleration
             if not joints and not self.contacts:
-                return Borne(applied.effort + spun)
+                return ForceResults(applied.effort + spun)
             equations = Equilibrium(stance)
             if not self.contacts:
                 return self._borne(equations, equations.under(applied)[:, :, 0], spun)
@@ -138,7 +140,7 @@ class Forces:
             borne = self._borne(
                 equations, under[:, :, 0] + np.einsum("nuc,nc->nu", under[:, :, 1:], rubs), spun
             )
-            return Borne(borne.effort, borne.joints, self._by_joint(-rubs))
+            return ForceResults(borne.effort, borne.joints, self._by_joint(-rubs))
 
     def _by_joint(self, rubs: np.ndarray) -> dict[str, np.ndarray]:
         found: dict[str, np.ndarray] = {}
@@ -147,9 +149,9 @@ class Forces:
         return found
 
     @staticmethod
-    def _borne(equations: Equilibrium, unknowns: np.ndarray, spun: np.ndarray) -> Borne:
+    def _borne(equations: Equilibrium, unknowns: np.ndarray, spun: np.ndarray) -> ForceResults:
         joints = dict(zip(equations.names, unknowns.T, strict=True))
-        return Borne(joints.pop("effort") + spun, joints)
+        return ForceResults(joints.pop("effort") + spun, joints)
 
 
 def share_of_turn(pace: np.ndarray) -> float:

@@ -22,7 +22,7 @@ from coursework.errors import WrongValue, unknown
 from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.linkage import MM, Linkage, PinJoint, SlideJoint
 from coursework.mechanics.rates import Stance, no_rounding, solved
-from coursework.mechanics.wrenches import Wrench
+from coursework.mechanics.wrenches import BodyWrenches
 
 _STEPS = 4  #: in which friction grows to what it is
 _ROUNDS = 40  #: of Newton's method at a step; sides and magnitudes settle in a few
@@ -40,9 +40,9 @@ class Contact:
     size: float
     reads: tuple[Mapping[str, float], ...]
 
-    def rubs(self, stance: Stance) -> Wrench:
+    def rubs(self, stance: Stance) -> BodyWrenches:
         """Return the unit friction opposite to a motion in the joint's direction."""
-        wrench = Wrench.none(stance)
+        wrench = BodyWrenches.none(stance)
         if isinstance(self.joint, SlideJoint):
             return wrench.rub(self.joint, -stance.direction(self.joint))
         return wrench.turn(self.joint.of.body, -1.0).turn(self.joint.on.body, 1.0)

@@ -21,7 +21,7 @@ MM = 1e-3
 NONE = -1  #: the coordinate of what never turns
 
 
-class Held(NamedTuple):
+class BodyPoint(NamedTuple):
     """Position in a body's frame."""
 
     body: int
@@ -32,8 +32,8 @@ class PinJoint(NamedTuple):
     """Pin: its position on either body; ``closes`` where the frames do not already hold it together."""
 
     name: str
-    of: Held
-    on: Held
+    of: BodyPoint
+    on: BodyPoint
     closes: bool
 
 
@@ -42,7 +42,7 @@ class SlideJoint(NamedTuple):
     length."""
 
     name: str
-    of: Held
+    of: BodyPoint
     on: int
     along: complex
     length: float
@@ -57,7 +57,7 @@ class GearJoint(NamedTuple):
     second: int
     carrier: int
     radii: tuple[float, float]
-    centres: tuple[Held, Held]
+    centres: tuple[BodyPoint, BodyPoint]
 
 
 class Mass(NamedTuple):
@@ -134,22 +134,22 @@ class Linkage:
     def number(self, place: Any) -> Any:
         return number(place, self.values)
 
-    def held(self, point: str, body: str) -> Held:
+    def held(self, point: str, body: str) -> BodyPoint:
         """Return the position of a point on a body that has it."""
-        return Held(self.index[body], complex(self.number(self.mechanism.place(point, body))) * MM)
+        return BodyPoint(self.index[body], complex(self.number(self.mechanism.place(point, body))) * MM)
 
-    def owner(self, point: str) -> Held:
+    def owner(self, point: str) -> BodyPoint:
         """Return the position of a point on the first body that has it."""
         return self.held(point, self.mechanism.holders(point)[0])
 
     @cached_property
-    def origins(self) -> tuple[Held, ...]:
+    def origins(self) -> tuple[BodyPoint, ...]:
         """Position of each body's frame origin on an earlier body or on the ground; a free body's on the
         ground, from where it is shifted."""
         found = []
         for k, body in enumerate(self.mechanism.bodies):
             if body.origin is not None:
-                found.append(Held(-1, 0j))
+                found.append(BodyPoint(-1, 0j))
                 continue
             before = [h for h in self.mechanism.holders(body.at) if self.index[h] < k]
             found.append(self.held(body.at, before[0]))
@@ -192,8 +192,8 @@ class Linkage:
             found.append(GearJoint(f"{gear.first}/{gear.second}", one, other, carrier, radii, centres))
         return tuple(found)
 
-    def _middle(self, body: str, point: str) -> Held:
-        return self.held(point, body) if point else Held(self.index[body], 0j)
+    def _middle(self, body: str, point: str) -> BodyPoint:
+        return self.held(point, body) if point else BodyPoint(self.index[body], 0j)
 
     @cached_property
     def masses(self) -> tuple[Mass, ...]:

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongValue, unknown
-from coursework.mechanics.linkage import Held, Linkage
+from coursework.mechanics.linkage import BodyPoint, Linkage
 from coursework.mechanics.rates import Stance, no_rounding
 from coursework.mechanics.statement import Load, Place
-from coursework.mechanics.wrenches import Wrench
+from coursework.mechanics.wrenches import BodyWrenches
 
 STROKES = ("always", "working stroke", "return stroke", "forward", "backward")
 _EVEN = math.radians(0.05)  #: two strokes whose lengths differ by less are as long as each other
@@ -24,7 +24,7 @@ By = Callable[[str, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
-class Acting:
+class AppliedLoad:
     """Load of a mechanism.
 
     Its force is a *pull* of 1 N (or 1 N m) along a line that varies smoothly over the turn, times a size. For
@@ -106,7 +106,7 @@ class Acting:
         return np.broadcast_to(self.by(name, driver), np.shape(driver))
 
     @property
-    def _held(self) -> Held:
+    def _held(self) -> BodyPoint:
         """Point of application."""
         body = self.load.body or self.linkage.mechanism.holders(self.load.on)[-1]
         return self.linkage.held(self.load.on, body)
@@ -114,7 +114,7 @@ class Acting:
     # ---------------------------------------------------------------------- line
 
     @property
-    def _guide(self) -> complex | Held | None:
+    def _guide(self) -> complex | BodyPoint | None:
         """Path of the loaded point: a direction, or the arm from a fixed point about which it turns."""
         held = self._held
         for slide in self.linkage.slides:
@@ -132,7 +132,7 @@ class Acting:
                 return np.exp(1j * np.radians(self._at(angle, stance.turns[self.linkage.driven])))
             return complex(np.exp(1j * math.radians(self.linkage.number(angle))))
         guide = self._guide
-        if isinstance(guide, Held):
+        if isinstance(guide, BodyPoint):
             arm = stance.arm(guide)
             return 1j * arm / np.abs(arm)
         if guide is not None:
@@ -141,11 +141,11 @@ class Acting:
         with np.errstate(all="ignore"):
             return np.where(rate == 0, 0, rate / np.abs(rate))
 
-    def pull(self, stance: Stance) -> Wrench:
+    def pull(self, stance: Stance) -> BodyWrenches:
         """Return the wrench of 1 N along the line, or of 1 N m."""
         if self.is_moment:
-            return Wrench.none(stance).turn(self.linkage.index[self.load.on], 1.0)
-        return Wrench.none(stance).push(self._held, self._line(stance))
+            return BodyWrenches.none(stance).turn(self.linkage.index[self.load.on], 1.0)
+        return BodyWrenches.none(stance).push(self._held, self._line(stance))
 
     def pace(self, stance: Stance) -> np.ndarray:
         """Return the rate of the loaded point or body along the line for unit speed of the driver, with
@@ -200,7 +200,7 @@ class Strokes:
         return -size * pace * driver_way if against else size
 
 
-def strokes(acting: Acting, forward: float, backward: float) -> Strokes:
+def strokes(acting: AppliedLoad, forward: float, backward: float) -> Strokes:
     """Return the strokes of a load, from the parts of the driver's turn (radians) on which its point moves
     forward and backward.
 

@@ -14,7 +14,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from coursework.mechanics.linkage import NONE, GearJoint, Held, Linkage, SlideJoint
+from coursework.mechanics.linkage import NONE, BodyPoint, GearJoint, Linkage, SlideJoint
 
 #: First (1) or second (2) derivatives of the unknown coordinates by the driver's angle, shape ``(unknowns, n)``, as an
 #: exercise's own formulas give them; None where they do not give all.
@@ -74,11 +74,11 @@ class Stance:
             found[body] = found[held.body] + self.arm(held) + self._shifts.get(body, 0.0)
         return found
 
-    def arm(self, held: Held) -> np.ndarray:
+    def arm(self, held: BodyPoint) -> np.ndarray:
         """Return the vector from the origin of a body's frame to a position on it."""
         return held.place * self.headings[held.body]
 
-    def place(self, held: Held) -> np.ndarray:
+    def place(self, held: BodyPoint) -> np.ndarray:
         return self.origins[held.body] + self.arm(held)
 
     def direction(self, slide: SlideJoint) -> np.ndarray:
@@ -98,7 +98,7 @@ class Stance:
                 found[body, first], found[body, first + 1] = 1.0, 1j
         return found
 
-    def _partial(self, held: Held, origins: np.ndarray) -> np.ndarray:
+    def _partial(self, held: BodyPoint, origins: np.ndarray) -> np.ndarray:
         found = origins[held.body].copy()
         if (own := self.linkage.coordinates[held.body]) != NONE:
             found[own] += 1j * self.arm(held)
@@ -172,12 +172,12 @@ class Stance:
             found[body] += self._shifted(body, self._coordinate_rates)
         return found
 
-    def rate(self, held: Held) -> np.ndarray:
+    def rate(self, held: BodyPoint) -> np.ndarray:
         """Return the velocity of a position for unit speed of the driver."""
         return self.origin_rates[held.body] + 1j * self.rates[held.body] * self.arm(held)
 
     def acceleration(
-        self, held: Held, speed: np.ndarray | float, acceleration: np.ndarray | float
+        self, held: BodyPoint, speed: np.ndarray | float, acceleration: np.ndarray | float
     ) -> np.ndarray:
         """Return the acceleration of a position, m/s^2, for the driver's speed and acceleration."""
         return self.bend(held) * speed**2 + self.rate(held) * acceleration
@@ -233,7 +233,7 @@ class Stance:
                 found[body] += self._shifted(body, coordinates)
         return found
 
-    def _bend(self, held: Held, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
+    def _bend(self, held: BodyPoint, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
         """Return the second derivative of a position, for second derivatives of the origins and of the
         bodies' angles."""
         return origins[held.body] + (1j * turning[held.body] - self.rates[held.body] ** 2) * self.arm(held)
@@ -243,7 +243,7 @@ class Stance:
         """Second derivative of the frames' origins by the driver's angle."""
         return self._origin_bends(self.bends, self._coordinate_bends)
 
-    def bend(self, held: Held) -> np.ndarray:
+    def bend(self, held: BodyPoint) -> np.ndarray:
         """Return the second derivative of a position by the driver's angle."""
         return self._bend(held, self.origin_bends, self.bends)
 

@@ -20,7 +20,7 @@ from coursework.errors import Undefined
 from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.forces import Forces
 from coursework.mechanics.turn_table import TURN, TurnTable, Untabulated, tabulated
-from coursework.mechanics.wrenches import Wrench, inertia_at_rate, inertia_at_start, weight
+from coursework.mechanics.wrenches import BodyWrenches, inertia_at_rate, inertia_at_start, weight
 
 MOST_PHASES = 20_000
 #: Evaluations of the equation of motion before a run is called endless: see ``Running.cost``.
@@ -45,7 +45,7 @@ class _Instant(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Phase:
+class MotionPhase:
     """Interval of a motion: its start and end, the driver's direction (0: at rest), and the state in between:
     angle (radians), speed, work done so far."""
 
@@ -57,10 +57,10 @@ class Phase:
 
 
 @dataclass
-class Motion:
+class Trajectory:
     """Motion in time: consecutive phases, and the number of evaluations."""
 
-    phases: list[Phase] = field(default_factory=list)
+    phases: list[MotionPhase] = field(default_factory=list)
     evaluations: int = 0
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -142,7 +142,7 @@ class Running:
         forces = self.forces
         stance = forces.pose(angles)
         with np.errstate(all="ignore"):
-            still = Wrench.none(stance)
+            still = BodyWrenches.none(stance)
             wrenches = (
                 [inertia_at_start(stance), inertia_at_rate(stance)] if forces.inertia else [still, still]
             )
@@ -348,7 +348,7 @@ class Running:
 
     # ---------------------------------------------------------------------- phases
 
-    def run(self, angle: float, speed: float, duration: float, rtol: float = 1e-9) -> Motion:
+    def run(self, angle: float, speed: float, duration: float, rtol: float = 1e-9) -> Trajectory:
         """Return the motion from an angle (radians) and a speed (rad/s), for a duration (s).
 
         Raises
@@ -356,7 +356,7 @@ class Running:
         Undefined
             The mechanism jams, reaches a place where it does not close, or its motion takes too many steps.
         """
-        motion = Motion()
+        motion = Trajectory()
         state, t = np.array([angle, speed, 0.0]), 0.0
         self.work, self._near = 0, None
         self._count(angle)
@@ -394,7 +394,7 @@ class Running:
 
     def _stretch(
         self, t: float, duration: float, state: np.ndarray, way: int, rtol: float, scales: tuple[float, ...]
-    ) -> tuple[Phase, np.ndarray]:
+    ) -> tuple[MotionPhase, np.ndarray]:
         """Integrate to the next turning place, to rest, or to the end."""
         from scipy.integrate import solve_ivp
 
@@ -420,7 +420,9 @@ class Running:
         if solved.status == 1:
             at_rest = bool(len(solved.t_events[0]))
             last[1 if at_rest else 0] = 0.0 if at_rest else place
-        return Phase(t, end, way, solved.sol, self._dead(solved.sol, t, end, angle, float(last[0]))), last
+        return MotionPhase(
+            t, end, way, solved.sol, self._dead(solved.sol, t, end, angle, float(last[0]))
+        ), last
 
     def _dead(
         self, state: Callable[[float], np.ndarray], start: float, end: float, angle: float, last: float
@@ -447,10 +449,10 @@ class Running:
         return tuple(found)
 
 
-def _rest(t: float, duration: float, state: np.ndarray) -> tuple[Phase, np.ndarray]:
+def _rest(t: float, duration: float, state: np.ndarray) -> tuple[MotionPhase, np.ndarray]:
     """Return a phase of rest to the end: under a drive that depends on the speed alone nothing changes."""
     still = np.array([state[0], 0.0, state[2]])
-    return Phase(t, duration, 0, lambda at: np.repeat(still[:, None], len(at), axis=1)), still
+    return MotionPhase(t, duration, 0, lambda at: np.repeat(still[:, None], len(at), axis=1)), still
 
 
 def _changes(values: np.ndarray) -> Iterator[int]:

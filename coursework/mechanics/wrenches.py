@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coursework.mechanics.linkage import Held, SlideJoint
+from coursework.mechanics.linkage import BodyPoint, SlideJoint
 from coursework.mechanics.rates import Stance
 
 GRAVITY = 9.81  #: m/s^2, unless a scene says another
 
 
 @dataclass
-class Wrench:
+class BodyWrenches:
     """Forces, complex, and moments about the frames' origins, shape ``(bodies + 1, n)``; the ground's last."""
 
     stance: Stance
@@ -26,25 +26,25 @@ class Wrench:
     moments: np.ndarray
 
     @staticmethod
-    def none(stance: Stance) -> Wrench:
-        return Wrench(stance, np.zeros(stance.turns.shape, dtype=complex), np.zeros(stance.turns.shape))
+    def none(stance: Stance) -> BodyWrenches:
+        return BodyWrenches(stance, np.zeros(stance.turns.shape, dtype=complex), np.zeros(stance.turns.shape))
 
-    def push(self, held: Held, force: np.ndarray | complex) -> Wrench:
+    def push(self, held: BodyPoint, force: np.ndarray | complex) -> BodyWrenches:
         """Add a force at a position of a body."""
         return self.push_at(held.body, self.stance.arm(held), force)
 
-    def push_at(self, body: int, arm: np.ndarray, force: np.ndarray | complex) -> Wrench:
+    def push_at(self, body: int, arm: np.ndarray, force: np.ndarray | complex) -> BodyWrenches:
         """Add a force at an arm from the origin of a body."""
         self.forces[body] += force
         self.moments[body] += (np.conj(arm) * force).imag
         return self
 
-    def turn(self, body: int, moment: np.ndarray | float) -> Wrench:
+    def turn(self, body: int, moment: np.ndarray | float) -> BodyWrenches:
         """Add a moment on a body."""
         self.moments[body] += moment
         return self
 
-    def rub(self, slide: SlideJoint, force: np.ndarray | complex) -> Wrench:
+    def rub(self, slide: SlideJoint, force: np.ndarray | complex) -> BodyWrenches:
         """Add a force on a sliding body at its point, and its opposite on the guide there."""
         under = self.stance.place(slide.of) - self.stance.origins[slide.on]
         return self.push(slide.of, force).push_at(slide.on, under, -force)
@@ -65,36 +65,36 @@ class Wrench:
         parts = np.abs(self.forces) * reach + np.abs(self.moments * stance.rates)
         return float(np.nanmax(parts.sum(axis=0), initial=0.0))
 
-    def __mul__(self, factor: np.ndarray | float) -> Wrench:
-        return Wrench(self.stance, self.forces * factor, self.moments * factor)
+    def __mul__(self, factor: np.ndarray | float) -> BodyWrenches:
+        return BodyWrenches(self.stance, self.forces * factor, self.moments * factor)
 
-    def __add__(self, other: Wrench) -> Wrench:
-        return Wrench(self.stance, self.forces + other.forces, self.moments + other.moments)
+    def __add__(self, other: BodyWrenches) -> BodyWrenches:
+        return BodyWrenches(self.stance, self.forces + other.forces, self.moments + other.moments)
 
 
-def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> Wrench:
+def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> BodyWrenches:
     """Return the weights of the bodies; ``downwards`` is the acceleration of gravity."""
-    wrench = Wrench.none(stance)
+    wrench = BodyWrenches.none(stance)
     for own in stance.linkage.masses:
-        wrench.push(Held(own.body, own.centre), own.mass * downwards)
+        wrench.push(BodyPoint(own.body, own.centre), own.mass * downwards)
     return wrench
 
 
-def inertia_at_rate(stance: Stance) -> Wrench:
+def inertia_at_rate(stance: Stance) -> BodyWrenches:
     """Return the inertia forces for a driver at a constant 1 rad/s."""
     return _inertia(stance, stance.bend, stance.bends)
 
 
-def inertia_at_start(stance: Stance) -> Wrench:
+def inertia_at_start(stance: Stance) -> BodyWrenches:
     """Return the inertia forces for a driver at rest that accelerates by 1 rad/s^2: their effort is the
     generalised inertia, kg m^2."""
     return _inertia(stance, stance.rate, stance.rates)
 
 
-def _inertia(stance: Stance, motion: Callable[[Held], np.ndarray], turning: np.ndarray) -> Wrench:
+def _inertia(stance: Stance, motion: Callable[[BodyPoint], np.ndarray], turning: np.ndarray) -> BodyWrenches:
     """Return the inertia forces for accelerations of positions and of the bodies' angles."""
-    wrench = Wrench.none(stance)
+    wrench = BodyWrenches.none(stance)
     for own in stance.linkage.masses:
-        held = Held(own.body, own.centre)
+        held = BodyPoint(own.body, own.centre)
         wrench.push(held, -own.mass * motion(held)).turn(own.body, -own.inertia * turning[own.body])
     return wrench

@@ -13,7 +13,7 @@ from coursework.mechanics.wrenches import GRAVITY
 
 
 @dataclass(frozen=True)
-class Weighed:
+class BodyMass:
     """Mass (kg), moment of inertia about the centre (kg m^2), and centre of a body: one of its points, or a
     position in its frame, mm.
 
@@ -63,14 +63,14 @@ class Motor:
 
 
 @dataclass(frozen=True)
-class Added:
+class SceneData:
     """Data that a scene adds to its exercise.
 
     ``friction``: by joint, a coefficient for a slide, a pair of coefficient and radius of the journal (mm) for a pin;
     ``lengths``: of slides that bear on both edges, mm; ``gravity``: its acceleration, m/s^2, complex.
     """
 
-    bodies: Mapping[str, Weighed] = field(default_factory=dict)
+    bodies: Mapping[str, BodyMass] = field(default_factory=dict)
     loads: tuple[Load, ...] = ()
     friction: Mapping[str, Any] = field(default_factory=dict)
     lengths: Mapping[str, float] = field(default_factory=dict)
@@ -113,7 +113,7 @@ class Added:
         )
 
 
-def _weighed(body: Body, own: Weighed | None) -> Body:
+def _weighed(body: Body, own: BodyMass | None) -> Body:
     if own is None:
         return body
     changes: dict[str, Any] = {

@@ -24,11 +24,11 @@ from coursework.errors import WrongValue, unknown
 from coursework.figures.base import Element
 from coursework.figures.elements import bar
 from coursework.figures.marks import angle_mark, dimension, line
-from coursework.figures.moving import PAPER_MM, Arrow, Drawing, Key, Spot, drawing, extent
+from coursework.figures.moving import PAPER_MM, Arrow, LegendKey, MovingDrawing, TracedPoint, drawing, extent
 from coursework.figures.moving_svg import moving_svg, still_svg
 from coursework.language.numbers import unit_text
 from coursework.language.words import words
-from coursework.markup.shown import Picture
+from coursework.markup.shown import SvgPicture
 from coursework.motion.gauges import EFFECTS, UNIT, Gauge, gauges, number
 from coursework.motion.reel import Reel
 from coursework.motion.scenes import Scene
@@ -143,7 +143,7 @@ class Animation(Reel):
         effects: Sequence[str],
         paper_mm: tuple[float, float] = PAPER_MM,
         frames: Sequence[tuple[Element, ...]] | None = None,
-    ) -> Drawing:
+    ) -> MovingDrawing:
         """Return the drawing over all instants with the vectors and paths of these effects, in a box of this
         size.
 
@@ -156,7 +156,7 @@ class Animation(Reel):
                 shown[self._inside] = v[self._inside] / self.scales[effect]
                 arrows.append(Arrow(self.points[name].position, shown, effect, name))
         if "position" in effects:
-            spots = [Spot(point.position, name, self.closed) for name, point in self.points.items()]
+            spots = [TracedPoint(point.position, name, self.closed) for name, point in self.points.items()]
         keys = self._keys({a.effect for a in arrows})
         return drawing(
             frames or self.frames,
@@ -167,7 +167,7 @@ class Animation(Reel):
             paper_mm=paper_mm,
         )
 
-    def _keys(self, effects: set[str]) -> list[Key]:
+    def _keys(self, effects: set[str]) -> list[LegendKey]:
         """Return the legend: an arrow of a round value for each effect."""
         low, high = extent(self.frames)
         said = words(self.variant.lang)["motion"]
@@ -177,7 +177,7 @@ class Animation(Reel):
                 value = _round_below(0.25 * size * self.scales[effect])
                 unit = unit_text(UNIT[effect], self.variant.lang)
                 told = f"{said[effect]}{said['colon']} {number(value, self.variant.lang)} {unit}"
-                keys.append(Key(effect, value / self.scales[effect], told))
+                keys.append(LegendKey(effect, value / self.scales[effect], told))
         return keys
 
     @cached_property
@@ -230,7 +230,7 @@ class Animation(Reel):
         return ";".join([*(f"{t:.5f}" for t in self.times[:-1]), "1"])
 
     def _repr_html_(self) -> str:
-        return Picture(self.svg(), self.words).html
+        return SvgPicture(self.svg(), self.words).html
 
 
 def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:

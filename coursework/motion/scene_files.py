@@ -38,7 +38,7 @@ from coursework.errors import BadInput, CourseworkError, nearest
 from coursework.mechanics.loads import STROKES
 from coursework.mechanics.statement import Load, Place
 from coursework.mechanics.wrenches import GRAVITY
-from coursework.motion.added import Added, Flywheel, Motor, Weighed
+from coursework.motion.added import BodyMass, Flywheel, Motor, SceneData
 from coursework.motion.effects import REFUSED, check_effect, refusal
 from coursework.motion.scenes import Scene
 from coursework.reading.numbers import read_number
@@ -84,10 +84,10 @@ def read_scene(path: Path, course: Course) -> SceneFile:
         raise BadInput(f"{path} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
     except (ValueError, RecursionError) as fault:
         raise BadInput(f'{path}: {fault}; a value with a unit is a text: mass = "3 kg"') from fault
-    return _Reader(path, text, table, course).scene_file()
+    return _SceneReader(path, text, table, course).scene_file()
 
 
-class _Reader:
+class _SceneReader:
     """Reader of the tables of one file; its errors give the line."""
 
     def __init__(self, path: Path, text: str, table: Mapping[str, Any], course: Course) -> None:
@@ -127,7 +127,7 @@ class _Reader:
         for name in show:
             self._told(("show",), Scene, exercise, given, effects, (name,), added)
         for name, value in added.friction.items():
-            own = Scene(exercise, given, ("friction",), (), Added(friction={name: value}))
+            own = Scene(exercise, given, ("friction",), (), SceneData(friction={name: value}))
             self._told(("friction", name), getattr, own, "contacts")
         return Scene(exercise, given, effects, show, added)
 
@@ -264,7 +264,7 @@ class _Reader:
         speed = self._amount(("drive", "no_load_speed"), "rad/s")
         return self._told(("drive", "no_load_speed"), Motor, torque, speed)
 
-    def _added(self, exercise: CourseExercise) -> Added:
+    def _added(self, exercise: CourseExercise) -> SceneData:
         bodies = {name: self._body(name) for name in self._table(("bodies",))}
         loads = tuple(self._load(number, exercise) for number in range(len(self._loads_listed)))
         friction = {name: self._friction(name) for name in self._table(("friction",))}
@@ -272,9 +272,9 @@ class _Reader:
         for name in self._table(("slides",)):
             self._only(self._table(("slides", name)), ("length",), ("slides", name))
             lengths[name] = self._amount(("slides", name, "length"), "mm", 0.0)
-        return Added(bodies, loads, friction, lengths, self._flywheel(), self._gravity())
+        return SceneData(bodies, loads, friction, lengths, self._flywheel(), self._gravity())
 
-    def _body(self, name: str) -> Weighed:
+    def _body(self, name: str) -> BodyMass:
         at = ("bodies", name)
         self._only(self._table(at), ("mass", "inertia", "centre"), at)
         centre: Any = self._at((*at, "centre"))
@@ -289,7 +289,7 @@ class _Reader:
         for key, value in (("mass", mass), ("inertia", inertia)):
             if value is not None and value < 0:
                 raise self.refused((*at, key), f"{key} is not negative; found {value:g}")
-        return Weighed(mass, inertia, centre)
+        return BodyMass(mass, inertia, centre)
 
     @property
     def _loads_listed(self) -> list[Mapping[str, Any]]:

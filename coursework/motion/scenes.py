@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import CourseworkError, Undefined, WrongValue, counted
-from coursework.mechanics.running import Motion, Running
+from coursework.mechanics.running import Running, Trajectory
 from coursework.motion.added import Motor
 from coursework.motion.effects import OF_FORCES
 from coursework.motion.showing import Showing
@@ -26,7 +26,7 @@ _MOST_ASKED = 500  #: angles at which it is asked why a position does not exist
 
 
 @dataclass(frozen=True)
-class Table:
+class SceneTable:
     """Columns of equal length, with their units."""
 
     columns: Mapping[str, np.ndarray]
@@ -73,7 +73,7 @@ class Scene(Showing):
 
     # ----------------------------------------------------------------------- cycle
 
-    def over_cycle(self, count: int = 360) -> Table:
+    def over_cycle(self, count: int = 360) -> SceneTable:
         """Return the scene over one turn of the driver, ``count`` equal steps and the end.
 
         Angles are whole multiples of the step, never accumulated.
@@ -90,7 +90,9 @@ class Scene(Showing):
             raise WrongValue(
                 f"{self.exercise.name}: nothing to show for the effects {', '.join(self.effects)}"
             )
-        return Table(columns, units, self._evaluated(), tuple(self._cycle_notes(columns, np.radians(angle))))
+        return SceneTable(
+            columns, units, self._evaluated(), tuple(self._cycle_notes(columns, np.radians(angle)))
+        )
 
     def _cycle_notes(self, columns: Mapping[str, np.ndarray], angles: np.ndarray) -> Iterator[str]:
         yield from self._empty_effects()
@@ -207,7 +209,7 @@ class Scene(Showing):
 
     def in_time(
         self, drive: Motor | float, duration: float, *, rtol: float = 1e-9, count: int = 500
-    ) -> Table:
+    ) -> SceneTable:
         """Return the motion from the given position and speed under its drive, a :class:`Motor` or a constant
         torque in N m.
 
@@ -241,7 +243,7 @@ class Scene(Showing):
         except CourseworkError as fault:
             raise WrongValue(f"a motion starts from {self.driver.angle}; it is not given ({fault})") from None
 
-    def _motion_table(self, motion: Motion, running: Running, motor: Motor, t: np.ndarray) -> Table:
+    def _motion_table(self, motion: Trajectory, running: Running, motor: Motor, t: np.ndarray) -> SceneTable:
         (angle, speed, work), ways = motion.at(t)
         acceleration = np.array([
             running.acceleration(float(q), float(w), int(way)) if way else 0.0
@@ -283,4 +285,4 @@ class Scene(Showing):
             *(f"the mechanism comes to rest at t = {start:.6g} s and stays" for start, _ in motion.stuck),
             counted(len(motion.dead_centres), "dead centre"),
         )
-        return Table(columns, {n: units[n] for n in columns}, self._evaluated(), notes, balance)
+        return SceneTable(columns, {n: units[n] for n in columns}, self._evaluated(), notes, balance)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.mechanics.forces import Borne, Forces
+from coursework.mechanics.forces import ForceResults, Forces
 from coursework.mechanics.linkage import MM, SlideJoint
 from coursework.mechanics.rates import Stance
 from coursework.motion import shown
@@ -220,7 +220,9 @@ class Showing(Staged):
             found |= shown.of_moving(kind, of, points[of])
         return found
 
-    def _of_drive(self, name: str, borne: Borne, angles: np.ndarray, speed: np.ndarray) -> shown.Columns:
+    def _of_drive(
+        self, name: str, borne: ForceResults, angles: np.ndarray, speed: np.ndarray
+    ) -> shown.Columns:
         if name == "drive_torque":
             return {name: (borne.effort, "N*m")}
         if name == "drive_power":

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongValue, unknown
-from coursework.mechanics.forces import Borne
+from coursework.mechanics.forces import ForceResults
 from coursework.mechanics.linkage import MM, Linkage, SlideJoint
 from coursework.mechanics.rates import Stance
 from coursework.solution import Moving
@@ -104,7 +104,7 @@ def _vector(name: str, values: np.ndarray, unit: str) -> Columns:
     return {f"{name}_x": (values.real, unit), f"{name}_y": (values.imag, unit), name: (np.abs(values), unit)}
 
 
-def of_joint(point: str, linkage: Linkage, borne: Borne) -> Columns:
+def of_joint(point: str, linkage: Linkage, borne: ForceResults) -> Columns:
     """Return the reactions of the joints at a point, on the body that slides or is pinned on."""
     found: Columns = {}
     for name in joint_points(linkage)[point]:

@@ -16,11 +16,11 @@ from coursework.mechanics.evenness import Evenness
 from coursework.mechanics.forces import Forces
 from coursework.mechanics.friction import Contact, contacts
 from coursework.mechanics.linkage import MM, Linkage
-from coursework.mechanics.loads import Acting
+from coursework.mechanics.loads import AppliedLoad
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import Load, Mechanism, number, parameters
 from coursework.model import Driver
-from coursework.motion.added import Added
+from coursework.motion.added import SceneData
 from coursework.motion.effects import ADVANTAGE, FORCES, KINEMATIC, check_effect, of_exercise
 from coursework.quantities.loops import usual_rates
 
@@ -37,7 +37,7 @@ class Staged:
     given: Mapping[str, Any]
     effects: tuple[str, ...] = ()
     show: tuple[str, ...] = ()
-    added: Added = field(default_factory=Added)
+    added: SceneData = field(default_factory=SceneData)
 
     def __post_init__(self) -> None:
         for before, effect in enumerate(self.effects):
@@ -265,7 +265,7 @@ class Staged:
             self.contacts,
         )
 
-    def _acting(self, load: Load) -> Acting:
+    def _acting(self, load: Load) -> AppliedLoad:
         """Return a load on the mechanism; a quantity of it that the driver moves is followed over the turn.
 
         Raises
@@ -285,7 +285,7 @@ class Staged:
                     f"the load on {load.on} goes by {name}, which changes with the driver's speed; a load goes by an angle, a "
                     "position, or against the motion"
                 )
-        return Acting(self.linkage, load, self._position)
+        return AppliedLoad(self.linkage, load, self._position)
 
     @cached_property
     def _sped(self) -> frozenset[str]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from coursework.errors import CourseworkError, WrongValue
 from coursework.motion.effects import FORCES
-from coursework.motion.scenes import Scene, Table
+from coursework.motion.scenes import Scene, SceneTable
 from coursework.motion.staged import FLYWHEEL
 
 TOLERANCE = 0.01  #: of an output's largest value: a smaller change is one that a scene could do without
@@ -22,11 +22,11 @@ _ROUNDS, _FEWEST, _PATIENCE = (
 )  #: rounds that are timed; fewer where all of them would take more seconds
 _ROUNDING = 1e-9  #: of the largest output of a unit: what is smaller is rounding
 
-Run = Callable[[Scene], Table]
+Run = Callable[[Scene], SceneTable]
 
 
 @dataclass(frozen=True)
-class Change:
+class OutputChange:
     """Change of an output: largest and root mean square, in its unit and relative to the output's own largest
     and root mean square."""
 
@@ -39,7 +39,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Worth:
+class EffectInfluence:
     """Effect with its cost in seconds, and the changes of the outputs without it.
 
     ``needed``: the reason why the scene does not run without it; empty where it does.
@@ -48,23 +48,23 @@ class Worth:
     effect: str
     seconds: float
     spread: float
-    changes: tuple[Change, ...]
+    changes: tuple[OutputChange, ...]
     needed: str = ""
 
     @property
-    def most(self) -> Change | None:
+    def most(self) -> OutputChange | None:
         """Output that changes most."""
         return max(self.changes, key=lambda change: change.largest_part, default=None)
 
 
 @dataclass(frozen=True)
-class Budget:
+class EffectBudget:
     """Effects of a scene with their cost and influence, the time of all of them, and the effects that it
     lacks."""
 
     seconds: float
-    worths: tuple[Worth, ...]
-    lacking: tuple[Worth, ...]
+    worths: tuple[EffectInfluence, ...]
+    lacking: tuple[EffectInfluence, ...]
     tolerance: float
 
     def said(self) -> Iterator[str]:
@@ -94,7 +94,7 @@ class Budget:
                 yield f"{worth.effect} is left out, rightly at {limit}: it would change nothing shown by more"
 
 
-def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> Budget:
+def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> EffectBudget:
     """Measure every effect of a scene; ``run`` runs a scene over a cycle or in time.
 
     Raises
@@ -110,7 +110,9 @@ def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> Budget:
     others, needed = _others(scene, run, scene.effects)
     times = _times({"": scene, **others}, run)
     worths = [_worth(e, scene, others.get(e), whole, run, times, needed.get(e, "")) for e in scene.effects]
-    return Budget(statistics.median(times[""]), tuple(worths), tuple(_lacking(scene, run, whole)), tolerance)
+    return EffectBudget(
+        statistics.median(times[""]), tuple(worths), tuple(_lacking(scene, run, whole)), tolerance
+    )
 
 
 def _others(scene: Scene, run: Run, effects: Sequence[str]) -> tuple[dict[str, Scene], dict[str, str]]:
@@ -143,17 +145,17 @@ def _times(scenes: Mapping[str, Scene], run: Run) -> dict[str, list[float]]:
 
 
 def _worth(
-    effect: str, scene: Scene, other: Scene | None, whole: Table, run: Run, times: Mapping[str, Sequence[float]], needed: str
-) -> Worth:  # fmt: skip
+    effect: str, scene: Scene, other: Scene | None, whole: SceneTable, run: Run, times: Mapping[str, Sequence[float]], needed: str
+) -> EffectInfluence:  # fmt: skip
     if other is None:
-        return Worth(effect, float("nan"), float("nan"), (), needed)
+        return EffectInfluence(effect, float("nan"), float("nan"), (), needed)
     differences = [all_of_it - without for all_of_it, without in zip(times[""], times[effect], strict=True)]
     quartiles = statistics.quantiles(differences, n=4)
     changes = tuple(_changes(whole, run(other)))
-    return Worth(effect, statistics.median(differences), quartiles[2] - quartiles[0], changes)
+    return EffectInfluence(effect, statistics.median(differences), quartiles[2] - quartiles[0], changes)
 
 
-def _changes(whole: Table, other: Table) -> Iterator[Change]:
+def _changes(whole: SceneTable, other: SceneTable) -> Iterator[OutputChange]:
     """Yield the change of every output that both tables contain, at their common instants."""
     kept, there = (~_dead(table) for table in (whole, other))
     largest: dict[str, float] = {}
@@ -171,12 +173,12 @@ def _largest(values: np.ndarray) -> float:
     return float(np.nanmax(np.abs(values), initial=0.0))
 
 
-def _dead(table: Table) -> np.ndarray:
+def _dead(table: SceneTable) -> np.ndarray:
     first = next(iter(table.columns.values()))
     return table.columns.get("dead_centre", np.zeros(len(first))) > 0
 
 
-def _change(name: str, unit: str, own: np.ndarray, changed: np.ndarray, wraps: bool) -> Change:
+def _change(name: str, unit: str, own: np.ndarray, changed: np.ndarray, wraps: bool) -> OutputChange:
     apart = np.abs(changed - own)
     if unit == "deg" and wraps:
         apart = np.abs(apart - 360.0 * np.rint(apart / 360.0))
@@ -185,14 +187,14 @@ def _change(name: str, unit: str, own: np.ndarray, changed: np.ndarray, wraps: b
     parts = [
         change / of if of else float(change > 0) for change, of in zip((largest, rms), size, strict=True)
     ]
-    return Change(name, unit, largest, rms, *parts)
+    return OutputChange(name, unit, largest, rms, *parts)
 
 
 def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.nanmean(np.square(values)))) if np.isfinite(values).any() else 0.0
 
 
-def _lacking(scene: Scene, run: Run, whole: Table) -> Iterator[Worth]:
+def _lacking(scene: Scene, run: Run, whole: SceneTable) -> Iterator[EffectInfluence]:
     """Yield the effects for which the scene has data but which it does not request, if it shows forces or
     moves in time."""
     for effect in scene.with_data():
@@ -202,4 +204,4 @@ def _lacking(scene: Scene, run: Run, whole: Table) -> Iterator[Worth]:
             added = run(replace(scene, effects=(*scene.effects, effect)))
         except CourseworkError:
             continue
-        yield Worth(effect, float("nan"), float("nan"), tuple(_changes(whole, added)))
+        yield EffectInfluence(effect, float("nan"), float("nan"), tuple(_changes(whole, added)))

@@ -28,7 +28,7 @@ _SAME = 0.25  #: mm on paper under which two points are one
 
 
 @dataclass(frozen=True)
-class Row:
+class SideRow:
     """Table row of a side: its data before the drawing, its measured length and direction after."""
 
     name: str  #: LaTeX of the vector
@@ -40,7 +40,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Step:
+class ConstructionStep:
     """Step of the construction: its text and its drawing."""
 
     number: int
@@ -108,10 +108,10 @@ class Construction:
     # ------------------------------------------------------------------------ table
 
     @property
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[SideRow, ...]:
         """The sides, in the order of the construction."""
         return tuple(
-            Row(
+            SideRow(
                 side.name,
                 side.direction,
                 side.length,
@@ -142,20 +142,20 @@ class Construction:
         return Figure(*drawn.elements, bar, paper_mm=BOX_MM, scale=1)
 
     @cached_property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[ConstructionStep, ...]:
         """Steps of the construction, each with a small drawing of its state."""
         low, high = self.polygon.extent()
         size = high - low
         scale = max(size.real / _SMALL_MM[0], size.imag / _SMALL_MM[1])
         drawn = _Drawing(self.polygon, scale, _BEYOND[0], named=False)
         whole = Figure(*drawn.elements, scale=1)
-        steps: list[Step] = []
+        steps: list[ConstructionStep] = []
         for stage, count in zip(self.polygon.stages, drawn.counts, strict=True):
             text = self._told(stage)
             if stage.kind == "result" and steps:
                 # Vectors that join points already found are no step of their own.
                 text = f"{steps.pop().text} {text}"
-            steps.append(Step(len(steps) + 1, text, whole.beginning(count)))
+            steps.append(ConstructionStep(len(steps) + 1, text, whole.beginning(count)))
         return tuple(steps)
 
     def _told(self, stage: Stage) -> str:

@@ -34,7 +34,7 @@ LENGTH, DIRECTION, SENSE, VECTOR, HUNG, MISSING = KINDS = (
 
 
 @dataclass(frozen=True)
-class Fault:
+class DrawingFault:
     """Error of a drawn point.
 
     ``length``, ``direction``, ``sense``: of the vector that should end there; ``vector``: nothing of it is right;
@@ -46,12 +46,12 @@ class Fault:
     kind: str
     side: Side | None = None  #: the vector at fault; None where the point is missing, or off both its lines
     on: str = ""  #: of ``hung``: the point on which the vector hangs instead
-    plainer: Fault | None = None  #: what else explains the point, and says less of it
+    plainer: DrawingFault | None = None  #: what else explains the point, and says less of it
 
     @property
-    def explanations(self) -> Iterator[Fault]:
+    def explanations(self) -> Iterator[DrawingFault]:
         """Yield the fault, then less specific ones that explain the point as well."""
-        fault: Fault | None = self
+        fault: DrawingFault | None = self
         while fault:
             yield fault
             fault = fault.plainer
@@ -62,13 +62,13 @@ class Fault:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class JudgedDrawing:
     """Judged drawing."""
 
     polygon: Polygon
     points: Mapping[str, complex]  #: those drawn, mm on paper
     scale: float  #: mm/s or mm/s^2 for a mm, at which it is judged
-    faults: Mapping[str, Fault]  #: by point, of those that are wrong or missing
+    faults: Mapping[str, DrawingFault]  #: by point, of those that are wrong or missing
     is_legible: bool  #: large enough to tell directions
     fits_stated_scale: bool  #: False where it is consistent at another scale than the stated one
     tolerance: float = TOLERANCE_MM
@@ -116,7 +116,7 @@ def judge_drawing(
     points: Mapping[str, complex],
     scale: float | None = None,
     tolerance: float = TOLERANCE_MM,
-) -> Drawing:
+) -> JudgedDrawing:
     """Judge drawn points against the polygon that they should form.
 
     Parameters
@@ -152,7 +152,7 @@ def judge_drawing(
     points = {name: on_paper(z.real, z.imag) for name, z in points.items()}
     width = 2 * tolerance
     used, fits = _scale(polygon, points, scale, width)
-    faults: dict[str, Fault] = {}
+    faults: dict[str, DrawingFault] = {}
     ideal = {polygon.pole: points[polygon.pole]}
     for point, sides in polygon.hangs.items():
         # The points before it, as drawn; one that is missing stands where it follows from those before it.
@@ -167,11 +167,11 @@ def judge_drawing(
         if fault:
             faults[point] = fault
     legible = polygon.size / used >= LEAST_MM * tolerance
-    return Drawing(polygon, points, used, faults, legible, fits, tolerance, ideal)
+    return JudgedDrawing(polygon, points, used, faults, legible, fits, tolerance, ideal)
 
 
 def vector_fault(drawn: complex, right: complex, width: float) -> str:
-    """Return the fault of one vector, all mm on paper: ``""`` for none, or a kind of :class:`Fault`.
+    """Return the fault of one vector, all mm on paper: ``""`` for none, or a kind of :class:`DrawingFault`.
 
     Its end may be ``width`` off.
     """
@@ -221,7 +221,7 @@ def _known(
     polygon: Polygon,
     scale: float,
     width: float,
-) -> tuple[complex, Fault | None]:
+) -> tuple[complex, DrawingFault | None]:
     """Return the end of a vector of known length, laid off from the student's point, and the fault of the one
     drawn."""
     anchor = _anchor(side, point)
@@ -234,20 +234,20 @@ def _known(
         own = right
     right, ideal = way * right, here[anchor] + way * own
     if point not in drawn:
-        return ideal, Fault(MISSING)
+        return ideal, DrawingFault(MISSING)
     kind = vector_fault(drawn[point] - here[anchor], way * own, width)
     if not kind or abs(drawn[point] - here[anchor] - right) <= width:
         return ideal, None
     for other in here:
         if other != anchor and abs(drawn[point] - here[other] - right) <= width:
-            return ideal, Fault(HUNG, side, other, Fault(kind, side))
-    return ideal, Fault(kind, side)
+            return ideal, DrawingFault(HUNG, side, other, DrawingFault(kind, side))
+    return ideal, DrawingFault(kind, side)
 
 
 def _crossing(
     point: str, sides: tuple[Side, ...], here: Mapping[str, complex], drawn: Mapping[str, complex],
     polygon: Polygon, scale: float, width: float, on_drawn: bool,
-) -> tuple[complex, Fault | None]:  # fmt: skip
+) -> tuple[complex, DrawingFault | None]:  # fmt: skip
     """Return the intersection of two lines through the student's points, and the fault of the point drawn.
 
     ``on_drawn``: both lines start from points that are right, in a drawing of some size.
@@ -257,7 +257,7 @@ def _crossing(
     if ideal is None:  # as one line: where it should be, from the first
         ideal = here[anchors[0]] + (polygon.points[point] - polygon.points[anchors[0]]) / scale
     if point not in drawn:
-        return ideal, Fault(MISSING)
+        return ideal, DrawingFault(MISSING)
     there = drawn[point]
     good = [_off(side, there, here[a]) <= width for side, a in zip(sides, anchors, strict=True)]
     if all(good):
@@ -265,21 +265,21 @@ def _crossing(
         collapsed = not on_drawn and all(
             abs(there - here[a]) <= width < abs(s.value) / scale for s, a in zip(sides, anchors, strict=True)
         )
-        return ideal, Fault(VECTOR) if collapsed else None
+        return ideal, DrawingFault(VECTOR) if collapsed else None
     others = [[q for q in here if q != a] for a in anchors]
     elsewhere = [_through(side, there, some, here, width) for side, some in zip(sides, others, strict=True)]
     if not any(good):
         if all(elsewhere) and elsewhere[0] != elsewhere[1]:
-            return ideal, Fault(HUNG, sides[0], elsewhere[0], Fault(VECTOR))
-        return ideal, Fault(VECTOR)
+            return ideal, DrawingFault(HUNG, sides[0], elsewhere[0], DrawingFault(VECTOR))
+        return ideal, DrawingFault(VECTOR)
     bad = good.index(False)
     right_one, anchor = sides[1 - bad], here[anchors[1 - bad]]
-    fault = Fault(DIRECTION, sides[bad])
+    fault = DrawingFault(DIRECTION, sides[bad])
     # Through the other line's own point both lines would meet there, and nothing would be drawn.
     if elsewhere[bad] and elsewhere[bad] != anchors[1 - bad]:
-        fault = Fault(HUNG, sides[bad], elsewhere[bad], fault)
+        fault = DrawingFault(HUNG, sides[bad], elsewhere[bad], fault)
     if abs(there - (2 * anchor - ideal)) <= 2 * width:
-        fault = Fault(SENSE, right_one, plainer=fault)
+        fault = DrawingFault(SENSE, right_one, plainer=fault)
     return ideal, fault
 
 

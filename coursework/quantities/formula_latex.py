@@ -48,7 +48,7 @@ _PRINTED = {*_FUNCTIONS, "sqrt", "hypot", "abs", "absolute", "where", "stack", "
 _SUM, _PRODUCT, _UNARY, _POWER, _ATOM = range(5)
 
 
-class Told(NamedTuple):
+class PrintedName(NamedTuple):
     """Printed form of a name."""
 
     latex: str
@@ -61,13 +61,13 @@ Shown = Mapping[str, tuple]
 
 
 def kind_of(value: Any, unit: str) -> str:
-    """Return the kind of a value, as in :class:`Told`."""
+    """Return the kind of a value, as in :class:`PrintedName`."""
     if isinstance(value, (complex, np.complexfloating)):
         return "complex"
     return "angle" if unit == "deg" else ""
 
 
-class Unprintable(Exception):
+class UnprintableFormula(Exception):
     """Expression that cannot be printed."""
 
 
@@ -128,7 +128,7 @@ class _Printer:
     def _print(self, node: ast.expr) -> tuple[str, int]:
         match node:
             case ast.Constant(value=bool()) | ast.Constant(value=str()):
-                raise Unprintable
+                raise UnprintableFormula
             case ast.Constant(value=complex() as value):
                 return ("i" if value == 1j else rf"\num{{{value.imag:g}}}\,i"), _ATOM
             case ast.Constant(value=_Degrees() as value):
@@ -164,7 +164,7 @@ class _Printer:
                 return rf"\left({self._listed(coordinates)}\right)", _ATOM
             case ast.Call(args=arguments, keywords=[]):
                 return self._call(called(node), arguments)
-        raise Unprintable
+        raise UnprintableFormula
 
     def _second(self, node: ast.expr, within: int) -> str:
         """Return an operand after a sign, in brackets if it begins with a sign itself."""
@@ -187,7 +187,7 @@ class _Printer:
         """Return a constant of the module: its name among symbols, its value among numbers."""
         value = self._value_of(name)
         if value is None:
-            raise Unprintable
+            raise UnprintableFormula
         if not self.shown or any(is_number for _, is_number, *_ in self.shown.values()):
             return rf"\num{{{value:.10g}}}", _UNARY if value < 0 else _ATOM
         stem, *below = (rf"\mathrm{{{part}}}" if len(part) > 1 else part for part in name.split("_") if part)
@@ -200,7 +200,7 @@ class _Printer:
         return value if is_number else None
 
     def _kind(self, name: str) -> str:
-        return Told(*self.shown[name]).kind if name in self.shown else ""
+        return PrintedName(*self.shown[name]).kind if name in self.shown else ""
 
     # ------------------------------------------------------------- sums, angles
 
@@ -311,7 +311,7 @@ class _Printer:
         if name.startswith("_"):
             return self._helper(name, arguments)
         if name not in _FUNCTIONS:
-            raise Unprintable
+            raise UnprintableFormula
         return rf"{_FUNCTIONS[name]}\left({self._listed(arguments)}\right)", _POWER
 
     def _polar(self, length: ast.expr, theta: ast.expr) -> str:
@@ -348,7 +348,7 @@ class _Printer:
         try:
             body = put_in(helper, arguments)
         except NoExpression as fault:
-            raise Unprintable from fault
+            raise UnprintableFormula from fault
         return _Printer(self.shown, {**self.helpers, **getattr(helper, "__globals__", {})})._print(body)
 
 
@@ -415,7 +415,7 @@ def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
         return re.sub(r"<(\w+)>", lambda m: _in_template(shown, m), template)
     try:
         return _Printer(shown, getattr(function, "__globals__", {})).latex(expression(function))
-    except (NoExpression, Unprintable):
+    except (NoExpression, UnprintableFormula):
         return ""
 
 
@@ -424,14 +424,14 @@ def tree_latex(tree: ast.expr, shown: Shown, space: Mapping[str, Any]) -> str:
     describe it."""
     try:
         return _Printer(shown, space).latex(tree)
-    except (NoExpression, Unprintable):
+    except (NoExpression, UnprintableFormula):
         return ""
 
 
 @lru_cache(maxsize=1024)
 def formula_in_symbols(function: Callable[..., Any], symbols: tuple[tuple[str, str, str], ...]) -> str:
     """Return LaTeX of a formula from the symbol and kind of each name, the same for all students."""
-    return formula_latex(function, {name: Told(symbol, False, kind) for name, symbol, kind in symbols})
+    return formula_latex(function, {name: PrintedName(symbol, False, kind) for name, symbol, kind in symbols})
 
 
 def _in_template(shown: Shown, name: re.Match[str]) -> str:

@@ -60,20 +60,22 @@ def _right(name: str) -> str:
 
 
 @dataclass(frozen=True)
-class Node:
+class QuantityNode:
     """Quantity: its function and the names of its arguments, in call order."""
 
     function: Callable[..., Value]
     arguments: tuple[str, ...]
     defaults: Mapping[str, Value]
-    stable: Node | None = None  #: the same quantity by a way that keeps its digits everywhere
+    stable: QuantityNode | None = None  #: the same quantity by a way that keeps its digits everywhere
 
     @staticmethod
-    def of(function: Callable[..., Value]) -> Node:
+    def of(function: Callable[..., Value]) -> QuantityNode:
         parameters = inspect.signature(function).parameters
         defaults = {p.name: p.default for p in parameters.values() if p.default is not p.empty}
         stable = getattr(function, "__stable__", None)
-        return Node(function, tuple(parameters), defaults, None if stable is None else Node.of(stable))
+        return QuantityNode(
+            function, tuple(parameters), defaults, None if stable is None else QuantityNode.of(stable)
+        )
 
     @property
     def printed(self) -> tuple[str, ...]:
@@ -90,9 +92,9 @@ class Node:
         """Names of the arguments of either function."""
         return frozenset(self.arguments) | (self.stable.needs if self.stable else frozenset())
 
-    def renamed(self, names: Mapping[str, str]) -> Node:
+    def renamed(self, names: Mapping[str, str]) -> QuantityNode:
         """Return the node with renamed arguments."""
-        return Node(
+        return QuantityNode(
             self.function,
             tuple(names.get(a, a) for a in self.arguments),
             {names.get(a, a): v for a, v in self.defaults.items()},
@@ -156,7 +158,7 @@ def _missing(found: Mapping[str, str]) -> MissingQuantity:
     )
 
 
-def _met(nodes: Mapping[str, Node], names: Iterable[str]) -> frozenset[str]:
+def _met(nodes: Mapping[str, QuantityNode], names: Iterable[str]) -> frozenset[str]:
     """Return the names and all their ancestors, by the first of each node's functions."""
     found: set[str] = set()
     waiting = list(names)
@@ -172,10 +174,13 @@ class Graph:
     """Immutable graph of quantities by name, with cached plans."""
 
     def __init__(self, functions: Mapping[str, Callable[..., Value]]):
-        self._build({name: Node.of(f) for name, f in functions.items()}, frozenset())
+        self._build({name: QuantityNode.of(f) for name, f in functions.items()}, frozenset())
 
     def _build(
-        self, nodes: Mapping[str, Node], shadowed: frozenset[str], effects: tuple[str, ...] | None = None
+        self,
+        nodes: Mapping[str, QuantityNode],
+        shadowed: frozenset[str],
+        effects: tuple[str, ...] | None = None,
     ) -> None:
         optional = {p for node in nodes.values() for p in node.defaults}
         self._effects = tuple(n for n in nodes if n in optional) if effects is None else effects
@@ -240,7 +245,7 @@ class Graph:
         functions."""
         return self._ancestors(names)
 
-    def node(self, name: str) -> Node:
+    def node(self, name: str) -> QuantityNode:
         if name not in self._nodes:
             raise unknown("quantity", name, self._nodes)
         return self._nodes[name]
@@ -457,14 +462,14 @@ class Graph:
         touched = self.descendants(targets)
         for name in touched & self._nodes.keys():
             nodes[_right(name)] = self._nodes[name].renamed({n: _right(n) for n in touched})
-        wrong = Node.of(replacement.function).renamed({n: _right(n) for n in targets})
+        wrong = QuantityNode.of(replacement.function).renamed({n: _right(n) for n in targets})
         if len(targets) == 1:
             nodes[targets[0]] = wrong
         else:
             together = " and ".join(targets) + " (wrong)"
             nodes[together] = wrong
             for index, target in enumerate(targets):
-                nodes[target] = Node(lambda values, i=index: values[i], (together,), {})
+                nodes[target] = QuantityNode(lambda values, i=index: values[i], (together,), {})
         graph = Graph.__new__(Graph)
         graph._build(nodes, frozenset(t for t in targets if t not in self._nodes), self._effects)
         graph._set_aside = touched & self._nodes.keys()
@@ -473,7 +478,7 @@ class Graph:
     def observed(self, observe: Callable[[str, Value], Value]) -> Graph:
         """Return the graph with every value passed through ``observe(name, value)``, except hidden ones."""
 
-        def wrapped(name: str, node: Node) -> Node:
+        def wrapped(name: str, node: QuantityNode) -> QuantityNode:
             def function(*arguments: Value) -> Value:
                 return observe(name, node.function(*arguments))
 
@@ -488,7 +493,7 @@ class Graph:
     def mapped(self, change: Callable[[Callable[..., Value]], Callable[..., Value]]) -> Graph:
         """Return the graph with ``change`` applied to every function, hidden ones included; arguments stay."""
 
-        def changed(node: Node) -> Node:
+        def changed(node: QuantityNode) -> QuantityNode:
             stable = changed(node.stable) if node.stable else None
             return replace(node, function=change(node.function), stable=stable)
 
@@ -519,7 +524,7 @@ class Graph:
         if twice:
             raise ValueError(f"the graph has {min(twice)!r} already{nearest(min(twice), self._nodes)}")
         graph = Graph.__new__(Graph)
-        nodes = {**self._nodes, **{name: Node.of(f) for name, f in functions.items()}}
+        nodes = {**self._nodes, **{name: QuantityNode.of(f) for name, f in functions.items()}}
         graph._build(nodes, self._shadowed)
         return graph
 

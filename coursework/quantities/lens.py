@@ -16,7 +16,7 @@ import numpy as np
 
 from coursework import degrees
 from coursework.errors import CourseworkError
-from coursework.quantities.measured import Measured, alike, gathered, leaves, needs, plain, powered
+from coursework.quantities.measured import UnitValue, alike, gathered, leaves, needs, plain, powered
 from coursework.quantities.opaque import PLAIN, opaque
 from coursework.quantities.sizes import DEGREE, ONE, Sizes, Unprovable
 
@@ -25,10 +25,10 @@ _NUMBERS = (int, float, complex, np.number)
 
 def _takes_degrees(function: Callable[..., Any], gives: Sizes) -> Callable[..., Any]:
     def of_angle(theta: Any) -> Any:
-        if not isinstance(theta, Measured):
+        if not isinstance(theta, UnitValue):
             return function(theta)
         needs(theta, DEGREE, f"{function.__name__} takes")
-        return Measured(function(theta.value), gives)
+        return UnitValue(function(theta.value), gives)
 
     return of_angle
 
@@ -41,7 +41,7 @@ def _gives_degrees(function: Callable[..., Any], takes: Any = None) -> Callable[
             alike(*values)
         else:
             needs(values[0], takes, f"{function.__name__} takes")
-        return Measured(function(*map(plain, values)), (DEGREE,))
+        return UnitValue(function(*map(plain, values)), (DEGREE,))
 
     return to_angle
 
@@ -64,7 +64,7 @@ _OF_DEGREES: Mapping[str, Callable[..., Any]] = {
 
 
 def _root(x: Any) -> Any:
-    return Measured(degrees.sqrt(x.value), powered(x, 0.5)) if isinstance(x, Measured) else degrees.sqrt(x)
+    return UnitValue(degrees.sqrt(x.value), powered(x, 0.5)) if isinstance(x, UnitValue) else degrees.sqrt(x)
 
 
 class _Numpy:
@@ -76,7 +76,7 @@ class _Numpy:
 
 def _whole(values: Any, *args: Any, **options: Any) -> Any:
     found = gathered(values)
-    return found if isinstance(found, Measured) else np.array(values, *args, **options)
+    return found if isinstance(found, UnitValue) else np.array(values, *args, **options)
 
 
 class _Math:
@@ -101,7 +101,7 @@ def _following(function: Callable[..., Any]) -> Callable[..., Any]:
     other = getattr(np, _SPELLED.get(name, name), None)
 
     def call(*values: Any, **options: Any) -> Any:
-        if not any(isinstance(v, Measured) for v in leaves(list(values))):
+        if not any(isinstance(v, UnitValue) for v in leaves(list(values))):
             return function(*values, **options)
         if other is None:
             raise Unprovable(f"units are not followed through {function.__module__}.{name}")
@@ -144,7 +144,7 @@ class Lens:
         if isinstance(value, ModuleType):
             return self._module(value)
         if isinstance(value, _NUMBERS) and name in self._constants:
-            return Measured(value, self._constants[name])
+            return UnitValue(value, self._constants[name])
         home = getattr(value, "__module__", None) or ""
         if isinstance(value, type):
             is_foreign = home.startswith("coursework.") and not issubclass(

@@ -26,7 +26,7 @@ _Pieces = list[tuple[int, str]]  #: signed factors, to be multiplied by a sine, 
 
 
 @dataclass(frozen=True)
-class Link:
+class LoopLink:
     """Vector of a loop as a student may write it, right by default.
 
     ``swapped``: sine and cosine are exchanged. ``turned``: the sign before the added angle, 0 where it is left out.
@@ -107,7 +107,7 @@ def _times(pieces: _Pieces, sign: int, factor: str, more: int) -> _Pieces:
 
 
 @dataclass(frozen=True)
-class Fault:
+class LoopFault:
     """Wrong way to write a loop: the kind of error, the names, and the resulting loop."""
 
     kind: str
@@ -123,13 +123,13 @@ class Loop:
     the loop can be derived in names that the solution has.
     """
 
-    links: tuple[Link, ...]
+    links: tuple[LoopLink, ...]
     rates: Mapping[str, tuple[str, str]]
     known: int = 0
 
     @staticmethod
     def of(vectors: Sequence[Vector], rates: Mapping[str, tuple[str, str]]) -> Loop:
-        return Loop(tuple(Link(v) for v in vectors), rates)
+        return Loop(tuple(LoopLink(v) for v in vectors), rates)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -168,7 +168,7 @@ class Loop:
     def _rates_of(self, name: str | float) -> tuple[str, str]:
         return self.rates.get(name, ("", "")) if isinstance(name, str) else ("", "")
 
-    def _pieces(self, link: Link, order: int) -> tuple[_Pieces, _Pieces]:
+    def _pieces(self, link: LoopLink, order: int) -> tuple[_Pieces, _Pieces]:
         """Return the radial and transverse factors of the derivative of a link."""
         v = link.vector
         length = v.length if isinstance(v.length, str) else f"{v.length:.12g}"
@@ -196,15 +196,15 @@ class Loop:
         """Return whether the derivative of this order is known and not trivial."""
         return order == 0 or (order <= self.known and bool(self.highest(order)))
 
-    def faults(self, order: int = 0) -> Iterator[Fault]:
+    def faults(self, order: int = 0) -> Iterator[LoopFault]:
         """Yield the known errors, grouped by kind."""
         for kind in FAULTS:
             for names, links in getattr(self, f"_{kind}")(order):
-                yield Fault(kind, names, replace(self, links=tuple(links)))
+                yield LoopFault(kind, names, replace(self, links=tuple(links)))
 
     def _changed(
-        self, change: Callable[[Link], Iterable[Link]]
-    ) -> Iterator[tuple[tuple[str, ...], list[Link]]]:
+        self, change: Callable[[LoopLink], Iterable[LoopLink]]
+    ) -> Iterator[tuple[tuple[str, ...], list[LoopLink]]]:
         """Yield the loop with one link changed, for every link and every change."""
         for k, link in enumerate(self.links):
             for other in change(link):
@@ -218,7 +218,7 @@ class Loop:
             yield (link.name,), [*self.links[:k], *self.links[k + 1 :]]
 
     def _link_term(self, order: int) -> Iterator:
-        def wrong(link: Link) -> Iterator[Link]:
+        def wrong(link: LoopLink) -> Iterator[LoopLink]:
             count = sum(map(len, self._pieces(link, order))) if order else 0
             for term in range(count):
                 for slip in (-1, 0):
@@ -229,7 +229,7 @@ class Loop:
         return self._changed(wrong)
 
     def _link_turn(self, order: int) -> Iterator:
-        def wrong(link: Link) -> list[Link]:
+        def wrong(link: LoopLink) -> list[LoopLink]:
             return [replace(link, turned=t) for t in (0, -1)] if link.vector.turn else []
 
         return self._changed(wrong)
@@ -240,7 +240,7 @@ class Loop:
     def _link_angle(self, order: int) -> Iterator:
         named = [k.vector.angle for k in self.links if isinstance(k.vector.angle, str)]
 
-        def wrong(link: Link) -> list[Link]:
+        def wrong(link: LoopLink) -> list[LoopLink]:
             own = link.vector.angle
             others = dict.fromkeys(a for a in named if a != own)
             return [replace(link, vector=link.vector._replace(angle=a)) for a in others]

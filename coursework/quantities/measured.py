@@ -23,7 +23,7 @@ from coursework.quantities.sizes import (
 )
 
 
-class Measured:
+class UnitValue:
     """Scalar or array, with the possible sizes of its unit."""
 
     __array_priority__ = 1000.0
@@ -67,26 +67,26 @@ class Measured:
     def __len__(self) -> int:
         return len(self.value)
 
-    def __getitem__(self, place: Any) -> Measured:
+    def __getitem__(self, place: Any) -> UnitValue:
         if place == () and not isinstance(self.value, np.ndarray):
             return self
-        return Measured(np.asarray(self.value)[place], self.sizes)
+        return UnitValue(np.asarray(self.value)[place], self.sizes)
 
     def __getattr__(self, name: str) -> Any:
         if name in ("ndim", "shape", "size", "dtype"):
             return getattr(np.asarray(self.value), name)
         if name in ("real", "imag", "T"):
-            return Measured(getattr(np.asarray(self.value), name)[()], self.sizes)
+            return UnitValue(getattr(np.asarray(self.value), name)[()], self.sizes)
         if name in ("sum", "min", "max", "mean", "conjugate", "copy", "ravel", "squeeze", "reshape"):
             method = getattr(np.asarray(self.value), name)
-            return lambda *args, **options: Measured(method(*args, **options), self.sizes)
+            return lambda *args, **options: UnitValue(method(*args, **options), self.sizes)
         if name == "item":
-            return lambda: Measured(np.asarray(self.value).item(), self.sizes)
+            return lambda: UnitValue(np.asarray(self.value).item(), self.sizes)
         raise AttributeError(name)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         if method == "reduce" and ufunc.__name__ in _ALIKE:
-            return Measured(ufunc.reduce(self.value, **options), self.sizes)
+            return UnitValue(ufunc.reduce(self.value, **options), self.sizes)
         if method != "__call__" or options:
             raise Unprovable(f"units are not followed through np.{ufunc.__name__}.{method}")
         return _through(ufunc.__name__, ufunc, inputs)
@@ -96,7 +96,7 @@ class Measured:
 
 
 def _operator(name: str, function: Callable[..., Any], *, turned: bool = False) -> Any:
-    def method(self: Measured, *others: Any) -> Any:
+    def method(self: UnitValue, *others: Any) -> Any:
         if any(isinstance(o, str) for o in others):
             return NotImplemented
         return _through(name, function, (*others, self) if turned else (self, *others))
@@ -113,23 +113,23 @@ _DUNDERS: tuple[tuple[str, str, Callable[..., Any]], ...] = (
     ("greater_equal", "ge", operator.ge), ("equal", "eq", operator.eq), ("not_equal", "ne", operator.ne),
 )  # fmt: skip
 for _name, _dunder, _function in _DUNDERS:
-    setattr(Measured, f"__{_dunder}__", _operator(_name, _function))
+    setattr(UnitValue, f"__{_dunder}__", _operator(_name, _function))
     if _dunder in ("add", "sub", "mul", "truediv", "floordiv", "mod", "pow"):
-        setattr(Measured, f"__r{_dunder}__", _operator(_name, _function, turned=True))
+        setattr(UnitValue, f"__r{_dunder}__", _operator(_name, _function, turned=True))
 
 
 def plain(value: Any) -> Any:
     """Return a value without its unit."""
-    return value.value if isinstance(value, Measured) else value
+    return value.value if isinstance(value, UnitValue) else value
 
 
 def _sizes(value: Any) -> Sizes:
-    return value.sizes if isinstance(value, Measured) else (ONE,)
+    return value.sizes if isinstance(value, UnitValue) else (ONE,)
 
 
 def _is_free(value: Any) -> bool:
     """Return whether a value fits any unit: a number that is zero, infinite or NaN."""
-    if isinstance(value, Measured):
+    if isinstance(value, UnitValue):
         return False
     numbers = np.asarray(value)
     return numbers.dtype.kind in "biufc" and not np.any(np.isfinite(numbers) & (numbers != 0))
@@ -143,7 +143,7 @@ def alike(*values: Any) -> Sizes:
     UnitFault
         They share none.
     """
-    carrying = [v for v in values if isinstance(v, Measured)]
+    carrying = [v for v in values if isinstance(v, UnitValue)]
     if not carrying:
         return (ONE,)
     first, *others = carrying
@@ -153,7 +153,7 @@ def alike(*values: Any) -> Sizes:
         if not shared:
             raise UnitFault(f"adds or compares {told(kept[0])} and {told(other.sizes[0])}")
         kept = _softest(shared, other.sizes)
-    if any(not isinstance(v, Measured) and not _is_free(v) for v in values):
+    if any(not isinstance(v, UnitValue) and not _is_free(v) for v in values):
         sums = tuple(s for s in kept if any(s.hard) or _takes_numbers(s))
         if not sums:
             raise UnitFault(f"adds or compares {told(kept[0])} and a plain number")
@@ -177,14 +177,14 @@ def _takes_numbers(ratio: Size) -> bool:
 
 def needs(value: Any, wanted: Size, what: str) -> None:
     """Refuse a value that cannot have a unit; a plain number fits any."""
-    if isinstance(value, Measured) and not any(s.is_like(wanted) for s in value.sizes):
+    if isinstance(value, UnitValue) and not any(s.is_like(wanted) for s in value.sizes):
         raise UnitFault(f"{what} {told(wanted)}, and gets {told(value.sizes[0])}")
 
 
 def product(one: Any, other: Any, power: float = 1) -> Sizes:
     """Return the sizes of ``one * other**power``; a plain number may be a conversion."""
-    a = _sizes(one) if isinstance(one, Measured) else _of_number(one)
-    b = _sizes(other) if isinstance(other, Measured) else _of_number(other)
+    a = _sizes(one) if isinstance(one, UnitValue) else _of_number(one)
+    b = _sizes(other) if isinstance(other, UnitValue) else _of_number(other)
     return distinct(x.times(y, power) for x in a for y in b)
 
 
@@ -224,7 +224,7 @@ def _through(name: str, function: Callable[..., Any], inputs: Sequence[Any]) -> 
     if name in _TOLD or (name == "multiply" and any(map(_is_free, inputs))):
         return function(*values)
     sizes = _sizes_through(name, inputs)
-    return Measured(function(*values), sizes)
+    return UnitValue(function(*values), sizes)
 
 
 def _sizes_through(name: str, inputs: Sequence[Any]) -> Sizes:
@@ -259,7 +259,7 @@ def _sizes_through(name: str, inputs: Sequence[Any]) -> Sizes:
 
 
 def powered(base: Any, exponent: Any) -> Sizes:
-    if isinstance(exponent, Measured):
+    if isinstance(exponent, UnitValue):
         needs(exponent, ONE, "an exponent is")
         exponent = exponent.value
     exponents = np.unique(np.asarray(exponent, dtype=float))
@@ -289,21 +289,21 @@ def _array_function(function: Any, args: Sequence[Any], options: Mapping[str, An
     if name == "broadcast_arrays":
         found = function(*values, **named)
         return [
-            Measured(v, a.sizes) if isinstance(a, Measured) else v for v, a in zip(found, args, strict=True)
+            UnitValue(v, a.sizes) if isinstance(a, UnitValue) else v for v, a in zip(found, args, strict=True)
         ]
     if name == "angle":
-        return Measured(function(*values, **named), (RADIAN,))
+        return UnitValue(function(*values, **named), (RADIAN,))
     if name in _PRODUCTS:
-        return Measured(function(*values, **named), product(args[0], args[1]))
+        return UnitValue(function(*values, **named), product(args[0], args[1]))
     if name in _KEPT_BY:
         summed = args[1:] if name in ("where", "select") else args[:1] if name == "norm" else args
-        return Measured(function(*values, **named), alike(*leaves(summed)))
+        return UnitValue(function(*values, **named), alike(*leaves(summed)))
     raise Unprovable(f"units are not followed through np.{name}")
 
 
 def stripped(value: Any) -> Any:
     """Return the value with plain numbers, in lists and records too."""
-    if isinstance(value, Measured):
+    if isinstance(value, UnitValue):
         return value.value
     if isinstance(value, Mapping):
         return {k: stripped(v) for k, v in value.items()}
@@ -318,7 +318,7 @@ def leaves(value: Any) -> list[Any]:
         return [leaf for one in value for leaf in leaves(one)]
     if isinstance(value, np.ndarray) and value.dtype == object:
         return leaves(value.ravel().tolist())
-    return [value] if isinstance(value, (Measured, float, complex, np.ndarray)) else []
+    return [value] if isinstance(value, (UnitValue, float, complex, np.ndarray)) else []
 
 
 def gathered(value: Any) -> Any:
@@ -326,7 +326,7 @@ def gathered(value: Any) -> Any:
     if type(value) not in (tuple, list) and not (isinstance(value, np.ndarray) and value.dtype == object):
         return value
     found = leaves(value)
-    if not any(isinstance(v, Measured) for v in found):
+    if not any(isinstance(v, UnitValue) for v in found):
         return value
     inside = value.tolist() if isinstance(value, np.ndarray) else value
-    return Measured(np.array(stripped(inside)), alike(*found))
+    return UnitValue(np.array(stripped(inside)), alike(*found))

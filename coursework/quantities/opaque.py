@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.errors import CourseworkError
-from coursework.quantities.measured import Measured, needs
+from coursework.quantities.measured import UnitValue, needs
 from coursework.quantities.sizes import BASES, DEGREE, ONE, Sizes, UnitFault, Unprovable, of_hard, told
 
 _Factors = tuple[float, ...]
@@ -81,7 +81,7 @@ def opaque(thing: Any) -> Opaque:
 
 
 def _handed(value: Any) -> list[Any]:
-    if isinstance(value, Measured):
+    if isinstance(value, UnitValue):
         return [value.sizes[0]]
     if isinstance(value, Opaque):
         return list(value._origin.handed)
@@ -94,7 +94,7 @@ def _handed(value: Any) -> list[Any]:
 
 def _plain(value: Any, factors: _Factors) -> Any:
     """Return the value in other base units."""
-    if isinstance(value, Measured):
+    if isinstance(value, UnitValue):
         powers = value.sizes[0].hard
         factor = math.prod(f**p for f, p in zip(factors, powers, strict=True))
         return value.value if factor == 1.0 else value.value * factor
@@ -146,7 +146,7 @@ def _measured(made: Opaque, origin: Origin) -> Any:
     scales = _system(origin)
     powers = [_power(made, place, origin) for place in range(BASES)]
     scale = math.prod(s**p for s, p in zip(scales, powers, strict=True))
-    return Measured(made._in_bases(_SAME), (of_hard(scale, powers),))
+    return UnitValue(made._in_bases(_SAME), (of_hard(scale, powers),))
 
 
 def _power(made: Opaque, place: int, origin: Origin) -> float:

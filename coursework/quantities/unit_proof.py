@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import CourseworkError
-from coursework.quantities.graph import Graph, Node
+from coursework.quantities.graph import Graph, QuantityNode
 from coursework.quantities.lens import Lens
-from coursework.quantities.measured import Measured, gathered, leaves, stripped
+from coursework.quantities.measured import UnitValue, gathered, leaves, stripped
 from coursework.quantities.opaque import Opaque, unmeasured
 from coursework.quantities.sizes import Size, UnitFault, Unprovable, fits, sizes_of, told
 
@@ -78,7 +78,7 @@ class _Walk:
         is_number = isinstance(value, _NUMBERS) and not isinstance(value, (bool, np.bool_))
         if not is_number and not (isinstance(value, np.ndarray) and value.dtype.kind in "iufc"):
             return value
-        return Measured(value, self.sizes[name]) if name in self.sizes else value
+        return UnitValue(value, self.sizes[name]) if name in self.sizes else value
 
     def value(self, name: str) -> Any:
         """Return the value of a quantity with its unit, and check its functions on the way."""
@@ -97,7 +97,7 @@ class _Walk:
             self.values[name] = found
         return self.values[name]
 
-    def _judged(self, name: str, node: Node) -> Any:
+    def _judged(self, name: str, node: QuantityNode) -> Any:
         arguments = [self._argument(node, a) for a in node.arguments]
         try:
             if any(a is _Unknown for a in arguments):
@@ -118,14 +118,14 @@ class _Walk:
         if name in self.sizes:
             self.findings.unproved.setdefault(name, why)
 
-    def _argument(self, node: Node, name: str) -> Any:
+    def _argument(self, node: QuantityNode, name: str) -> Any:
         if name in node.defaults and name not in self.given and name not in self.effects:
             return node.defaults[name]
         if name in self.values:
             return self.values[name]
         return self.value(name)
 
-    def _compared(self, name: str, node: Node, found: Any) -> Any:
+    def _compared(self, name: str, node: QuantityNode, found: Any) -> Any:
         """Return a function's result in the declared unit.
 
         Raises
@@ -139,18 +139,18 @@ class _Walk:
         if isinstance(found, Opaque):
             raise Unprovable("it is no number")
         for leaf in leaves(found):
-            if isinstance(leaf, Measured):
+            if isinstance(leaf, UnitValue):
                 self._refuse_misfit(name, node, leaf)
         if leaves(found) or isinstance(found, int):
             self.findings.proved.add(name)
         return self._handed_in(name, stripped(found))
 
-    def _refuse_misfit(self, name: str, node: Node, found: Measured) -> None:
+    def _refuse_misfit(self, name: str, node: QuantityNode, found: UnitValue) -> None:
         if not any(fits(size, declared) for size in found.sizes for declared in self.sizes[name]):
             given = "a plain number" if _is_bare(found.sizes[0]) else told(found.sizes[0])
             raise UnitFault(f"is declared in {self.units[name]}, and its formula gives {given}")
 
-    def _plainly(self, name: str, node: Node, arguments: Sequence[Any]) -> Any:
+    def _plainly(self, name: str, node: QuantityNode, arguments: Sequence[Any]) -> Any:
         """Return a function's result in the declared unit, where units could not be followed through it."""
         if name not in self.sizes or any(a is _Unknown for a in arguments):
             return _Unknown
@@ -165,11 +165,11 @@ def _is_bare(size: Size) -> bool:
     return bool(size.powers[-1]) and not any(size.hard)
 
 
-def _unknown(node: Node, arguments: Sequence[Any]) -> str:
+def _unknown(node: QuantityNode, arguments: Sequence[Any]) -> str:
     return ", ".join(n for n, a in zip(node.arguments, arguments, strict=True) if a is _Unknown)
 
 
-def _line(fault: Exception, node: Node) -> str:
+def _line(fault: Exception, node: QuantityNode) -> str:
     """Return the course line at which units disagree, else that of the function."""
     code = getattr(node.function, "__code__", None)
     home = Path(code.co_filename).parent if code else Path()

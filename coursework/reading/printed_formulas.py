@@ -17,16 +17,16 @@ import numpy as np
 from coursework.errors import BadStatement, CourseworkError
 from coursework.markup.formula_tree import (
     Fence,
+    FormulaRow,
+    FormulaText,
     Fraction,
     Name,
     Node,
     Num,
     Root,
-    Row,
     Script,
     Space,
     Symbol,
-    Text,
     parse,
 )
 
@@ -77,7 +77,7 @@ def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> Reading:
     )
 
 
-def _columns(tree: Row, numbers: Sequence[Num], halves: Sequence[float]) -> list[np.ndarray]:
+def _columns(tree: FormulaRow, numbers: Sequence[Num], halves: Sequence[float]) -> list[np.ndarray]:
     """The coordinates that a tree gives: as printed, then with each number moved up, and down."""
     with np.errstate(all="ignore"):
         found = Evaluation(numbers, halves).of(tree)
@@ -103,7 +103,7 @@ def _numbers(node: Any) -> list[Num]:
     if isinstance(node, tuple):
         return [number for item in node for number in _numbers(item)]
     inner = {
-        Row: ("items",), Fraction: ("above", "below"), Root: ("body",), Fence: ("body",), Script: ("base", "above"),
+        FormulaRow: ("items",), Fraction: ("above", "below"), Root: ("body",), Fence: ("body",), Script: ("base", "above"),
     }.get(type(node), ())  # fmt: skip
     return [number for name in inner for number in _numbers(getattr(node, name))]
 
@@ -163,7 +163,7 @@ _PLUS, _MINUS = Symbol("+", "binary"), Symbol("−", "binary")
 _TIMES = (Symbol("×", "binary"), Symbol("⋅", "binary"))
 _SEMICOLON = Symbol(";", "punctuation")
 _DEGREE = (Symbol("∘", "ordinary"), Symbol("°", "ordinary"))
-DEGREE_SIGNS = (*_DEGREE, *(Row((sign,)) for sign in _DEGREE))
+DEGREE_SIGNS = (*_DEGREE, *(FormulaRow((sign,)) for sign in _DEGREE))
 _LETTERS = {"π": math.pi, "i": 1j}
 
 
@@ -183,7 +183,7 @@ class Evaluation:
                 return float(text)
             case Symbol(text=text) if text in _LETTERS:
                 return _LETTERS[text]
-            case Row(items=items):
+            case FormulaRow(items=items):
                 return _Line(self, [item for item in items if not isinstance(item, Space)]).value()
             case Fraction(above=above, below=below):
                 return np.true_divide(self.of(above), self.of(below))
@@ -330,12 +330,12 @@ def _is_factor(item: Node) -> bool:
 def _told(node: Node) -> str:
     """A piece of a formula as a reader names it."""
     match node:
-        case Symbol(text=text) | Name(text=text) | Text(text=text):
+        case Symbol(text=text) | Name(text=text) | FormulaText(text=text):
             return text
         case Num(negative=negative, digits=digits):
             return "-" * negative + digits
         case Script(base=base):
             return _told(base)
-        case Row(items=items):
+        case FormulaRow(items=items):
             return "".join(map(_told, items))
     return type(node).__name__.lower()

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from markupsafe import Markup
 
 from coursework.course.error_values import TAKEN
-from coursework.figures.text import SIZE, Run
+from coursework.figures.text import SIZE, LetterRun
 from coursework.language.numbers import localise, plain
 from coursework.language.words import listed, quoted, words
 from coursework.quantities.usual_errors import KINDS
@@ -168,7 +168,7 @@ def is_brief(line: FeedbackLine, lang: str, prefix: str = "") -> bool:
 
 
 def _is_short(text: str) -> bool:
-    fits = 1.2 * Run(text, italic=False).width * SIZE <= ANSWER_MM - _SIDES_MM
+    fits = 1.2 * LetterRun(text, italic=False).width * SIZE <= ANSWER_MM - _SIDES_MM
     return "\n" not in text and "\t" not in text and fits
 
 

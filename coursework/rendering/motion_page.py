@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from coursework.figures.moving import COLOURS, Track
+from coursework.figures.moving import COLOURS, MotionTrack
 from coursework.language.numbers import localise, rounded, significant
 from coursework.language.words import words
 from coursework.motion.animation import Animation
@@ -74,12 +74,12 @@ def context(animation: Animation, *, told: bool = True) -> dict[str, Any]:
     }
 
 
-def _numbers(track: Track) -> dict[str, Any]:
+def _numbers(track: MotionTrack) -> dict[str, Any]:
     rows = [[rounded(float(x), 2) for x in row] for row in track.numbers]
     return {"mark": bool(track.mark), "closed": track.closed, "rows": rows}
 
 
-def _svg(tracks: Sequence[Track], size: tuple[float, float], first: int, animation: Animation) -> str:
+def _svg(tracks: Sequence[MotionTrack], size: tuple[float, float], first: int, animation: Animation) -> str:
     """The first instant; what moves is numbered in order, and says what switches it on."""
     width, height = (f"{x:.6g}" for x in size)
     lines, moving = [], 0

@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
-from coursework.figures.text import GREEK, SIZE, Run
+from coursework.figures.text import GREEK, SIZE, LetterRun
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.markup.formula_tree import tokens
@@ -29,7 +29,7 @@ from coursework.sheets.sheet import (
 
 if TYPE_CHECKING:
     from coursework.figures import Beginning, Figure, Picture
-    from coursework.polygons.construction import Row
+    from coursework.polygons.construction import SideRow
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
@@ -387,7 +387,7 @@ def summary_row(answer: Answer, lang: str) -> str:
     return _row(lang, (named, wide["quantity"]), (answer.text, wide["answer"]), (margin, wide["margin"]))
 
 
-def polygon_row(row: Row, lang: str) -> str:
+def polygon_row(row: SideRow, lang: str) -> str:
     """The height of a row of a polygon's table."""
     cells = {name: getattr(row, name) for name in ("name", "direction", "length", "segment")}
     return _row(lang, *((f"${tex}$", POLYGON_MM[name]) for name, tex in cells.items() if tex))
@@ -420,7 +420,7 @@ def _has_power_inside(latex: str) -> bool:
 def _surely_fits(markdown: str, wide: float, lang: str) -> bool:
     """Whether a cell holds a text on one line: its room less its sides, its letters measured with some to spare."""
     said = re.sub("[_^\N{COMBINING RIGHT ARROW ABOVE}]", "", to_text(markdown, lang, sys.maxsize))
-    return 1.2 * Run(said, italic=False).width * SIZE <= wide - _SIDES
+    return 1.2 * LetterRun(said, italic=False).width * SIZE <= wide - _SIDES
 
 
 def offered(question: Question) -> tuple[tuple[str, str], ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from coursework.errors import CourseworkError
 from coursework.language.words import words
-from coursework.selfstudy.mastery import HELD, Advice, Skill, Standing, advised, skills, standings
+from coursework.selfstudy.mastery import HELD, Advice, ExerciseProgress, Skill, advised, skills, standings
 from coursework.selfstudy.progress import Progress
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def told_standings(course: Course[Any], progress: Progress, on: date, lang: str)
     )
 
 
-def _line(course: Course[Any], one: Standing, on: date, lang: str, said: Mapping[str, Any]) -> str:
+def _line(course: Course[Any], one: ExerciseProgress, on: date, lang: str, said: Mapping[str, Any]) -> str:
     line = said["line"].format(
         title=title(course[one.exercise], lang),
         variants=one.variants,

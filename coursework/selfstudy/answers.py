@@ -12,7 +12,7 @@ from coursework.language.words import words
 from coursework.marking.feedback import part_name
 from coursework.marking.mark import Mark, Marking
 from coursework.selfstudy import predictions
-from coursework.selfstudy.store import Kept, is_blank
+from coursework.selfstudy.store import ExerciseStore, is_blank
 
 
 def sign_of(mark: Mark) -> str:
@@ -52,7 +52,7 @@ def sentence_of(variant: Variant, mark: Mark, reveal: str) -> str:
 
 
 def same_as_another(
-    variant: Variant, kept: Kept, given: Mapping[str, Any], marking: Marking
+    variant: Variant, kept: ExerciseStore, given: Mapping[str, Any], marking: Marking
 ) -> tuple[int | None, list[str]]:
     """Return the seed of another variant for which these answers are right, and the parts that are wrong
     here.

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from coursework.marking.marking import mark
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.answers import same_as_another
-from coursework.selfstudy.predictions import Compared, Prediction
+from coursework.selfstudy.predictions import Prediction, PredictionOutcome
 from coursework.selfstudy.progress import EXAMPLE, HINT, REVEAL
 from coursework.selfstudy.recording import marked_answers
-from coursework.selfstudy.right_answers import Own, right_ones
-from coursework.selfstudy.store import Kept, is_blank
+from coursework.selfstudy.right_answers import OwnAnswer, right_ones
+from coursework.selfstudy.store import ExerciseStore, is_blank
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from coursework.model import Part
 
 
-class Checked(NamedTuple):
+class CheckedAnswers(NamedTuple):
     """Marked answers."""
 
     marking: Marking
@@ -45,10 +45,10 @@ class Checked(NamedTuple):
         return next((name for name, one in self.marking.items() if one.verdict not in passed), "")
 
 
-class Attempt:
+class StudyAttempt:
     """Variant with the stored answers to it."""
 
-    def __init__(self, variant: Variant, kept: Kept):
+    def __init__(self, variant: Variant, kept: ExerciseStore):
         self.variant, self.kept = variant, kept
 
     @property
@@ -62,11 +62,11 @@ class Attempt:
         """Stored predictions."""
         return self.kept.of(self.variant.seed, "predictions")
 
-    def marked(self) -> Checked:
+    def marked(self) -> CheckedAnswers:
         """Mark the stored answers, without storing anything."""
-        return Checked(mark(self.variant, self.answers), self.answers)
+        return CheckedAnswers(mark(self.variant, self.answers), self.answers)
 
-    def check(self, given: Mapping[str, Any]) -> Checked:
+    def check(self, given: Mapping[str, Any]) -> CheckedAnswers:
         """Mark answers by part, with stored ones in place of blanks, and store them with the results.
 
         Answers that are wrong here and were given to another variant are not stored.
@@ -84,15 +84,15 @@ class Attempt:
         mine = {n: a for n, a in now.items() if n not in theirs}
         new = marked_answers(self.variant, mine, marking, self.kept.happened(seed))
         self.kept.note(seed, new)
-        return Checked(marking, now, copied, tuple(one["part"] for one in new))
+        return CheckedAnswers(marking, now, copied, tuple(one["part"] for one in new))
 
     # ---------------------------------------------------------------- right answers
 
-    def own(self, checked: Checked) -> dict[str, Own]:
+    def own(self, checked: CheckedAnswers) -> dict[str, OwnAnswer]:
         """Return the right answers as the student wrote them, by quantity."""
         return right_ones(self.variant, checked.answers, checked.right)
 
-    def compared(self, asked: Iterable[Prediction], own: Mapping[str, Own]) -> list[Compared]:
+    def compared(self, asked: Iterable[Prediction], own: Mapping[str, OwnAnswer]) -> list[PredictionOutcome]:
         """Return the predictions with their outcomes; predictions that were not made are left out."""
         said, found = self.predictions, []
         for one in asked:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from coursework.course.answer_keys import answer_keys
 from coursework.language.words import is_whole, words
 from coursework.markup.formula_tree import tokens
-from coursework.quantities.formula_latex import Told, formula_latex, kind_of, number_latex
+from coursework.quantities.formula_latex import PrintedName, formula_latex, kind_of, number_latex
 from coursework.rendering.views import chain_on_lines, given_formula, given_words
 from coursework.selfstudy.refusals import expect
 from coursework.sheets.answer_sheet import answer_sheet
@@ -202,9 +202,9 @@ def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
     the value."""
     values, units = variant.walk, variant.exercise.units
     kinds = {n: kind_of(value, units.get(n, "1")) for n, value in values.items()}
-    symbols = {n: Told(_symbol(variant, n), False, kinds[n]) for n in values}
+    symbols = {n: PrintedName(_symbol(variant, n), False, kinds[n]) for n in values}
     shown = symbols | {
-        n: Told(number_latex(value, units.get(n, "1"), _DIGITS), True, kinds[n])
+        n: PrintedName(number_latex(value, units.get(n, "1"), _DIGITS), True, kinds[n])
         for n, value in known.items()
         if isinstance(values.get(n), (int, float, complex))
     }

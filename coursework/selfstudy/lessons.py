@@ -10,7 +10,7 @@ import numpy as np
 from coursework.figures.plot import Axis, Plot
 from coursework.language.numbers import localise, significant
 from coursework.language.words import words
-from coursework.markup.shown import Picture, Shown
+from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.selfstudy.refusals import would_do
 from coursework.selfstudy.store import is_blank
 from coursework.selfstudy.word_answers import folded, numbers, truth, unwrapped
@@ -20,7 +20,7 @@ _NEAR_ANGLE = 10.0  #: degrees
 _NEAR_ZERO = 0.02  #: where a tenth would be nothing
 
 
-class Compared(Shown):
+class PredictionTable(NotebookDisplay):
     """Predictions with their outcomes; ``outcome`` holds the outcomes alone, for readers on paper."""
 
     outcome = ""
@@ -31,7 +31,7 @@ def compare(
     found: Mapping[str, Any],
     lang: str = "fr",
     angles: Collection[str] = (),
-) -> Compared:
+) -> PredictionTable:
     """Return the predictions with their outcomes, for display in a notebook cell.
 
     Numbers agree within a tenth, angles within 10°, whole turns apart or not; texts and truths when they are the
@@ -63,7 +63,7 @@ def compare(
         if name not in found and not is_blank(guess):
             line = said["refused"]["lesson_name"].format(name=name, said=_told(guess, lang))
             lines.append(f"- ? {line} {would_do(lang, str(name), list(found))}")
-    shown = Compared(lang, "\n".join(lines))
+    shown = PredictionTable(lang, "\n".join(lines))
     shown.outcome = "\n".join(
         f"- {name}{words(lang)['sheet']['colon']} {_told(value, lang)}" for name, value in found.items()
     )
@@ -98,7 +98,7 @@ def plot(
     *,
     lang: str = "fr",
     at: float | None = None,
-) -> Shown:
+) -> NotebookDisplay:
     r"""Plot curves over one variable, a panel each, for display in a notebook cell.
 
     Parameters
@@ -120,4 +120,4 @@ def plot(
     symbol, unit, values = over
     panels = [Axis(label, of, np.asarray(y, dtype=float)) for label, (of, y) in curves.items()]
     drawn = Plot(Axis(symbol, unit, np.asarray(values, dtype=float)), panels, lang, at)
-    return Shown(lang, Picture(drawn.svg(), f"{', '.join(curves)} / {symbol}"))
+    return NotebookDisplay(lang, SvgPicture(drawn.svg(), f"{', '.join(curves)} / {symbol}"))

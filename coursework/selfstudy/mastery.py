@@ -53,7 +53,7 @@ class Outing:
 
 
 @dataclass(frozen=True)
-class Question:
+class RepeatedQuestion:
     """Question over all its variants."""
 
     exercise: str
@@ -108,7 +108,7 @@ def _follow(outing: Outing, one: Entry, day: date) -> None:
         outing.verdicts.append(verdict)
 
 
-def questions(progress: Progress) -> tuple[Question, ...]:
+def questions(progress: Progress) -> tuple[RepeatedQuestion, ...]:
     """Return the attempted questions, each with the day of its repetition."""
     by_question: dict[tuple[str, str], list[Outing]] = {}
     for outing in outings(progress):
@@ -116,7 +116,7 @@ def questions(progress: Progress) -> tuple[Question, ...]:
     return tuple(_question(*key, tuple(met)) for key, met in by_question.items())
 
 
-def _question(exercise: str, part: str, met: tuple[Outing, ...]) -> Question:
+def _question(exercise: str, part: str, met: tuple[Outing, ...]) -> RepeatedQuestion:
     box, due, missed = -1, None, None
     for outing in met:
         if not outing.is_clean:
@@ -126,7 +126,7 @@ def _question(exercise: str, part: str, met: tuple[Outing, ...]) -> Question:
         else:
             box += 1
         due = outing.last + timedelta(days=AFTER_DAYS[box]) if box < len(AFTER_DAYS) else None
-    return Question(exercise, part, met, due, missed)
+    return RepeatedQuestion(exercise, part, met, due, missed)
 
 
 def skills(progress: Progress) -> tuple[Skill, ...]:
@@ -169,7 +169,7 @@ def _texts(told: Any) -> Iterable[str]:
 
 
 @dataclass(frozen=True)
-class Standing:
+class ExerciseProgress:
     """Progress of a student in one exercise."""
 
     exercise: str
@@ -180,7 +180,7 @@ class Standing:
     due: date | None  #: when the first of what was missed comes again
 
 
-def standings(progress: Progress) -> tuple[Standing, ...]:
+def standings(progress: Progress) -> tuple[ExerciseProgress, ...]:
     """Return the progress of a student by exercise, the earliest begun first."""
     found = []
     met, asked = outings(progress), questions(progress)
@@ -189,7 +189,7 @@ def standings(progress: Progress) -> tuple[Standing, ...]:
         dates = [q.due for q in asked if q.exercise == exercise and q.due is not None]
         seeds = {e["seed"] for e in progress if e["exercise"] == exercise and e["what"] != EXAMPLE}
         counts = (len(mine), sum(o.is_right for o in mine), sum(o.is_clean for o in mine))
-        found.append(Standing(exercise, len(seeds), *counts, min(dates, default=None)))
+        found.append(ExerciseProgress(exercise, len(seeds), *counts, min(dates, default=None)))
     return tuple(found)
 
 
@@ -214,7 +214,7 @@ def advised(
     exercise tests, by exercise.
     """
     known = tuple(exercises)
-    waiting: dict[str, list[Question]] = {}
+    waiting: dict[str, list[RepeatedQuestion]] = {}
     for question in questions(progress):
         if question.due is not None and question.exercise in known:
             waiting.setdefault(question.exercise, []).append(question)

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.course.variant import Variant
-from coursework.figures.plot import Axis, Plot, Spot
+from coursework.figures.plot import AnswerPoint, Axis, Plot
 from coursework.language.numbers import unit_text
 from coursework.marking.answers import read
 from coursework.model import Part
 from coursework.selfstudy import predictions
-from coursework.selfstudy.right_answers import Own
+from coursework.selfstudy.right_answers import OwnAnswer
 from coursework.selfstudy.store import is_blank
 
 PANELS = 6  #: curves of a plot, unless some are named
@@ -42,7 +42,7 @@ def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
 
 
 def curves(
-    variant: Variant, parts: Sequence[Part], answers: Mapping[str, Any], own: Mapping[str, Own]
+    variant: Variant, parts: Sequence[Part], answers: Mapping[str, Any], own: Mapping[str, OwnAnswer]
 ) -> Curves:
     """Plot the parts over a turn of the driver; ``answers`` by part, ``own`` the student's right answers by
     quantity."""
@@ -62,8 +62,8 @@ def curves(
 
 
 def _spots(
-    variant: Variant, part: Part, answer: Any, mine: Own | None, at: float, values: np.ndarray
-) -> tuple[Spot, ...]:
+    variant: Variant, part: Part, answer: Any, mine: OwnAnswer | None, at: float, values: np.ndarray
+) -> tuple[AnswerPoint, ...]:
     """Return the student's answer as a point, if it can be read; nothing for a right answer that does not lie
     on this curve."""
     if mine is not None and not mine.is_usual:
@@ -78,4 +78,4 @@ def _spots(
         # Of all turns the one beside the curve, so that a point above it is above.
         middle = (np.nanmin(values) + np.nanmax(values)) / 2
         value = middle + (value - middle + turn / 2) % turn - turn / 2
-    return (Spot(at, value, mine is not None, written),)
+    return (AnswerPoint(at, value, mine is not None, written),)

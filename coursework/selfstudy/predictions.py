@@ -60,7 +60,7 @@ class Prediction:
 
 
 @dataclass(frozen=True)
-class Compared:
+class PredictionOutcome:
     """Prediction with its outcome; ``right`` is None where the prediction cannot be read."""
 
     prediction: Prediction
@@ -281,7 +281,7 @@ def is_understood(variant: Variant, prediction: Prediction, text: Any) -> bool:
 
 def compared(
     variant: Variant, prediction: Prediction, text: Any, own: float | None = None
-) -> Compared | None:
+) -> PredictionOutcome | None:
     """Return a prediction with its outcome; None where nothing was predicted.
 
     ``own`` is the student's own right value, where it is not the reference's: the prediction was of that.
@@ -296,7 +296,7 @@ def compared(
     said = _READ[prediction.kind](variant, prediction, text)
     value = variant.walk[prediction.quantity] if own is None else own
     found, right = _FOUND[prediction.kind](variant, prediction, value, said)
-    return Compared(prediction, str(text).strip(), found, None if said is None else right)
+    return PredictionOutcome(prediction, str(text).strip(), found, None if said is None else right)
 
 
 def _read_guess(variant: Variant, prediction: Prediction, text: Any) -> tuple[Any, ...] | None:

@@ -10,7 +10,7 @@ from coursework.errors import CourseworkError
 from coursework.marking.marking import mark
 from coursework.selfstudy.mastery import RIGHT
 from coursework.selfstudy.progress import ANSWER, Entry, date_of, entry
-from coursework.selfstudy.store import Keeper, is_blank
+from coursework.selfstudy.store import ProgressStore, is_blank
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
@@ -37,7 +37,7 @@ def marked_answers(
     return found
 
 
-def mark_what_came_unmarked(course: Course[Any], file: Keeper) -> None:
+def mark_what_came_unmarked(course: Course[Any], file: ProgressStore) -> None:
     """Mark the stored answers without a verdict, with the date of the answer.
 
     An earlier version, or a course without solutions, stored them.

@@ -18,7 +18,7 @@ _NEAR_ANGLE = 10.0  #: degrees
 
 
 @dataclass(frozen=True)
-class Own:
+class OwnAnswer:
     """Right answer with its number, if it has one; ``is_usual`` if it equals the reference up to rounding.
 
     An answer may be right without that: the other assembly first, another scale of the drawing.
@@ -28,21 +28,21 @@ class Own:
     is_usual: bool
 
 
-def right_ones(variant: Variant, answers: Mapping[str, Any], right: Collection[str]) -> dict[str, Own]:
+def right_ones(variant: Variant, answers: Mapping[str, Any], right: Collection[str]) -> dict[str, OwnAnswer]:
     """Return the student's own answers to the right parts, by quantity."""
     return {p.quantity: _own(variant, p, answers.get(p.id)) for p in variant.parts if p.id in right}
 
 
-def _own(variant: Variant, part: Part, answer: Any) -> Own:
+def _own(variant: Variant, part: Part, answer: Any) -> OwnAnswer:
     walk = variant.walk
     reading = read(variant, part, answer)
     if not part.sort.is_scalar or reading.status != "read":
-        return Own(None, True)
+        return OwnAnswer(None, True)
     reference = float(walk[part.quantity])
     gaps = {float(v): _gap(part, float(v), reference) for v in reading.values}
     value = min(gaps, key=gaps.__getitem__)
     limit = _NEAR_ANGLE if part.sort.turn else _NEAR * abs(reference) + 1e-9
-    return Own(value, gaps[value] <= max(limit, variant.key.half_width(part)))
+    return OwnAnswer(value, gaps[value] <= max(limit, variant.key.half_width(part)))
 
 
 def _gap(part: Part, value: float, reference: float) -> float:

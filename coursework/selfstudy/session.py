@@ -14,7 +14,7 @@ from coursework.course.variant import Variant
 from coursework.errors import BadCourse, NoSolution, Starved, UnknownName, WrongValue
 from coursework.language.words import words
 from coursework.marking.marking import mark as grade
-from coursework.markup.shown import Picture, Shown
+from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.model import Part
 from coursework.motion.gauges import EFFECTS
 from coursework.rendering.displayed import DisplayedAnimation
@@ -23,15 +23,15 @@ from coursework.selfstudy import hints, predictions, refusals
 from coursework.selfstudy import word_answers as wording
 from coursework.selfstudy.advice import next_step, told_advice, told_skills, told_standings
 from coursework.selfstudy.answers import is_open, judged_out_of, quoted, sentence_of, sign_of
-from coursework.selfstudy.attempt import Attempt
+from coursework.selfstudy.attempt import StudyAttempt
 from coursework.selfstudy.examples import LEVELS, blanks, example_variant, has_example, told_steps
 from coursework.selfstudy.plotting import curves, usual_parts
 from coursework.selfstudy.predictions import Prediction
 from coursework.selfstudy.progress import EXAMPLE, HINT, REVEAL
 from coursework.selfstudy.recording import mark_what_came_unmarked
-from coursework.selfstudy.right_answers import Own
+from coursework.selfstudy.right_answers import OwnAnswer
 from coursework.selfstudy.sheet import fresh_variants
-from coursework.selfstudy.store import Clock, Kept, ProgressFile, is_blank, now
+from coursework.selfstudy.store import Clock, ExerciseStore, ProgressFile, is_blank, now
 from coursework.selfstudy.theory import theory, without_theory
 from coursework.sheets.handout import handout
 
@@ -68,7 +68,7 @@ def open_session(
         again = f"coursework {own}notebook {exercise} --seed {seed} --lang {lang} --out DIR"
         told = {"exercise": exercise, "version": version, "installed": one.version, "command": again}
         raise refusals.refused(lang, "version", **told)
-    return StudySession(one.variant(seed, lang), Kept(ProgressFile(Path(folder), clock), exercise))
+    return StudySession(one.variant(seed, lang), ExerciseStore(ProgressFile(Path(folder), clock), exercise))
 
 
 def course_folder(course: str | Path | None, lang: str) -> Path | None:
@@ -102,25 +102,25 @@ class StudySession:
     _called = ""  #: what the notebook calls this session, where it is neither the first nor another variant
     _opening = ""  #: why it is proposed
 
-    def __init__(self, variant: Variant, kept: Kept, base: int | None = None):
+    def __init__(self, variant: Variant, kept: ExerciseStore, base: int | None = None):
         self.variant = variant
         self._kept = kept
-        self._attempt = Attempt(variant, kept)
+        self._attempt = StudyAttempt(variant, kept)
         self._base = variant.seed if base is None else base
         self._hints: dict[str, int] = {}
         self._said = words(variant.lang)["study"]
 
     # ---------------------------------------------------------------- statement
 
-    def statement(self) -> Shown:
+    def statement(self) -> NotebookDisplay:
         """Return the statement, the figure, the data and the questions."""
         sheet, said = handout(self.variant), words(self.variant.lang)["sheet"]
         colon = said["colon"]
         head = self._said["variant"].format(title=f"**{sheet.title}**", seed=sheet.seed)
-        pieces: list[str | Picture] = [f"{head}\n\n{sheet.statement}"]
+        pieces: list[str | SvgPicture] = [f"{head}\n\n{sheet.statement}"]
         if sheet.figure is not None:
-            pieces.append(Picture(sheet.figure.outlined_svg(), sheet.figure_alt))
-        pieces += [Picture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
+            pieces.append(SvgPicture(sheet.figure.outlined_svg(), sheet.figure_alt))
+        pieces += [SvgPicture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
         given = [f"- {hints._given(self.variant, g.name)}" for g in sheet.given]
         if given:
             pieces.append(f"**{said['data']}**\n\n" + "\n".join(given))
@@ -133,7 +133,7 @@ class StudySession:
         pieces.append("\n".join(questions))
         return self._shown(*pieces)
 
-    def _cover(self) -> Shown:
+    def _cover(self) -> NotebookDisplay:
         """Return the display of the session itself: the reason for which it is proposed, if any, else its
         statement."""
         return self._shown(self._opening) if self._opening else self.statement()
@@ -151,7 +151,7 @@ class StudySession:
         """Figure to scale, or picture; the first where there are several."""
         return self.variant.figure
 
-    def motion(self, *effects: str) -> Shown:
+    def motion(self, *effects: str) -> NotebookDisplay:
         """Return the mechanism over its cycle; ``effects`` as in
         :class:`~coursework.motion.animation.Animation`.
 
@@ -178,7 +178,7 @@ class StudySession:
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
             moving = DisplayedAnimation(self.variant, usual)
-        return self._shown(Picture(moving.svg(), moving.title))
+        return self._shown(SvgPicture(moving.svg(), moving.title))
 
     # -------------------------------------------------------------- predictions
 
@@ -197,7 +197,7 @@ class StudySession:
         """Stored predictions for this variant."""
         return self._kept.of(self.variant.seed, "predictions")
 
-    def predict(self, predicted: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
+    def predict(self, predicted: Mapping[str, Any] | None = None, /, **named: Any) -> NotebookDisplay:
         """Store predictions, to be compared once the answers are right or the curves are shown.
 
         What cannot be read is said at once. Without predictions, which there are.
@@ -298,7 +298,7 @@ class StudySession:
     def _left(self, names: Iterable[str]) -> str:
         return self._said["left"].format(names=_names(names))
 
-    def _compared(self, names: Iterable[str], own: Mapping[str, Own]) -> str:
+    def _compared(self, names: Iterable[str], own: Mapping[str, OwnAnswer]) -> str:
         """Return the predictions with their outcomes, as a list."""
         lines = []
         for found in self._attempt.compared([self._asked[name] for name in names], own):
@@ -321,7 +321,7 @@ class StudySession:
         """Return the stored answers to a variant that it asks for: a file may hold others."""
         return {n: a for n, a in self._kept.of(variant.seed, "answers").items() if n in variant.part_ids}
 
-    def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
+    def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> NotebookDisplay:
         """Mark answers, by the name or number of the question, and give feedback; stored answers fill in for
         blank ones.
 
@@ -372,7 +372,7 @@ class StudySession:
         )
 
     @property
-    def _own(self) -> dict[str, Own]:
+    def _own(self) -> dict[str, OwnAnswer]:
         """Right answers of the student, by quantity."""
         return self._attempt.own(self._attempt.marked())
 
@@ -382,7 +382,7 @@ class StudySession:
         names = _names(self._keys.values())
         return sentence.format(names=names, call=self._call(method, self.variant.part_ids[0]))
 
-    def hint(self, question: str | int = "", step: int | None = None) -> Shown:
+    def hint(self, question: str | int = "", step: int | None = None) -> NotebookDisplay:
         """Return a hint, one step further at each call; without a question, list the questions.
 
         ``step`` goes to a step at once. No hint holds the value: :meth:`reveal` does.
@@ -418,7 +418,7 @@ class StudySession:
         closing = said["more"] if last < len(texts) else said["last"].format(call=self._call("reveal", name))
         return self._shown(*pieces, f"*{closing}*")
 
-    def reveal(self, question: str | int = "") -> Shown:
+    def reveal(self, question: str | int = "") -> NotebookDisplay:
         """Return the complete step of the worked solution with its value, for a question by name or number.
 
         Raises
@@ -441,7 +441,7 @@ class StudySession:
 
     # -------------------------------------------------------------------- plots
 
-    def plot(self, *names: str | int) -> Shown:
+    def plot(self, *names: str | int) -> NotebookDisplay:
         """Plot the quantities over a turn of the driver, with the student's answers marked; then compare the
         predictions about them.
 
@@ -488,7 +488,7 @@ class StudySession:
         )
         seen = {p.quantity for p in chosen}
         asked = [p.id for p in predictions.over_the_cycle(self.variant) if p.quantity in seen]
-        picture = Picture(drawn.plot.svg(), drawn.plain)
+        picture = SvgPicture(drawn.plot.svg(), drawn.plain)
         return self._shown(said, picture, *notes, more, not_yet, self._compared(asked, own))
 
     # ----------------------------------------------------------- other variants
@@ -525,7 +525,7 @@ class StudySession:
     def _is_example(self, seed: int) -> bool:
         return any(e["what"] == EXAMPLE for e in self._kept.happened(seed))
 
-    def example(self, level: int | None = None) -> ExampleSession | Shown:
+    def example(self, level: int | None = None) -> ExampleSession | NotebookDisplay:
         """Return the worked solution of another variant, with blanks to fill: the last question at level 1,
         all at level 4.
 
@@ -585,7 +585,7 @@ class StudySession:
     def _today(self) -> date:
         return self._kept.file.clock().date()
 
-    def progress(self) -> Shown:
+    def progress(self) -> NotebookDisplay:
         """Return the variants begun with their results; then the other exercises, the skills lost, and those
         recovered since."""
         if missing := self._missing():
@@ -642,8 +642,8 @@ class StudySession:
         texts = self._said["trouble"]
         return texts[self._kept.trouble].format(file=self._kept.file.troubled) if self._kept.trouble else ""
 
-    def _shown(self, *pieces: str | Picture) -> Shown:
-        return Shown(self.variant.lang, *pieces)
+    def _shown(self, *pieces: str | SvgPicture) -> NotebookDisplay:
+        return NotebookDisplay(self.variant.lang, *pieces)
 
 
 class ExampleSession(StudySession):
@@ -651,7 +651,7 @@ class ExampleSession(StudySession):
 
     _called = "example"
 
-    def __init__(self, variant: Variant, kept: Kept, base: int, level: int):
+    def __init__(self, variant: Variant, kept: ExerciseStore, base: int, level: int):
         self._whole, self.level = variant, level
         super().__init__(variant.asking(blanks(variant, level)), kept, base)
         self._note(EXAMPLE, "", step=level)
@@ -665,15 +665,15 @@ class ExampleSession(StudySession):
     def _numbered(self) -> tuple[str, ...]:
         return self._whole.part_ids
 
-    def statement(self) -> Shown:
+    def statement(self) -> NotebookDisplay:
         """Return the data, then the solution with its blanks."""
         said = self._said["example"]
         head = said["head"].format(title=f"**{self._whole.text.title}**", level=self.level, of=LEVELS)
         sheet = handout(self._whole)
         given = [f"- {hints._given(self._whole, g.name)}" for g in sheet.given]
-        pieces: list[str | Picture] = [head]
+        pieces: list[str | SvgPicture] = [head]
         if sheet.figure is not None:
-            pieces.append(Picture(sheet.figure.outlined_svg(), sheet.figure_alt))
+            pieces.append(SvgPicture(sheet.figure.outlined_svg(), sheet.figure_alt))
         pieces.append("\n".join(given))
         pieces.append(told_steps(self._whole, self.level, self.variant.parts, self._keys, said))
         fill = ", ".join(f'"{key}": ""' for key in self._keys.values())

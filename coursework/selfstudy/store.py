@@ -37,7 +37,7 @@ def now() -> datetime:
     return datetime.now(UTC)
 
 
-class Keeper(Protocol):
+class ProgressStore(Protocol):
     """Interface of a progress store: a file beside notebooks, or another one."""
 
     progress: Progress
@@ -179,20 +179,20 @@ def _alone(path: Path) -> Iterator[None]:
         lock.unlink(missing_ok=True)
 
 
-class Kept:
+class ExerciseStore:
     """Stored data of one exercise: answers and predictions by seed, and all events.
 
     A blank never replaces an earlier answer. The file of an earlier version is imported once, with its date,
     and left unchanged.
     """
 
-    def __init__(self, file: Keeper, exercise: str):
+    def __init__(self, file: ProgressStore, exercise: str):
         self.exercise, self.file = exercise, file
         self.file.take_over(exercise)
 
-    def beside(self, exercise: str) -> Kept:
+    def beside(self, exercise: str) -> ExerciseStore:
         """Return the stored data of another exercise in the same file."""
-        return Kept(self.file, exercise)
+        return ExerciseStore(self.file, exercise)
 
     @property
     def progress(self) -> Progress:

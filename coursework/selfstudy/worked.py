@@ -13,7 +13,7 @@ from coursework.course.exercise import ALL, USUAL
 from coursework.errors import BadCourse, WrongValue, unknown
 from coursework.language.words import words
 from coursework.marking.marking import mark as grade
-from coursework.markup.shown import Picture, Shown
+from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.rendering.views import ROOM_ALONE, ROOM_BESIDE, chain_on_lines, offered
 from coursework.selfstudy import hints
 from coursework.selfstudy.answers import sentence_of, sign_of
@@ -31,7 +31,7 @@ _ROOM = ROOM_BESIDE[0], ROOM_ALONE[1]  #: of the figure, mm
 BARE = LEVELS  #: the level that tells nothing but what is asked
 
 
-class Worked(Shown):
+class WorkedExample(NotebookDisplay):
     """Worked example, for display in a cell; :meth:`check` marks the answers in its blanks."""
 
     def __init__(self, variant: Variant, level: int, parts: Sequence[Part]):
@@ -50,15 +50,15 @@ class Worked(Shown):
     def _keys(self) -> Mapping[str, str]:
         return answer_keys(self.parts)  # questions are numbered as they stand here
 
-    def _posed(self) -> list[str | Picture]:
+    def _posed(self) -> list[str | SvgPicture]:
         """Return the statement, the figure, the data, and the questions."""
         sheet, said = handout(self._asking), words(self.lang)["sheet"]
         told = words(self.lang)["lesson"]["levels"]
         head = told["whole" if not self.level else "bare" if self.level == BARE else "part"]
-        pieces: list[str | Picture] = [f"**{head}{said['colon']} {sheet.title}.** {sheet.statement}"]
+        pieces: list[str | SvgPicture] = [f"**{head}{said['colon']} {sheet.title}.** {sheet.statement}"]
         if sheet.figure is not None:
-            pieces.append(Picture(sheet.figure.fitted(*_ROOM).outlined_svg(), sheet.figure_alt))
-        pieces += [Picture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
+            pieces.append(SvgPicture(sheet.figure.fitted(*_ROOM).outlined_svg(), sheet.figure_alt))
+        pieces += [SvgPicture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
         given = ", ".join(hints._given(self.variant, g.name) for g in sheet.given)
         if given:
             pieces.append(f"**{said['data']}{said['colon']}** {given}.")
@@ -103,7 +103,7 @@ class Worked(Shown):
             return f"${question.symbol}$ = {text}"
         return f"{' '.join(question.prompt.split())} **{text}**"
 
-    def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
+    def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> NotebookDisplay:
         """Mark answers to the blanks, by the name of the question; blank ones are ignored.
 
         Raises
@@ -123,7 +123,7 @@ class Worked(Shown):
             for mark in marking.values()
             if mark.verdict != "missing"
         )
-        return Shown(self.lang, "\n".join(lines))
+        return NotebookDisplay(self.lang, "\n".join(lines))
 
 
 def _named(question: Question) -> str:
@@ -153,7 +153,7 @@ def _step(step: Step) -> str:
 
 def worked(
     course: Course[Any], exercise: str, seed: int, lang: str, level: int, parts: Sequence[str]
-) -> Worked:
+) -> WorkedExample:
     """Return a variant as a worked example.
 
     Raises
@@ -176,7 +176,7 @@ def worked(
         if part not in {*by_id, USUAL, ALL}:
             raise unknown("part", part, tuple(by_id), f"{exercise}, variant {seed}")
     asked = variant.parts if chosen is None else [part for part in chosen if part.id in by_id]
-    return Worked(variant, level, asked)
+    return WorkedExample(variant, level, asked)
 
 
 @lru_cache(maxsize=64)
@@ -189,7 +189,9 @@ def _explained(exercise: Any, name: str, lang: str, seed: int) -> str:
     return " ".join(section.text.split())
 
 
-def mistakes(course: Course[Any], exercise: str, names: Sequence[str], lang: str, seed: int) -> Shown:
+def mistakes(
+    course: Course[Any], exercise: str, names: Sequence[str], lang: str, seed: int
+) -> NotebookDisplay:
     """Return the messages for an exercise's named mistakes, one line each.
 
     Raises
@@ -197,4 +199,6 @@ def mistakes(course: Course[Any], exercise: str, names: Sequence[str], lang: str
     UnknownName
         No such exercise, or no such mistake of it.
     """
-    return Shown(lang, "\n".join(f"- {_explained(course[exercise], name, lang, seed)}" for name in names))
+    return NotebookDisplay(
+        lang, "\n".join(f"- {_explained(course[exercise], name, lang, seed)}" for name in names)
+    )

@@ -14,8 +14,8 @@ from coursework.language.words import is_whole, quoted
 from coursework.language.words import words as engine_words
 from coursework.model import Part
 from coursework.quantities.formula_latex import (
+    PrintedName,
     Shown,
-    Told,
     formula_in_symbols,
     formula_latex,
     kind_of,
@@ -84,7 +84,7 @@ def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step
     kinds = {n: kind_of(v, units.get(n, "1")) for n, v in named.items()}
     symbols = tuple((n, _symbol(variant, n), kinds[n]) for n in named)
     numbers = {
-        n: Told(number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True, kinds[n])
+        n: PrintedName(number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True, kinds[n])
         for n, v in named.items()
         if isinstance(v, (int, float, complex))
     }

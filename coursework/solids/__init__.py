@@ -12,7 +12,7 @@ one unit of length, any one; axes and normals need not be unit vectors.
 
 from coursework.solids.aligned import (
     ARRANGEMENTS,
-    Placed,
+    AlignedJoint,
     aligned,
     arranged,
     directions_of,
@@ -32,11 +32,11 @@ __all__ = [
     "EQUIVALENTS",
     "FREEDOMS",
     "JOINTS",
+    "AlignedJoint",
     "Chain",
     "Equivalent",
     "Joint",
     "Parallel",
-    "Placed",
     "PlanarChain",
     "Rank",
     "Series",

@@ -67,7 +67,7 @@ def placed(point: tuple[float, float, float], tilt: str = "") -> tuple[float, fl
     return x, y, z
 
 
-class Placed(NamedTuple):
+class AlignedJoint(NamedTuple):
     """Arguments of :func:`aligned` for one joint."""
 
     name: str
@@ -90,12 +90,12 @@ ARRANGEMENTS: Mapping[str, tuple[int, bool, bool]] = {
 }
 
 
-def arranged(arrangement: str, tilt: str, inclined: str, *joints: Sequence[Any]) -> tuple[Placed, ...]:
+def arranged(arrangement: str, tilt: str, inclined: str, *joints: Sequence[Any]) -> tuple[AlignedJoint, ...]:
     """Return the joints of an arrangement at their positions; each joint is (name, along, x, y, z), lengths
     in mm."""
     count, is_tilted, is_inclined = ARRANGEMENTS[arrangement]
     return tuple(
-        Placed(
+        AlignedJoint(
             name,
             inclined if is_inclined and number == 1 else along,
             (float(x), float(y), float(z)),

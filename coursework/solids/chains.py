@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.solids.joints import Joint, Measure, Vector, read_joints
+from coursework.solids.joints import Joint, TwistReference, Vector, read_joints
 from coursework.solids.ranks import Rank, rank_of
 
 
@@ -78,8 +78,8 @@ class _Loops:
         return found
 
     @cached_property
-    def measure(self) -> Measure:
-        return Measure.of(self.joints)
+    def measure(self) -> TwistReference:
+        return TwistReference.of(self.joints)
 
     @cached_property
     def columns(self) -> list[np.ndarray]:

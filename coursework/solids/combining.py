@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.solids.joints import Joint, Measure, read_joints
+from coursework.solids.joints import Joint, TwistReference, read_joints
 from coursework.solids.poses import all_free_at_every_pose
 from coursework.solids.ranks import Rank, decompose
 from coursework.solids.recognition import Equivalent, recognise
@@ -52,8 +52,8 @@ class Parallel:
     joints: tuple[Joint, ...]
 
     @cached_property
-    def measure(self) -> Measure:
-        return Measure.of(self.joints)
+    def measure(self) -> TwistReference:
+        return TwistReference.of(self.joints)
 
     @cached_property
     def _spaces(self) -> tuple[Rank, np.ndarray, np.ndarray]:
@@ -121,8 +121,8 @@ class Series:
     joints: tuple[Joint, ...]
 
     @cached_property
-    def measure(self) -> Measure:
-        return Measure.of(self.joints)
+    def measure(self) -> TwistReference:
+        return TwistReference.of(self.joints)
 
     @cached_property
     def _spaces(self) -> tuple[Rank, np.ndarray, np.ndarray]:

@@ -22,7 +22,7 @@ Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class Kind:
+class JointKind:
     """Row of the joint table: free rotations and translations by the letters of the frame, and the required
     keys."""
 
@@ -31,19 +31,19 @@ class Kind:
     needs: tuple[str, ...] = ()
 
 
-_KINDS: Mapping[str, Kind] = {
-    "rigid": Kind("", ""),
-    "revolute": Kind("u", "", ("axis", "point")),
-    "prismatic": Kind("", "u", ("axis",)),
-    "helical": Kind("u", "", ("axis", "point", "pitch")),
-    "cylindrical": Kind("u", "u", ("axis", "point")),
-    "spherical_pin": Kind("vw", "", ("axis", "point")),
-    "spherical": Kind("uvw", "", ("point",)),
-    "planar": Kind("u", "vw", ("normal",)),
-    "annular": Kind("uvw", "u", ("axis", "point")),
-    "line_contact": Kind("uv", "uw", ("axis", "normal", "point")),
-    "point_contact": Kind("uvw", "vw", ("normal", "point")),
-    "free": Kind("uvw", "uvw"),
+_KINDS: Mapping[str, JointKind] = {
+    "rigid": JointKind("", ""),
+    "revolute": JointKind("u", "", ("axis", "point")),
+    "prismatic": JointKind("", "u", ("axis",)),
+    "helical": JointKind("u", "", ("axis", "point", "pitch")),
+    "cylindrical": JointKind("u", "u", ("axis", "point")),
+    "spherical_pin": JointKind("vw", "", ("axis", "point")),
+    "spherical": JointKind("uvw", "", ("point",)),
+    "planar": JointKind("u", "vw", ("normal",)),
+    "annular": JointKind("uvw", "u", ("axis", "point")),
+    "line_contact": JointKind("uv", "uw", ("axis", "normal", "point")),
+    "point_contact": JointKind("uvw", "vw", ("normal", "point")),
+    "free": JointKind("uvw", "uvw"),
 }
 
 JOINTS: tuple[str, ...] = tuple(_KINDS)  #: the names, from the fewest freedoms of a family to the most
@@ -89,7 +89,7 @@ class Joint:
         return FREEDOMS[self.name]
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> JointKind:
         return _KINDS[self.name]
 
     @cached_property
@@ -202,7 +202,7 @@ def read_joints(given: Iterable[Joint | Mapping[str, Any]]) -> tuple[Joint, ...]
     return joints_of(every)
 
 
-def _frame(given: Mapping[str, Any], kind: Kind, name: str) -> tuple[Vector, Vector, Vector]:
+def _frame(given: Mapping[str, Any], kind: JointKind, name: str) -> tuple[Vector, Vector, Vector]:
     if not {"axis", "normal"} & set(kind.needs):
         return (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
     u = _direction(given, "axis" if "axis" in kind.needs else "normal")
@@ -247,14 +247,14 @@ _TOGETHER = 1e-12  #: points nearer to one another than that, relative to their 
 
 
 @dataclass(frozen=True)
-class Measure:
+class TwistReference:
     """Origin of twists and unit of their lengths, which make ranks independent of units."""
 
     origin: Vector
     length: float
 
     @staticmethod
-    def of(joints: Sequence[Joint]) -> Measure:
+    def of(joints: Sequence[Joint]) -> TwistReference:
         """Return the middle of the joints' points and the largest distance from it.
 
         Where all points coincide, a pitch is the only length; where there is none, any length does.
@@ -272,7 +272,7 @@ class Measure:
             if reach <= _TOGETHER * max(max(map(abs, point)) for point in points):
                 reach = 0.0
         if reach:
-            return Measure(origin, reach)
+            return TwistReference(origin, reach)
         advance = max((abs(joint.pitch) for joint in joints), default=0.0)
         size = max(map(abs, origin))
-        return Measure(origin, advance / (2 * math.pi) or size or 1.0)
+        return TwistReference(origin, advance / (2 * math.pi) or size or 1.0)

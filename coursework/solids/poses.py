@@ -37,7 +37,7 @@ def all_free_at_every_pose(joints: Sequence[Joint]) -> bool:
 
 
 @dataclass(frozen=True)
-class _Block:
+class _SlideBlock:
     """Directions of translations that no rotation separates, and the rotations that follow: axes, in order,
     or None for a joint with more than one."""
 
@@ -50,23 +50,23 @@ class _Block:
         return np.cross(*self.span)
 
 
-def _blocks(joints: Sequence[Joint]) -> list[_Block]:
-    found: list[_Block] = []
+def _blocks(joints: Sequence[Joint]) -> list[_SlideBlock]:
+    found: list[_SlideBlock] = []
     slides: list[Vector] = []
     turns: tuple[Vector, ...] | None = ()
     for joint in joints:
         own = _turns_of(joint)
         if turns != () and (joint.kind.translations or own is None):
-            found.append(_Block(_spanned(slides), turns))
+            found.append(_SlideBlock(_spanned(slides), turns))
             slides, turns = [], ()
         if own is None and joint.kind.translations:
             # It turns its own slide, or not: that is counted on for nothing.
-            found.append(_Block(_spanned(slides), None))
+            found.append(_SlideBlock(_spanned(slides), None))
             slides = []
             continue
         slides += joint.slides
         turns = None if own is None or turns is None else (*turns, *own)
-    return [*found, _Block(_spanned(slides), ())]
+    return [*found, _SlideBlock(_spanned(slides), ())]
 
 
 def _turns_of(joint: Joint) -> tuple[Vector, ...] | None:
@@ -80,7 +80,7 @@ def _spanned(slides: Sequence[Vector]) -> np.ndarray:
     return decompose(np.array(slides).reshape(-1, 3), "the directions of the slides", 1.0)[1]
 
 
-def _span_together(blocks: Sequence[_Block], one: int, other: int) -> bool:
+def _span_together(blocks: Sequence[_SlideBlock], one: int, other: int) -> bool:
     """Return whether two blocks span space at every position of the rotations between them."""
     first, last = blocks[one].span, blocks[other].span
     axes: list[Vector] = []

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coursework.solids.joints import Measure
+from coursework.solids.joints import TwistReference
 from coursework.solids.ranks import decompose, is_zero
 
 EQUIVALENTS: tuple[str, ...] = (
@@ -46,7 +46,7 @@ class Equivalent:
         return self.normal if self.axis is None else self.axis
 
 
-def recognise(twists: np.ndarray, wrenches: np.ndarray, measure: Measure) -> Equivalent:
+def recognise(twists: np.ndarray, wrenches: np.ndarray, measure: TwistReference) -> Equivalent:
     """Return the joint whose free twists are those of the rows.
 
     ``twists`` (m, 6) and ``wrenches`` (6 - m, 6) are orthonormal bases, perpendicular to one another, written
@@ -67,7 +67,7 @@ class _Space:
     ``rest`` the moment: both are a vector along a line, and what it gives at the origin.
     """
 
-    def __init__(self, rows: np.ndarray, measure: Measure):
+    def __init__(self, rows: np.ndarray, measure: TwistReference):
         self.rows, self.measure = rows, measure
 
     def of_forces(self) -> _Space:

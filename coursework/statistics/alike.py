@@ -23,7 +23,7 @@ _NAMES = 3  #: students that are named
 _NUMBER = re.compile(r"-?\d*\.?\d+(?:e[-+]?\d+)?")
 
 
-class Alike(NamedTuple):
+class AlikeSheet(NamedTuple):
     """Sheet whose wrong answers are right on another variant."""
 
     student: str
@@ -47,7 +47,7 @@ class Alike(NamedTuple):
         )
 
 
-def alike(folder: Path) -> list[Alike]:
+def alike(folder: Path) -> list[AlikeSheet]:
     """Return the sheets of a folder of marks most of whose wrong answers are right on one other variant.
 
     Raises
@@ -69,7 +69,7 @@ def alike(folder: Path) -> list[Alike]:
             wrong[student, exercise, seed].append((part, value))
     sorted_right = {place: _sorted(by_seed) for place, by_seed in right.items()}
     return [
-        Alike(student, exercise, seed, other, tuple(owners[exercise, other]), count, len(answers))
+        AlikeSheet(student, exercise, seed, other, tuple(owners[exercise, other]), count, len(answers))
         for (student, exercise, seed), answers in wrong.items()
         if len(answers) >= FEWEST
         for other, count in _likest(exercise, seed, answers, sorted_right)

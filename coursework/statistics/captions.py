@@ -20,7 +20,7 @@ SHORT = 44  #: characters of a question's words, or of a mistake's, that stand f
 _OPEN = re.compile(r"\{\w+\}")
 
 
-class Question(Protocol):
+class ReportedQuestion(Protocol):
     """Question by its exercise and its part."""
 
     @property
@@ -60,7 +60,7 @@ class Names:
         place = ids.index(part.part)
         return place + 1 if always.issuperset(ids[:place]) else None
 
-    def _known(self, part: Question) -> tuple[CourseExercise | None, Part | None]:
+    def _known(self, part: ReportedQuestion) -> tuple[CourseExercise | None, Part | None]:
         """Return the exercise and the part; None for one that the course does not have."""
         exercise = self.exercise(part.exercise)
         return exercise, None if exercise is None else exercise.spec.part(part.part)
@@ -72,7 +72,7 @@ class Names:
             return ""
         return exercise.symbol(asked.quantity)
 
-    def question(self, part: Question) -> str:
+    def question(self, part: ReportedQuestion) -> str:
         """Return the words of the question, shortened, as plain text; the part's id where there are none."""
         exercise, asked = self._known(part)
         if exercise is None or asked is None or self._lang not in exercise.languages:

@@ -99,7 +99,7 @@ def read(folder: Path) -> Marks:
 Line = tuple[str, str, str, str, float, float]  #: student, exercise, part, verdict, points, out of
 
 
-class Told(NamedTuple):
+class StudentSummary(NamedTuple):
     """Summary of a student."""
 
     out_of: float
@@ -107,7 +107,7 @@ class Told(NamedTuple):
     unreadable: bool  #: something of theirs could not be read
 
 
-def marks_of(lines: Iterable[Line], told: Mapping[str, Told], rejected: int = 0) -> Marks:
+def marks_of(lines: Iterable[Line], told: Mapping[str, StudentSummary], rejected: int = 0) -> Marks:
     """Return the columns of a class's marks, with the summary of each student."""
     return _Columns(lines).marks(told, rejected)
 
@@ -126,7 +126,7 @@ class _Columns:
             self.points.append(got)
             self.out_of.append(of)
 
-    def marks(self, told: Mapping[str, Told], rejected: int) -> Marks:
+    def marks(self, told: Mapping[str, StudentSummary], rejected: int) -> Marks:
         """Return the marks, with the summaries."""
         students, marked = self.students, len(self.students)
         unread = [name for name, own in told.items() if own.unreadable]
@@ -190,12 +190,12 @@ def _header(path: Path) -> list[str]:
     return [name.strip().strip('"').casefold() for name in line.split(delimiter_of(line))]
 
 
-def _summary(path: Path, decimals: _Decimals) -> dict[str, Told]:
+def _summary(path: Path, decimals: _Decimals) -> dict[str, StudentSummary]:
     """Return the summary of each student."""
     if not path.is_file():
         return {}
     return {
-        name: Told(out_of, round(missing), unreadable.strip() not in ("", "0"))
+        name: StudentSummary(out_of, round(missing), unreadable.strip() not in ("", "0"))
         for name, unreadable, out_of, missing in _lines(path, _SUMMARY, decimals)
     }
 

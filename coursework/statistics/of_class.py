@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from coursework.gradebook.book import Result
 from coursework.gradebook.graded import Graded
-from coursework.statistics.marks import Line, Marks, Told, marks_of
+from coursework.statistics.marks import Line, Marks, StudentSummary, marks_of
 
 
 def marks_of_class(graded: Iterable[Graded], results: Mapping[str, Result], rejected: int = 0) -> Marks:
@@ -15,8 +15,8 @@ def marks_of_class(graded: Iterable[Graded], results: Mapping[str, Result], reje
     return marks_of(_lines(graded, results), told, rejected)
 
 
-def _told(own: Result) -> Told:
-    return Told(own.out_of, own.verdicts["missing"], bool(own.verdicts["unreadable"]))
+def _told(own: Result) -> StudentSummary:
+    return StudentSummary(own.out_of, own.verdicts["missing"], bool(own.verdicts["unreadable"]))
 
 
 def _lines(graded: Iterable[Graded], results: Mapping[str, Result]) -> Iterator[Line]:

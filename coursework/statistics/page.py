@@ -49,7 +49,7 @@ def sheet_order(course: Course, exercises: Iterable[str]) -> dict[str, tuple[str
 def report(course: Course, statistics: Statistics, lang: str) -> Report:
     """Return the report: conclusions, points, a section for each exercise, mistakes; with a note where no
     chart can be drawn."""
-    page = _Page(course, statistics, lang)
+    page = _StatisticsPage(course, statistics, lang)
     sections = [page.short()]
     if statistics.percents.size:
         sections.append(page.points())
@@ -73,7 +73,7 @@ def mistake_rows(course: Course, statistics: Statistics, lang: str) -> Iterator[
         yield {c: {**one.row(), "says": names.says(one)}[c] for c in MISTAKE_COLUMNS}
 
 
-class _Page:
+class _StatisticsPage:
     """Sections of one report."""
 
     def __init__(self, course: Course, statistics: Statistics, lang: str) -> None:

@@ -16,21 +16,21 @@ A mechanism is a list of joints, records ``{"between": [i, j], "kind": "revolute
 ``columns``  functions of one mechanism, applied to many
 """
 
-from coursework.structure.assour import Decomposition, Group, decompose
+from coursework.structure.assour import AssourGroup, Decomposition, decompose
 from coursework.structure.grashof import linkage_type
-from coursework.structure.growing import Grown, grow
-from coursework.structure.joints import FRAME, Counts, Joint, JointGraph
+from coursework.structure.growing import GeneratedMechanism, grow
+from coursework.structure.joints import FRAME, Counts, JointGraph, PlaneJoint
 from coursework.structure.library import LIBRARY
 
 __all__ = [
     "FRAME",
     "LIBRARY",
+    "AssourGroup",
     "Counts",
     "Decomposition",
-    "Group",
-    "Grown",
-    "Joint",
+    "GeneratedMechanism",
     "JointGraph",
+    "PlaneJoint",
     "decompose",
     "grow",
     "linkage_type",

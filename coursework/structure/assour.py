@@ -19,7 +19,7 @@ Node = tuple[str, int]  #: ("body", number) or ("pin", index of a joint)
 
 
 @dataclass(frozen=True)
-class Group:
+class AssourGroup:
     """Bodies of an Assour group, in increasing order, and its class, from 2 on."""
 
     bodies: tuple[int, ...]
@@ -36,7 +36,7 @@ class Decomposition:
     first."""
 
     driver: int
-    groups: tuple[Group, ...]
+    groups: tuple[AssourGroup, ...]
 
     @property
     def rank(self) -> int:
@@ -47,7 +47,7 @@ class Decomposition:
     def class_name(self) -> str:
         return roman(self.rank)
 
-    def group_of(self, body: int) -> Group | None:
+    def group_of(self, body: int) -> AssourGroup | None:
         """Return the group that holds a body; None for the frame and the driver."""
         return next((group for group in self.groups if body in group.bodies), None)
 
@@ -235,20 +235,20 @@ def _visit(start: Node, arrows: dict[Node, set[Node]], seen: set[Node], leave: A
 # ------------------------------------------------------------------ order and classes
 
 
-def _ordered(graph: JointGraph, driver: int, rings: Sequence[tuple[int, ...]]) -> tuple[Group, ...]:
+def _ordered(graph: JointGraph, driver: int, rings: Sequence[tuple[int, ...]]) -> tuple[AssourGroup, ...]:
     """Return the groups in order of assembly: at each step the smallest set with all its pairs, lowest bodies
     first."""
     placed = {FRAME, driver}
     ready: list[tuple[int, tuple[int, ...]]] = []
     waiting = set(rings)
-    found: list[Group] = []
+    found: list[AssourGroup] = []
     while waiting or ready:
         able = [ring for ring in waiting if 2 * _pairs_of(graph, ring, placed) == 3 * len(ring)]
         for ring in able:
             heapq.heappush(ready, (len(ring), ring))
         waiting.difference_update(able)
         _, ring = heapq.heappop(ready)
-        found.append(Group(ring, class_of(graph, ring, placed)))
+        found.append(AssourGroup(ring, class_of(graph, ring, placed)))
         placed.update(ring)
     return tuple(found)
 

@@ -10,7 +10,7 @@ import hashlib
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
-from coursework.structure.joints import FRAME, Joint, JointGraph, Record
+from coursework.structure.joints import FRAME, JointGraph, PlaneJoint, Record
 
 Item = TypeVar("Item")
 
@@ -19,7 +19,7 @@ DYAD, TRIAD, TETRAD, FOLLOWER, STIFFENER = "dyad", "triad", "tetrad", "follower"
 _HANGS_ON = {DYAD: 2, TRIAD: 3, TETRAD: 2, FOLLOWER: 2, STIFFENER: 2}
 
 
-class Choices:
+class NumberStream:
     """Reproducible stream of small whole numbers, seeded by a number."""
 
     def __init__(self, number: int, purpose: str):
@@ -46,7 +46,7 @@ class Choices:
         return [rest.pop(self.below(len(rest))) for _ in items]
 
 
-class Grown(NamedTuple):
+class GeneratedMechanism(NamedTuple):
     """Generated mechanism as a list of records, in the order of the statement, and its drivers."""
 
     joints: tuple[Record, ...]
@@ -57,29 +57,29 @@ class Grown(NamedTuple):
         return JointGraph.of(self.joints)
 
 
-def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> Grown:
+def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> GeneratedMechanism:
     """Return the mechanism of a number: these groups attached in this order, bodies and joints then shuffled.
 
     ``groups`` holds ``dyad`` (class II), ``triad`` (III), ``tetrad`` (IV: a loop of four bodies), ``follower``
     (one body, a lower and a higher pair) and ``stiffener`` (a bar, which takes a degree of freedom away).
     """
-    plant = _Plant(Choices(number, "grow"), drivers)
+    plant = _Plant(NumberStream(number, "grow"), drivers)
     for group in groups:
         plant.attach(group)
     return relabelled(number, plant.joints, tuple(range(2, 2 + drivers)))
 
 
-def relabelled(number: int, joints: Sequence[Joint], drivers: Sequence[int] = ()) -> Grown:
+def relabelled(number: int, joints: Sequence[PlaneJoint], drivers: Sequence[int] = ()) -> GeneratedMechanism:
     """Return the mechanism with moving bodies renumbered, joints shuffled and lettered A, B, C, … along the
     list."""
-    choices = Choices(number, "relabel")
+    choices = NumberStream(number, "relabel")
     moving = sorted({body for joint in joints for body in joint.bodies} - {FRAME})
     new = {FRAME: FRAME, **dict(zip(moving, choices.shuffled(moving), strict=True))}
     records = tuple(
         {"between": sorted(new[body] for body in joint.bodies), "kind": joint.kind, "at": _letter(place)}
         for place, joint in enumerate(choices.shuffled(list(joints)))
     )
-    return Grown(records, tuple(new[body] for body in drivers))
+    return GeneratedMechanism(records, tuple(new[body] for body in drivers))
 
 
 def _letter(place: int) -> str:
@@ -91,9 +91,9 @@ def _letter(place: int) -> str:
 class _Plant:
     """Mechanism under construction."""
 
-    def __init__(self, choices: Choices, drivers: int):
+    def __init__(self, choices: NumberStream, drivers: int):
         self.choices = choices
-        self.joints: list[Joint] = []
+        self.joints: list[PlaneJoint] = []
         self.bodies = [FRAME]
         for _ in range(drivers):
             body = self._new_body()
@@ -108,7 +108,7 @@ class _Plant:
         return "prismatic" if self.choices.below(one_in) == 0 else "revolute"
 
     def _join(self, one: int, other: int, kind: str) -> None:
-        self.joints.append(Joint(tuple(sorted((one, other))), kind))
+        self.joints.append(PlaneJoint(tuple(sorted((one, other))), kind))
 
     def attach(self, group: str) -> None:
         hosts = self._hosts(_HANGS_ON[group])
@@ -160,8 +160,8 @@ class _Plant:
             self._join(body, min(host), kind)
             return
         bodies = tuple(sorted(host))
-        place = self.joints.index(Joint(bodies, "revolute"))
-        self.joints[place] = Joint((*bodies, body), "revolute")
+        place = self.joints.index(PlaneJoint(bodies, "revolute"))
+        self.joints[place] = PlaneJoint((*bodies, body), "revolute")
 
     def _dyad(self, hosts: list[frozenset[int]]) -> None:
         one, other = self._new_body(), self._new_body()

@@ -23,7 +23,7 @@ Record = Mapping[str, Any]
 Pair = tuple[int, int]
 
 
-class Joint(NamedTuple):
+class PlaneJoint(NamedTuple):
     """Bodies joined at one point, in increasing order; only a pivot joins more than two."""
 
     bodies: tuple[int, ...]
@@ -52,10 +52,10 @@ class Counts(NamedTuple):
 class JointGraph:
     """Joint graph in one canonical order: equal mechanisms are equal values."""
 
-    joints: tuple[Joint, ...]
+    joints: tuple[PlaneJoint, ...]
 
     @staticmethod
-    def of(records: JointGraph | Iterable[Record | Joint]) -> JointGraph:
+    def of(records: JointGraph | Iterable[Record | PlaneJoint]) -> JointGraph:
         """Read a list of joint records.
 
         Raises
@@ -101,7 +101,7 @@ class JointGraph:
         freedoms = 3 * (total - 1) - 2 * lower - higher
         return Counts(total - 1, lower, higher, freedoms, pairs, total, pairs - total + 1)
 
-    def joints_of(self, body: int) -> tuple[Joint, ...]:
+    def joints_of(self, body: int) -> tuple[PlaneJoint, ...]:
         """Return the joints that a body takes part in."""
         return tuple(joint for joint in self.joints if body in joint.bodies)
 
@@ -156,9 +156,9 @@ def _way(parents: Mapping[int, int], body: int) -> list[int]:
     return way
 
 
-def _joint(record: Any, number: int) -> Joint:
+def _joint(record: Any, number: int) -> PlaneJoint:
     where = f"joint {number} of the list"
-    if isinstance(record, Joint):
+    if isinstance(record, PlaneJoint):
         record = {"between": record.bodies, "kind": record.kind, "at": record.at}
     if not isinstance(record, Mapping):
         raise WrongValue(f"{where} must be a record with 'between' and 'kind'; found {str(record)[:60]!r}")
@@ -175,7 +175,7 @@ def _joint(record: Any, number: int) -> Joint:
     if len(bodies) > 2 and kind != "revolute":
         raise WrongValue(f"{where}: only a pivot joins more than two bodies; found {kind} between {bodies}")
     at = record.get("at")
-    return Joint(bodies, str(kind), "" if at is None else str(at))
+    return PlaneJoint(bodies, str(kind), "" if at is None else str(at))
 
 
 def _bodies(between: Any, where: str) -> tuple[int, ...]:
@@ -190,17 +190,17 @@ def _bodies(between: Any, where: str) -> tuple[int, ...]:
     return bodies
 
 
-def _merged(joints: Sequence[Joint]) -> list[Joint]:
+def _merged(joints: Sequence[PlaneJoint]) -> list[PlaneJoint]:
     """Return the joints with pivots of one label merged."""
     found = [joint for joint in joints if joint.kind != "revolute" or not joint.at]
-    labelled: dict[str, list[Joint]] = {}
+    labelled: dict[str, list[PlaneJoint]] = {}
     for joint in joints:
         if joint.kind == "revolute" and joint.at:
             labelled.setdefault(joint.at, []).append(joint)
     return found + [_one_pivot(label, several) for label, several in labelled.items()]
 
 
-def _one_pivot(label: str, joints: list[Joint]) -> Joint:
+def _one_pivot(label: str, joints: list[PlaneJoint]) -> PlaneJoint:
     together, rest = set(joints[0].bodies), joints[1:]
     while rest:
         touching = [joint for joint in rest if together & set(joint.bodies)]
@@ -209,10 +209,10 @@ def _one_pivot(label: str, joints: list[Joint]) -> Joint:
             raise WrongValue(f"the pivots at {label!r} share no body: {apart}; give them different labels")
         together = together.union(*[joint.bodies for joint in touching])
         rest = [joint for joint in rest if joint not in touching]
-    return Joint(tuple(sorted(together)), "revolute", label)
+    return PlaneJoint(tuple(sorted(together)), "revolute", label)
 
 
-def _check_bodies(joints: Sequence[Joint]) -> None:
+def _check_bodies(joints: Sequence[PlaneJoint]) -> None:
     if not joints:
         raise WrongValue("a mechanism needs joints; the list is empty")
     linked: set[int] = {FRAME}

@@ -31,14 +31,14 @@ _Once: TypeAlias = list[tuple[np.ndarray, ...]]
 
 
 @dataclass(frozen=True)
-class Slide:
+class SlidingPair:
     """A sliding pair: the body that is the guide, and the body that is the block."""
 
     guide: int
     block: int
 
 
-def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, Slide]:
+def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, SlidingPair]:
     """Return the sliding pairs by joint index. The frame guides; else the body with the most joints, so that
     blocks are small bodies.
 
@@ -57,7 +57,7 @@ def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, Slide]:
     for index, joint in enumerate(graph.joints):
         if joint.kind == "prismatic":
             block, guide = sorted(joint.bodies, key=partial(rank, index=index))
-            found[index] = Slide(guide, block)
+            found[index] = SlidingPair(guide, block)
     return found
 
 

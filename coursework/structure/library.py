@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from coursework.structure.joints import Joint, JointGraph
+from coursework.structure.joints import JointGraph, PlaneJoint
 
 _KINDS = {"R": "revolute", "P": "prismatic", "H": "higher"}
 
@@ -21,7 +21,7 @@ def _graph(text: str) -> JointGraph:
     joints = []
     for word in text.split():
         bodies, _, at = word[1:].partition(":")
-        joints.append(Joint(tuple(int(b) for b in bodies.split("-")), _KINDS[word[0]], at))
+        joints.append(PlaneJoint(tuple(int(b) for b in bodies.split("-")), _KINDS[word[0]], at))
     return JointGraph.of(joints)
 
 

@@ -7,7 +7,16 @@ from typing import NamedTuple
 
 from coursework.errors import CourseworkError
 from coursework.structure.assour import decompose, drivers
-from coursework.structure.growing import DYAD, FOLLOWER, STIFFENER, TETRAD, TRIAD, Choices, grow, relabelled
+from coursework.structure.growing import (
+    DYAD,
+    FOLLOWER,
+    STIFFENER,
+    TETRAD,
+    TRIAD,
+    NumberStream,
+    grow,
+    relabelled,
+)
 from coursework.structure.joints import FRAME, JointGraph, Record
 from coursework.structure.library import LIBRARY
 
@@ -52,7 +61,7 @@ class Driven(NamedTuple):
 @lru_cache(maxsize=4096)
 def to_count(number: int) -> tuple[Record, ...]:
     """Return a mechanism to count joints and bodies of; its mobility by the formula is 0, 1 or 2."""
-    choices = Choices(number, "count")
+    choices = NumberStream(number, "count")
     if choices.below(_ONE_IN) == 0:
         return relabelled(number, LIBRARY[choices.one_of(_COUNTED_FIGURES)].joints).joints
     driven = 2 if choices.below(3) == 0 else 1
@@ -65,7 +74,7 @@ def to_count(number: int) -> tuple[Record, ...]:
 @lru_cache(maxsize=4096)
 def to_decompose(number: int) -> Driven:
     """Return a mechanism to decompose into Assour groups of class II to IV, and any driver that allows it."""
-    choices = Choices(number, "decompose")
+    choices = NumberStream(number, "decompose")
     if choices.below(_ONE_IN) == 0:
         grown = relabelled(number, LIBRARY[choices.one_of(_DECOMPOSED_FIGURES)].joints, (2,))
     else:

@@ -9,7 +9,7 @@ from itertools import combinations
 
 from coursework.figures import Figure, circle, contact, line, note
 from coursework.figures.ink import added
-from coursework.structure.joints import FRAME, Joint, JointGraph, Record
+from coursework.structure.joints import FRAME, JointGraph, PlaneJoint, Record
 
 _LETTERS = {"revolute": "R", "prismatic": "P", "higher": "H"}
 _RADIUS = 4.5  #: of a body's circle
@@ -51,7 +51,7 @@ def _between(p: complex, q: complex, *, ends: bool = True) -> Line:
     return p + way, q - way if ends else q
 
 
-def _hub(joint: Joint, places: dict[int, complex]) -> complex:
+def _hub(joint: PlaneJoint, places: dict[int, complex]) -> complex:
     """Return the position of a multiple pivot: the mean of its bodies, drawn towards the middle of the
     figure."""
     return 0.8 * added(places[body] for body in joint.bodies) / len(joint.bodies)

@@ -27,7 +27,7 @@ from coursework.figures import (
 )
 from coursework.figures.base import BLOCK
 from coursework.figures.ink import added
-from coursework.structure.joints import FRAME, Joint, JointGraph, Record
+from coursework.structure.joints import FRAME, JointGraph, PlaneJoint, Record
 from coursework.structure.layout import BEYOND, places, slides
 from coursework.structure.likeness import drawn_in_course
 
@@ -84,7 +84,7 @@ class _Scheme:
         # At its own size where there is room for it, smaller where there is not.
         return Figure(*elements, paper_mm=Figure(*elements, scale=1.0).size_mm)
 
-    def _letter(self, joint: Joint) -> str:
+    def _letter(self, joint: PlaneJoint) -> str:
         return joint.at if self.letters else ""
 
     def _own(self, body: int) -> list[int]:
@@ -202,13 +202,13 @@ class _Scheme:
             found.append(rail(here - along, here + along))
         return found
 
-    def _normal(self, joint: Joint) -> complex:
+    def _normal(self, joint: PlaneJoint) -> complex:
         """Return the unit normal from the first body of a contact towards the second."""
         one, other = (self._comes_from(body, joint) for body in joint.bodies)
         way = one - other
         return way / abs(way) if abs(way) > 1e-6 else (one or -other) * 1j
 
-    def _comes_from(self, body: int, joint: Joint) -> complex:
+    def _comes_from(self, body: int, joint: PlaneJoint) -> complex:
         """Return a unit vector from a body's other joints to a contact; none for the frame."""
         here = self.at[self.graph.joints.index(joint)]
         others = [self.at[k] for k in self._own(body) if self.graph.joints[k] != joint]

@@ -20,7 +20,7 @@ TAGS = (SHOWN, NOTEBOOK, STILL)
 
 
 @dataclass(frozen=True)
-class Prose:
+class LessonProse:
     """Running text; ``line`` is that of its first line in the file."""
 
     text: str
@@ -28,7 +28,7 @@ class Prose:
 
 
 @dataclass(frozen=True)
-class Cell:
+class CodeCell:
     """Code cell; ``line`` is that of its first line in the file."""
 
     code: str
@@ -37,7 +37,7 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Answer:
+class LessonAnswer:
     """Answer to the question above it, Markdown; ``line`` is that of its first line in the file."""
 
     text: str
@@ -45,7 +45,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Image:
+class LessonImage:
     """Picture on a line of its own: its ``kind`` and name, its options, and its caption."""
 
     caption: str
@@ -55,7 +55,7 @@ class Image:
     line: int = 0
 
 
-Block: TypeAlias = Prose | Cell | Answer | Image
+Block: TypeAlias = LessonProse | CodeCell | LessonAnswer | LessonImage
 
 _FENCE = re.compile(
     r"^(```+)(\w*)[ \t]*(?:\{tags=([\w,-]+)\})?[ \t]*\n(.*?)^\1[ \t]*$", re.DOTALL | re.MULTILINE
@@ -83,20 +83,20 @@ def blocks(text: str, file: str) -> tuple[Block, ...]:
             continue
         found += _prose(text, end, fence.start(), file)
         if fence[2] == "answer":
-            found.append(Answer(fence[4].strip(), _line(text, fence.start(4), fence[4])))
+            found.append(LessonAnswer(fence[4].strip(), _line(text, fence.start(4), fence[4])))
         else:
             found.append(_cell(fence, text, file))
         end = fence.end()
     return (*found, *_prose(text, end, len(text), file))
 
 
-def _cell(fence: re.Match[str], text: str, file: str) -> Cell:
+def _cell(fence: re.Match[str], text: str, file: str) -> CodeCell:
     line = 2 + text.count("\n", 0, fence.start())
     tags = tuple(fence[3].split(",")) if fence[3] else ()
     for tag in tags:
         if tag not in TAGS:
             raise BadCourse(f"{file}, line {line - 1}: no tag {tag!r}{nearest(tag, TAGS)}")
-    return Cell(fence[4].rstrip("\n"), tags, line)
+    return CodeCell(fence[4].rstrip("\n"), tags, line)
 
 
 def _prose(text: str, start: int, stop: int, file: str) -> Iterator[Block]:
@@ -108,9 +108,9 @@ def _prose(text: str, start: int, stop: int, file: str) -> Iterator[Block]:
     yield from _words(text, end, stop)
 
 
-def _words(text: str, start: int, stop: int) -> Iterator[Prose]:
+def _words(text: str, start: int, stop: int) -> Iterator[LessonProse]:
     if words := text[start:stop].strip():
-        yield Prose(words, _line(text, start, text[start:stop]))
+        yield LessonProse(words, _line(text, start, text[start:stop]))
 
 
 def _line(text: str, start: int, piece: str) -> int:
@@ -149,11 +149,13 @@ def _check_opening(said: str, place: str) -> None:
         raise BadCourse(f"{place}: no fence {word!r}; did you mean {near!r}?")
 
 
-def _image(image: re.Match[str], file: str, line: int) -> Image:
+def _image(image: re.Match[str], file: str, line: int) -> LessonImage:
     target = _TARGET.fullmatch(image["target"])
     if target is None:
         raise BadCourse(
             f"{file}, line {line}: the picture {image['target']!r}: write figure:NAME, or exercise:NAME?seed=3"
         )
     pairs = (one.partition("=") for one in filter(None, (target[3] or "").split("&")))
-    return Image(image["caption"], target[1], target[2], {name: value for name, _, value in pairs}, line)
+    return LessonImage(
+        image["caption"], target[1], target[2], {name: value for name, _, value in pairs}, line
+    )

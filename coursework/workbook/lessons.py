@@ -18,14 +18,14 @@ from coursework.sheets.book import Code, Head, Later, LessonText, Piece, Prose
 from coursework.workbook import lesson_source as source
 from coursework.workbook.pictures import drawn
 from coursework.workbook.proofread import lines_of_words, place_of, proofread
-from coursework.workbook.running import Session, Shows
+from coursework.workbook.running import CellOutput, CellSession
 
 _TITLE = re.compile(r"\A# +[^\n]*\n*")
 _CELL = re.compile(r"(?<!\\)\|")
 _HEAD = re.compile(r"^(##+) +(?:(\d+)\. +)?(.*?) *$", re.MULTILINE)
 
 
-class Opened(NamedTuple):
+class LessonFile(NamedTuple):
     """Lesson file: its name in messages, its text, and its proofread blocks."""
 
     file: str
@@ -38,7 +38,7 @@ class Opened(NamedTuple):
         return tuple(dict.fromkeys(link.name for link in links(self.text) if link.kind == TERM))
 
 
-def opened(course: Course[Any], name: str, lang: str) -> Opened:
+def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
     """Read and proofread a lesson's file.
 
     Raises
@@ -58,7 +58,7 @@ def opened(course: Course[Any], name: str, lang: str) -> Opened:
             if link.kind != TERM:
                 place = place_of(words, line, file, f"{link.kind}:{link.name}")
                 _check_link(course.folder, link, lang, place)
-    return Opened(file, text, blocks)
+    return LessonFile(file, text, blocks)
 
 
 def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
@@ -74,8 +74,8 @@ def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
     return _told(course, name, lang, opened(course, name, lang))
 
 
-def _told(course: Course[Any], name: str, lang: str, lesson: Opened) -> LessonText:
-    with Session(lesson.file, course.folder.root) as session:
+def _told(course: Course[Any], name: str, lang: str, lesson: LessonFile) -> LessonText:
+    with CellSession(lesson.file, course.folder.root) as session:
         made = _Lesson(course, name, lang, session)
         for block in _untitled(lesson.blocks):
             made.add(block)
@@ -87,7 +87,7 @@ def _told(course: Course[Any], name: str, lang: str, lesson: Opened) -> LessonTe
 def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
     """Yield the blocks without the title at the start of the first one."""
     first, *others = blocks
-    assert isinstance(first, source.Prose)  # proofread
+    assert isinstance(first, source.LessonProse)  # proofread
     yield replace(first, text=_TITLE.sub("", first.text))
     yield from others
 
@@ -95,28 +95,28 @@ def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
 class _Lesson:
     """Pieces of a lesson, in order."""
 
-    def __init__(self, course: Course[Any], name: str, lang: str, session: Session):
+    def __init__(self, course: Course[Any], name: str, lang: str, session: CellSession):
         self._course, self._name, self._lang, self._session = course, name, lang, session
         self.pieces: list[Piece] = []
         self.answers: list[tuple[int, tuple[Piece, ...]]] = []
 
     def add(self, block: source.Block) -> None:
         match block:
-            case source.Prose():
+            case source.LessonProse():
                 self.pieces += _parted(block.text)
-            case source.Image():
+            case source.LessonImage():
                 self.pieces.append(drawn(self._course, self._name, block, self._lang))
-            case source.Answer():
+            case source.LessonAnswer():
                 self._later((Prose(block.text),))
-            case source.Cell():
+            case source.CodeCell():
                 self._cell(block)
 
-    def _cell(self, cell: source.Cell) -> None:
+    def _cell(self, cell: source.CodeCell) -> None:
         if source.NOTEBOOK in cell.tags:
             return
         if source.SHOWN in cell.tags or source.STILL in cell.tags:
             self.pieces.append(Code(cell.code))
-        shown = Shows() if source.STILL in cell.tags else self._session.run(cell)
+        shown = CellOutput() if source.STILL in cell.tags else self._session.run(cell)
         self.pieces += shown.now
         if shown.later:
             self._later(shown.later)
@@ -166,7 +166,7 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
             found.append(f"{name}, {lang}: {fault}")
             continue
         found += _cut_formulas(lesson.text, name, lang)
-        shapes[lang] = [type(b).__name__ for b in lesson.blocks if not isinstance(b, source.Prose)]
+        shapes[lang] = [type(b).__name__ for b in lesson.blocks if not isinstance(b, source.LessonProse)]
     if len({tuple(shape) for shape in shapes.values()}) > 1:
         told = "; ".join(f"{lang}: {_counted(shape)}" for lang, shape in shapes.items())
         found.append(f"{name} is not the same in every language: {told}")

@@ -48,7 +48,7 @@ def lesson_notebook(course: Course[Any], name: str, lang: str, beside: Collectio
     pieces: list[str] = []
     pictures: dict[str, Mapping[str, str]] = {}
     for block in opened(course, name, lang).blocks:
-        if isinstance(block, source.Image):
+        if isinstance(block, source.LessonImage):
             shown = drawn(course, name, block, lang)
             file = f"picture-{len(pictures) + 1}.{'svg' if shown.svg else 'png'}"
             pictures[file] = _attached(shown)
@@ -60,12 +60,15 @@ def lesson_notebook(course: Course[Any], name: str, lang: str, beside: Collectio
 
 
 def _written(
-    course: Course[Any], block: source.Prose | source.Cell | source.Answer, lang: str, there: Collection[str]
+    course: Course[Any],
+    block: source.LessonProse | source.CodeCell | source.LessonAnswer,
+    lang: str,
+    there: Collection[str],
 ) -> str:
-    if isinstance(block, source.Cell):
+    if isinstance(block, source.CodeCell):
         return f"```python\n{block.code}\n```"
     text = to_notebook_markdown(_linked(course, block.text, lang, there), lang)
-    if isinstance(block, source.Answer):
+    if isinstance(block, source.LessonAnswer):
         return f"<details><summary>{words(lang)['lesson']['answer']}</summary>\n\n{text}\n\n</details>"
     return text
 

@@ -18,14 +18,14 @@ from coursework.markup.markdown import plain_line
 from coursework.motion.animation import Animation
 from coursework.motion.reel import SECONDS
 from coursework.sheets.book import Drawn
-from coursework.workbook.lesson_source import Image
+from coursework.workbook.lesson_source import LessonImage
 
 STILLS = 4  #: instants of what moves that stand on paper
 _CELL = (80.0, 46.0)  #: the room of one of them, mm
 _ASKED = ("seed", "motion", "count")
 
 
-def drawn(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
+def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Drawn:
     """Return a picture of a lesson.
 
     Raises
@@ -41,7 +41,7 @@ def drawn(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
         raise BadCourse(f"{file}, line {image.line}: {fault}") from fault
 
 
-def _of_lesson(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
+def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Drawn:
     if not image.caption.strip():
         raise BadInput(
             f"the figure {image.name} has no caption, which tells what it shows to who does not see it"
@@ -88,7 +88,7 @@ def _moving(frames: Sequence[Figure], said: str, caption: str, lang: str) -> Dra
     )
 
 
-def _of_exercise(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
+def _of_exercise(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Drawn:
     for name in image.asked:
         if name not in _ASKED:
             raise BadInput(f"nothing called {name!r} is asked of a picture{nearest(name, _ASKED)}")

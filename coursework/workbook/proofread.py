@@ -48,9 +48,9 @@ def proofread(found: Sequence[source.Block], file: str) -> None:
 def lines_of_words(found: Sequence[source.Block]) -> Iterator[tuple[str, int]]:
     """Yield the texts of a lesson, each with its first line number."""
     for block in found:
-        if isinstance(block, source.Image):
+        if isinstance(block, source.LessonImage):
             yield block.caption, block.line
-        elif not isinstance(block, source.Cell):
+        elif not isinstance(block, source.CodeCell):
             yield block.text, block.line
 
 
@@ -64,7 +64,7 @@ def place_of(words: str, line: int, file: str, piece: str) -> str:
 def _check_title(found: Sequence[source.Block], file: str) -> None:
     """Refuse a lesson without exactly one title at its beginning."""
     first = found[0] if found else None
-    if not isinstance(first, source.Prose) or not first.text.startswith("# "):
+    if not isinstance(first, source.LessonProse) or not first.text.startswith("# "):
         raise BadCourse(f"{file}, line 1: a lesson begins with its title, # TITLE")
     titles = [
         (line + node.map[0], node.children[0].content)

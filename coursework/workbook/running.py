@@ -15,13 +15,13 @@ from typing import Any
 
 from coursework.errors import BadCourse, CourseworkError
 from coursework.figures import Figure, Picture
-from coursework.markup.shown import Picture as ShownPicture
-from coursework.markup.shown import Shown
+from coursework.markup.shown import NotebookDisplay
+from coursework.markup.shown import SvgPicture as ShownPicture
 from coursework.motion.animation import Animation
-from coursework.selfstudy.lessons import Compared
-from coursework.selfstudy.worked import Worked
+from coursework.selfstudy.lessons import PredictionTable
+from coursework.selfstudy.worked import WorkedExample
 from coursework.sheets.book import Drawn, Piece, Printed, Prose
-from coursework.workbook.lesson_source import Cell
+from coursework.workbook.lesson_source import CodeCell
 from coursework.workbook.pictures import moving
 
 LINES = 200  #: that a cell may print into a book
@@ -31,14 +31,14 @@ _UNSEEN = re.compile(r"\x1b\[[0-9;]*[A-Za-z]|\r(?=\n)|[\x00-\x08\x0b-\x1f\x7f]")
 
 
 @dataclass(frozen=True)
-class Shows:
+class CellOutput:
     """Output of a cell: pieces in its place, and pieces for later, with the answers."""
 
     now: tuple[Piece, ...] = ()
     later: tuple[Piece, ...] = ()
 
 
-class Session:
+class CellSession:
     """Execution of a lesson's cells one after another in one namespace, as in a notebook.
 
     The folder is an empty one beside the course's, so that nothing is read or left where the book is bound.
@@ -57,13 +57,13 @@ class Session:
         self._folder = _beside(root, Path(self._kept.name))
         self._names: dict[str, Any] = {"__name__": "__lesson__"}
 
-    def __enter__(self) -> Session:
+    def __enter__(self) -> CellSession:
         return self
 
     def __exit__(self, *fault: object) -> None:
         self._kept.cleanup()
 
-    def run(self, cell: Cell) -> Shows:
+    def run(self, cell: CodeCell) -> CellOutput:
         """Run a cell.
 
         Raises
@@ -78,12 +78,12 @@ class Session:
         except (Exception, SystemExit) as fault:
             raise BadCourse(self._said(fault, cell)) from fault
         shown, told = shows(value), tuple(self._clean(Printed(printed.getvalue()), cell))
-        if isinstance(value, Compared):
-            return Shows((), (*told, *shown.later))  # what it prints would tell what is to be predicted
+        if isinstance(value, PredictionTable):
+            return CellOutput((), (*told, *shown.later))  # what it prints would tell what is to be predicted
         now = (piece for one in shown.now for piece in self._clean(one, cell))
-        return Shows((*told, *now), shown.later)
+        return CellOutput((*told, *now), shown.later)
 
-    def _value(self, cell: Cell) -> Any:
+    def _value(self, cell: CodeCell) -> Any:
         """Run the cell and return the value of its last line."""
         # Line numbers are those of the lesson's file.
         tree = ast.parse("\n" * (cell.line - 1) + cell.code, self._file)
@@ -93,7 +93,7 @@ class Session:
             return None
         return eval(compile(ast.Expression(last.value), self._file, "eval"), self._names)
 
-    def _said(self, fault: BaseException, cell: Cell) -> str:
+    def _said(self, fault: BaseException, cell: CodeCell) -> str:
         """Return a fault as one line."""
         if isinstance(fault, SyntaxError) and fault.filename == self._file:
             return f"{self._file}, line {fault.lineno}: the cell is no Python: {fault.msg}"
@@ -104,7 +104,7 @@ class Session:
             f"{place}: {fault if isinstance(fault, CourseworkError) else f'{type(fault).__name__}: {fault}'}"
         )
 
-    def _line(self, fault: BaseException, cell: Cell) -> int:
+    def _line(self, fault: BaseException, cell: CodeCell) -> int:
         own = [
             frame.lineno
             for frame in traceback.extract_tb(fault.__traceback__)
@@ -112,7 +112,7 @@ class Session:
         ]
         return own[-1] or cell.line if own else cell.line
 
-    def _clean(self, piece: Piece, cell: Cell) -> Iterator[Piece]:
+    def _clean(self, piece: Piece, cell: CodeCell) -> Iterator[Piece]:
         """Yield the output of a cell, refused if it differs between runs or is too long."""
         if not isinstance(piece, Printed):
             yield piece
@@ -148,24 +148,24 @@ def _beside(root: Path, place: Path) -> Path:
     return place
 
 
-def shows(value: Any) -> Shows:
+def shows(value: Any) -> CellOutput:
     """Return the output for the value of a cell's last line."""
     if value is None:
-        return Shows()
-    if isinstance(value, Compared):
-        return Shows(later=(Prose(value.outcome),))
-    if isinstance(value, Worked):
+        return CellOutput()
+    if isinstance(value, PredictionTable):
+        return CellOutput(later=(Prose(value.outcome),))
+    if isinstance(value, WorkedExample):
         right = "\n".join(f"- {line}" for line in value.right)
-        return Shows(tuple(_pieces(value)), (Prose(right),) if right else ())
-    if isinstance(value, Shown):
-        return Shows(tuple(_pieces(value)))
+        return CellOutput(tuple(_pieces(value)), (Prose(right),) if right else ())
+    if isinstance(value, NotebookDisplay):
+        return CellOutput(tuple(_pieces(value)))
     if isinstance(value, Animation):
-        return Shows((moving(value),))
+        return CellOutput((moving(value),))
     if isinstance(value, (Figure, Picture)):
-        return Shows((Drawn(type(value).__name__, figure=value),))
-    return Shows((Printed(str(value)),))
+        return CellOutput((Drawn(type(value).__name__, figure=value),))
+    return CellOutput((Printed(str(value)),))
 
 
-def _pieces(shown: Shown) -> Iterator[Piece]:
+def _pieces(shown: NotebookDisplay) -> Iterator[Piece]:
     for piece in shown.pieces:
         yield Drawn(piece.said, svg=piece.svg) if isinstance(piece, ShownPicture) else Prose(piece)

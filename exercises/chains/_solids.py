@@ -10,8 +10,8 @@ from coursework.model import GivenSpec, Part, chosen, drawn
 from coursework.solids import (
     ARRANGEMENTS,
     FREEDOMS,
+    AlignedJoint,
     Parallel,
-    Placed,
     Series,
     aligned,
     directions_of,
@@ -112,7 +112,7 @@ def freedoms_of(joint):
 
 
 @cache
-def combined(combination: str, *joints: Placed) -> Parallel | Series:
+def combined(combination: str, *joints: AlignedJoint) -> Parallel | Series:
     """The joints together, with their rank and the equivalent joint."""
     return COMBINE[combination]([joint.mapping() for joint in joints])
 
@@ -218,7 +218,7 @@ def of_joints(read):
 
 
 def table_of(joints, bodies):
-    """The lines of a statement's table of joints that are :class:`~coursework.solids.Placed`."""
+    """The lines of a statement's table of joints that are :class:`~coursework.solids.AlignedJoint`."""
     return [_line(k + 1, bodies[k], *joint) for k, joint in enumerate(joints)]
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part, chosen, drawn
-from coursework.solids import Placed
+from coursework.solids import AlignedJoint
 
 from ._solids import coordinate, direction, joint_kind, rank_together, table_of, vector_latex
 
@@ -35,8 +35,8 @@ def the_forces_are_some(X1, Y1, Z1, X2, Y2, Z2):
 
 
 def _pair(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
-    origin = Placed(joint_1, direction_1, (0.0, 0.0, 0.0))
-    return origin, Placed(joint_2, direction_2, (float(x2), float(y2), float(z2)))
+    origin = AlignedJoint(joint_1, direction_1, (0.0, 0.0, 0.0))
+    return origin, AlignedJoint(joint_2, direction_2, (float(x2), float(y2), float(z2)))
 
 
 def _rows(*given):

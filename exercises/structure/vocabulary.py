@@ -12,7 +12,7 @@ from coursework.course.texts import constants
 from coursework.errors import BadCourse
 from coursework.figures import Figure, ground_pivot, line, link, note, pin, slider, slot_link
 from coursework.model import Exercise, Part, drawn
-from coursework.structure.growing import Choices
+from coursework.structure.growing import NumberStream
 
 THEMES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 OF_THE_FIGURE = frozenset(q for theme in THEMES.values() for q in theme.get("of_the_figure", ()))
@@ -30,7 +30,7 @@ def _cases():
 @lru_cache(maxsize=4096)
 def asked(deck):
     """The questions of a variant."""
-    choices = Choices(int(deck), "vocabulary")
+    choices = NumberStream(int(deck), "vocabulary")
     return frozenset(
         question
         for theme in THEMES.values()

@@ -88,7 +88,7 @@ def not_taken_apart(_graph, driver):
         placed = set(pair)
         rest = tuple(body for body in graph.bodies if body not in placed)
         rank = min(assour.class_of(graph, rest, placed), _HIGHEST)
-        return _records([assour.Group(rest, rank)])
+        return _records([assour.AssourGroup(rest, rank)])
 
     return each(whole, _graph, driver)
 
@@ -125,7 +125,7 @@ def multiple_pivot_as_ternary(_graph, driver):
                 sum(len(known & set(joint.bodies)) - 1 for joint in graph.joints_of(body))
                 for body in group.bodies
             ]
-            found.append(assour.Group(group.bodies, min(max(group.rank, *corners), _HIGHEST)))
+            found.append(assour.AssourGroup(group.bodies, min(max(group.rank, *corners), _HIGHEST)))
             placed = known
         return _records(found)
 

@@ -2,7 +2,7 @@
 
 from coursework.quantities.columns import each
 from coursework.solution import given, mistake
-from coursework.structure.joints import FRAME, Joint, JointGraph, copied
+from coursework.structure.joints import FRAME, JointGraph, PlaneJoint, copied
 from coursework.structure.library import LIBRARY
 from coursework.structure.numbered import to_count
 from coursework.structure.picture import kinematic_graph
@@ -49,7 +49,7 @@ def every_pair_of_a_shared_pivot(_graph):
     def joints(graph):
         for joint in graph.joints:
             bodies = joint.bodies
-            yield from (Joint((a, b), joint.kind) for n, a in enumerate(bodies) for b in bodies[n + 1 :])
+            yield from (PlaneJoint((a, b), joint.kind) for n, a in enumerate(bodies) for b in bodies[n + 1 :])
 
     texts = each(lambda graph: _text(joints(graph)), _graph, dtype=str)
     return texts, each(lambda graph: len(list(joints(graph))), _graph, dtype=int)

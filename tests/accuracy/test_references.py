@@ -15,7 +15,7 @@ from coursework.accuracy.followed import Followed, NotFollowed, of_arrays, of_ma
 from coursework.accuracy.measuring import measure
 from coursework.accuracy.overview import overview
 from coursework.accuracy.reference import Reference
-from coursework.accuracy.twins import FourBar, SliderCrank, corner, third_side
+from coursework.accuracy.twins import TextbookFourBar, TextbookSliderCrank, corner, third_side
 from coursework.cli import run
 from coursework.errors import BadCourse
 from coursework.kinematics import four_bar, slider_crank, triangles
@@ -159,7 +159,10 @@ def test_the_tape_notes_what_must_not_vanish():
 @pytest.mark.parametrize("mode", ["open", "crossed"])
 def test_twins_agree_with_the_core(theta, mode):
     bars = (235.0, 60.0, 255.0, 170.0)
-    core, twin = four_bar.FourBar(*bars, mode).at(Degrees(theta)), FourBar(*bars, mode).at(Degrees(theta))
+    core, twin = (
+        four_bar.FourBar(*bars, mode).at(Degrees(theta)),
+        TextbookFourBar(*bars, mode).at(Degrees(theta)),
+    )
     for name in (
         "coupler_angle",
         "rocker_angle",
@@ -169,7 +172,9 @@ def test_twins_agree_with_the_core(theta, mode):
         "rocker_gain",
     ):
         assert getattr(twin, name) == pytest.approx(getattr(core, name), rel=1e-12), name
-    own, other = (c(60.0, 200.0, 15.0).run(Degrees(theta)) for c in (SliderCrank, slider_crank.SliderCrank))
+    own, other = (
+        c(60.0, 200.0, 15.0).run(Degrees(theta)) for c in (TextbookSliderCrank, slider_crank.SliderCrank)
+    )
     assert own == pytest.approx(other, rel=1e-13)
     sides = (3.0, 5.0, Degrees(abs(theta)))
     assert third_side(*sides) == pytest.approx(triangles.third_side(*sides), rel=1e-13)

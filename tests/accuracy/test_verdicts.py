@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coursework.accuracy.measuring import GENERIC, HARD, Row
+from coursework.accuracy.measuring import GENERIC, HARD, Measurement
 from coursework.accuracy.timing import Times, interleaved, is_busy, overlap
 from coursework.accuracy.verdicts import Rows, enough, paid_after
 from coursework.language.words import languages, words
 
 
 def row(family, place, ns, error, *, setting=None, spread=0.04, failed=0, build=None):
-    return Row(
+    return Measurement(
         "x", "position", f"{family}-{setting or ''}", place, ns, error, 20, failed, family, setting,
         ns * (1 - spread / 2), ns * (1 + spread / 2), 9, build,
     )  # fmt: skip

@@ -14,7 +14,7 @@ from coursework.figures import (
     link,
     pin,
 )
-from coursework.figures.text import Run, advance, read
+from coursework.figures.text import LetterRun, advance, read
 
 
 @every_sample
@@ -73,9 +73,9 @@ def test_a_label_box_is_wider_than_its_letters(label, italic):
 
 def test_a_label_is_as_wide_in_every_version_of_python():
     """To the last bit, so that a rounded place is the same: the built-in ``sum`` is not."""
-    run, width = Run("0123456789" * 3, italic=True), 0.0
+    run, width = LetterRun("0123456789" * 3, italic=True), 0.0
     for letter in run.text:
-        width += Run(letter, italic=True).width
+        width += LetterRun(letter, italic=True).width
     assert run.width == width
     assert advance([run] * 3) == width + width + width
 

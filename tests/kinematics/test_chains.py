@@ -8,12 +8,12 @@ from reference import mp
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics.angles import heading_in_degrees
-from coursework.kinematics.chains import Chain, Vector
+from coursework.kinematics.chains import ClosedChain, Vector
 from coursework.kinematics.four_bar import FourBar
 from coursework.system.blocks import BLOCK, in_blocks
 
 EPS = 2.0**-52
-FOUR_BAR = Chain(
+FOUR_BAR = ClosedChain(
     [[Vector("a", "crank"), Vector("b", "coupler"), Vector("c", "rocker", -1), Vector("d", 0.0, -1)]],
     ["coupler", "rocker"],
 )
@@ -22,7 +22,7 @@ NEAR = {"coupler": 0.5, "rocker": 1.5}
 
 # An Assour group of class III: a plate held at its three pins by three bars, the first of them led by a
 # crank.
-TRIAD = Chain(
+TRIAD = ClosedChain(
     [
         [
             Vector(1.0, "crank"),
@@ -145,9 +145,9 @@ def test_a_dead_point_shows_in_the_condition_and_has_no_rates():
 
 def test_a_chain_that_is_miscounted_is_refused():
     with pytest.raises(WrongValue, match="2 unknowns; 1"):
-        Chain([[Vector("a", "t")]], ["t"])
+        ClosedChain([[Vector("a", "t")]], ["t"])
     with pytest.raises(WrongValue, match="'u'"):
-        Chain([[Vector("a", "t")]], ["t", "u"])
+        ClosedChain([[Vector("a", "t")]], ["t", "u"])
 
 
 @pytest.mark.parametrize("shape", [(3, 2 * BLOCK + 5), (2 * BLOCK + 5, 3), (5, 7, 1000), (0, 4)])

@@ -13,7 +13,7 @@ import coursework
 from coursework.authoring.check_loops import check_loops, equation_holds
 from coursework.authoring.check_report import Report
 from coursework.errors import BadCourse, UnknownName, WrongValue
-from coursework.kinematics.chains import Chain, Vector
+from coursework.kinematics.chains import ClosedChain, Vector
 from coursework.making.issuing import issue
 from coursework.marking.loop_judge import judge_of
 from coursework.model import Part, loop_equations
@@ -449,7 +449,7 @@ def test_a_chain_takes_an_added_angle_by_name():
     """The plate of the linkage of two loops: its side CD lies at theta4 + beta."""
     loop = COURSE["two_loop_linkage"].solution.loops["loop_2"]
     vectors = [link.vector for link in loop.links]
-    chain = Chain([vectors], ("theta6", "theta7"))
+    chain = ClosedChain([vectors], ("theta6", "theta7"))
     exercise = COURSE["two_loop_linkage"]
     variant = exercise.variant(3)
     found = exercise.solve(**variant.given, only=("theta4", "theta6", "theta7"))
@@ -460,4 +460,4 @@ def test_a_chain_takes_an_added_angle_by_name():
     for n in ("theta6", "theta7"):
         assert math.degrees(pose.values[n]) == pytest.approx(found[n], abs=1e-9)
     with pytest.raises(WrongValue, match="cannot be unknown"):
-        Chain([vectors], ("beta", "theta7"))
+        ClosedChain([vectors], ("beta", "theta7"))

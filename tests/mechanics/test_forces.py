@@ -11,10 +11,10 @@ import coursework
 from coursework.errors import BadCourse
 from coursework.mechanics import GROUND, Body, Gear, Load, Mechanism, Slide
 from coursework.mechanics.equilibrium import Equilibrium
-from coursework.mechanics.linkage import Held, Linkage
+from coursework.mechanics.linkage import BodyPoint, Linkage
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.wrenches import inertia_at_rate, inertia_at_start, weight
-from coursework.motion.added import Added, Weighed
+from coursework.motion.added import BodyMass, SceneData
 from coursework.motion.scenes import Scene
 
 COURSE = coursework.open_course()
@@ -42,7 +42,7 @@ def weighed(name, rng, pins=True):
     """Every body a mass, a centre off its origin and an inertia; a load on its last point; friction everywhere."""
     stated = COURSE[name].solution.mechanism
     bodies = {
-        body: Weighed(
+        body: BodyMass(
             rng.uniform(0.5, 5), rng.uniform(0.005, 0.05), complex(rng.uniform(-30, 60), rng.uniform(-20, 20))
         )
         for body in stated.names
@@ -58,7 +58,7 @@ def weighed(name, rng, pins=True):
         }
     point = list(stated.bodies[-1].places)[-1]
     load = Load(point, force=float(rng.uniform(50, 400)), angle=float(rng.uniform(0, 360)))
-    return Added(bodies, (load,), friction)
+    return SceneData(bodies, (load,), friction)
 
 
 def scene_of(name, seed, effects, **added):
@@ -193,7 +193,7 @@ def test_a_wheel_that_rolls_turns_and_bears_as_its_gear_says():
     """The pinion's rate is the exercise's own; a torque on it comes back to the drive by the ratio."""
     exercise = COURSE["havens_planetary"]
     given = exercise.variant(0).used
-    scene = Scene(exercise, given, ("load",), (), Added(loads=(Load("3", moment=5.0),)))
+    scene = Scene(exercise, given, ("load",), (), SceneData(loads=(Load("3", moment=5.0),)))
     q, speed, acceleration = instants(scene)
     omega3 = exercise.solve(**{**given, "theta1": np.degrees(q)}, only="omega3")["omega3"]
     stance = scene.pose(q)
@@ -216,7 +216,7 @@ def test_points_move_as_the_solution_says():
         np.testing.assert_allclose(stance.place(held) * 1000, point.position, atol=1e-9)
         np.testing.assert_allclose(stance.rate(held) * speed * 1000, point.velocity, atol=1e-8)
         np.testing.assert_allclose(stance.bend(held) * speed**2 * 1000, point.acceleration, atol=1e-6)
-    assert isinstance(held, Held)
+    assert isinstance(held, BodyPoint)
 
 
 CHANGE = {"r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0, "omega2": 2.0, "alpha2": 0.0, "mode": "open"}
@@ -228,7 +228,7 @@ def test_the_effort_keeps_its_digits_beside_a_change_point(beside, side):
     """Stretched out, the four bars lie on one line: the joints' own equations lose the accelerations there, a thousandth of
     a degree away, the formulas of the exercise do not."""
     exercise, angle = COURSE["four_bar_motion"], 180.0 + side * beside
-    data = Added({b: Weighed(2.0, 0.01, 20 + 5j) for b in "234"}, (Load("B", force=50.0, angle=30.0),))
+    data = SceneData({b: BodyMass(2.0, 0.01, 20 + 5j) for b in "234"}, (Load("B", force=50.0, angle=30.0),))
     scene = Scene(exercise, {**CHANGE, "theta2": angle}, ("load", "gravity", "inertia"), (), data)
     force = complex(50.0 * np.exp(1j * np.radians(30.0)))
     exact = ExactMechanics(exercise, scene.mechanism, scene.given, angle, 2.0, 3.0).borne(

@@ -11,7 +11,7 @@ import coursework
 from coursework.errors import UnknownName
 from coursework.mechanics.friction import contacts
 from coursework.mechanics.statement import Load
-from coursework.motion.added import Added, Weighed
+from coursework.motion.added import BodyMass, SceneData
 from coursework.motion.scenes import Scene
 
 COURSE = coursework.open_course()
@@ -29,7 +29,7 @@ UPRIGHT = {
 
 
 def upright(friction, omega=2.0, force=-400.0, lengths=None, **added):
-    data = Added(loads=(Load("B", force=force),), friction=friction, lengths=lengths or {}, **added)
+    data = SceneData(loads=(Load("B", force=force),), friction=friction, lengths=lengths or {}, **added)
     scene = Scene(
         COURSE["slider_crank"], {**UPRIGHT, "omega2": omega}, ("load", "friction"), ("reaction B",), data
     )
@@ -52,7 +52,7 @@ def test_past_the_angle_of_friction_the_slide_jams_one_way_and_not_the_other():
 
 
 def test_jamming_is_told_with_its_angle():
-    data = Added(loads=(Load("B", force=-400.0),), friction={"B": 2.2})
+    data = SceneData(loads=(Load("B", force=-400.0),), friction={"B": 2.2})
     scene = Scene(COURSE["slider_crank"], {**UPRIGHT, "omega2": -2.0}, ("load", "friction"), (), data)
     table = scene.over_cycle(72)
     jammed = np.isnan(table.columns["drive_torque"])
@@ -65,7 +65,7 @@ def test_jamming_is_told_with_its_angle():
 
 def test_a_long_slide_bears_on_both_of_its_edges():
     """A pure moment on the piston: the edges bear M / l each, one above and one below, and both rub."""
-    data = Added(loads=(Load("4", moment=6.0),), friction={"B": 0.1}, lengths={"B": 60.0})
+    data = SceneData(loads=(Load("4", moment=6.0),), friction={"B": 0.1}, lengths={"B": 60.0})
     scene = Scene(COURSE["slider_crank"], UPRIGHT, ("load", "friction"), (), data)
     borne = scene.forces.over(np.radians([90.0]), np.array([2.0]), np.zeros(1), joints=True)
     # The piston moves to -x; the friction of 2 x 0.1 x 100 N, and what the rod's obliquity adds, holds it back.
@@ -87,7 +87,7 @@ def test_a_long_slide_bears_on_both_of_its_edges():
         UPRIGHT,
         ("load", "friction"),
         (),
-        Added(loads=data.loads, friction=data.friction),
+        SceneData(loads=data.loads, friction=data.friction),
     )
     assert short.forces.over(np.radians([90.0]), np.array([2.0]), np.zeros(1)).effort[0] == pytest.approx(
         0.0, abs=1e-12
@@ -97,7 +97,7 @@ def test_a_long_slide_bears_on_both_of_its_edges():
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_a_journal_takes_its_coefficient_times_its_radius_times_what_it_bears(way):
     """A weight on the crank's pin, friction in the shaft alone: the drive adds f r m g whichever way it turns."""
-    data = Added(bodies={"2": Weighed(mass=20.0)}, friction={"O": (0.1, 15.0)})
+    data = SceneData(bodies={"2": BodyMass(mass=20.0)}, friction={"O": (0.1, 15.0)})
     given = {**UPRIGHT, "omega2": way}
     scene = Scene(COURSE["slider_crank"], given, ("gravity", "friction"), (), data)
     effort = scene.forces.over(np.radians([0.0, 70.0]), np.full(2, way), np.zeros(2)).effort
@@ -108,7 +108,9 @@ def test_power_in_is_power_lost_with_friction_everywhere():
     """At a constant rate over a turn, what the drive gives is what the contacts rub away."""
     mechanism = COURSE["three_loop_shaper"].solution.mechanism
     friction = {"E": 0.1, "G": 0.15, "C": (0.1, 8.0), "D": (0.05, 10.0)}
-    data = Added({b: Weighed(2.0, 0.01) for b in mechanism.names}, friction=friction, lengths={"G": 80.0})
+    data = SceneData(
+        {b: BodyMass(2.0, 0.01) for b in mechanism.names}, friction=friction, lengths={"G": 80.0}
+    )
     scene = Scene(
         COURSE["three_loop_shaper"],
         COURSE["three_loop_shaper"].variant(0).used,
@@ -134,8 +136,9 @@ def test_power_in_is_power_lost_with_friction_everywhere():
 
 
 def test_a_joint_that_is_not_there_is_told():
-    scene = Scene(COURSE["slider_crank"], UPRIGHT, ("friction",), (), Added(friction={"Q": 0.1}))
+    scene = Scene(COURSE["slider_crank"], UPRIGHT, ("friction",), (), SceneData(friction={"Q": 0.1}))
     with pytest.raises(UnknownName, match="no slide 'Q'"):
         contacts(scene.linkage, scene.mechanism.friction)
+    added = SceneData(friction={"Q": (0.1, 5.0)})
     with pytest.raises(UnknownName, match="no pin 'Q'"):
-        Scene(COURSE["slider_crank"], UPRIGHT, ("friction",), (), Added(friction={"Q": (0.1, 5.0)})).forces  # noqa: B018
+        Scene(COURSE["slider_crank"], UPRIGHT, ("friction",), (), added).forces  # noqa: B018

@@ -12,7 +12,7 @@ import coursework
 from coursework.errors import Undefined, WrongValue
 from coursework.mechanics.statement import Body, Load, Mechanism, Slide
 from coursework.mechanics.turn_table import TURN, TurnTable
-from coursework.motion.added import Added, Flywheel, Motor, Weighed
+from coursework.motion.added import BodyMass, Flywheel, Motor, SceneData
 from coursework.motion.scenes import Scene
 
 COURSE = coursework.open_course()
@@ -27,13 +27,13 @@ FOUR_BAR = {
     "mode": "open",
 }
 #: A crank that is a pendulum: the other bodies have no mass.
-PENDULUM = {"2": Weighed(mass=2.0, inertia=0.01, centre=complex(60.0))}
+PENDULUM = {"2": BodyMass(mass=2.0, inertia=0.01, centre=complex(60.0))}
 INERTIA = 0.01 + 2.0 * 0.06**2
 
 
 def pendulum(theta2, omega2=0.0, effects=("gravity", "inertia"), **added):
     given = {**FOUR_BAR, "theta2": theta2, "omega2": omega2}
-    return Scene(COURSE["four_bar_motion"], given, effects, (), Added(bodies=PENDULUM, **added))
+    return Scene(COURSE["four_bar_motion"], given, effects, (), SceneData(bodies=PENDULUM, **added))
 
 
 def weight_torque(theta2):
@@ -58,7 +58,7 @@ def test_a_constant_torque_on_a_flywheel_alone_gives_a_constant_acceleration():
         {**FOUR_BAR, "omega2": 3.0},
         ("flywheel",),
         (),
-        Added(flywheel=Flywheel(inertia=0.5)),
+        SceneData(flywheel=Flywheel(inertia=0.5)),
     )
     table = scene.in_time(2.0, 1.0, count=10)
     t = table.columns["t"]
@@ -70,7 +70,7 @@ def test_a_constant_torque_on_a_flywheel_alone_gives_a_constant_acceleration():
 
 def test_a_motor_runs_up_to_where_its_line_meets_the_load():
     """A load of a constant moment on the crank: T (1 - w / w0) = M, approached exponentially."""
-    data = Added(loads=(Load("2", moment=4.0, against=True),), flywheel=Flywheel(inertia=0.2))
+    data = SceneData(loads=(Load("2", moment=4.0, against=True),), flywheel=Flywheel(inertia=0.2))
     scene = Scene(COURSE["four_bar_motion"], FOUR_BAR, ("load", "flywheel"), (), data)
     table = scene.in_time(Motor(10.0, 20.0), 3.0, count=30)
     last = 20.0 * (1 - 4.0 / 10.0)
@@ -152,8 +152,8 @@ def test_the_table_moves_as_the_equations_themselves(name, friction):
     mechanism = exercise.solution.mechanism
     rubs = {s.at: 0.1 for s in mechanism.slides} if friction else {}
     rubs |= {mechanism.pins[0].at: (0.1, 6.0)} if friction else {}
-    data = Added(
-        {b: Weighed(1.5, 0.02) for b in mechanism.names}, (Load(mechanism.bodies[-1].at, force=90.0),), rubs
+    data = SceneData(
+        {b: BodyMass(1.5, 0.02) for b in mechanism.names}, (Load(mechanism.bodies[-1].at, force=90.0),), rubs
     )
     effects = ("load", "gravity", "inertia", *(["friction"] if friction else []))
     scene = Scene(exercise, exercise.variant(0).used, effects, (), data)
@@ -190,7 +190,7 @@ def test_a_load_on_the_working_stroke_works_on_that_stroke_alone():
     exercise = COURSE["quick_return_shaper"]
     given = exercise.variant(0).used
     load = Load("C", force=500.0, against=True, during="working stroke")
-    scene = Scene(exercise, given, ("load", "position"), (), Added(loads=(load,)))
+    scene = Scene(exercise, given, ("load", "position"), (), SceneData(loads=(load,)))
     count = 3600
     table = scene.over_cycle(count)
     effort = table.columns["drive_torque"] * np.sign(scene._speed)
@@ -216,13 +216,13 @@ def test_a_working_stroke_that_is_as_long_as_the_other_is_refused():
     }
     load = Load("B", force=10.0, against=True, during="working stroke")
     with pytest.raises(WrongValue, match="both take as long; say during = 'forward'"):
-        Scene(COURSE["slider_crank"], given, ("load",), (), Added(loads=(load,))).over_cycle(12)
+        Scene(COURSE["slider_crank"], given, ("load",), (), SceneData(loads=(load,))).over_cycle(12)
 
 
 def test_loads_by_table_follow_their_angle_or_their_position():
     given = {**FOUR_BAR, "omega2": 2.0}
     by_angle = Load("2", moment=0.0, table=((0.0, 0.0), (90.0, 6.0), (270.0, 0.0)))
-    scene = Scene(COURSE["four_bar_motion"], given, ("load",), (), Added(loads=(by_angle,)))
+    scene = Scene(COURSE["four_bar_motion"], given, ("load",), (), SceneData(loads=(by_angle,)))
     effort = scene.over_cycle(8).columns["drive_torque"]
     np.testing.assert_allclose(effort, [0.0, -3.0, -6.0, -4.5, -3.0, -1.5, 0.0, 0.0, 0.0], atol=1e-12)
     crank = {
@@ -236,7 +236,9 @@ def test_loads_by_table_follow_their_angle_or_their_position():
         "ka": 1.0,
     }
     spring = Load("B", by="r1", table=((60.0, 600.0), (120.0, 0.0)))
-    scene = Scene(COURSE["slider_crank"], crank, ("load", "position", "velocity"), (), Added(loads=(spring,)))
+    scene = Scene(
+        COURSE["slider_crank"], crank, ("load", "position", "velocity"), (), SceneData(loads=(spring,))
+    )
     columns = scene.over_cycle(36).columns
     power = (120.0 - columns["r1"]) * 10.0 * columns["r1_dot"] / 1000
     np.testing.assert_allclose(columns["drive_torque"] * 2.0, -power, atol=1e-9)
@@ -247,7 +249,7 @@ def test_a_flywheel_is_sized_for_its_unevenness():
     exercise = COURSE["quick_return_shaper"]
     given = {**exercise.variant(0).used, "omega2": 5.0}
     load = Load("C", force=300.0, against=True, during="working stroke")
-    data = Added(loads=(load,), flywheel=Flywheel(unevenness=0.05))
+    data = SceneData(loads=(load,), flywheel=Flywheel(unevenness=0.05))
     scene = Scene(exercise, given, ("load", "flywheel"), (), data)
     # The excess energy, by a fine sum of the work alone.
     count = 200_000
@@ -263,7 +265,7 @@ def test_a_flywheel_is_sized_for_its_unevenness():
 def test_dead_centres_are_rows_where_the_output_stands_still():
     exercise = COURSE["three_loop_shaper"]
     mechanism = exercise.solution.mechanism
-    data = Added({b: Weighed(1.0, 0.05) for b in mechanism.names})
+    data = SceneData({b: BodyMass(1.0, 0.05) for b in mechanism.names})
     scene = Scene(exercise, {**exercise.variant(0).used, "omega2": 12.0}, ("inertia", "velocity"), (), data)
     table = scene.in_time(0.0, 1.0, count=50)
     dead = table.columns["dead_centre"] == 1
@@ -280,7 +282,7 @@ def test_a_run_that_would_not_end_is_told(monkeypatch):
 def test_a_mechanism_that_does_not_turn_fully_moves_without_a_table():
     """A double rocker: no table around the turn, the equations themselves; its energy is kept."""
     given = {**FOUR_BAR, "r1": 200.0, "r2": 150.0, "r3": 120.0, "r4": 100.0, "theta2": 40.0}
-    scene = Scene(COURSE["four_bar_motion"], given, ("gravity", "inertia"), (), Added(bodies=PENDULUM))
+    scene = Scene(COURSE["four_bar_motion"], given, ("gravity", "inertia"), (), SceneData(bodies=PENDULUM))
     running = scene.running(Motor(0.0))
     assert running.table.steps == 0
     table = scene.in_time(0.5 * weight_torque(40.0), 0.05, count=10)
@@ -317,14 +319,18 @@ CRANK = {"r2": 30.0, "r3": 90.0, "e": 0.0, "theta2": 20.0, "omega2": 2.0, "alpha
 def test_forward_is_as_the_point_really_goes(omega2, during, way):
     load = Load("B", force=100.0, against=True, during=during)
     given = {**CRANK, "omega2": omega2}
-    scene = Scene(COURSE["slider_crank"], given, ("load", "velocity"), (), Added(loads=(load,)))
+    scene = Scene(COURSE["slider_crank"], given, ("load", "velocity"), (), SceneData(loads=(load,)))
     columns = scene.over_cycle(60).columns
     power = columns["drive_torque"] * omega2
     np.testing.assert_allclose(
         power, np.where(columns["r1_dot"] * way > 1e-9, 100.0 * abs(columns["r1_dot"]) / 1000, 0), atol=1e-9
     )
     running = Scene(
-        COURSE["slider_crank"], given, ("load", "flywheel"), (), Added(loads=(load,), flywheel=Flywheel(1.0))
+        COURSE["slider_crank"],
+        given,
+        ("load", "flywheel"),
+        (),
+        SceneData(loads=(load,), flywheel=Flywheel(1.0)),
     ).running(Motor(0.0))
     for angle, rate in zip(columns["theta2"][1:-1:7], columns["r1_dot"][1:-1:7], strict=True):
         loaded = running.acceleration(math.radians(angle), omega2, int(np.sign(omega2))) * omega2 < -1e-9
@@ -339,7 +345,7 @@ def test_the_working_stroke_is_the_slower_whichever_way_the_driver_turns(seed):
     for omega2 in (3.0, -3.0):
         given = {**exercise.variant(seed).used, "omega2": omega2}
         effort = (
-            Scene(exercise, given, ("load",), (), Added(loads=(load,)))
+            Scene(exercise, given, ("load",), (), SceneData(loads=(load,)))
             .over_cycle(720)
             .columns["drive_torque"]
         )
@@ -353,7 +359,7 @@ def test_a_table_over_a_whole_turn_is_read_as_it_stands():
     shorter = Load("2", table=((90.0, 100.0), (270.0, 0.0)))
     for load, right in ((whole, [0.0, 50.0, 100.0, 150.0, 0.0]), (shorter, [50.0, 100.0, 50.0, 0.0, 50.0])):
         scene = Scene(
-            COURSE["four_bar_motion"], {**FOUR_BAR, "omega2": 2.0}, ("load",), (), Added(loads=(load,))
+            COURSE["four_bar_motion"], {**FOUR_BAR, "omega2": 2.0}, ("load",), (), SceneData(loads=(load,))
         )
         np.testing.assert_allclose(-scene.over_cycle(4).columns["drive_torque"], right, atol=1e-12)
 
@@ -361,16 +367,16 @@ def test_a_table_over_a_whole_turn_is_read_as_it_stands():
 def test_a_force_acts_on_a_point_and_a_moment_on_a_body():
     for load, why in ((Load("4", force=800.0), "4 is a body"), (Load("B", moment=5.0), "B is a point")):
         with pytest.raises(WrongValue, match=why):
-            Scene(COURSE["four_bar_motion"], FOUR_BAR, ("load",), (), Added(loads=(load,))).over_cycle(4)
+            Scene(COURSE["four_bar_motion"], FOUR_BAR, ("load",), (), SceneData(loads=(load,))).over_cycle(4)
 
 
 def test_what_an_exercise_finds_from_its_own_data_is_not_shown_for_others():
     exercise = COURSE["slider_crank_torque"]
-    given, data = exercise.variant(0).used, Added(bodies={"4": Weighed(1000.0)})
+    given, data = exercise.variant(0).used, SceneData(bodies={"4": BodyMass(1000.0)})
     with pytest.raises(WrongValue, match="torque follows from the exercise's own data"):
         Scene(exercise, given, ("gravity",), ("torque",), data)
     assert "drive_torque" in Scene(exercise, given, ("gravity",), (), data).over_cycle(4).columns
-    wheel = Added(flywheel=Flywheel(inertia=100.0))
+    wheel = SceneData(flywheel=Flywheel(inertia=100.0))
     spun = Scene(exercise, {**given, "alpha2": 5.0}, ("inertia", "flywheel"), (), wheel).over_cycle(4)
     bare = Scene(exercise, {**given, "alpha2": 5.0}, ("inertia",)).over_cycle(4)
     np.testing.assert_allclose(spun.columns["drive_torque"] - bare.columns["torque"], 500.0, rtol=1e-12)
@@ -378,7 +384,7 @@ def test_what_an_exercise_finds_from_its_own_data_is_not_shown_for_others():
 
 def test_dead_centres_are_met_each_once_with_friction_too():
     """The driver's angle at them is where crank and rod are in line; between two of them lies one stroke."""
-    data = Added({"2": Weighed(inertia=0.05), "4": Weighed(3.0)}, friction={"B": 0.3})
+    data = SceneData({"2": BodyMass(inertia=0.05), "4": BodyMass(3.0)}, friction={"B": 0.3})
     for offset in (0.0, 10.0):
         given = {**CRANK, "omega2": 20.0, "e": offset}
         scene = Scene(COURSE["slider_crank"], given, ("inertia", "friction"), (), data)
@@ -395,7 +401,7 @@ def test_dead_centres_are_met_each_once_with_friction_too():
 
 
 def test_a_start_at_a_turning_place_that_comes_to_nothing_is_rest():
-    data = Added({"2": Weighed(inertia=0.05), "4": Weighed(3.0)}, friction={"B": 0.3, "A": (0.2, 8.0)})
+    data = SceneData({"2": BodyMass(inertia=0.05), "4": BodyMass(3.0)}, friction={"B": 0.3, "A": (0.2, 8.0)})
     given = {**CRANK, "theta2": 0.0, "omega2": 0.0}
     table = Scene(COURSE["slider_crank"], given, ("gravity", "inertia", "friction"), (), data).in_time(
         0.01, 1.0
@@ -405,7 +411,7 @@ def test_a_start_at_a_turning_place_that_comes_to_nothing_is_rest():
 
 def test_a_mechanism_that_rocks_does_not_jam_where_nothing_jams():
     given = {**FOUR_BAR, "r1": 200.0, "r2": 150.0, "r3": 120.0, "r4": 100.0, "theta2": 40.0}
-    data = Added({b: Weighed(1.0, 0.01) for b in "234"}, friction=dict.fromkeys("OCB", (0.2, 6.0)))
+    data = SceneData({b: BodyMass(1.0, 0.01) for b in "234"}, friction=dict.fromkeys("OCB", (0.2, 6.0)))
     scene = Scene(COURSE["four_bar_motion"], given, ("gravity", "inertia", "friction"), (), data)
     low, high = scene.running(Motor(0.0)).holding(math.radians(40.0))
     table = scene.in_time(0.5 * (low + high), 0.2, count=4)
@@ -420,7 +426,7 @@ def test_several_contacts_at_an_instant_are_those_of_the_cycle():
     exercise = COURSE["three_loop_shaper"]
     mechanism = exercise.solution.mechanism
     rubs = {"E": 0.15, "G": 0.2, "C": (0.1, 8.0), "D": (0.1, 8.0)}
-    data = Added({b: Weighed(1.5, 0.02) for b in mechanism.names}, (), rubs, {"G": 60.0})
+    data = SceneData({b: BodyMass(1.5, 0.02) for b in mechanism.names}, (), rubs, {"G": 60.0})
     scene = Scene(exercise, exercise.variant(0).used, ("gravity", "inertia", "friction"), (), data)
     table = scene.in_time(4.0, 0.6, count=60)
     # At a dead centre the ram stands still, and a cycle shows no friction there.
@@ -450,7 +456,7 @@ def test_a_load_follows_a_quantity_that_moves():
     """A spring's force named as a quantity of the exercise, and its direction: what the driver moves is followed."""
     given = {**CRANK, "omega2": 2.0}
     load = Load("B", force="r1", angle="theta3")
-    scene = Scene(COURSE["slider_crank"], given, ("load", "position"), (), Added(loads=(load,)))
+    scene = Scene(COURSE["slider_crank"], given, ("load", "position"), (), SceneData(loads=(load,)))
     columns = scene.over_cycle(24).columns
     power = columns["r1"] * np.cos(np.radians(columns["theta3"])) * scene.exercise.solve(
         **{**given, "theta2": columns["theta2"]}, only="r1_dot"
@@ -458,13 +464,13 @@ def test_a_load_follows_a_quantity_that_moves():
     np.testing.assert_allclose(columns["drive_torque"] * 2.0, -power, atol=1e-9)
     with pytest.raises(WrongValue, match="changes with the driver's speed"):
         Scene(
-            COURSE["slider_crank"], given, ("load",), (), Added(loads=(Load("B", force="r1_dot"),))
+            COURSE["slider_crank"], given, ("load",), (), SceneData(loads=(Load("B", force="r1_dot"),))
         ).over_cycle(4)
 
 
 def test_a_function_that_the_driver_moves_is_not_frozen_in_a_load():
     load = Load("B", force=lambda r1: 2 * r1)
-    scene = Scene(COURSE["slider_crank"], CRANK, ("load",), (), Added(loads=(load,)))
+    scene = Scene(COURSE["slider_crank"], CRANK, ("load",), (), SceneData(loads=(load,)))
     with pytest.raises(WrongValue, match="make it a quantity of the solution"):
         scene.over_cycle(4)
 
@@ -472,4 +478,4 @@ def test_a_function_that_the_driver_moves_is_not_frozen_in_a_load():
 def test_two_slides_at_one_point_both_stay():
     """A length that is given to a point is given to each of them."""
     mechanism = Mechanism({"O": 0}, (Body("2", 0, "O"),), (Slide("O", "2"), Slide("O", "2", along=90.0)))
-    assert [slide.length for slide in Added(lengths={"O": 60.0}).to(mechanism).slides] == [60.0, 60.0]
+    assert [slide.length for slide in SceneData(lengths={"O": 60.0}).to(mechanism).slides] == [60.0, 60.0]

@@ -11,7 +11,7 @@ import pytest
 from coursework.cli import run
 from coursework.errors import BadInput
 from coursework.mechanics.statement import Load
-from coursework.motion.added import Added, Flywheel, Motor, Weighed
+from coursework.motion.added import BodyMass, Flywheel, Motor, SceneData
 from coursework.motion.scene_files import read_scene
 from coursework.motion.scenes import Scene
 from coursework.system.toml_lines import line_of
@@ -70,8 +70,8 @@ def test_a_file_is_the_scene_that_it_says(course, write):
     read = read_scene(write(SCENE), course)
     exercise = course["three_loop_shaper"]
     loads = (Load("G", force=800.0, against=True, during="working stroke"), Load("8", moment=2.0))
-    added = Added(
-        {"8": Weighed(12.0), "5": Weighed(4.0, 0.02, 60 + 0j)}, loads, {"G": 0.12, "D": (0.08, 10.0)}, {"G": 80.0},
+    added = SceneData(
+        {"8": BodyMass(12.0), "5": BodyMass(4.0, 0.02, 60 + 0j)}, loads, {"G": 0.12, "D": (0.08, 10.0)}, {"G": 80.0},
         Flywheel(unevenness=0.02),
     )  # fmt: skip
     assert read.scene.added == added

@@ -13,7 +13,7 @@ from coursework.errors import BadCourse, UnknownName, WrongValue
 from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import Load
-from coursework.motion.added import Added, Weighed
+from coursework.motion.added import BodyMass, SceneData
 from coursework.motion.planning import plan
 from coursework.motion.scenes import Scene
 from coursework.motion.worth import budget
@@ -262,14 +262,14 @@ def test_a_mechanism_in_space_is_simulated_by_the_points_that_its_solution_moves
 def test_the_plan_says_what_is_left_out_and_what_is_not(course):
     shaper = course["three_loop_shaper"]
     given = shaper.variant(0).used
-    light = dict(plan(Scene(shaper, given, ("load",), (), Added(loads=(Load("G", force=10.0),)))))
+    light = dict(plan(Scene(shaper, given, ("load",), (), SceneData(loads=(Load("G", force=10.0),)))))
     assert "no acceleration" in light
     assert not [line for line in light if "equilibrium" in line or "friction" in line]
     heavy = dict(
         plan(
             Scene(
                 shaper, given, ("load", "inertia", "friction"), ("reaction D",),
-                Added({"8": Weighed(3.0)}, (Load("G", force=10.0),), {"G": 0.1}),
+                SceneData({"8": BodyMass(3.0)}, (Load("G", force=10.0),), {"G": 0.1}),
             )
         )
     )  # fmt: skip
@@ -285,7 +285,7 @@ def test_without_a_question_about_joints_no_equilibrium_is_set_up(course, monkey
     monkeypatch.setattr(Equilibrium, "matrix", property(refused))
     monkeypatch.setattr(Stance, "bends", property(refused))
     shaper = course["three_loop_shaper"]
-    added = Added({"8": Weighed(3.0)}, (Load("G", force=10.0),))
+    added = SceneData({"8": BodyMass(3.0)}, (Load("G", force=10.0),))
     Scene(shaper, shaper.variant(0).used, ("load", "gravity"), (), added).over_cycle(12)
 
 
@@ -293,7 +293,7 @@ def test_a_budget_says_what_a_scene_could_do_without_and_what_it_lacks(course):
     """A light ram under a heavy load: its inertia does not matter; the friction of its slide does."""
     shaper = course["quick_return_shaper"]
     given = {**shaper.variant(0).used, "omega2": 1.0}
-    data = Added({"6": Weighed(0.001)}, (Load("C", force=800.0, against=True),), {"C": 0.3})
+    data = SceneData({"6": BodyMass(0.001)}, (Load("C", force=800.0, against=True),), {"C": 0.3})
     scene = Scene(shaper, given, ("load", "inertia"), (), data)
     found = budget(scene, lambda one: one.over_cycle(90))
     by_effect = {worth.effect: worth for worth in found.worths}

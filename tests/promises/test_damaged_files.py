@@ -22,7 +22,7 @@ from coursework.database.store import Store
 from coursework.errors import CourseworkError
 from coursework.gradebook.submissions import find, read_file
 from coursework.selfstudy.progress import entry
-from coursework.selfstudy.store import Kept, ProgressFile
+from coursework.selfstudy.store import ExerciseStore, ProgressFile
 
 RECORDED = Path(__file__).parents[1] / "gradebook" / "recorded"
 DEEP = "[" * 100_000
@@ -100,7 +100,7 @@ class Class:
             store.close()
 
     def studied(self, folder):
-        kept = Kept(ProgressFile(folder), "coil")
+        kept = ExerciseStore(ProgressFile(folder), "coil")
         kept.add(3, "answers", {"Z": "4"})
         self("progress", folder)
 
@@ -285,7 +285,7 @@ def test_progress_with_half_a_character_is_kept_apart_and_new_progress_is_writte
     path = folder / "progress.json"
     path.write_text(path.read_text("utf-8").replace('"3"', r'"\ud800"'), "utf-8")
     coil.studied(folder)
-    Kept(ProgressFile(folder), "coil").add(3, "answers", {"Z": "4\ud800"})
+    ExerciseStore(ProgressFile(folder), "coil").add(3, "answers", {"Z": "4\ud800"})
     assert {e["answer"] for e in ProgressFile(folder).progress} == {"4", "4?"}
     assert len([*folder.glob("progress.damaged*")]) == 1
 

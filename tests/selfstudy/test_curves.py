@@ -10,7 +10,7 @@ from study_words import BOTH, SAID, flat, start_of
 
 import coursework
 from coursework.errors import UnknownName, WrongValue
-from coursework.figures.plot import Axis, Plot, Spot, _ticks
+from coursework.figures.plot import AnswerPoint, Axis, Plot, _ticks
 from coursework.selfstudy import predictions
 
 
@@ -61,7 +61,7 @@ def test_a_curve_is_cut_where_it_has_no_value_and_where_a_direction_turns_over()
 
 def test_a_right_point_lies_on_its_curve_and_is_told_from_a_wrong_one():
     x = np.linspace(0, 10, 11)
-    spots = [[Spot(4, 16, True)], [Spot(4, 60, False)]]
+    spots = [[AnswerPoint(4, 16, True)], [AnswerPoint(4, 60, False)]]
     plot = Plot(Axis("x", "", x), [Axis("y", "mm", x**2), Axis("z", "mm", x**2)], "en", 4, spots)
     svg = plot.svg()
     cx, cy = map(float, re.search(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="1.3"', svg).groups())
@@ -73,11 +73,11 @@ def test_a_right_point_lies_on_its_curve_and_is_told_from_a_wrong_one():
 def test_a_point_far_off_its_curve_is_an_arrow_at_the_edge_with_its_number():
     x = np.linspace(0, 10, 11)
     for y, is_far in ((60.0, False), (900.0, True), (-900.0, True)):
-        plot = Plot(Axis("x", "", x), [Axis("y", "mm", x**2)], "en", 4, [[Spot(4, y, False, 246.7)]])
+        plot = Plot(Axis("x", "", x), [Axis("y", "mm", x**2)], "en", 4, [[AnswerPoint(4, y, False, 246.7)]])
         cross, arrow = (s in plot.svg() for s in ('stroke="#b3261e"', 'z" fill="#b3261e"'))
         assert (plot.has_outside, cross, arrow) == ((is_far,), not is_far, is_far)
     far, near = (
-        Plot(plot.horizontal, plot.panels, "en", 4, [[Spot(4, 900.0, False, w)]]) for w in (1.0, 246.7)
+        Plot(plot.horizontal, plot.panels, "en", 4, [[AnswerPoint(4, 900.0, False, w)]]) for w in (1.0, 246.7)
     )
     assert far.svg() != near.svg()
 

@@ -16,7 +16,7 @@ from coursework.course.variant import Variant
 from coursework.selfstudy.mastery import AFTER_DAYS, advised, outings, questions, skills, standings
 from coursework.selfstudy.progress import LaterVersion, NotProgress, Progress, entry
 from coursework.selfstudy.recording import errors_shown
-from coursework.selfstudy.store import FILE, Kept, ProgressFile
+from coursework.selfstudy.store import FILE, ExerciseStore, ProgressFile
 
 COURSE = coursework.open_course()
 START = datetime(2026, 3, 2, 9, 0, tzinfo=UTC)
@@ -108,8 +108,8 @@ def test_two_notebooks_open_at_once_lose_nothing(here):
 WRITER = """
 import sys
 from pathlib import Path
-from coursework.selfstudy.store import Kept, ProgressFile
-kept = Kept(ProgressFile(Path(sys.argv[1])), sys.argv[2])
+from coursework.selfstudy.store import ExerciseStore, ProgressFile
+kept = ExerciseStore(ProgressFile(Path(sys.argv[1])), sys.argv[2])
 for number in range(20):
     kept.add(1, "answers", {f"part{number}": str(number)})
 """
@@ -342,7 +342,7 @@ def test_the_order_of_a_course_is_that_in_which_exercises_are_proposed(here):
 def test_a_site_may_keep_what_a_notebook_keeps(tmp_path):
     """The format alone, without the notebook's file: what is kept here is read there, and put together."""
     (tmp_path / "a").mkdir()
-    kept = Kept(ProgressFile(tmp_path / "a"), "coriolis")
+    kept = ExerciseStore(ProgressFile(tmp_path / "a"), "coriolis")
     kept.add(1, "answers", {"a_coriolis": "3"})
     served = Progress.read((tmp_path / "a" / FILE).read_text("utf-8")) | Progress(
         [answered(0, "b", "correct")]

@@ -7,7 +7,7 @@ import pytest
 
 from coursework.degrees import acos, angle, atan2, cos, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
-from coursework.quantities.formula_latex import Told, formula_latex, number_latex
+from coursework.quantities.formula_latex import PrintedName, formula_latex, number_latex
 from coursework.sheets import answer_sheet as sheets
 from coursework.solution import formula
 
@@ -103,14 +103,14 @@ def stated(a, b):
 SYMBOLS = {
     "a": ("a", False),
     "b": ("b", False),
-    "theta": Told(r"\theta", False, "angle"),
-    "arm": Told(r"\vec{r}", False, "complex"),
+    "theta": PrintedName(r"\theta", False, "angle"),
+    "arm": PrintedName(r"\vec{r}", False, "complex"),
 }
 NUMBERS = {
     "a": (r"\num{3}", True),
     "b": (r"\num{-4}", True),
-    "theta": Told(r"\num{60}^{\circ}", True, "angle"),
-    "arm": Told(r"\left(\num{1} - \num{2}\,i\right)", True, "complex"),
+    "theta": PrintedName(r"\num{60}^{\circ}", True, "angle"),
+    "arm": PrintedName(r"\left(\num{1} - \num{2}\,i\right)", True, "complex"),
 }
 
 

@@ -9,7 +9,7 @@ import pytest
 from coursework.errors import Undefined, WrongValue
 from coursework.structure import LIBRARY, JointGraph, decompose, grow
 from coursework.structure.assour import drivers, longest_loop, roman
-from coursework.structure.growing import Choices, relabelled
+from coursework.structure.growing import NumberStream, relabelled
 from coursework.structure.numbered import to_decompose
 
 MENU = ("dyad", "dyad", "triad", "tetrad")
@@ -17,7 +17,7 @@ MENU = ("dyad", "dyad", "triad", "tetrad")
 
 def grown(count):
     for number in range(count):
-        choices = Choices(number, "decomposition tests")
+        choices = NumberStream(number, "decomposition tests")
         yield grow(number, [choices.one_of(MENU) for _ in range(1 + choices.below(2))])
 
 
@@ -96,7 +96,7 @@ def test_so_they_are_with_any_driver():
 def test_groups_are_those_that_the_mechanism_was_grown_from():
     ranks = {"dyad": 2, "triad": 3, "tetrad": 4}
     for number in range(150):
-        choices = Choices(number, "grown from")
+        choices = NumberStream(number, "grown from")
         groups = [choices.one_of(MENU) for _ in range(1 + choices.below(3))]
         mechanism = grow(number, groups)
         found = decompose(mechanism.joints, [1, mechanism.drivers[0]])

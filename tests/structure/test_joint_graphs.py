@@ -10,7 +10,7 @@ import pytest
 
 from coursework.errors import WrongValue
 from coursework.structure import LIBRARY, Counts, JointGraph, grow
-from coursework.structure.growing import Choices, relabelled
+from coursework.structure.growing import NumberStream, relabelled
 
 
 def pivot(*bodies, at=None):
@@ -29,7 +29,7 @@ def mechanisms(count):
     """Grown ones, all kinds of groups."""
     menu = ("dyad", "triad", "tetrad", "follower", "stiffener")
     for number in range(count):
-        choices = Choices(number, "tests")
+        choices = NumberStream(number, "tests")
         groups = ["dyad", *(choices.one_of(menu) for _ in range(choices.below(4)))]
         yield grow(number, groups, drivers=1 + choices.below(2))
 
@@ -134,7 +134,7 @@ def test_two_pairs_of_the_same_bodies_are_a_cycle_of_two():
 def test_grown_mechanisms_count_as_their_groups_say():
     """A driver adds one freedom, a bar takes one away, the other groups none; nothing is held twice."""
     for number in range(60):
-        choices = Choices(number, "count by groups")
+        choices = NumberStream(number, "count by groups")
         groups = [choices.one_of(("dyad", "triad", "tetrad", "follower")) for _ in range(3)]
         bars = choices.below(2)
         grown = grow(number, groups + ["stiffener"] * bars, drivers=1 + number % 2)

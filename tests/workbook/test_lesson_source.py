@@ -6,7 +6,7 @@ import pytest
 
 from coursework.errors import BadCourse
 from coursework.markup.links import Link, links, relinked
-from coursework.workbook.lesson_source import Answer, Cell, Image, Prose, blocks
+from coursework.workbook.lesson_source import CodeCell, LessonAnswer, LessonImage, LessonProse, blocks
 
 TEXT = """# Rods
 
@@ -34,10 +34,18 @@ not a cell
 
 def test_a_lesson_is_read_into_its_blocks_in_order():
     found = blocks(TEXT, "rods.en.md")
-    assert [type(one) for one in found] == [Prose, Image, Cell, Prose, Answer, Prose, Image]
-    assert found[1] == Image("Two rods, $A$ and $B$", "figure", "two_rods", {}, 5)
-    assert found[2] == Cell("x = 1", ("shown",), 8)
-    assert found[4] == Answer("It is $x = 1$.")
+    assert [type(one) for one in found] == [
+        LessonProse,
+        LessonImage,
+        CodeCell,
+        LessonProse,
+        LessonAnswer,
+        LessonProse,
+        LessonImage,
+    ]
+    assert found[1] == LessonImage("Two rods, $A$ and $B$", "figure", "two_rods", {}, 5)
+    assert found[2] == CodeCell("x = 1", ("shown",), 8)
+    assert found[4] == LessonAnswer("It is $x = 1$.")
     assert "not a cell" in found[5].text
     assert found[6].asked == {"seed": "3", "motion": "velocity,coriolis"}
 

@@ -16,7 +16,7 @@ from coursework.errors import BadCourse, UnknownName
 from coursework.language.words import languages
 from coursework.sheets.book import Code, Printed
 from coursework.sheets.book import Prose as Prose_
-from coursework.workbook.lesson_source import Answer, Cell, Image, Prose, blocks
+from coursework.workbook.lesson_source import CodeCell, LessonAnswer, LessonImage, LessonProse, blocks
 from coursework.workbook.lessons import faults, lesson_text, opened
 from coursework.workbook.notebooks import lesson_notebook
 
@@ -78,8 +78,8 @@ def test_a_lesson_is_read_drawn_and_run_and_is_the_same_in_every_language(course
 def test_a_lesson_teaches_and_lets_try(course, name, lang):
     """Goals, something to predict, an example that fades, usual mistakes, three questions, figures, terms."""
     found = blocks(lesson_file(course.folder, name, lang).read_text("utf-8"), name)
-    text = "\n".join(one.text for one in found if isinstance(one, Prose))
-    code = "\n".join(one.code for one in found if isinstance(one, Cell))
+    text = "\n".join(one.text for one in found if isinstance(one, LessonProse))
+    code = "\n".join(one.code for one in found if isinstance(one, CodeCell))
     assert re.search(r"^## (What you will be able to do|Ce que vous saurez faire)$", text, re.MULTILINE)
     assert len(lesson_sections(course.folder, name, lang)) >= 3
     assert "coursework.compare(" in code
@@ -88,8 +88,8 @@ def test_a_lesson_teaches_and_lets_try(course, name, lang):
     assert 4 in levels, "a bare example"
     assert levels & {1, 2, 3}, "a half-worked example"
     assert re.search(r"coursework\.worked\((?![^)]*level=)", code), "a whole example"
-    assert sum(isinstance(one, Answer) for one in found) >= 3
-    assert sum(isinstance(one, Image) for one in found) >= 2
+    assert sum(isinstance(one, LessonAnswer) for one in found) >= 3
+    assert sum(isinstance(one, LessonImage) for one in found) >= 2
     assert len(opened(course, name, lang).terms) >= 3
 
 

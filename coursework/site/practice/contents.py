@@ -13,7 +13,7 @@ from coursework.errors import BadCourse
 from coursework.language.words import words
 from coursework.markup import markdown
 from coursework.selfstudy.advice import next_step, told_advice, told_date
-from coursework.selfstudy.mastery import Advice, Standing, standings
+from coursework.selfstudy.mastery import Advice, ExerciseProgress, standings
 from coursework.selfstudy.progress import Progress
 from coursework.workbook.binding import chapters_of
 
@@ -64,7 +64,7 @@ def contents(visit: Visit, progress: Progress) -> list[Chaptered]:
     ]
 
 
-def _standing(visit: Visit, group: Grouped, stands: Mapping[str, Standing]) -> Grouped:
+def _standing(visit: Visit, group: Grouped, stands: Mapping[str, ExerciseProgress]) -> Grouped:
     placed = tuple(_placed(visit, one, stands.get(one.name)) for one in group.exercises)
     return group._replace(exercises=placed)
 
@@ -94,7 +94,7 @@ def _group(site: Site, section: Section, lang: str) -> Grouped:
     return Grouped(title, bool(section.lesson), tuple(placed))
 
 
-def _placed(visit: Visit, new: Placed, stand: Standing | None) -> Placed:
+def _placed(visit: Visit, new: Placed, stand: ExerciseProgress | None) -> Placed:
     if stand is None:
         return new
     name, title, said = new.name, new.title, visit.said["practice"]["states"]

@@ -11,7 +11,7 @@ from coursework.marking.marking import mark
 from coursework.motion.gauges import EFFECTS
 from coursework.rendering import motion_page, views
 from coursework.rendering.displayed import DisplayedAnimation
-from coursework.selfstudy.attempt import Checked
+from coursework.selfstudy.attempt import CheckedAnswers
 from coursework.selfstudy.store import is_blank
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.site.frame.budgets import BOXES, PLAIN
@@ -99,7 +99,7 @@ def _gone(visit: Visit, work: Worksheet, place: str) -> Reply:
     return Reply(goto=f"{work.address}/{place}")
 
 
-def _checked(visit: Visit, work: Worksheet) -> tuple[Checked, tuple[str, ...]]:
+def _checked(visit: Visit, work: Worksheet) -> tuple[CheckedAnswers, tuple[str, ...]]:
     """What becomes of one answer, or of all; and of which something is to be shown."""
     one = visit.form.text("check")
     given = work.typed if not one else {work.part(one).id: work.typed[one]}
@@ -124,7 +124,7 @@ def _keep_predictions(visit: Visit, work: Worksheet) -> None:
 
 
 def _page(
-    visit: Visit, work: Worksheet, checked: Checked, stands: dict[str, str],
+    visit: Visit, work: Worksheet, checked: CheckedAnswers, stands: dict[str, str],
     hinted: dict[str, tuple[Hinted, ...]] | None = None, **more: Any,
 ) -> Reply:  # fmt: skip
     names = {"others": {}, "came": (), **work.names(checked, stands), **more}
@@ -135,7 +135,7 @@ def _page(
 
 
 def _pieces(
-    visit: Visit, work: Worksheet, checked: Checked, shown: tuple[str, ...], hinted: dict[str, Any]
+    visit: Visit, work: Worksheet, checked: CheckedAnswers, shown: tuple[str, ...], hinted: dict[str, Any]
 ) -> Reply:
     """What a script puts in the places of what was there."""
     results = work.results(checked, work.typed)

@@ -22,10 +22,10 @@ from coursework.rendering import views
 from coursework.rendering.feedback import verdict_word
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.answers import judged_out_of, sentence_of, sign_of
-from coursework.selfstudy.attempt import Attempt, Checked
+from coursework.selfstudy.attempt import CheckedAnswers, StudyAttempt
 from coursework.selfstudy.progress import HINT, REVEAL
 from coursework.selfstudy.reading_back import read_back
-from coursework.selfstudy.store import Kept, is_blank
+from coursework.selfstudy.store import ExerciseStore, is_blank
 from coursework.selfstudy.theory import theory
 from coursework.sheets.handout import handout
 from coursework.site.frame.keeping import LONGEST, keep_form, keeper
@@ -81,9 +81,9 @@ class Worksheet:
             raise BadInput(words(visit.lang)["study"]["no_solutions"])
         self.exercise, self.seed = exercise, int(seed)
         progress = PersonProgress(site.store, visit.who.id, site.clock, exercise)
-        self.kept = Kept(progress, exercise)
+        self.kept = ExerciseStore(progress, exercise)
         self.variant: Variant = self._asked()
-        self.attempt = Attempt(self.variant, self.kept)
+        self.attempt = StudyAttempt(self.variant, self.kept)
 
     def _asked(self) -> Variant:
         """The variant; without its theory where another was begun before."""
@@ -164,7 +164,7 @@ class Worksheet:
         word = "" if says_all else verdict_word(mark.verdict, self.variant.lang)
         return Told(sign_of(mark), word, html, mark.verdict == "correct")
 
-    def results(self, checked: Checked, stands: Mapping[str, str]) -> dict[str, Told]:
+    def results(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Told]:
         """What is said of the answers that still stand in their boxes."""
         return {
             name: self.told(mark)
@@ -275,7 +275,7 @@ class Worksheet:
             for case in self.variant.cases(part)
         ]
 
-    def compared(self, checked: Checked) -> dict[str, Markup]:
+    def compared(self, checked: CheckedAnswers) -> dict[str, Markup]:
         """Predictions beside what came out, by the part that is right."""
         asked = [one for one in predictions.before_answers(self.variant) if one.id in checked.right]
         if not any(one.id in self.attempt.predictions for one in asked):
@@ -293,7 +293,7 @@ class Worksheet:
 
     # ------------------------------------------------------------------------ the page
 
-    def summary(self, checked: Checked, stands: Mapping[str, str]) -> dict[str, Any]:
+    def summary(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Any]:
         """How far one is: points, and the questions by their numbers that are still open."""
         numbers = {name: k for k, name in enumerate(self.parts, 1)}
         blank = [n for n in self.parts if is_blank(checked.answers.get(n)) and not self._is_drawn(n)]
@@ -319,7 +319,7 @@ class Worksheet:
     def _is_drawn(self, name: str) -> bool:
         return self.parts[name].sort.box in ("blank", "millimetre")
 
-    def names(self, checked: Checked, stands: Mapping[str, str]) -> dict[str, Any]:
+    def names(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Any]:
         """What the page's template sees."""
         shown = views.context(handout(self.variant))
         results = self.results(checked, stands)

@@ -6,7 +6,7 @@ import pytest
 
 import coursework
 from coursework.errors import CannotAssemble
-from coursework.kinematics.chains import Chain, Vector
+from coursework.kinematics.chains import ClosedChain, Vector
 from coursework.reading.equations import parse_equation
 
 EXERCISE = coursework.open_course()["three_loop_shaper"]
@@ -72,7 +72,7 @@ def test_newton_on_the_three_loops_at_once_finds_the_same_positions_all_around()
     known = {n: np.radians(v) if n.startswith("theta") else v for n, v in found.items()}
     crank, beta = Vector(30.0, "theta2"), np.radians(40)
     to_C, to_D = 195 - 5j, 110 - 150j
-    chain = Chain(
+    chain = ClosedChain(
         [
             [
                 crank,

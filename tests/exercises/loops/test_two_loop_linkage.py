@@ -6,7 +6,7 @@ import pytest
 
 import coursework
 from coursework.errors import CannotAssemble
-from coursework.kinematics.chains import Chain, Vector
+from coursework.kinematics.chains import ClosedChain, Vector
 from coursework.reading.equations import parse_equation
 
 EXERCISE = coursework.open_course()["two_loop_linkage"]
@@ -64,7 +64,7 @@ def test_newton_on_both_loops_at_once_finds_the_same_angles_and_rates_all_around
     crank = np.radians(np.arange(0.0, 360.0, 7.5))
     found = EXERCISE.solve(**{**PLAIN, "theta2": np.degrees(crank)}, only=(*ANGLES, *RATES))
     start = {name: np.radians(found[name]) + 0.02 for name in ANGLES}
-    chain = Chain(
+    chain = ClosedChain(
         [
             [
                 Vector(35.0, "theta2"),
