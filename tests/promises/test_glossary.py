@@ -16,7 +16,9 @@ def rows() -> list[re.Match[str]]:
 
 def names_of_the_code() -> set[str]:
     """Every word of the code, and every name of its files and folders."""
-    files = [file for room in ("coursework", "exercises", "solutions") for file in (ROOT / room).rglob("*.py")]
+    files = [
+        file for room in ("coursework", "exercises", "solutions") for file in (ROOT / room).rglob("*.py")
+    ]
     words = {word for file in files for word in re.findall(r"\w+", file.read_text("utf-8"))}
     return words | {part for file in files for part in (*file.relative_to(ROOT).parts, file.stem)}
 
