@@ -1,7 +1,7 @@
 """A text in which variables alone stand is filled in as the template engine would."""
 
 import jinja2
-import pytest
+from tables import each_row
 
 from coursework.course.texts import _Filled
 
@@ -18,14 +18,14 @@ OTHER = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("text", FILLED)
+@each_row("text", FILLED)
 def test_a_text_of_variables_is_filled_in_as_the_engine_does(text):
     assert _Filled.fits(text)
     environment = jinja2.Environment(keep_trailing_newline=True, undefined=jinja2.StrictUndefined)
     assert _Filled(text).render(VALUES) == environment.from_string(text).render(VALUES)
 
 
-@pytest.mark.parametrize("text", OTHER)
+@each_row("text", OTHER)
 def test_any_other_text_is_left_to_the_engine(text):
     assert not _Filled.fits(text)
 

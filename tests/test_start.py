@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from tables import each_row
 
 SOLVE = "solve slotted_mechanism --set r1=228.6mm --set r2=114.3mm --set theta2=135deg --only rA,theta4"
 CODE = "import sys; from coursework.cli import run; run(sys.argv[1:]); print('loaded', *sys.modules)"
@@ -19,16 +20,14 @@ def loaded(command):
     return set(modules.split())
 
 
-@pytest.mark.parametrize(
-    "command", ["show slotted_mechanism", "variant slotted_mechanism --seed 1 --json", SOLVE]
-)
+@each_row("command", ["show slotted_mechanism", "variant slotted_mechanism --seed 1 --json", SOLVE])
 def test_a_command_loads_no_library_that_it_does_not_need(command):
     modules = loaded(command)
     assert "numpy" in modules
     assert not modules & {"scipy", "nbformat", "typst", "rich", "matplotlib", "concurrent.futures", "jinja2"}
 
 
-@pytest.mark.parametrize("command", ["variant slotted_mechanism --seed 1 --json", SOLVE])
+@each_row("command", ["variant slotted_mechanism --seed 1 --json", SOLVE])
 def test_numbers_need_no_formulas_and_no_sheets(command):
     modules = loaded(command)
     assert not modules & {"markdown_it", "coursework.markup.formula_tree", "coursework.sheets.sheet"}

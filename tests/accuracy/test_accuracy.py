@@ -11,6 +11,7 @@ from itertools import takewhile
 import numpy as np
 import pytest
 from sweeps import slow
+from tables import each_row
 
 from coursework.accuracy.closure import Closure
 from coursework.accuracy.measuring import DATA, HARD, measure
@@ -167,7 +168,7 @@ def test_the_page_reads_the_rows_in_every_language(course, rows, lang, studied):
         assert "the solver" not in html
 
 
-@pytest.mark.parametrize("place", ["generic", HARD])
+@each_row("place", ["generic", HARD])
 def test_the_page_passes_over_differences_that_have_no_answer(course, rows, place):
     def lost(row):
         return (row.family, row.place) == ("differences", place) and row.setting < 1e-4

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from tables import each_row
 
 from coursework.accuracy.overview import overview
 from coursework.accuracy.pages import overview_report, paper_report
@@ -75,7 +76,7 @@ def test_shares_add_up():
     assert Share().value == 0
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_the_pages_are_written_in_every_language(course, rows, lang):
     names = ("slotted_mechanism", "coriolis")
     lines = [overview(course[name], quick=True) for name in names]

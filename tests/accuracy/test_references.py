@@ -7,6 +7,7 @@ import shutil
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework import degrees
@@ -155,8 +156,8 @@ def test_the_tape_notes_what_must_not_vanish():
 # -------------------------------------------------------------------------- the twins
 
 
-@pytest.mark.parametrize("theta", [10.0, 100.0, -160.0])
-@pytest.mark.parametrize("mode", ["open", "crossed"])
+@each_row("theta", [10.0, 100.0, -160.0])
+@each_row("mode", ["open", "crossed"])
 def test_twins_agree_with_the_core(theta, mode):
     bars = (235.0, 60.0, 255.0, 170.0)
     core, twin = (

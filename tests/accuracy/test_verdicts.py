@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.accuracy.measuring import GENERIC, HARD, Measurement
 from coursework.accuracy.timing import Times, interleaved, is_busy, overlap
@@ -65,7 +66,7 @@ def noisy(rows, seed):
     ]
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_two_runs_say_the_same(lang):
     once = told(stored(), lang)
     assert once

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.authoring.check_formulas import check_formulas, prove
@@ -24,7 +25,7 @@ every_exercise = pytest.mark.parametrize("name", COURSE.names)
 # ------------------------------------------------------------------- reading
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("latex", "value"),
     [
         (r"\num{3} - \left(\num{-4} - \num{3}\right) + \left(-\left(\num{-4}\right)\right)", 14),
@@ -59,7 +60,7 @@ def test_a_vector_has_its_coordinates():
     assert found.values == (-1, 0, 0.25)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("latex", "told"),
     [
         (r"\num{2}\,r_1", "r has no value"),
@@ -112,7 +113,7 @@ def step(substitution, value, formula="f"):
     return Step("x", "x", formula, substitution, value, "", (), False)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("substitution", "value"),
     [
         (r"\num{319.81} \times \num{2}", r"\num{639.61}\ \mathrm{mm}"),  # the product of what was rounded
@@ -125,7 +126,7 @@ def test_a_formula_that_gives_its_value_is_proved(substitution, value):
     assert prove(step(substitution, value), {}).holds
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("substitution", "value", "gives"),
     [
         (r"\num{319.81} \times \num{2}", r"\num{639.64}\ \mathrm{mm}", "639.62"),
@@ -145,7 +146,7 @@ def test_a_formula_that_gives_another_value_fails_and_says_which(substitution, v
     assert gives in proof.gives
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("tried", "why"),
     [
         (step("", r"\num{4}", formula=""), "told in words"),

@@ -12,6 +12,7 @@ import re
 import numpy as np
 import pytest
 from sweeps import slow
+from tables import each_row
 
 from coursework.authoring.example_courses import EXAMPLES
 from coursework.cli import run
@@ -176,7 +177,7 @@ def marks(copied, tmp_path_factory):
         return list(csv.DictReader(file))
 
 
-@pytest.mark.parametrize("exercise", EXERCISES)
+@each_row("exercise", EXERCISES)
 def test_right_answers_are_marked_right_by_the_command_line(marks, exercise):
     of_it = [mark for mark in marks if mark["exercise"] == exercise]
     assert len({mark["seed"] for mark in of_it}) == 4

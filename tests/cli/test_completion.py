@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from tables import each_row
 
 from coursework.cli.commands import COMMANDS, commands
 
@@ -100,7 +101,7 @@ finally:
 """
 
 
-@pytest.mark.parametrize("line", ["coursework s", "coursework show slo", "coursework build --formats p"])
+@each_row("line", ["coursework s", "coursework show slo", "coursework build --formats p"])
 def test_completion_loads_no_numbers_and_no_exercise(line):
     code = LOADED.format(line=line, place=len(line.split(" ")) - 1)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -7,6 +7,7 @@ import tomllib
 
 import nbformat
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.authoring.scaffold import new_course
@@ -19,7 +20,7 @@ FRENCH = re.compile(
 )
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("environment", "lang"),
     [({"LANG": "fr_FR.UTF-8"}, "fr"), ({"LANG": "en"}, "en"), ({"LANG": "en_GB@euro"}, "en"), ({"LANG": "C.UTF-8"}, ""), ({"LANG": "C"}, ""),
      ({"LANG": "POSIX"}, ""), ({}, ""), ({"LANG": ""}, ""), ({"LANG": "fr_FR", "LC_ALL": "en_US"}, "en"), ({"LANG": "fr", "LC_ALL": "C"}, ""),

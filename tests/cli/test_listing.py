@@ -7,6 +7,7 @@ import sys
 import time
 
 import pytest
+from tables import each_row
 
 from coursework.cli import run
 from coursework.course import listing as listings
@@ -214,7 +215,7 @@ def test_tables_are_the_same_by_hand_and_by_the_library(capsys, monkeypatch):
         assert by_hand == capsys.readouterr().out
 
 
-@pytest.mark.parametrize("text", ["θ₄", "日本", "a\tb", " edge", "w" * 300])
+@each_row("text", ["θ₄", "日本", "a\tb", " edge", "w" * 300])
 def test_a_table_that_is_not_plain_is_left_to_the_library(text):
     from coursework.cli.printing import _ruled
 

@@ -8,6 +8,7 @@ import json
 import re
 
 import pytest
+from tables import each_row
 
 from coursework.cli import run
 from coursework.system.tables import SPREADSHEETS, csv_text, decode, open_csv
@@ -77,7 +78,7 @@ def rows_of(path, delimiter):
         return list(csv.DictReader(file, delimiter=delimiter))
 
 
-@pytest.mark.parametrize("sign", SPREADSHEETS)
+@each_row("sign", SPREADSHEETS)
 def test_every_table_has_the_mark_without_which_excel_damages_accents(written, sign):
     assert set(written[sign]) == TABLES
     for name, path in written[sign].items():

@@ -6,6 +6,7 @@ import json
 import tomllib
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.cli import run
@@ -49,7 +50,7 @@ def test_chapters_are_read_in_their_order():
     assert other.needs["slides"] == ("rods", "two")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("was", "now", "told"),
     [
         ('"three"', '"tree"', "chapter 2: no exercise 'tree'; did you mean 'three'"),
@@ -79,7 +80,7 @@ def test_what_is_wrong_is_said_with_its_place(was, now, told):
     assert told in str(caught.value)
 
 
-@pytest.mark.parametrize("stated", [3, [3], {"title": "x"}])
+@each_row("stated", [3, [3], {"title": "x"}])
 def test_chapters_of_another_form_are_refused(stated):
     with pytest.raises(BadCourse, match=r"\[\[chapters\]\]"):
         chapters(stated, (*EXERCISES, "slides"), LESSONS, "course.toml")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import (
@@ -113,7 +114,7 @@ def test_any_quantity_may_be_given_and_is_used_as_it_is(course):
     assert found == {"a_coriolis": 40}
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("given", "error", "told"),
     [
         ({"r1": -1}, WrongValue, "r1 must be positive; found -1 mm"),

@@ -10,6 +10,7 @@ import pytest
 from golden import FOLDER, drawn
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tables import each_row
 
 from coursework.course import draws
 from coursework.errors import BadCourse, Starved
@@ -20,7 +21,7 @@ from coursework.model import drawn as ranged
 FROZEN = sorted(FOLDER.glob("*.json"))
 
 
-@pytest.mark.parametrize("path", FROZEN, ids=lambda p: p.stem)
+@each_row("path", FROZEN)
 def test_seeds_draw_what_they_have_always_drawn(path, course):
     frozen = json.loads(path.read_text("utf-8"))
     exercise = course[frozen["exercise"]]

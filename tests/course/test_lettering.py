@@ -4,6 +4,7 @@ import json
 from collections import Counter
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.course.lettering import printed_order
@@ -38,7 +39,7 @@ def test_every_order_is_as_frequent():
     assert all(850 < count < 1150 for count in found.values())
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("stated", "printed"),
     [
         (("IV", "II", "none", "III"), ("II", "III", "IV", "none")),
@@ -112,7 +113,7 @@ def test_a_variant_in_another_process_keeps_its_order(course):
     assert pickle.loads(pickle.dumps(issued)).cases(part) == issued.cases(part) != variant.cases(part)
 
 
-@pytest.mark.parametrize("order", [["oscillates", "oscilates"], ["rotates", "rotates"]])
+@each_row("order", [["oscillates", "oscilates"], ["rotates", "rotates"]])
 def test_a_record_that_offers_what_is_none_is_refused(course, order):
     record = json.loads(json.dumps(guide(course)[0].record))
     record["parts"][0]["choices"] = order

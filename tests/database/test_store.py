@@ -7,6 +7,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Column, Integer, Table, insert, inspect, select, update
+from tables import each_row
 
 from coursework.database.store import _MIGRATIONS, Store
 from coursework.database.tables import METADATA, setting
@@ -74,7 +75,7 @@ def test_a_database_of_a_later_version_is_refused(store, url):
         Store(url)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("told", "says"),
     [
         ("mysql+nothing://x/y", "no database"),

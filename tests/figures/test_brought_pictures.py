@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 from page_scripts import allowed, digest, runs
+from tables import each_row
 
 import coursework
 from coursework.authoring import checks
@@ -157,7 +158,7 @@ def test_a_figure_without_words_is_refused(tmp_path):
     assert any("no section '## figure 3'" in fault for fault in report.failures)
 
 
-@pytest.mark.parametrize(
+@each_row(
     "planted",
     [
         "<script>alert(1)</script>",
@@ -185,7 +186,7 @@ def test_what_would_run_or_fetch_is_refused(planted):
         _ = Picture(SVG.replace("</svg>", f"{planted}</svg>").encode()).size_mm
 
 
-@pytest.mark.parametrize(
+@each_row(
     "kept",
     [
         '<use href="#a"/>',

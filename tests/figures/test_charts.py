@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from tables import each_row
 
 from coursework.cli import run
 from coursework.figures import charts
@@ -41,8 +42,8 @@ def lines_of(svg):
     return re.findall(r"<!-- (.*?) -->", svg.decode())
 
 
-@pytest.mark.parametrize("lang", LONG)
-@pytest.mark.parametrize("kind", DRAWN)
+@each_row("lang", LONG)
+@each_row("kind", DRAWN)
 def test_a_long_title_is_whole_and_within_its_chart(kind, lang):
     svg = DRAWN[kind](LONG[lang])
     assert LONG[lang] in " ".join(lines_of(svg))
@@ -58,7 +59,7 @@ def test_a_title_of_one_long_word_is_cut_into_lines_and_nothing_is_lost():
     assert picture(svg)[:30, :2, :3].min() == picture(svg)[:30, -2:, :3].min() == 1
 
 
-@pytest.mark.parametrize("kind", DRAWN)
+@each_row("kind", DRAWN)
 def test_a_short_title_stands_over_its_panel_on_one_line(kind):
     lines = lines_of(DRAWN[kind]("Points"))
     assert lines.count("Points") == 1

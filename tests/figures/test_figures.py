@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ET
 import pytest
 from drawn_svg import SVG, strokes
 from figure_samples import SAMPLES, every_sample, four_bar, slotted
+from tables import each_row
 
 from coursework.errors import WrongValue
 from coursework.figures import (
@@ -97,7 +98,7 @@ def test_svg_is_black_on_white_and_measured_in_millimetres():
     assert root.find(SVG + "title") is None
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("build", "named"),
     [
         (lambda: pin(complex("nan"), "A"), "pin: p"),

@@ -7,6 +7,7 @@ import pytest
 import typst
 from drawn_svg import SVG, kinds
 from figure_samples import SAMPLES, every_sample, slotted
+from tables import each_row
 
 from coursework.errors import UnknownName
 from coursework.figures import (
@@ -45,7 +46,7 @@ def test_outlines_fill_the_box_of_their_label():
         assert all(box.y + 0.5 * box.height < y <= box.y + box.height for y in baselines)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("label", "italic"),
     [
         ("manivelle", False),
@@ -95,7 +96,7 @@ def test_symbols_are_italic_with_subscripts_and_words_are_upright():
     assert (word.text, word.get("font-style")) == ("bielle", None)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("label", "wider"),
     [
         (r"\vec{a}^t_{A_2}", "A_2"),

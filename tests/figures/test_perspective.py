@@ -2,7 +2,7 @@
 
 from itertools import combinations, product
 
-import pytest
+from tables import each_row
 
 import coursework
 from coursework.figures.perspective import _DRAWN, _VIEWS, _face, _looking, in_perspective
@@ -36,7 +36,7 @@ def test_every_view_is_of_right_handed_axes_and_shows_each_by_at_least_a_quarter
         assert (x.conjugate() * y).imag * forward[2] > 0
 
 
-@pytest.mark.parametrize("along", "xyz")
+@each_row("along", "xyz")
 def test_every_kind_of_joint_has_a_symbol_of_its_own(along):
     drawn = {
         kind: in_perspective(rows((kind, along, (0, 0, 0)), ("spherical", "x", (0, 40, 0)))).svg()
@@ -58,7 +58,7 @@ def test_a_thread_lies_on_its_cylinder_and_a_pin_is_seen_beside_its_ball():
         assert abs(pin.points[0] - ball.center) > 1.3 * ball.radius
 
 
-@pytest.mark.parametrize("seed", range(1, 41))
+@each_row("seed", range(1, 41))
 def test_points_and_bodies_of_a_chain_are_apart_on_paper(seed):
     variant = COURSE["closed_chain"].variant(seed)
     figure = variant.figure

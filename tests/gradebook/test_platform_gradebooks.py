@@ -11,6 +11,7 @@ import pytest
 from collected_pools import RECORDED, graded
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tables import each_row
 
 from coursework.cli import run
 from coursework.gradebook.class_points import Scored
@@ -124,7 +125,7 @@ def test_points_are_scaled_to_the_maximum_of_the_item(fill):
     assert "out of 20" in told
 
 
-@pytest.mark.parametrize(("points", "written"), [("1", "0.13"), ("0.5", "0.06"), ("8", "1"), ("3", "0.38")])
+@each_row(("points", "written"), [("1", "0.13"), ("0.5", "0.06"), ("8", "1"), ("3", "0.38")])
 def test_scaling_rounds_to_the_hundredth_and_a_half_goes_up(points, written):
     assert Scored("", (), points, "8").of(1) == written
 

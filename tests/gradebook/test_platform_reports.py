@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import pytest
 from class_of_three import table
 from collected_pools import EXERCISE, RECORDED, graded, pool
+from tables import each_row
 
 from coursework.cli import run
 from coursework.gradebook.item_label import label_in
@@ -142,7 +143,7 @@ def test_the_average_in_the_last_line_is_nobody(tmp_path):
     assert "without" not in seen.what
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("response", "answers"),
     [
         ("part 1: 238.4 mm; part 2: ", ["238.4 mm", ""]),
@@ -218,7 +219,7 @@ def test_columns_are_found_whatever_the_language_calls_them():
     assert columns_of(["student", "exercise", "seed", "part", "answer"]) is None
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "label"),
     [
         ("[slotted_mechanism · 4 · v1]", (EXERCISE, "4", "1", "", "")),

@@ -1,6 +1,6 @@
 """Responses of STACK in Moodle's report, and labels that name a unit."""
 
-import pytest
+from tables import each_row
 
 from coursework.gradebook.item_label import ItemLabel, label_in
 from coursework.gradebook.stack_responses import stack_answers
@@ -28,7 +28,7 @@ def test_what_was_typed_in_each_box_comes_back_as_it_was():
     }
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "answers"),
     [
         ("Seed: 1; ans1: EMPTYANSWER [score]; ans3: 2.3 rad [score]; prt1: !", {1: "", 3: "2.3 rad"}),
@@ -44,7 +44,7 @@ def test_responses_of_stack(text, answers):
     assert stack_answers(text) == answers
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "label"),
     [
         ("x [bolt · 3 · v1 · en · radius · mm]", ItemLabel("bolt", "3", "1", "en", "radius", "mm")),

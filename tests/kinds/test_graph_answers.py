@@ -6,6 +6,7 @@ import itertools
 import random
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.cli.demo import HABITS
@@ -27,7 +28,7 @@ def read(answer, *, named=True, reference=GRAPH):
     return read_graph(answer, reference, named=named)
 
 
-@pytest.mark.parametrize(
+@each_row(
     "answer",
     [
         REFERENCE,
@@ -79,7 +80,7 @@ def test_P_is_a_slide_unless_a_G_is_one_or_no_pivot_is_said_otherwise():
     assert len(read("1-2 P, 1-6 G").values) == 1
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "code", "found"),
     [
         ("1-2 pivot, 2-3 zorglub", "unknown_joint", "zorglub"),
@@ -98,12 +99,12 @@ def test_what_is_no_list_of_joints_says_where_it_stops(answer, code, found):
     assert found is None or reading.found == found
 
 
-@pytest.mark.parametrize("answer", ["", "   \n", None])
+@each_row("answer", ["", "   \n", None])
 def test_no_answer_is_missing(answer):
     assert read(answer).status == "missing"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "share", "told"),
     [
         ("1-2 R, 2-3 R, 3-4 R, 3-5 R, 1-4 R, 5-6 R", 6 / 7, {"missing": 1}),
@@ -177,7 +178,7 @@ def shuffled(graph, seed):
     return renamed(in_order(spanned), dict(zip(bodies, others, strict=True)))
 
 
-@pytest.mark.parametrize("number", range(1000, 1040))
+@each_row("number", range(1000, 1040))
 def test_a_graph_is_right_up_to_names_where_there_are_none(number):
     reference = JointGraph.of(to_count(number)).text
     other = shuffled(graph_of(reference), number)
@@ -213,7 +214,7 @@ def test_the_search_of_names_agrees_with_trying_them_all():
     assert met == {True, False}
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "is_right"),
     [
         ("a-b pivot, b-c pivot, c-d-e pivot, a-d pivot, e-f pivot, a-f glissière", True),
@@ -241,7 +242,7 @@ def test_a_hostile_answer_is_not_searched_for_ever():
 # ------------------------------------------------------------------------------- a part
 
 
-@pytest.mark.parametrize("room", [0, "4", True, 50])
+@each_row("room", [0, "4", True, 50])
 def test_its_room_is_a_number_of_lines(room):
     with pytest.raises(BadCourse, match="number of lines"):
         Part("g", kind="graph", room=room)

@@ -6,6 +6,7 @@ import csv
 import json
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.authoring import checks
@@ -194,7 +195,7 @@ def test_a_kind_that_is_none_is_told_with_the_nearest():
         Part("rA", kind="nombre")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("stated", "said"),
     [
         ({"kind": "choice"}, "'choices' goes with"),

@@ -11,6 +11,7 @@ from shutil import which
 import numpy as np
 import pytest
 from course_of_every_kind import write_course
+from tables import each_row
 
 import coursework
 from coursework.authoring import checks
@@ -56,7 +57,7 @@ def write(path, rows):
 # ---------------------------------------------------------------------- reading
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "verdict"),
     [
         *[
@@ -94,7 +95,7 @@ def test_what_follows_from_a_wrong_complex_number_is_right(variant):
     assert marking["I"].verdict == "follow_through"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "verdict"),
     [
         *[
@@ -115,7 +116,7 @@ def test_a_vector_is_judged_entry_by_entry(variant, answer, verdict):
     assert variant.grade({"drops": answer})["drops"].verdict == verdict
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "verdict"),
     [
         *[
@@ -138,7 +139,7 @@ def test_a_matrix_is_judged_entry_by_entry(variant, answer, verdict):
     assert variant.grade({"M": answer})["M"].verdict == verdict
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "verdict", "points"),
     [
         ("lags, heats, stores", "correct", 2),
@@ -205,7 +206,7 @@ def test_the_envelope_of_a_matrix_is_that_of_each_variant_alone(root):
     assert [variant.key.half_width(exercise.spec.part("M")) for variant in variants] == pytest.approx(alone)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("stated", "said"),
     [
         ({"kind": "text", "room": 0}, "number of lines"),
@@ -360,7 +361,7 @@ def test_a_practice_notebook_is_made(root, tmp_path):
     assert run(["--course", str(root), *job, "--out", str(tmp_path / "out")]) == 0
 
 
-@pytest.mark.parametrize("habit", HABITS)
+@each_row("habit", HABITS)
 def test_the_class_of_the_demonstration_answers_them(variant, habit):
     answers = {p.id: habit(variant, variant.key, p, place) for place, p in enumerate(variant.parts)}
     marking = variant.grade(answers)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.kinds.kind import kind_of
 from coursework.model import Part
@@ -61,12 +62,12 @@ AS_WRITTEN = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("answer", AS_WRITTEN, ids=str)
+@each_row("answer", AS_WRITTEN)
 def test_a_twist_is_read_as_people_write_it(answer):
     assert distance(TWIST, answer, SPIN) < 1e-9
 
 
-@pytest.mark.parametrize(
+@each_row(
     "answer",
     [
         "{10 0; 20 0; 0 5}", "10 N; 20; 0; 0; 0; 5 N.mm", "{10 20 0 | 0 0 0,005} N, N.m", "{10 20 0 | 0 0 0.005} N·m",
@@ -77,7 +78,7 @@ def test_a_wrench_is_read_in_any_unit_of_its_columns(answer):
     assert distance(WRENCH, answer, PUSH) < 1e-9
 
 
-@pytest.mark.parametrize(
+@each_row(
     "answer",
     [
         "10; 20; 5", "vx = 10; vy = 20; wz = 5", "ωz = 5 ; vx = 10 ; vy = 20", "{- 10; - 20; 5 -}", "{- - 5 | 10 20 -}",
@@ -93,7 +94,7 @@ def test_a_plane_wrench_is_a_force_and_a_moment():
         assert distance(WRENCH, answer, IN_PLANE) < 1e-9
 
 
-@pytest.mark.parametrize(
+@each_row(
     "answer", ["?", "12 +", "((((", "1 2 3", "{0 0 5 | 10 20}", "{0 0 5 | 10 20 -}", "je ne sais pas", 5]
 )
 def test_what_is_no_torsor_is_told_so(answer):
@@ -102,7 +103,7 @@ def test_what_is_no_torsor_is_told_so(answer):
     assert TWIST.sort.faults.get(reading.code, reading.code) in ("not_torsor", "unknown_unit")
 
 
-@pytest.mark.parametrize(
+@each_row(
     "answer",
     [
         "(" * 900 + "0 0 5 10 20 0" + ")" * 900,
@@ -115,7 +116,7 @@ def test_what_is_no_torsor_is_told_so(answer):
         "{0 0 5 | " * 300,
     ],
 )
-@pytest.mark.parametrize("part", [TWIST, MAY_MOVE], ids=lambda part: part.kind)
+@each_row("part", [TWIST, MAY_MOVE])
 def test_hostile_texts_are_refused(part, answer):
     assert read(part, answer, SPIN).status == "unreadable"
 
@@ -158,7 +159,7 @@ def test_noughts_count():
     assert TWIST.sort.share(TWIST, np.zeros(6), SPIN) == 0, "noughts alone are no work"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "slip"),
     [
         ("{0 0 -5 | -10 -20 0}", "sign"),
@@ -187,7 +188,7 @@ def test_at_another_point_is_so_for_any_point_and_any_axis():
         assert not list(WRENCH.sort.slips(WRENCH, beside, reference, {}))
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "named"),
     [
         ("{0 vx; 0 0; wz 0}", "wz vx"), ("wz, vx", "wz vx"), ("ωz et vx", "wz vx"), ("ω_z ; v_x", "wz vx"),
@@ -200,7 +201,7 @@ def test_a_pattern_is_a_table_or_names(answer, named):
     assert read(MAY_MOVE, answer, "").values == (frozenset(named.split()),)
 
 
-@pytest.mark.parametrize("answer", ["((((", "?", "12 +", "{", "je ne sais pas", "vz?", "1 = 1 = 1"])
+@each_row("answer", ["((((", "?", "12 +", "{", "je ne sais pas", "vz?", "1 = 1 = 1"])
 def test_what_is_no_pattern_is_told_so(answer):
     assert read(MAY_MOVE, answer, "").status == "unreadable"
 
@@ -225,7 +226,7 @@ def test_what_is_blocked_for_what_is_free_is_told():
     assert list(slips(TRANSMITS, frozenset("LM"), "X Y", {})) == ["columns"]
 
 
-@pytest.mark.parametrize("part", [TWIST, WRENCH, IN_METRES], ids=lambda part: f"{part.kind} {part.unit}")
+@each_row("part", [TWIST, WRENCH, IN_METRES])
 def test_every_way_of_writing_a_right_answer_is_right(part):
     rng = np.random.default_rng(3)
     for count in (6, 3):

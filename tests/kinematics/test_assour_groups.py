@@ -9,6 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from reference import mp
 from strategies import side
+from tables import each_row
 
 from coursework.errors import CannotAssemble, Undefined
 from coursework.kinematics import dyads
@@ -57,7 +58,7 @@ def test_an_rrr_dyad_in_line_is_exact():
     assert dyads.rrr(0j, 1 + 0j, 2.0, 1.0, -1) == 2
 
 
-@pytest.mark.parametrize("scale", [1e160, 1e-170])
+@each_row("scale", [1e160, 1e-170])
 def test_dyads_of_any_size_close(scale):
     p, q = complex(0, scale), complex(3 * scale, scale)
     assert abs(dyads.rrr(p, q, 2.4 * scale, 1.8 * scale) / scale - (1.92 + 2.44j)) < 8 * EPS
@@ -159,7 +160,7 @@ def joint_of(p, q, b, c, side):
     return p + line / abs(line) * (along + 1j * side * mp.sqrt(b**2 - along**2))
 
 
-@pytest.mark.parametrize("side", [1, -1])
+@each_row("side", [1, -1])
 def test_rates_of_rrr_are_derivatives(side):
     joint = dyads.rrr(P[0], Q[0], 5.0, 4.0, side)
     rates = dyads.rrr_rates(joint - P[0], joint - Q[0], P[1:], Q[1:])
@@ -171,7 +172,7 @@ def test_rates_of_rrr_are_derivatives(side):
     check([moved], at)
 
 
-@pytest.mark.parametrize("side", [1, -1])
+@each_row("side", [1, -1])
 def test_rates_of_rrp_on_a_moving_line_are_derivatives(side):
     along, through = unit(PSI[0]), 2 + 3j
     line = (through, *Q[1:])
@@ -188,7 +189,7 @@ def test_rates_of_rrp_on_a_moving_line_are_derivatives(side):
     check(rates, lambda t: mp.arg(g(t) + slid(t) * mp.expj(psi(t)) - p(t)), slid)
 
 
-@pytest.mark.parametrize("offset", [0.0, 1.5])
+@each_row("offset", [0.0, 1.5])
 def test_rates_of_rpr_are_derivatives_with_coriolis(offset):
     along, _ = dyads.rpr(P[0], Q[0], offset)
     rates = dyads.rpr_rates(P[0] - Q[0], along, P[1:], Q[1:])

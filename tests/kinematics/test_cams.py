@@ -3,11 +3,12 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.kinematics.cams import rise_345, rise_dwell_return
 
 
-@pytest.mark.parametrize("u", [1e-9, 1e-3, 0.25, 0.5, 0.75, 1 - 1e-3, 1 - 2**-40])
+@each_row("u", [1e-9, 1e-3, 0.25, 0.5, 0.75, 1 - 1e-3, 1 - 2**-40])
 def test_the_polynomial_and_its_derivatives_keep_their_digits(u):
     with mpmath.workdps(50):
         x = mpmath.mpf(u)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from reference import mp
+from tables import each_row
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics.angles import heading_in_degrees
@@ -100,7 +101,7 @@ def test_a_triad_closes_and_moves_as_fifty_digits_say():
         )
 
 
-@pytest.mark.parametrize("shift", [-500, 3, 500])
+@each_row("shift", [-500, 3, 500])
 def test_a_chain_in_another_unit_changes_no_bit(shift):
     here = FOUR_BAR.solve(LENGTHS | {"crank": 1.0}, NEAR)
     there = FOUR_BAR.solve({k: math.ldexp(v, shift) for k, v in LENGTHS.items()} | {"crank": 1.0}, NEAR)
@@ -150,7 +151,7 @@ def test_a_chain_that_is_miscounted_is_refused():
         ClosedChain([[Vector("a", "t")]], ["t", "u"])
 
 
-@pytest.mark.parametrize("shape", [(3, 2 * BLOCK + 5), (2 * BLOCK + 5, 3), (5, 7, 1000), (0, 4)])
+@each_row("shape", [(3, 2 * BLOCK + 5), (2 * BLOCK + 5, 3), (5, 7, 1000), (0, 4)])
 def test_blocks_cover_every_element_once(shape):
     first = np.arange(math.prod(shape), dtype=float).reshape(shape)
     second = np.arange(shape[-1], dtype=float)

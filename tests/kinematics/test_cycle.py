@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.kinematics.cycle import turning_points
 
@@ -38,8 +39,8 @@ def test_every_zero_of_a_function_with_many_is_found():
     assert abs(np.cos(20 * found[2])).max() < 1e-13
 
 
-@pytest.mark.parametrize("dip", [1e-4, 1e-6, 1e-10])
-@pytest.mark.parametrize("phase", [0.3, 2.0, 0.1234567, 6.1])
+@each_row("dip", [1e-4, 1e-6, 1e-10])
+@each_row("phase", [0.3, 2.0, 0.1234567, 6.1])
 def test_two_zeros_closer_than_a_sample_are_told_from_none(dip, phase):
     """1 - dip is crossed twice, within less than a sample of the top; 1 + dip is never reached."""
     for sign in (1, -1):

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tables import each_row
 
 from coursework import degrees
 
 ANGLES = st.floats(-1e6, 1e6)
 
 
-@pytest.mark.parametrize("turns", [-3, 0, 1, 10**9])
+@each_row("turns", [-3, 0, 1, 10**9])
 def test_quarters_of_a_turn_are_exact(turns):
     for quarter, (sine, cosine) in enumerate([(0, 1), (1, 0), (0, -1), (-1, 0)]):
         theta = 360.0 * turns + 90.0 * quarter
@@ -39,7 +40,7 @@ def test_the_direction_of_a_polar_vector_is_its_angle(theta, length):
         assert abs(math.remainder(degrees.angle(complex(vector)) - theta, 360)) < 1e-12
 
 
-@pytest.mark.parametrize("make", [float, lambda x: np.array([x])])
+@each_row("make", [float, lambda x: np.array([x])])
 def test_directions_lie_above_minus_180_and_up_to_180(make):
     assert degrees.atan2(make(-0.0), make(-1.0)) == 180
     assert degrees.angle(make(-1.0) + make(0.0) * 1j) == 180

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from reference import away, four_bar, mp
+from tables import each_row
 
 from coursework.kinematics import elementary, vectors
 from coursework.kinematics.angles import heading_in_degrees
@@ -24,7 +25,7 @@ def spread(most):
     return np.concatenate([near, -near])
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("function", "exact", "most"),
     [
         (tangent, mp.tan, math.pi / 4),
@@ -38,7 +39,7 @@ def test_no_result_is_off_by_more_than_an_ulp_and_a_half(function, exact, most):
         assert abs(mp.mpf(found) - exact(mp.mpf(x))) <= 1.5 * ulp, x
 
 
-@pytest.mark.parametrize(("function", "most"), [(tangent, math.pi / 4), (quotient_arctangent, 1.0)])
+@each_row(("function", "most"), [(tangent, math.pi / 4), (quotient_arctangent, 1.0)])
 def test_a_number_gives_what_its_place_in_an_array_gives(function, most):
     given = spread(most)
     kept = given.copy()
@@ -64,7 +65,7 @@ def test_a_direction_is_right_in_every_quadrant(arctangent, length, monkeypatch)
         assert np.array_equal(alone, found)
 
 
-@pytest.mark.parametrize("sign", [0.0, -0.0, -1e-300])
+@each_row("sign", [0.0, -0.0, -1e-300])
 def test_half_a_turn_is_counted_upwards(sign):
     for x in (np.array([-1.0]), np.array([-1.0, 1.0])):
         y = np.full_like(x, sign)

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import away, four_bar, mp, turned
 from strategies import side
+from tables import each_row
 
 from coursework.kinematics.four_bar import FourBar
 from coursework.system.blocks import BLOCK
@@ -105,7 +106,7 @@ def test_rates_are_derivatives_of_the_positions(lengths, theta, side, rate, acce
             assert abs(found[2 * order + i] - expected) <= 64 * EPS * (sharp * size + abs(expected))
 
 
-@pytest.mark.parametrize("smooth", [False, True])
+@each_row("smooth", [False, True])
 def test_orders_that_are_not_asked_are_not_there_and_change_nothing(smooth):
     linkage = FourBar(100, 40, 80, 70, smooth=smooth)
     whole = linkage.motion(1.0, 2.0, 3.0, 4.0, order=3)
@@ -115,7 +116,7 @@ def test_orders_that_are_not_asked_are_not_there_and_change_nothing(smooth):
         assert asked[2 * order + 2 :] == (None,) * (6 - 2 * order)
 
 
-@pytest.mark.parametrize("smooth", [False, True])
+@each_row("smooth", [False, True])
 def test_many_linkages_at_many_angles_are_each_of_them_alone(smooth):
     ground, crank = np.array([100.0, 100, 90, 60]), np.array([40.0, 50, 20, 60])
     coupler, rocker = np.array([80.0, 70, 60, 100]), np.array([70.0, 80, 90, 100])

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from reference import away, four_bar, mp, relative
+from tables import each_row
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics.angles import heading_after_turns, heading_in_degrees
@@ -31,16 +32,16 @@ def position_error(lengths, theta, side=1, **policy):
     return max(float(by_point), max(by_angles) / longest)
 
 
-@pytest.mark.parametrize("near", NEAR)
-@pytest.mark.parametrize("side", [1, -1])
+@each_row("near", NEAR)
+@each_row("side", [1, -1])
 def test_the_change_point_costs_no_digit_of_position(near, side):
     # No term is a difference of nearly equal lengths: 4 ulp of the longest link, as anywhere else.
     assert position_error(CHANGE_POINT, math.pi - near, side) <= 4 * EPS
     assert position_error(CHANGE_POINT, math.pi + near, side) <= 4 * EPS
 
 
-@pytest.mark.parametrize("near", NEAR)
-@pytest.mark.parametrize("side", [1, -1])
+@each_row("near", NEAR)
+@each_row("side", [1, -1])
 def test_rates_keep_their_limits_at_the_change_point(near, side):
     # rho = sin/S is a quotient of two numbers that are each right to the last digits.
     theta = math.pi - near
@@ -87,7 +88,7 @@ def test_a_smooth_change_point_linkage_comes_back_after_two_turns():
     assert smooth.angles(heading_in_degrees(140 + 720)) == smooth.angles(first)
 
 
-@pytest.mark.parametrize("theta", [1e-8, 1e-7, 1e-3, 1.0, math.pi - 1e-7, math.pi, 4.0, 2 * math.pi])
+@each_row("theta", [1e-8, 1e-7, 1e-3, 1.0, math.pi - 1e-7, math.pi, 4.0, 2 * math.pi])
 def test_a_smooth_parallelogram_stays_one(theta):
     smooth = FourBar(*PARALLELOGRAM, smooth=True)
     crank_pin, joint = smooth.pins(theta)
@@ -111,7 +112,7 @@ def test_a_parallelogram_turned_twice_never_becomes_its_antiparallelogram():
     assert abs(np.exp(1j * rocker) - (turned.cos + 1j * turned.sin)).max() < 8 * EPS
 
 
-@pytest.mark.parametrize("theta", [1e-3, 1e-6, 1e-7, 1e-9])
+@each_row("theta", [1e-3, 1e-6, 1e-7, 1e-9])
 def test_a_kite_keeps_its_digits_while_the_pins_close_up(theta):
     # AD goes to 0; its square is a product, never a difference.
     assert position_error(KITE, theta) <= 4 * EPS
@@ -130,7 +131,7 @@ def test_a_kite_with_its_pins_together_is_undefined():
     assert np.array_equal(np.isnan(rates), [[[True, False]] * 2] * 3)
 
 
-@pytest.mark.parametrize("margin", [1e-2, 1e-4, 1e-7, 1e-10, 1e-13, 0.0, 2.0**-46])
+@each_row("margin", [1e-2, 1e-4, 1e-7, 1e-10, 1e-13, 0.0, 2.0**-46])
 def test_the_error_does_not_grow_as_the_margin_shrinks(margin):
     # b + c - a - d = margin: the sum of the four lengths is formed without rounding, once.
     lengths = (100.0 - margin, 50.0, 70.0, 80.0)
@@ -138,7 +139,7 @@ def test_the_error_does_not_grow_as_the_margin_shrinks(margin):
         assert position_error(lengths, theta) <= 4 * EPS
 
 
-@pytest.mark.parametrize("beyond", [1, 2, 5, 40])
+@each_row("beyond", [1, 2, 5, 40])
 def test_lengths_of_many_digits_have_an_exact_margin_too(beyond):
     # The ground is a few last digits short of b + c - a, of which no partial sum is exact.
     crank, coupler, rocker = 50.1, 70.3, 80.7
@@ -159,7 +160,7 @@ def test_the_sum_of_an_array_is_as_exact_as_that_of_a_number():
     assert np.array_equal(exact_sum(*terms), [math.fsum(column) for column in terms.T])
 
 
-@pytest.mark.parametrize("theta", [1e-7, 1e-5, 1e-3])
+@each_row("theta", [1e-7, 1e-5, 1e-3])
 def test_pins_that_almost_meet_cost_no_digit(theta):
     # AD is a hundred thousand times shorter than the bodies it carries.
     assert position_error((60.001, 60.0, 100.0, 100.0005), theta) <= 8 * EPS
@@ -168,7 +169,7 @@ def test_pins_that_almost_meet_cost_no_digit(theta):
 DOUBLE_ROCKER = (90.0, 70.0, 40.0, 50.0)
 
 
-@pytest.mark.parametrize("near", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
+@each_row("near", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
 def test_near_a_limit_the_loop_closes_and_the_error_is_the_conditioning(near):
     # The position itself moves by eps/sqrt(near): what is asserted is that the loop closes.
     linkage = FourBar(*DOUBLE_ROCKER)
@@ -205,7 +206,7 @@ def test_limits_are_those_of_the_law_of_cosines():
     assert FourBar(*CHANGE_POINT).turns_fully()
 
 
-@pytest.mark.parametrize("shift", [-560, -200, 3, 200, 530])
+@each_row("shift", [-560, -200, 3, 200, 530])
 def test_a_unit_that_is_a_power_of_two_changes_no_bit(shift):
     # Lengths near 1e-170 and 1e160 among them: squares would vanish or overflow.
     theta = np.linspace(-4, 4, 57)
@@ -220,7 +221,7 @@ def test_a_unit_that_is_a_power_of_two_changes_no_bit(shift):
             assert np.array_equal(np.ldexp(here.imag, shift), there.imag)
 
 
-@pytest.mark.parametrize("unit", [1e160, 1e-170, 1e-6])
+@each_row("unit", [1e160, 1e-170, 1e-6])
 def test_any_unit_gives_the_same_digits(unit):
     lengths = [x * unit for x in (100.0, 40.0, 80.0, 70.0)]
     assert position_error(lengths, 1.0) <= 4 * EPS
@@ -228,7 +229,7 @@ def test_any_unit_gives_the_same_digits(unit):
     assert found == pytest.approx(expected, rel=1e-14)
 
 
-@pytest.mark.parametrize("theta", [1e-3, 1.0, 3.0])
+@each_row("theta", [1e-3, 1.0, 3.0])
 def test_very_unequal_lengths_lose_nothing(theta):
     # A Newton step after a closed form is 1e6 times worse here; there is none.
     assert position_error((1.5, 1.0, 1e6, 1e6), theta) <= 4 * EPS
@@ -267,7 +268,7 @@ def test_whole_turns_count_for_a_smooth_change_point():
         assert smooth.angles(heading_after_turns(turns, 2.0)) == pytest.approx(expected, abs=1e-14)
 
 
-@pytest.mark.parametrize("turns", [1, 2, 10**9, 10**15 + 1])
+@each_row("turns", [1, 2, 10**9, 10**15 + 1])
 def test_whole_turns_cost_no_digit(turns):
     linkage = FourBar(100, 40, 80, 70)
     assert linkage.angles(heading_after_turns(turns, 1.0)) == pytest.approx(linkage.angles(1.0), abs=4 * EPS)
@@ -319,7 +320,7 @@ def test_lengths_that_are_none_are_refused():
     assert np.array_equal(np.isnan(found), [[False, True]] * 2)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("lengths", "kind"),
     [
         ((100, 40, 80, 70), "crank-rocker"),

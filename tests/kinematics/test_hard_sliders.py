@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import away, exact, mp, relative, slider_crank, turned
+from tables import each_row
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics import slotted_guide
@@ -16,7 +17,7 @@ from coursework.kinematics.slider_crank import SliderCrank, time_ratio, time_rat
 EPS = 2.0**-52
 
 
-@pytest.mark.parametrize("near", [1e-2, 1e-5, 1e-8, 1e-12])
+@each_row("near", [1e-2, 1e-5, 1e-8, 1e-12])
 def test_a_rod_as_long_as_its_crank_gives_twice_the_cosine(near):
     theta = math.pi / 2 - near
     expected = 2 * mp.cos(mp.mpf(theta))
@@ -41,7 +42,7 @@ def test_the_smooth_policy_at_equal_lengths_moves_as_twice_the_cosine_through_ev
         SliderCrank(1.0, 1.0).motion(heading_in_degrees(90), order=1)
 
 
-@pytest.mark.parametrize("step", [1.0, 7.0, 179.0])
+@each_row("step", [1.0, 7.0, 179.0])
 def test_a_rod_longer_than_its_crank_never_changes_side(step):
     turned = heading_in_degrees(np.arange(0, 720) * step)
     for side in (1, -1):
@@ -50,8 +51,8 @@ def test_a_rod_longer_than_its_crank_never_changes_side(step):
             assert (side * run > 0).all()
 
 
-@pytest.mark.parametrize("offset", [0.0, 0.01, -0.02])
-@pytest.mark.parametrize("past", [1e-12, 1e-8, 1e-4, 0.5, 3.0])
+@each_row("offset", [0.0, 0.01, -0.02])
+@each_row("past", [1e-12, 1e-8, 1e-4, 0.5, 3.0])
 def test_displacement_from_dead_centre_is_a_product(offset, past):
     r, l = 0.05, 0.2
     centre = mp.asin(mp.mpf(offset) / (mp.mpf(r) + mp.mpf(l)))
@@ -71,7 +72,7 @@ def test_displacement_with_a_very_long_rod_is_that_of_a_scotch_yoke():
     assert found == pytest.approx(1 - math.cos(theta), rel=1e-7)
 
 
-@pytest.mark.parametrize("offset", [1e-15, 1e-9, 1e-3, 0.5, 0.9])
+@each_row("offset", [1e-15, 1e-9, 1e-3, 0.5, 0.9])
 def test_the_asymmetry_of_a_quick_return_keeps_its_digits(offset):
     e, r, l = mp.mpf(offset), mp.mpf(1), mp.mpf(2)
     expected = mp.asin(e / (l - r)) - mp.asin(e / (l + r))
@@ -82,14 +83,14 @@ def test_the_asymmetry_of_a_quick_return_keeps_its_digits(offset):
     assert time_ratio(found) == pytest.approx((math.pi + found) / (math.pi - found), rel=4 * EPS)
 
 
-@pytest.mark.parametrize("crank", [1e-7, 1e-3, 0.5, 0.9])
+@each_row("crank", [1e-7, 1e-3, 0.5, 0.9])
 def test_the_stroke_of_a_tiny_crank_keeps_its_digits(crank):
     r, l, e = mp.mpf(crank), mp.mpf(1), mp.mpf(0.05)
     expected = mp.sqrt((l + r) ** 2 - e**2) - mp.sqrt((l - r) ** 2 - e**2)
     assert relative(SliderCrank(crank, 1.0, 0.05).stroke(), expected) < 8 * EPS
 
 
-@pytest.mark.parametrize("margin", [1e-2, 1e-8, 1e-13, 0.0])
+@each_row("margin", [1e-2, 1e-8, 1e-13, 0.0])
 def test_the_error_of_an_offset_slider_does_not_grow_as_the_margin_shrinks(margin):
     r, l, e = 0.75, 1.0 + margin, 0.25
     for theta in (-math.pi / 2, -math.pi / 2 + 1e-9, -math.pi / 2 - 1e-4):
@@ -99,7 +100,7 @@ def test_the_error_of_an_offset_slider_does_not_grow_as_the_margin_shrinks(margi
         assert away(found.rod_angle, expected[0]) < 8 * EPS
 
 
-@pytest.mark.parametrize("beyond", [0, 1, 3, 30])
+@each_row("beyond", [0, 1, 3, 30])
 def test_lengths_of_many_digits_have_exact_margins_too(beyond):
     r, e = 0.1003, 0.7001
     l = r + e
@@ -124,7 +125,7 @@ def test_a_slider_that_does_not_reach_says_by_how_much_and_is_nan_in_arrays():
         SliderCrank(1.0, 0.0)
 
 
-@pytest.mark.parametrize("shift", [-550, 2, 530])
+@each_row("shift", [-550, 2, 530])
 def test_a_slider_in_a_unit_that_is_a_power_of_two_changes_no_bit(shift):
     theta = np.linspace(-4, 4, 41)
     here = SliderCrank(1.0, 2.5, 0.3).motion(theta, 2.0, 3.0, order=2)
@@ -161,7 +162,7 @@ def test_slider_rates_are_derivatives_of_the_position(r, excess, share, theta, s
             )
 
 
-@pytest.mark.parametrize("theta", [0.0, 1.0, math.pi - 1e-8, math.pi, 4.0])
+@each_row("theta", [0.0, 1.0, math.pi - 1e-8, math.pi, 4.0])
 def test_a_guide_whose_crank_equals_its_ground_turns_at_half_the_rate(theta):
     motion = slotted_guide.motion(0.3, 0.3, theta, 1.0, order=2)
     assert motion.guide_rate == 0.5
@@ -189,7 +190,7 @@ def test_the_peak_of_a_whitworth_guide_is_a_quotient_of_lengths():
     )
 
 
-@pytest.mark.parametrize(("ground", "crank", "turns"), [(1.0, 1.5, 1), (1.0, 0.7, 0)])
+@each_row(("ground", "crank", "turns"), [(1.0, 1.5, 1), (1.0, 0.7, 0)])
 def test_a_whitworth_guide_gains_a_turn_where_a_shaper_swings_back(ground, crank, turns):
     theta = np.linspace(0, 2 * math.pi, 2001)
     motion = slotted_guide.motion(ground, crank, theta, 1.0, order=1)
@@ -245,9 +246,9 @@ def guide_at(d, r, angle):
         )
 
 
-@pytest.mark.parametrize("gap", [0.0, 1e-9, -1e-9, 1e-12, -1e-3, 0.7])
-@pytest.mark.parametrize("near", [60.0, 1e-1, 1e-3, 1e-6, 1e-9])
-@pytest.mark.parametrize("side", [1, -1])
+@each_row("gap", [0.0, 1e-9, -1e-9, 1e-12, -1e-3, 0.7])
+@each_row("near", [60.0, 1e-1, 1e-3, 1e-6, 1e-9])
+@each_row("side", [1, -1])
 def test_a_pin_that_passes_beside_the_pivot_costs_no_digit_of_any_order(gap, near, side):
     d, r, angle = 200.0, 200.0 * (1 + gap), 180.0 - side * near
     found = slotted_guide.motion(d, r, heading_in_degrees(angle), order=3)
@@ -259,8 +260,8 @@ def test_a_pin_that_passes_beside_the_pivot_costs_no_digit_of_any_order(gap, nea
             assert abs(value - expected) <= 16 * EPS * abs(expected) + mp.mpf("1e-50"), order
 
 
-@pytest.mark.parametrize("offset", [0.0, 0.3, -0.3])
-@pytest.mark.parametrize("near", [1e-2, 1e-6, 1e-10])
+@each_row("offset", [0.0, 0.3, -0.3])
+@each_row("near", [1e-2, 1e-6, 1e-10])
 def test_the_rod_of_a_slider_gains_speed_evenly_on_both_sides_of_a_dead_centre(offset, near):
     for crank in (near, -near, 180 - near):
         found = SliderCrank(1.0, 2.5, offset).motion(heading_in_degrees(crank), 1.0, 0.0, order=2)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from reference import exact, four_bar, mp, relative
+from tables import each_row
 
 from coursework.errors import CannotAssemble
 from coursework.kinematics.rocker_slider import RockerSlider
@@ -37,8 +38,8 @@ def spread(angle):
     return math.remainder(angle, 2 * math.pi)
 
 
-@pytest.mark.parametrize(("mechanism", "count"), [(ORDINARY, 2), (FOUR_TIMES, 4)])
-@pytest.mark.parametrize("side", [1, -1])
+@each_row(("mechanism", "count"), [(ORDINARY, 2), (FOUR_TIMES, 4)])
+@each_row("side", [1, -1])
 def test_the_slider_stands_still_there_and_nowhere_else(mechanism, count, side):
     mechanism = mechanism._replace(side=side)
     found = mechanism.turning_points()
@@ -60,7 +61,7 @@ def test_without_a_rod_in_line_it_turns_back_where_crank_and_coupler_are_in_line
     assert found == pytest.approx(sorted([stretched, folded]), abs=1e-13)
 
 
-@pytest.mark.parametrize("mechanism", [ORDINARY, FOUR_TIMES])
+@each_row("mechanism", [ORDINARY, FOUR_TIMES])
 def test_upside_down_it_turns_back_at_the_opposite_angles(mechanism):
     mirrored = mechanism._replace(
         ground_angle=-mechanism.ground_angle, side=-mechanism.side, line=-mechanism.line
@@ -70,7 +71,7 @@ def test_upside_down_it_turns_back_at_the_opposite_angles(mechanism):
     assert seen == pytest.approx(found, abs=1e-13)
 
 
-@pytest.mark.parametrize("size", [1e-3, 7.0, 1e5])
+@each_row("size", [1e-3, 7.0, 1e5])
 def test_its_size_does_not_matter(size):
     lengths = {
         n: size * getattr(FOUR_TIMES, n) for n in ("ground", "crank", "coupler", "rocker", "rod", "line")
@@ -114,8 +115,8 @@ DOUBLE_CRANK = RockerSlider(20.0, math.radians(25), 60.0, 50.0, 45.0, 1, 200.0, 
 SHORT = [m._replace(crank=crank) for m in (ORDINARY, FOUR_TIMES) for crank in (1e-3, 1e-6, 1e-9)]
 
 
-@pytest.mark.parametrize("mechanism", [ORDINARY, FOUR_TIMES, DOUBLE_CRANK, *SHORT])
-@pytest.mark.parametrize("side", [1, -1])
+@each_row("mechanism", [ORDINARY, FOUR_TIMES, DOUBLE_CRANK, *SHORT])
+@each_row("side", [1, -1])
 def test_a_stroke_keeps_its_digits_however_small_the_crank(mechanism, side):
     mechanism = mechanism._replace(side=side)
     # Where the slider stands still, an angle's last digit moves nothing.
@@ -137,7 +138,7 @@ def test_strokes_of_a_row_are_those_of_its_mechanisms():
         every[4].stroke()
 
 
-@pytest.mark.parametrize("near", [1e-2, 1e-4, 1e-6, 1e-8])
+@each_row("near", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_two_turns_back_that_are_nearly_one_are_counted(near):
     """The rod folds onto the rocker, in its direction turned by half, just before the rocker turns back, or never."""
     end = math.radians(60 + 180) - math.acos((80**2 + 60**2 - 120**2) / (2 * 80 * 60))

@@ -6,6 +6,7 @@ import codecs
 import shutil
 
 import pytest
+from tables import each_row
 
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
@@ -63,7 +64,7 @@ def test_a_language_that_is_not_there_names_the_file_that_would_make_it_one():
         language.words("it")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("halfway", "digits", "text"),
     [
         (46.75, 3, "46.8"),

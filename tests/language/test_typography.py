@@ -9,6 +9,7 @@ from functools import reduce
 
 import pytest
 from rendering_samples import handout
+from tables import each_row
 
 from coursework.errors import BadCourse
 from coursework.language import words as language
@@ -33,7 +34,7 @@ def keys(table: dict, path: str = "") -> set[str]:
     }
 
 
-@pytest.mark.parametrize("of", ["", "site"])
+@each_row("of", ["", "site"])
 def test_both_languages_have_the_same_words(of):
     tables = {lang: tomllib.loads(language.file_of(lang, of).read_text("utf-8")) for lang in ("fr", "en")}
     french, english = (keys({k: v for k, v in t.items() if k != "units"}) for t in tables.values())
@@ -64,7 +65,7 @@ def test_french_puts_narrow_spaces_where_french_does():
         assert write("`x` : `y`", "fr").count("\u202f") == 1
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("points", "fr", "en"),
     [
         (0, "0 point", "0 points"),

@@ -8,6 +8,7 @@ import sys
 
 import pytest
 from lti_platform import PLATFORM
+from tables import each_row
 
 from coursework.cli import run
 from coursework.errors import BadInput
@@ -22,7 +23,7 @@ ABOVE = "http://purl.imsglobal.org/vocab/lis/v2/institution/person#"
 SYSTEM = "http://purl.imsglobal.org/vocab/lis/v2/system/person#"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("stated", "role"),
     [
         ([f"{MEMBER}#Learner"], Role.STUDENT),

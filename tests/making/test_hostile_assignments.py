@@ -1,6 +1,7 @@
 """Files of assignments that nobody writes: told in a line, at once."""
 
 import pytest
+from tables import each_row
 
 from coursework import open_course
 from coursework.errors import BadInput
@@ -14,7 +15,7 @@ def course():
     return open_course()
 
 
-@pytest.mark.parametrize(
+@each_row(
     "source",
     [
         "a = " + "[" * 100_000,
@@ -27,7 +28,6 @@ def course():
         'a = """' + "x" * 2_000_000 + '"""',
         '"\\ud800" = 1',
     ],
-    ids=lambda source: f"{source[:9]} {len(source)}",
 )
 def test_what_is_no_assignment_is_told_in_a_line(source):
     with pytest.raises(BadInput, match=r"^week3.toml") as told:
@@ -35,23 +35,23 @@ def test_what_is_no_assignment_is_told_in_a_line(source):
     assert len(str(told.value)) < 300
 
 
-@pytest.mark.parametrize("value", ["x" * 10**6, [""] * 10**4, {"en": ["x"] * 10**5}, [[["a"]]] * 1000])
-@pytest.mark.parametrize("key", ["date", "mark", "versions", "identity", "sort", "cover", "duration"])
+@each_row("value", ["x" * 10**6, [""] * 10**4, {"en": ["x"] * 10**5}, [[["a"]]] * 1000])
+@each_row("key", ["date", "mark", "versions", "identity", "sort", "cover", "duration"])
 def test_a_value_that_is_refused_is_quoted_in_short(course, key, value):
     with pytest.raises(BadInput) as told:
         assignment_of("week3", {"exercises": ["grashof"], "title": "x", key: value}, course)
     assert len(str(told.value)) < 500
 
 
-@pytest.mark.parametrize("key", ["name", "parts", "points", "seed", "x" * 10**5])
-@pytest.mark.parametrize("value", ["x" * 10**6, ["x" * 10**6], {"x" * 10**6: 1}])
+@each_row("key", ["name", "parts", "points", "seed", "x" * 10**5])
+@each_row("value", ["x" * 10**6, ["x" * 10**6], {"x" * 10**6: 1}])
 def test_so_is_a_value_in_an_exercise(course, key, value):
     with pytest.raises(BadInput) as told:
         assignment_of("week3", {"exercises": [{"name": "grashof", key: value}]}, course)
     assert len(str(told.value).partition("; there is")[0]) < 500
 
 
-@pytest.mark.parametrize(
+@each_row(
     "planted",
     [
         "<script/>",

@@ -1,14 +1,13 @@
 """Records that a later version wrote are not read as if they were of this one."""
 
 import pytest
+from tables import each_row
 
 from coursework.errors import BadInput
 from coursework.making.issued import ISSUED_FORMAT, Issued
 
 
-@pytest.mark.parametrize(
-    ("more", "told"), [(0, "no issued record"), (1, r"^issued\.json was written by a later version")]
-)
+@each_row(("more", "told"), [(0, "no issued record"), (1, r"^issued\.json was written by a later version")])
 def test_a_later_format_is_told(more, told):
     with pytest.raises(BadInput, match=told):
         Issued({"format": ISSUED_FORMAT + more, "issued": [{}]}, "issued.json")

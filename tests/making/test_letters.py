@@ -10,6 +10,7 @@ import pytest
 import typst
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
+from tables import each_row
 
 from coursework.cli import run
 from coursework.making.students import file_stems
@@ -32,14 +33,14 @@ def test_every_character_that_is_said_to_be_drawn_is_drawn():
         assert printed(" ".join(PRINTED[start : start + 400])).startswith(b"%PDF")
 
 
-@pytest.mark.parametrize("name", ["Ὀδυσσεύς", "Ѓорѓи Ѣ", "Հայկ", "გიორგი", "Nguyễn Thị", "Łódź", "Əliyev"])
+@each_row("name", ["Ὀδυσσεύς", "Ѓорѓи Ѣ", "Հայկ", "გიორგი", "Nguyễn Thị", "Łódź", "Əliyev"])
 def test_names_in_the_scripts_of_the_fonts_at_hand_are_printed_whole(name):
     assert drawable(name) == name
     assert builtin_renderer().undrawn(name) == []
     printed(f"{name} {unicodedata.normalize('NFD', name)}")
 
 
-@pytest.mark.parametrize("char", "李あ한ไمש😀")
+@each_row("char", "李あ한ไمש😀")
 def test_a_character_that_is_said_to_have_no_glyph_has_none_that_is_fit_to_print(char):
     assert drawable(f"a{char}b") == f"a{SUBSTITUTE}b"
     assert builtin_renderer().undrawn(f"{char}a{char}") == [char]
@@ -50,7 +51,7 @@ def test_a_character_that_is_said_to_have_no_glyph_has_none_that_is_fit_to_print
             )
 
 
-@pytest.mark.parametrize("text", ["v\u20d7", "F\u20d7 = m a\u20d7", "ω\u20d7", "«v\u20d7» #a"])
+@each_row("text", ["v\u20d7", "F\u20d7 = m a\u20d7", "ω\u20d7", "«v\u20d7» #a"])
 def test_a_vector_s_arrow_is_printed_above_its_letter(text):
     """Each letter and its arrow come from the one font that has both."""
     source = drawable(typst_text(text, "fr"))

@@ -1,6 +1,6 @@
 """Names of students as people type them: accents and case may be wrong, and nobody is taken for a namesake."""
 
-import pytest
+from tables import each_row
 
 from coursework.errors import closest
 from coursework.making.students import called, file_stems
@@ -8,7 +8,7 @@ from coursework.making.students import called, file_stems
 CLASS = ("Faure Loïc", "Faure Noémie", "Łukasz Nowak", "Cœur Anaïs", "Ruiz Ana", "Ruíz Ana")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("typed", "meant"),
     [
         ("Faure Loic", "Faure Loïc"),
@@ -27,7 +27,7 @@ def test_a_name_is_found_whatever_its_case_and_accents_unless_two_have_it(typed,
     assert called(typed, CLASS) == meant
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("typed", "known", "offered"),
     [
         ("Faure Loic", CLASS, "Faure Loïc"),

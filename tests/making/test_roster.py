@@ -2,6 +2,7 @@
 
 import pytest
 from collected_pools import RECORDED
+from tables import each_row
 
 from coursework.cli import run
 from coursework.cli.options import DONE
@@ -89,7 +90,7 @@ def test_moodles_list_of_participants_is_a_roster():
     assert notes == []
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("name", "mail"),
     [("moodle_gradebook.csv", "Email address"), ("moodle_gradebook_fr.csv", "Adresse de courriel")],
 )

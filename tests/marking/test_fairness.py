@@ -8,6 +8,7 @@ from collections import Counter
 import numpy as np
 import pytest
 from sweeps import sampled
+from tables import each_row
 
 import coursework
 from coursework.authoring import checks
@@ -37,7 +38,7 @@ def issued(name, count=25):
 # --------------------------------------------------------------------- rounding
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("value", "digits", "expected"),
     [(319.8037, 4, 319.8), (-0.00123456, 3, -0.00123), (99995.0, 4, 100000.0), (0.0, 4, 0.0), (7, 3, 7.0)],
 )
@@ -54,7 +55,7 @@ def test_what_is_no_number_is_not_rounded():
     assert half_step(319.8, 4) == pytest.approx(0.05)
 
 
-@pytest.mark.parametrize("exponent", range(-6, 9))
+@each_row("exponent", range(-6, 9))
 def test_the_last_digit_kept_does_not_hang_on_a_last_bit(exponent):
     power = 10.0**exponent
     for off in range(-20, 21):

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from sweeps import sampled
+from tables import each_row
 
 import coursework
 from coursework.authoring.check_loops import check_loops, equation_holds
@@ -184,7 +185,7 @@ def test_an_equation_under_a_function_is_not_the_equation():
     assert paid == []
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "exp(exp(r1)) = exp(exp(r2))", "exp(r1^3)*(r2 sin θ2 + r3 sin θ3 - r4 sin θ4) = 0", "1e300*r1^60 = 1",
@@ -195,7 +196,7 @@ def test_what_overflows_or_has_no_value_is_wrong_and_stops_nothing(text):
     assert verdict("four_bar_positions", "loop_1_y", text) == "wrong"
 
 
-@pytest.mark.parametrize("factor", ["1e-200", "1e200", "(2 + sin(theta3))", "r1*r2^3", "(1 + 2i)"])
+@each_row("factor", ["1e-200", "1e200", "(2 + sin(theta3))", "r1*r2^3", "(1 + 2i)"])
 def test_a_factor_that_does_not_vanish_changes_nothing(factor):
     text = f"{factor}*(r2 sin θ2 + r3 sin θ3 - r4 sin θ4) = 0"
     assert verdict("four_bar_positions", "loop_1_y", text) == "correct"
@@ -218,7 +219,7 @@ def test_a_constant_angle_in_degrees_is_right_only_where_it_is_the_direction():
         ), text
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("part", "text", "slip"),
     [
         ("loop_1_x", "r1*cos(90) + r2*cos(theta2) + rA*cos(theta4) = 0", "slip:link_sign"),
@@ -241,7 +242,7 @@ def test_numbers_in_place_of_symbols_are_told():
     )
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "slip"),
     [
         ("theta4 = arccos(r2*cos(theta2)/rA)", "slip:some_positions"),

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.errors import NoSolution, UnknownName, WrongValue
 from coursework.marking import marking
@@ -32,7 +33,7 @@ def verdict(variant, part, answer):
     return variant.grade({part: answer})[part].verdict
 
 
-@pytest.mark.parametrize(
+@each_row(
     "answer",
     [
         "319,8 mm",
@@ -50,12 +51,12 @@ def test_a_length_is_right_in_every_honest_spelling(slotted, answer):
     assert verdict(slotted, "rA", answer) == "correct"
 
 
-@pytest.mark.parametrize("answer", ["104,6°", "104.64 deg", "1.8263 rad", "-255,4", "464.64", "104°38'"])
+@each_row("answer", ["104,6°", "104.64 deg", "1.8263 rad", "-255,4", "464.64", "104°38'"])
 def test_an_angle_is_right_in_every_honest_spelling(slotted, answer):
     assert verdict(slotted, "theta4", answer) == "correct"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "expected"),
     [
         ("319,8 kg", "wrong_unit"),
@@ -104,7 +105,7 @@ def test_an_answer_to_an_unknown_part_is_refused_with_the_nearest(slotted):
         slotted.grade({})["ra"]
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_a_choice_may_be_given_by_label_in_either_language_or_by_key(course, lang):
     exercise = course["slotted_mechanism"]
     variant = next(v for v in exercise.variants(range(20), lang) if any(p.id == "guide" for p in v.parts))
@@ -195,7 +196,7 @@ def test_a_wrong_number_is_quoted_as_it_is_written_unless_its_thousands_are_mean
     assert (mark.verdict, mark.read_as) == ("slip:unit", f"{large:.0f}")
 
 
-@pytest.mark.parametrize("wrap", [np.float64, np.array, lambda x: np.array([x]), lambda x: [x]])
+@each_row("wrap", [np.float64, np.array, lambda x: np.array([x]), lambda x: [x]])
 def test_what_a_cell_computes_is_marked_and_quoted_as_a_number(slotted, wrap):
     assert verdict(slotted, "rA", wrap(319.8)) == "correct"
     mark = slotted.grade({"rA": wrap(238.4)})["rA"]
@@ -217,8 +218,8 @@ def test_a_students_copy_cannot_mark(course, tmp_path):
 # ----------------------------------------------------------------------- distance
 
 
-@pytest.mark.parametrize("reference", [319.8, -0.731, 12345.6, 1e-6])
-@pytest.mark.parametrize("rtol", [0.01, 0.05, 1e-3])
+@each_row("reference", [319.8, -0.731, 12345.6, 1e-6])
+@each_row("rtol", [0.01, 0.05, 1e-3])
 def test_the_boundary_counts_as_right_and_a_hair_beyond_does_not(reference, rtol):
     part = Part("x", rtol=rtol)
     for side in (-1, 1):
@@ -335,9 +336,7 @@ def test_a_name_is_quoted_with_its_underscore(course):
     assert "“h = N_s_r”" in said.feedback
 
 
-@pytest.mark.parametrize(
-    ("lang", "words"), [("fr", "un nombre entier, sans unité"), ("en", "a whole number, without")]
-)
+@each_row(("lang", "words"), [("fr", "un nombre entier, sans unité"), ("en", "a whole number, without")])
 def test_a_whole_number_with_a_unit_is_said_to_have_none(course, lang, words):
     for answer in ("3 mm", "3 frogs"):
         assert words in told(course, "mobility", 0, lang, w=answer)["w"].feedback
@@ -364,7 +363,7 @@ def test_an_equation_with_numbers_put_in_is_said_to_be_that(course):
     assert variant.grade({"no_slip_A": "(R + r)*phi_dot = -r*omega"})["no_slip_A"].verdict == "correct"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("lang", "missing", "scale"),
     [("fr", "il manque encore : question 6 ou 7", "une échelle est positive"),
      ("en", "still missing: question 6 or 7", "a scale is positive")],
@@ -380,7 +379,7 @@ def test_what_a_drawing_lacks_and_a_scale_that_is_none_are_told(course, lang, mi
     assert scale not in drawn["p"].feedback
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_every_choice_is_read_by_what_is_offered_for_it(course, lang):
     """The label in one line of plain text, as a transcript or the feedback has it."""
     for name in course.names:
@@ -391,7 +390,7 @@ def test_every_choice_is_read_by_what_is_offered_for_it(course, lang):
                 assert reading.values == (case,), (name, part.id, case, reading)
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_what_may_be_written_for_a_choice_is_said_in_the_language_of_the_sheet_and_is_read(course, lang):
     variant = course["parallel_joints"].variant(0, lang)
     said = " ".join(variant.grade({"equivalent": "qzx"})["equivalent"].feedback.split())
@@ -404,7 +403,7 @@ def test_what_may_be_written_for_a_choice_is_said_in_the_language_of_the_sheet_a
         assert variant.grade({"equivalent": max(quotation)})["equivalent"].verdict != "unreadable", quotation
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("part", "answer", "told"),
     [
         ("rA", "je ne sais pas", "« je ne sais pas »"),

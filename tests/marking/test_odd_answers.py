@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from course_of_every_kind import write_course
+from tables import each_row
 
 import coursework
 from coursework.errors import WrongValue
@@ -64,7 +65,7 @@ def variants(course, tmp_path_factory):
     return [own["coil"].variant(1), *(course[name].variant(1, parts=("all",)) for name in BUILT_IN)]
 
 
-@pytest.mark.parametrize("odd", ODD, ids=[f"{k}-{type(one).__name__}" for k, one in enumerate(ODD)])
+@each_row("odd", ODD)
 def test_an_odd_answer_to_a_part_of_any_kind_is_judged_or_unreadable(variants, odd):
     for variant in variants:
         for part in variant.parts:
@@ -90,7 +91,7 @@ def test_what_is_nested_or_filled_beyond_measure_is_not_looked_into():
     assert plain_answer({"R": np.array([1, 2]), "M": (1.5, None)}) == {"R": [1, 2], "M": (1.5, None)}
 
 
-@pytest.mark.parametrize("key", [3, None, b"rA", Evil(), ("rA",), 10**5000, float("nan")], ids=range(7))
+@each_row("key", [3, None, b"rA", Evil(), ("rA",), 10**5000, float("nan")])
 def test_a_part_that_is_no_text_is_told(course, key):
     with pytest.raises(WrongValue, match="a part is named by a text"):
         course["slotted_mechanism"].variant(1).grade({key: "3"})

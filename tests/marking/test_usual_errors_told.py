@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.authoring.check_knowledge import check_knowledge
@@ -43,7 +44,7 @@ def test_an_acceleration_without_its_normal_part_is_right_on_no_variant():
     assert "slip:term" in told
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("lang", "said"),
     [("en", "the term ω₄⁴ is left out"), ("fr", "le terme ω₄⁴ manque")],
 )

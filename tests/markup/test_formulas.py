@@ -10,6 +10,7 @@ import pytest
 import typst
 from formula_samples import FORMULAS, call
 from rendering_samples import handout
+from tables import each_row
 
 from coursework.course.builtin import builtin_root
 from coursework.errors import BadStatement
@@ -35,7 +36,7 @@ def mathless(tex: str, lang: str) -> str:
 
 
 @every_language
-@pytest.mark.parametrize("tex", FORMULAS)
+@each_row("tex", FORMULAS)
 def test_a_formula_of_every_kind_compiles(tex, lang):
     said = json.dumps(spoken(tex, lang), ensure_ascii=False)
     formula = f"#math.equation(alt: {said}, ${to_typst(tex, lang)}$.body)"
@@ -44,7 +45,7 @@ def test_a_formula_of_every_kind_compiles(tex, lang):
 
 
 @every_language
-@pytest.mark.parametrize("tex", FORMULAS)
+@each_row("tex", FORMULAS)
 def test_a_formula_of_every_kind_is_well_formed_mathml(tex, lang):
     from xml.etree import ElementTree
 
@@ -53,7 +54,7 @@ def test_a_formula_of_every_kind_is_well_formed_mathml(tex, lang):
     assert root.attrib["alttext"].strip()
 
 
-@pytest.mark.parametrize("macro", sorted(MACROS))
+@each_row("macro", sorted(MACROS))
 def test_every_macro_of_the_whitelist_reaches_every_back_end(macro):
     tex = call(macro)
     source = f"${to_typst(tex, 'fr')}$"
@@ -62,14 +63,14 @@ def test_every_macro_of_the_whitelist_reaches_every_back_end(macro):
         assert written
 
 
-@pytest.mark.parametrize("kind", GRIDS)
+@each_row("kind", GRIDS)
 def test_every_grid_compiles(kind):
     tex = rf"\begin{{{kind}}} a & b \\ c & d \\ \end{{{kind}}}"
     assert typst.compile(f"${to_typst(tex, 'en')}$".encode()).startswith(b"%PDF")
     assert to_mathml(tex, "en").count("<mtr>") == 2
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("tex", "named"),
     [
         (r"\stackrel{a}{b}", r"\stackrel"),
@@ -115,7 +116,7 @@ def test_no_blank_stands_beside_a_quoted_number_in_typst():
     assert written == 'x \\= −"2,41""mm"−"4,21"'
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("tex", "fr", "en"),
     [
         (r"\theta_4", "thêta 4", "theta 4"),
@@ -140,7 +141,7 @@ def test_a_formula_is_said_in_the_words_of_its_language(tex, fr, en):
     assert spoken(tex, "en") == en
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("tex", "line"),
     [
         (r"\theta_{12}^2 = \frac{y}{x + 1}", "θ₁₂² = y/(x + 1)"),
@@ -159,7 +160,7 @@ def test_the_dot_of_a_unit_stands_close_in_every_back_end():
         assert mathless(tex, "fr") == to_line(tex, "fr") == "N·m"
 
 
-@pytest.mark.parametrize("tex", ["a = -b", "(-b)", r"(0;\ -b)", "-b"])
+@each_row("tex", ["a = -b", "(-b)", r"(0;\ -b)", "-b"])
 def test_a_sign_stands_close_to_its_number_and_an_operation_apart(tex):
     leading = '<mo stretchy="false">−</mo>' if tex == "-b" else '<mo stretchy="false" form="prefix">−</mo>'
     assert leading in to_mathml(tex, "en")

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 import typst
 from rendering_samples import handout
+from tables import each_row
 
 from coursework.course.builtin import builtin_root
 from coursework.errors import BadStatement
@@ -34,7 +35,7 @@ def test_any_text_prints_as_itself_in_typst():
     assert svg == typst.compile(shown.encode(), format="svg")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("markdown", "text"),
     [
         (r"$\num{-1.5}\ \mathrm{rad/s^{2}}$", "−1,5\u202frad\\/s²"),
@@ -86,7 +87,7 @@ def test_a_list_that_another_text_interrupts_goes_on_with_its_number():
     assert to_text(text, "en") == "2. b\n3. c"
 
 
-@pytest.mark.parametrize("tex", [r"\num{1.5}\ \mathrm{mm}", " a ", r"\{", "-1"])
+@each_row("tex", [r"\num{1.5}\ \mathrm{mm}", " a ", r"\{", "-1"])
 def test_a_formula_alone_is_written_as_in_a_text(tex):
     assert to_typst_markup(f"${tex}$", "fr") == to_typst_markup(f"${tex}$ et", "fr").removesuffix(" et")
 
@@ -111,7 +112,7 @@ def test_what_follows_a_formula_in_a_text_is_text(lang):
     assert RENDERER.pdf(sheet).startswith(b"%PDF")
 
 
-@pytest.mark.parametrize("after", ["$$x = 1$$", "| a |\n|---|\n| 1 |"])
+@each_row("after", ["$$x = 1$$", "| a |\n|---|\n| 1 |"])
 def test_a_paragraph_keeps_to_the_formula_or_table_behind_it(after):
     assert to_typst_markup(f"so that\n\n{after}", "en").startswith("#lead[so that]")
     assert "#lead[" not in to_typst_markup(f"{after}\n\nso that\n\nand", "en")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from tables import each_row
 
 from coursework.errors import BadStatement
 from coursework.markup.line import to_line
@@ -49,8 +50,8 @@ def _formulas():
             yield formula
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
-@pytest.mark.parametrize("write", WRITERS, ids=lambda write: write.__name__)
+@each_row("lang", ["fr", "en"])
+@each_row("write", WRITERS)
 def test_numbers_put_in_print_as_in_the_formula_turned_as_it_stands(write, lang):
     for formula in _formulas():
         assert write(formula, lang) == write.__wrapped__(formula, lang), formula
@@ -76,7 +77,7 @@ def test_what_is_made_of_digits_is_made_of_the_formulas_own():
         assert write(rf"\num{{{number}}}", "en") == rf"\num{{{number}}} has {6 + len(number)} characters"
 
 
-@pytest.mark.parametrize("write", [*WRITERS, to_mathml], ids=lambda write: write.__name__)
+@each_row("write", [*WRITERS, to_mathml])
 def test_a_refused_formula_is_told_as_it_was_written(write):
     with pytest.raises(BadStatement, match=r"\\foo.*") as refused:
         write(r"\num{12.5} + \foo", "en")

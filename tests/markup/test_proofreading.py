@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.cli import run
@@ -54,7 +55,7 @@ def test_check_and_show_refuse_a_dollar_alone(small_course, capsys):
     assert f"{STATEMENT}, line 3" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         r"It costs \$5.",

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from exact_mechanics import ExactMechanics
 from sweeps import sampled
+from tables import each_row
 
 import coursework
 from coursework.errors import BadCourse
@@ -222,8 +223,8 @@ def test_points_move_as_the_solution_says():
 CHANGE = {"r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0, "omega2": 2.0, "alpha2": 0.0, "mode": "open"}
 
 
-@pytest.mark.parametrize("beside", [1.0, 1e-2, 1e-4, 1e-6, 1e-8])
-@pytest.mark.parametrize("side", [-1, 1])
+@each_row("beside", [1.0, 1e-2, 1e-4, 1e-6, 1e-8])
+@each_row("side", [-1, 1])
 def test_the_effort_keeps_its_digits_beside_a_change_point(beside, side):
     """Stretched out, the four bars lie on one line: the joints' own equations lose the accelerations there, a thousandth of
     a degree away, the formulas of the exercise do not."""

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import UnknownName
@@ -94,7 +95,7 @@ def test_a_long_slide_bears_on_both_of_its_edges():
     )
 
 
-@pytest.mark.parametrize("way", [1.0, -1.0])
+@each_row("way", [1.0, -1.0])
 def test_a_journal_takes_its_coefficient_times_its_radius_times_what_it_bears(way):
     """A weight on the crank's pin, friction in the shaft alone: the drive adds f r m g whichever way it turns."""
     data = SceneData(bodies={"2": BodyMass(mass=20.0)}, friction={"O": (0.1, 15.0)})

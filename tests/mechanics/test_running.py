@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tables import each_row
 
 import coursework
 from coursework.errors import Undefined, WrongValue
@@ -314,8 +315,8 @@ def test_a_table_of_the_turn_is_good_to_rounding():
 CRANK = {"r2": 30.0, "r3": 90.0, "e": 0.0, "theta2": 20.0, "omega2": 2.0, "alpha2": 0.0, "kv": 1.0, "ka": 1.0}
 
 
-@pytest.mark.parametrize("omega2", [2.0, -2.0])
-@pytest.mark.parametrize(("during", "way"), [("forward", 1), ("backward", -1)])
+@each_row("omega2", [2.0, -2.0])
+@each_row(("during", "way"), [("forward", 1), ("backward", -1)])
 def test_forward_is_as_the_point_really_goes(omega2, during, way):
     load = Load("B", force=100.0, against=True, during=during)
     given = {**CRANK, "omega2": omega2}
@@ -337,7 +338,7 @@ def test_forward_is_as_the_point_really_goes(omega2, during, way):
         assert loaded == (rate * way > 1e-6)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@each_row("seed", range(3))
 def test_the_working_stroke_is_the_slower_whichever_way_the_driver_turns(seed):
     exercise = COURSE["quick_return_shaper"]
     load = Load("C", force=500.0, against=True, during="working stroke")
@@ -436,7 +437,7 @@ def test_several_contacts_at_an_instant_are_those_of_the_cycle():
     np.testing.assert_allclose(effort, 4.0, rtol=1e-6)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("wrong", "why"),
     [
         (lambda: Motor(5.0, -20.0), "have one sign"),

@@ -7,6 +7,7 @@ import json
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName, WrongValue
@@ -31,7 +32,7 @@ def test_without_effects_a_scene_shows_positions_alone(course):
     assert "omega4" not in table.evaluated
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("effects", "shown", "absent"),
     [
         (("position",), {"rA", "theta4"}, {"omega4", "rA_dot", "alpha4"}),
@@ -148,9 +149,7 @@ def test_an_exercise_that_asks_forces_still_shows_its_positions(course):
     assert "torque" not in table.evaluated
 
 
-@pytest.mark.parametrize(
-    "effects", [("inertia",), ("load", "gravity", "inertia"), ("load", "inertia", "friction")]
-)
+@each_row("effects", [("inertia",), ("load", "gravity", "inertia"), ("load", "inertia", "friction")])
 def test_a_motion_in_time_keeps_its_energy_balance(course, effects):
     table = torque_scene(course, *effects).in_time(2.0, 0.15, count=60)
     assert table.balance < 1e-6

@@ -6,6 +6,7 @@ import json
 
 import pytest
 from nbgrader_course import answers_cells, grade_cells
+from tables import each_row
 
 import coursework
 from coursework.cli import run
@@ -155,7 +156,7 @@ def issued():
     return Issued({"roster": True, "students": students, "issued": items}, "issued.json")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("called", "who"),
     [
         ("ada.b@UNI.example", "Ada Byron"),

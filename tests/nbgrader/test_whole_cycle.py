@@ -21,6 +21,7 @@ from nbgrader_course import (
     released,
     submit,
 )
+from tables import each_row
 
 import coursework
 from coursework.cli import run
@@ -170,7 +171,7 @@ def test_a_notebook_that_is_none_stops_nobody_else_and_is_told(classroom):
     assert (folder / "autograded/kim" / NAME).is_dir()
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("student", "said"),
     [
         ("gil", "was not issued"),

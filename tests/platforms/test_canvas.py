@@ -7,6 +7,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 from platforms.canvas_reader import quiz_of, share_of_chosen, takes_number, unpacked
+from tables import each_row
 
 from coursework.api import open_course
 from coursework.authoring.scaffold import new_course
@@ -46,7 +47,7 @@ def questions(pool):
             yield one, variant, next(p for p in variant.parts if p.id == part)
 
 
-@pytest.mark.parametrize("lang", LANGS)
+@each_row("lang", LANGS)
 def test_a_student_gets_each_question_once_and_all_points(drawn, lang):
     pool = drawn.pool(lang)
     found = quiz(pool)
@@ -64,7 +65,7 @@ def test_a_student_gets_each_question_once_and_all_points(drawn, lang):
         assert all(len(titles) == 1 for titles in homes.values())
 
 
-@pytest.mark.parametrize("lang", LANGS)
+@each_row("lang", LANGS)
 def test_numbers_are_taken_as_we_take_them(drawn, lang):
     tried = 0
     for one, variant, part in questions(drawn.pool(lang)):
@@ -86,7 +87,7 @@ def test_numbers_are_taken_as_we_take_them(drawn, lang):
     assert tried > 200
 
 
-@pytest.mark.parametrize("lang", LANGS)
+@each_row("lang", LANGS)
 def test_choices_earn_as_we_pay_them_and_say_what_we_say(drawn, lang):
     said = 0
     for one, variant, part in questions(drawn.pool(lang)):

@@ -16,6 +16,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.cli import run
@@ -258,7 +259,7 @@ def test_a_group_is_marked_as_the_one_whose_variant_was_answered(autograder):
     assert "variant of Ada Byron" in found["output"]
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("own", "said"),
     [
         ({}, "Handed in 3 h 30 min after"),
@@ -287,7 +288,7 @@ def test_a_resubmission_is_marked_alone(autograder):
 # -------------------------------------------------------------------------- hostile
 
 
-@pytest.mark.parametrize(
+@each_row(
     "files",
     [
         {},

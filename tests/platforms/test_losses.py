@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.language.words import words
@@ -19,7 +20,7 @@ every_exercise = pytest.mark.parametrize("name", COURSE.names)
 
 
 @every_platform
-@pytest.mark.parametrize("lang", LANGS)
+@each_row("lang", LANGS)
 def test_every_platform_has_its_words(platform, lang):
     """A sentence a feature, all of features that there are; steps of how to import."""
     said = words(lang)["platforms"]

@@ -9,6 +9,7 @@ from xml.parsers import expat
 
 import pytest
 from platforms.cloze import boxes_of
+from tables import each_row
 
 import coursework
 from coursework.language.words import words
@@ -136,7 +137,7 @@ def test_texts_come_in_one_piece():
     assert not any("<" in piece or ">" in piece for piece in outside)
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     ["}", "~", "#", '"', "&amp;", "=", "%50%", "\\", "a\\}b", "a\\#b", "x~%100%y#z}", "&amp;#35;", "{1:SA:=x}", "5 &lt; 6"],
 )  # fmt: skip
@@ -175,7 +176,7 @@ def _interval(value, half):
     return Interval(value - half, value + half, value)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("value", "half", "shown"),
     [
         (238.43712345, 2.3843712345, "238.437"),

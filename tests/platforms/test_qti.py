@@ -14,6 +14,7 @@ from course_of_every_kind import write_course
 from qti_answers import items_of, judged, lost_of, recorded, sheets
 from qti_evaluator import Player, plain
 from sweeps import sampled
+from tables import each_row
 
 import coursework
 from coursework.course.secrecy import Secret
@@ -290,13 +291,13 @@ def test_numbers_are_plain_decimals_compared_by_their_ends(drawn):
             assert condition[0][0].tag == "isNull"
 
 
-@pytest.mark.parametrize("value", [-3e-12, 1e22, 0.1 + 0.2, -0.0, 5e-324, 123.0, 2**53 + 1.0])
+@each_row("value", [-3e-12, 1e22, 0.1 + 0.2, -0.0, 5e-324, 123.0, 2**53 + 1.0])
 def test_a_plain_decimal_is_the_same_number(value):
     assert re.fullmatch(r"-?[0-9]+(\.[0-9]+)?", decimal(value))
     assert float(decimal(value)) == value
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("name", "spelled"),
     [("assessmentItem", "assessment-item"), ("isNull", "is-null"), ("gte", "gte"), ("xml:lang", "xml:lang")],
 )
@@ -314,7 +315,7 @@ def test_an_identifier_is_one_and_another_for_another_name():
 # ------------------------------------------------------------------------- hostile
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text", ['<script>alert("1")</script>', "a & b < c > d", "]]>", "{{7*7}}", "' onclick='x", "\u202e é ü"]
 )
 def test_a_label_prints_as_it_is_and_does_nothing(drawn, text):

@@ -8,6 +8,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 from platforms.stack_reader import questions_of, score
+from tables import each_row
 
 from coursework.api import open_course
 from coursework.authoring.scaffold import new_course
@@ -48,7 +49,7 @@ def asked(drawn, read, lang):
         yield question, variant, {place: variant.parts[place - 1] for place in numbers}
 
 
-@pytest.mark.parametrize("lang", LANGS)
+@each_row("lang", LANGS)
 def test_a_question_a_variant_asks_all_parts_and_is_worth_those_it_judges(drawn, read, lang):
     assert len(read[lang][0]) == 10
     assert len(read[lang][1]) == 5
@@ -152,7 +153,7 @@ def test_nothing_follows_from_what_was_no_attempt(drawn, read):
     assert score(question, f"prt{at}", blank)[0] == 1
 
 
-@pytest.mark.parametrize("lang", LANGS)
+@each_row("lang", LANGS)
 def test_choices_earn_and_say_what_ours_do(drawn, read, lang):
     tried = 0
     for question, variant, judged in asked(drawn, read, lang):

@@ -9,6 +9,7 @@ import pytest
 from courses_polygons import (
     COURSE,
 )
+from tables import each_row
 
 from coursework.errors import BadCourse, UnknownName
 from coursework.polygons.polygon import Polygon, Side, normal, tangential, turning
@@ -55,7 +56,7 @@ def test_a_line_of_a_vector_that_vanishes_is_drawn_by_its_way():
     assert [row.paper for row in drawn.rows][1] == "0.0"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("sides", "said"),
     [
         ((), "at least one side"),
@@ -73,7 +74,7 @@ def test_a_polygon_that_cannot_be_drawn_is_refused(sides, said):
         Polygon("velocity", sides)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("side", "said"),
     [
         ({"value": 1, "length": "r"}, "state it"),
@@ -93,9 +94,7 @@ def test_an_unknown_kind_or_language_is_told():
         Construction(Polygon("velocity", TRIANGLE), "xx")
 
 
-@pytest.mark.parametrize(
-    ("length", "scale"), [(90.0, 1), (90.1, 2), (450, 5), (451, 10), (0.9, 0.01), (123456, 2000)]
-)
+@each_row(("length", "scale"), [(90.0, 1), (90.1, 2), (450, 5), (451, 10), (0.9, 0.01), (123456, 2000)])
 def test_a_scale_is_the_least_round_one_that_fits(length, scale):
     polygon = Polygon("velocity", (Side("p", "a", "V", length, "x", "v"),))
     assert polygon.scale_in(90, 70) == pytest.approx(scale, rel=1e-12)

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.course.lessons import lesson_file
 from coursework.solids import Chain, in_series
@@ -25,7 +26,7 @@ def claim(lesson, en, fr):
     return kept
 
 
-@pytest.mark.parametrize(("lesson", "said", "check"), CLAIMS)
+@each_row(("lesson", "said", "check"), CLAIMS)
 def test_a_claim_of_a_lesson_is_true(course, lesson, said, check):
     for lang, words in said.items():
         text = re.sub(r"\s+", " ", lesson_file(course.folder, lesson, lang).read_text("utf-8"))

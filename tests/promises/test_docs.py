@@ -11,6 +11,7 @@ from pathlib import Path
 
 import click
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.cli import run
@@ -106,7 +107,7 @@ def listed(index: Path) -> set[str]:
     return set(found[1].split())
 
 
-@pytest.mark.parametrize("folder", sorted({p.parent for p in DOCS.rglob("*.md")}), ids=lambda p: p.name)
+@each_row("folder", sorted({p.parent for p in DOCS.rglob("*.md")}))
 def test_every_page_is_in_the_table_of_contents(folder):
     below = {f"{p.parent.name}/index" for p in folder.glob("*/index.md")}
     made = {"gallery/index"} if folder == DOCS else set()
@@ -140,7 +141,7 @@ def test_pages_do_show_commands():
     assert {"list", "show", "build", "grade", "report", "check", "new", "accuracy", "lesson"} <= found
 
 
-@pytest.mark.parametrize(
+@each_row(
     "wrong",
     [["grade", "returned/", "--isued", "x"], ["solve"], ["gade"], ["list", "--seed", "1"]],
 )

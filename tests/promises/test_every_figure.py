@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sweeps
+from tables import each_row
 
 import coursework
 from coursework.figures import Figure, contact, ground_pivot, link, pin, point, wheel
@@ -157,7 +158,7 @@ def test_letters_set_over_a_drawing_are_those_that_it_would_hold(name):
     assert strokes(figure.bare_svg())[0] == pytest.approx(strokes(figure.svg())[0])
 
 
-@pytest.mark.parametrize("seed", [511, *range(40)])
+@each_row("seed", [511, *range(40)])
 def test_no_number_of_a_body_lies_on_the_area_of_another(seed):
     figure = COURSE["mobility"].variant(seed).figure
     discs = {k: it for k, it in enumerate(figure.elements) if isinstance(it, wheel) and it.label}

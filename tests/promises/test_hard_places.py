@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from sixty_digits import SISTERS, Formulas
 from sweeps import sampled
+from tables import each_row
 
 import coursework
 
@@ -74,22 +75,22 @@ def test_whole_turns_in_a_row_change_no_bit():
 OAB = [{"angle_OAB": near} for near in (1e-3, 1e-6, 1e-9, 180 - 1e-6)]
 
 
-@pytest.mark.parametrize("change", OAB)
-@pytest.mark.parametrize("seed", SEEDS)
+@each_row("change", OAB)
+@each_row("seed", SEEDS)
 def test_crank_and_coupler_that_are_nearly_in_line_move_rocker_and_ram_exactly(change, seed):
     own = formulas("quick_return", seed)
     for name in ("omega4", "omega5", "v_C", "mechanical_advantage"):
         assert own.excess(change, name) <= MOST, name
 
 
-@pytest.mark.parametrize("r2", [1e-3, 1e-6, 1e-9])
+@each_row("r2", [1e-3, 1e-6, 1e-9])
 def test_a_small_crank_has_its_small_stroke(r2):
     own = formulas("quick_return", 0)
     assert own.excess({"r2": r2}, "stroke") <= MOST
 
 
-@pytest.mark.parametrize("share", [0.0, 1e-9, -1e-9])
-@pytest.mark.parametrize("near", [1e-2, 1e-3, 1e-4, 1e-6])
+@each_row("share", [0.0, 1e-9, -1e-9])
+@each_row("near", [1e-2, 1e-3, 1e-4, 1e-6])
 def test_a_block_beside_its_pivot_slides_by_its_acceleration(share, near):
     own = Formulas(COURSE, "slotted_mechanism", {"r1": 200.0, "theta1": 90.0, "omega2": 10.0, "alpha2": 0.0})
     for side in (-1, 1):

@@ -3,7 +3,7 @@
 import ast
 from pathlib import Path
 
-import pytest
+from tables import each_row
 
 import coursework
 
@@ -59,12 +59,12 @@ def upward(file, text):
     ]
 
 
-@pytest.mark.parametrize("file", FILES)
+@each_row("file", FILES)
 def test_a_file_imports_from_its_own_room_and_from_rooms_below(file):
     assert not upward(file, FILES[file])
 
 
-@pytest.mark.parametrize(
+@each_row(
     "planted",
     [
         "from coursework.cli.options import opened",

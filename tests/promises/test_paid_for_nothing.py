@@ -8,6 +8,7 @@ from pathlib import Path
 import course_of_every_kind
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.authoring.check_guesses import MOST, best_guess
@@ -84,7 +85,7 @@ def test_no_part_of_any_exercise_reads_what_answers_nothing(every_kind):
     assert found == []
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("part", "reference"),
     [
         (Part("g", kind="unnamed_graph"), "1-2 revolute, 2-3 revolute, 1-3 prismatic"),
@@ -97,7 +98,6 @@ def test_no_part_of_any_exercise_reads_what_answers_nothing(every_kind):
         (Part("s", unit="mm/mm"), 2.0),
         (Part("T", unit="K"), 300.0),
     ],
-    ids=lambda one: one.kind if isinstance(one, Part) else "",
 )
 def test_no_other_kind_reads_what_answers_nothing(part, reference):
     found = [

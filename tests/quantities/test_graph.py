@@ -6,6 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.errors import CannotAssemble, Cycle, MissingQuantity, Undefined, UnknownName
 from coursework.quantities.graph import Graph, Replacement
@@ -97,7 +98,7 @@ def test_a_mistake_flows_into_what_depends_on_it():
     assert GRAPH.evaluate(("mass",), BOX) == {"mass": 48.0}
 
 
-@pytest.mark.parametrize(
+@each_row(
     "replacement",
     [
         Replacement(("area",), lambda width, height: width + height),
@@ -287,9 +288,7 @@ def test_hidden_quantities_cannot_be_named_by_a_request():
         HIDDEN.evaluate(("grade",), {**ARC, "_chord": 1.0})
 
 
-@pytest.mark.parametrize(
-    "shapes", [((400_000,), ()), ((8, 1), (50_000,)), ((150_000, 1), (3,)), ((1, 90_000), (1, 1))]
-)
+@each_row("shapes", [((400_000,), ()), ((8, 1), (50_000,)), ((150_000, 1), (3,)), ((1, 90_000), (1, 1))])
 def test_long_arrays_give_what_their_places_give_alone(shapes):
     calls = []
 

@@ -12,6 +12,7 @@ import pytest
 from course_of_every_kind import write_course
 from hostile_answers import FORMS, both_in_one, holds_two, is_right, parts_to_try, right_spellings
 from sweeps import seeds
+from tables import each_row
 
 import coursework
 from coursework.kinds.kind import kind_of
@@ -52,7 +53,7 @@ def test_a_right_and_a_wrong_answer_in_one_box_are_not_right(exercise_of, name, 
     assert tried
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     ["1 [2]", "(2) (1)", "(2)(1)", "2:1", "2 : 1", "2* 1", "2*1", "2, 1", "2 1", "2/1", "2 + 0", "2 - 0*7", "2^1", "1 × 2", "2;1",
      "m_u = 0 (not m_u = 1)", "not 1 : 2", "two = 1", "un : 2", "x or 1 = 2", "2 (1) ddl", "((2) 1)", "~~1~~ 2"],
@@ -62,7 +63,7 @@ def test_a_count_is_one_number(text):
     assert reading.status == "unreadable", reading
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "unit"),
     [
         ("319.8 [250]", "mm"), ("(319.8) (250) mm", "mm"), ("319.8, 250", "mm"), ("0 319.8", "mm"), ("0,319.8", "mm"), ("319.8 * 1 mm", "mm"),
@@ -77,7 +78,7 @@ def test_two_numbers_and_a_formula_of_two_units_wait_for_a_person(text, unit):
     assert (reading.status, reading.code) == ("unreadable", "two_values") or reading.code == "not_a_number"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "unit", "value"),
     [
         ("2*3", "mm", 6), ("0.2*10+1", "mm", 3), ("2 × 3.5", "mm", 7), ("3(4 - 1) - 2(4)", "mm", 1), ("2(3 + 4)", "mm", 14), ("1.25:1", "1", 1.25), ("3/1", "1", 3),
@@ -109,21 +110,19 @@ CLASSES = {"I": ("I", "classe I"), "II": ("II", "classe II"), "none": ("none", "
 LETTERS = {"I": "a", "II": "b", "none": "c"}
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text", ["1) I 2) none", "I (not II)", "I or II", "I [II]", "a (not b)", "a (b)", "~~a~~ b", "a b", "1) a", "2) I"]
 )  # fmt: skip
 def test_two_choices_are_none(text):
     assert read_choice(text, CLASSES).status == read_choice(text, CLASSES, LETTERS).status == "unreadable"
 
 
-@pytest.mark.parametrize(
-    "text", ["a) I (c)", "a) I(b)", "I (b is wrong)", "I (non c)", "a [c]", "a (c'est pas b)"]
-)
+@each_row("text", ["a) I (c)", "a) I(b)", "I (b is wrong)", "I (non c)", "a [c]", "a (c'est pas b)"])
 def test_a_letter_in_brackets_is_another_choice(text):
     assert read_choice(text, CLASSES, LETTERS).status == "unreadable"
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text", ["a", "a) I", "I (a)", "a (r2 < b)", "a (il y a un pivot)", "1) I", "classe I (deux dyades)"]
 )
 def test_a_remark_says_no_other_choice(text):
@@ -133,7 +132,7 @@ def test_a_remark_says_no_other_choice(text):
 EQUATION = ("r4", "r5", "theta4", "theta5")
 
 
-@pytest.mark.parametrize("form", FORMS)
+@each_row("form", FORMS)
 def test_two_equations_are_none(form):
     right, wrong = "r4*sin(theta4) = r5*sin(theta5)", "r4*cos(theta4) = r5*cos(theta5)"
     (reference,) = read_equation(right, EQUATION).values
@@ -200,7 +199,7 @@ def is_near(text: str, value: float, unit: str) -> bool:
     return any(abs(v - value) <= 0.01 * abs(value) for v in read_number(text, unit).values)
 
 
-@pytest.mark.parametrize("unit", ["turning", "deg", "mm", "1", "rad/s"])
+@each_row("unit", ["turning", "deg", "mm", "1", "rad/s"])
 def test_no_formula_is_worth_two_freely_chosen_numbers(unit):
     rng, tried = random.Random(17), 0
     for _ in range(60):

@@ -1,12 +1,12 @@
 """A choice is known by all that people write for it, and by nothing that says another."""
 
-import pytest
 from strategies import CHOICES
+from tables import each_row
 
 from coursework.reading.choices import read_choice
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "key"),
     [(s, "crank-rocker") for s in ("crank-rocker", "Crank Rocker", "MANIVELLE BALANCIER", "a) crank-rocker")]
     + [
@@ -19,7 +19,7 @@ def test_a_choice_is_known_by_key_or_label(text, key):
     assert read_choice(text, CHOICES).values == (key,)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "code"),
     [("rocker", "not_a_choice"), ("b) rocker", "not_a_choice"), (True, "not_a_choice"), (1.0, "not_a_choice"),
      ("x" * 10_000, "too_long"), *[(s, "not_a_choice") for s in ("a", "(a)", "b)", "c", "d", "0", "1", 1, "2)", "3", "II")]],
@@ -38,7 +38,7 @@ PAIRS = {
 COUNTS = {"zero": ("0",), "three": ("3",), "one": ("1",)}
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "choices", "key"),
     [
         *[(s, CLASSES, "III") for s in ("3", 3, "3.0", "(3)", "3)", "III", "iii", "classe III", "la classe 3", "class 3", "trois")],
@@ -55,7 +55,7 @@ def test_a_number_names_the_label_that_it_begins_and_never_a_place(text, choices
     assert read_choice(text, choices).values == (key,)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "choices"),
     [("1", CLASSES), ("5", CLASSES), ("2", COUNTS), ("4", PAIRS), ("2 pivots", PAIRS), ("b", CLASSES), ("2 ou 3", CLASSES),
      ("1", {"two_rockers": ("deux balanciers",), "one": ("une manivelle",), "two_cranks": ("deux manivelles",)})],
@@ -100,7 +100,7 @@ def test_a_label_of_two_choices_chooses_neither():
     assert read_choice("same", {"p": ("same",), "q": ("same",)}).code == "two_values"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "key"),
     [("isostatique", "iso"), ("Hyperstatic", "hyper"), ("un pivot", "pivot"), ("none", "none"), ("aucune", "none"), ("II", "II")],
 )  # fmt: skip
@@ -122,7 +122,7 @@ FORMULAS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "key"),
     [
         *[(s, "minus_one") for s in ("w = − 1", "w = -1", "w=-1", "w = −1", "$w = -1$", "-1", "− 1", "W=-1")],
@@ -138,7 +138,7 @@ def test_a_formula_offered_is_read_with_its_signs_whatever_its_spaces(text, key)
     assert read_choice(text, FORMULAS).values == (key,)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "code"),
     [
         ("w = -2", "not_a_choice"),
@@ -185,7 +185,7 @@ JOINTS = {
 }
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "key"),
     [
         *[(s, "revolute") for s in ("pivot", "un pivot", "Pivot.", "liaison pivot", "revolute", "a revolute joint", "« pivot »")],
@@ -202,7 +202,7 @@ def test_a_choice_is_known_by_what_tells_it_from_all_others(text, key):
     assert read_choice(text, JOINTS).values == (key,)
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     ["liaison", "glissant", "balancier", "double", "un double", "manivelle", "une manivelle", "no", "joint", "cas", "même", "même point pièces",
      "oscille (puis fait un tour complet)", "oscille (pivot)", "limite", "tour complet", "double balancier qui tourne", "de la loi"],

@@ -1,6 +1,7 @@
 """No answer costs much to read, however it is made: what would be tried in all its ways is tried once."""
 
 import pytest
+from tables import each_row
 
 from coursework import open_course
 from coursework.reading import several
@@ -15,8 +16,8 @@ PIECES = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("piece", PIECES)
-@pytest.mark.parametrize("way", ["{0}", "1{0}x", "({0}", "1-2 pivot{0}:"])
+@each_row("piece", PIECES)
+@each_row("way", ["{0}", "1{0}x", "({0}", "1-2 pivot{0}:"])
 def test_a_graph_of_one_piece_over_and_over_is_read_at_once(piece, way):
     """Blank lines alone took hours, and every other request waited; a test that hangs has failed."""
     text = way.format(piece * LONGEST)[:LONGEST]
@@ -47,7 +48,7 @@ def test_blank_space_between_cases_is_no_more_than_one_space():
         assert several.read_choices(f"fast,{blank}stable", CASES).values == (frozenset({"fast", "stable"}),)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("told", "bare"),
     [
         ("1) 1-2 pivot", " 1-2 pivot"),
@@ -65,14 +66,10 @@ def variant():
     return open_course()["slotted_mechanism"].variant(1, "en")
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
+@each_row("text", [
         "9**9**9**9", "9^9^9^9^9", "(" * LONGEST, "(" * 5000 + "1" + ")" * 5000, "1" + "0" * 5000, "1e" + "9" * 300, "2^-(2^(9^9))", "1 m^999999999",
         "1 " + "m*" * 200, "sqrt(" * 90, "cos " * 120, "1" + "+1" * 240, "-" * 499 + "1", "\\frac{" * 80, "1/" * 249 + "1", "((((", "[" * 499, "7 " * 249,
-    ],
-    ids=lambda text: f"{text[:10]} {len(text)}",
-)  # fmt: skip
+    ])  # fmt: skip
 def test_a_formula_that_would_never_end_is_refused(variant, text):
     for part in variant.parts:
         assert variant.grade({part.id: text})[part.id].verdict != "correct"

@@ -1,6 +1,6 @@
 """Equations are told from what is none."""
 
-import pytest
+from tables import each_row
 
 from coursework.reading.choices import read_choice
 from coursework.reading.equations import parse_equation, read_equation
@@ -16,7 +16,7 @@ def test_an_equation_is_read_as_written():
     assert same_equation(reading.values[0], reference)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "code"),
     [("r1 + r2", "no_equals_sign"), ("r1 === r2", "two_equals_signs"), ("r1 = = r2", "two_equals_signs"), ("r1 = r2 = r3", "two_equals_signs"), ("r1 = r9", "unknown_symbol"),
      ("r1 = ", "not_a_number"), (5, "no_equals_sign"), (True, "not_a_number"), ("r1 = 9^9^9", "too_complex")],

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tables import each_row
 
 from coursework.kinds.equation_latex import latex_of_equation
 from coursework.reading.equations import parse_equation
@@ -58,12 +59,12 @@ NUMBERS = [
 ]
 
 
-@pytest.mark.parametrize(("text", "value"), NUMBERS)
+@each_row(("text", "value"), NUMBERS)
 def test_a_formula_has_its_value(text, value):
     assert parse_expression(text).evaluate() == pytest.approx(value, rel=1e-14)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("spelling", "name"),
     [(s, "theta2") for s in ("theta2", "θ2", "θ_2", "theta_2", "θ₂", "\\theta_2", "\\theta_{2}", "ϑ2")]
     + [(s, "psi_dot") for s in ("psi_dot", "psidot", "ψ̇", "\\dot\\psi", "\\dot{\\psi}", "ψ_dot")]
@@ -89,7 +90,7 @@ def test_a_symbol_is_known_by_every_spelling(spelling, name):
     assert parse_expression(spelling, NAMES).variables == {name}
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "meaning"),
     [
         ("r2cosθ2", lambda v: v["r2"] * np.cos(v["theta2"])),
@@ -148,7 +149,7 @@ def test_a_quotient_before_a_tight_product_has_two_readings():
     assert parse_expression("2π/3").other is None
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "code"),
     [
         ("9**9**9", "too_complex"),
@@ -188,7 +189,7 @@ def test_what_is_no_formula_is_unreadable_with_its_reason(text, code):
     assert len(str(error.value)) < 300
 
 
-@pytest.mark.parametrize("text", ["1/0", "sqrt(-1)", "acos(2)", "10^64*10^64*10^64*10^64*10^64", "ln(0)"])
+@each_row("text", ["1/0", "sqrt(-1)", "acos(2)", "10^64*10^64*10^64*10^64*10^64", "ln(0)"])
 def test_a_value_that_is_not_finite_is_unreadable(text):
     with pytest.raises(Unreadable) as error:
         parse_expression(text).evaluate()
@@ -205,7 +206,7 @@ def test_any_text_is_read_or_unreadable_and_nothing_else(text):
 LOOP = "r2*cos(theta2) + r3*cos(theta3) = r1 + r4*cos(theta4)"
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "r1 + r4 cos θ4 = r2 cos θ2 + r3 cos θ3",
@@ -221,7 +222,7 @@ def test_an_equation_is_known_however_it_is_arranged(text):
     assert same_equation(parse_equation(text, NAMES), parse_equation(LOOP, NAMES))
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "r2 cosθ2 + r3 cosθ3 = r1 - r4 cosθ4",
@@ -260,7 +261,7 @@ def test_a_domain_that_fails_at_some_points_does_not_hide_the_others():
     assert not same_equation(a, parse_equation("sqrt(r1 - 1) = 1.001 r2", NAMES))
 
 
-@pytest.mark.parametrize(("text", "code"), [("r1", "no_equals_sign"), ("r1 = r2 = r3", "two_equals_signs")])
+@each_row(("text", "code"), [("r1", "no_equals_sign"), ("r1 = r2 = r3", "two_equals_signs")])
 def test_an_equation_has_one_equals_sign(text, code):
     with pytest.raises(Unreadable) as error:
         parse_equation(text, NAMES)
@@ -273,7 +274,7 @@ SYMBOLS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "latex"),
     [
         (LOOP, r"r_2\cos\theta_2 + r_3\cos\theta_3 = r_1 + r_4\cos\theta_4"),
@@ -297,7 +298,7 @@ ROCKER = "r4*sin(theta4) = r5*sin(theta5)"
 LOOP_NAMES = ("r4", "r5", "theta4", "theta5")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "same"),
     [
         ("sin(theta5) = r4/r5*sin(theta4)", True),
@@ -354,7 +355,7 @@ DIVIDED = [
 ]
 
 
-@pytest.mark.parametrize(("text", "reference", "same"), DIVIDED)
+@each_row(("text", "reference", "same"), DIVIDED)
 def test_an_equation_may_be_divided_by_what_is_not_zero_with_it(text, reference, same):
     names = (*LOOP_NAMES, "x", "y")
     one, other = parse_equation(text, names), parse_equation(reference, names)
@@ -365,8 +366,8 @@ def test_an_equation_may_be_divided_by_what_is_not_zero_with_it(text, reference,
 MAY_VANISH = ("sinθ5", "x", "(1 - cosθ4)", "(x - y)", "(r4 + x)", "(r4 sinθ4 - r5 sinθ5)")
 
 
-@pytest.mark.parametrize("factor", MAY_VANISH)
-@pytest.mark.parametrize("divisor", MAY_VANISH)
+@each_row("factor", MAY_VANISH)
+@each_row("divisor", MAY_VANISH)
 def test_a_factor_that_may_vanish_is_allowed_below_only(factor, divisor):
     names = (*LOOP_NAMES, "x", "y")
     reference = parse_equation(ROCKER, names)
@@ -399,7 +400,7 @@ def at(equation, values, unknown, value):
     return equation.difference({**values, unknown: np.array([value])})[0]
 
 
-@pytest.mark.parametrize(("text", "reference"), [(t, r) for t, r, same in DIVIDED if same])
+@each_row(("text", "reference"), [(t, r) for t, r, same in DIVIDED if same])
 def test_equations_said_to_be_the_same_hold_at_the_same_points(text, reference):
     names = (*LOOP_NAMES, "x", "y")
     pair = parse_equation(text, names), parse_equation(reference, names)
@@ -411,7 +412,7 @@ def test_equations_said_to_be_the_same_hold_at_the_same_points(text, reference):
             assert abs(at(other, values, "theta4", values["theta4"] + 1e-3)) > 1e-8
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("spelling", "name"),
     [
         (s, "phi_dot")
@@ -431,7 +432,7 @@ def test_primes_stand_anywhere_in_an_equation():
     assert not same_equation(parse_equation("(R+r)φ' = rω - Rψ'", names), reference)
 
 
-@pytest.mark.parametrize("text", ["r1''' + r1", "'", "phi'", "theta3'", "r1 '"])
+@each_row("text", ["r1''' + r1", "'", "phi'", "theta3'", "r1 '"])
 def test_a_prime_without_its_derivative_among_the_names_is_unreadable(text):
     with pytest.raises(Unreadable):
         parse_expression(text, NAMES)
@@ -441,7 +442,7 @@ def test_an_apostrophe_still_separates_thousands():
     assert parse_expression("1'234.5 r1", NAMES).evaluate({"r1": 2.0}) == 2469
 
 
-@pytest.mark.parametrize("text", [".E0", ".", ".e", "-.E+3"])
+@each_row("text", [".E0", ".", ".e", "-.E+3"])
 def test_an_exponent_without_digits_before_it_is_no_number(text):
     with pytest.raises(Unreadable):
         parse_expression(text)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from tables import each_row
 
 import coursework
 from coursework.course.key_batch import keys_of
@@ -164,7 +165,7 @@ def test_a_direction_has_a_hundred_turns_at_most():
     )  # an angle that counts its turns, as one of two cranks
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_too_many_turns_are_said_in_a_sentence(lang):
     variant = COURSE["slotted_mechanism"].variant(1, lang)
     said = mark(variant, {"theta4": "3.6e19"})["theta4"]

@@ -1,11 +1,11 @@
 """Whole numbers are read however they are written."""
 
-import pytest
+from tables import each_row
 
 from coursework.reading.numbers import read_integer
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "value"),
     [
         ("3", 3),
@@ -28,7 +28,7 @@ def test_an_integer_is_read_however_it_is_written(text, value):
     assert type(reading.values[0]) is int
 
 
-@pytest.mark.parametrize("text", ["2.5", "1/3", "1e30", 2.5, "0,1"])
+@each_row("text", ["2.5", "1/3", "1e30", 2.5, "0,1"])
 def test_a_number_that_is_not_whole_is_said_so(text):
     reading = read_integer(text)
     assert (reading.status, reading.code, reading.text) == ("unreadable", "not_an_integer", str(text))

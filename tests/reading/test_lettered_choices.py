@@ -1,6 +1,6 @@
 """On a sheet with letters a choice is read by letter, place, words, and a tick; what says two things is not read."""
 
-import pytest
+from tables import each_row
 
 from coursework.reading.choices import read_choice
 
@@ -28,7 +28,7 @@ def lettered(choices):
     return dict(zip(choices, "abc", strict=True))
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     ["b", "B", "(b)", "b)", "b.", "[b]", " b ", "réponse b", "Réponse : b", "answer B", "option b)", "la réponse b", "c'est la b",
      "2", "2.", "(2)", "2)", 2, "2.0", "n°2", "réponse 2", "answer 2",
@@ -41,7 +41,7 @@ def test_letter_place_words_and_tick_are_read(text):
     assert read_choice(text, GUIDE, LETTERS).values == ("oscillates",)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "code"),
     [
         *[(s, "two_values") for s in ("a) oscille", "a oscille", "a (it oscillates)", "oscille (a)", "b, c", "b c")],
@@ -55,7 +55,7 @@ def test_what_says_two_things_or_none_waits_for_a_person(text, code):
     assert (reading.status, reading.code, reading.values) == ("unreadable", code, ())
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("choices", "text", "key"),
     [
         *[(CLASSES, s, "II") for s in ("2", "II", "class 2", "a", "a) II", "classe II (a)")],
@@ -73,7 +73,7 @@ def test_a_number_that_labels_begin_with_keeps_its_meaning(choices, text, key):
     assert read_choice(text, choices, lettered(choices)).values == (key,)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("choices", "text"),
     [(CLASSES, "1"), (CLASSES, "4"), (COUNTED, "2"), (BARS, "2"), (BARS, "1"), (BARS, "3"), (CLASSES, "b) II"), (NATURES, "a) rotation"),
      (NATURES, "a: rotation")],
@@ -88,7 +88,7 @@ def test_a_label_of_one_letter_that_is_not_its_own_is_not_read():
     assert read_choice("B", points, {"A": "a", "B": "b", "C": "c"}).values == ("B",)
 
 
-@pytest.mark.parametrize("text", ["b", "B)", "(b)", "2", "2.", "réponse b", "☐ a ☒ b", "b [x]"])
+@each_row("text", ["b", "B)", "(b)", "2", "2.", "réponse b", "☐ a ☒ b", "b [x]"])
 def test_on_a_sheet_without_letters_none_is_read(text):
     assert read_choice(text, GUIDE).status == "unreadable"
 

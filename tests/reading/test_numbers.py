@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from strategies import CHOICES, FINITE, NARROW, NBSP, ODD, SPACES, THIN
+from tables import each_row
 
 from coursework.errors import WrongUnit
 from coursework.reading.choices import read_choice
@@ -104,7 +105,7 @@ NUMBERS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "unit", "value"), NUMBERS)
+@each_row(("text", "unit", "value"), NUMBERS)
 def test_a_spelling_of_a_number_is_read(text, unit, value):
     reading = read_number(text, unit)
     assert reading.status == "read", reading
@@ -131,13 +132,13 @@ ESTABLISHED = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("answer", "reference"), ESTABLISHED)
+@each_row(("answer", "reference"), ESTABLISHED)
 def test_answers_that_other_graders_accept_are_read_alike(answer, reference):
     number, unit = reference.split(" ", 1)
     assert read_number(answer, unit).values == pytest.approx((float(number),), rel=1e-12)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "unit", "values", "echoes"),
     [
         ("1,234", "mm", (1.234, 1234), ("1.234", "1234")),
@@ -177,7 +178,7 @@ def test_the_formula_of_an_angle_in_degrees_has_no_other_reading_near_a_wrong_on
     assert read_number(text, "deg", thousands=False).values == pytest.approx((right,), abs=1e-9)
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     ["27.39x102", "0.2739x102", "2.739*100", "2.739*110.5", "2.739*102*3", "2.739*102+1", "2.739x112", "2*102/3"],
 )  # fmt: skip
@@ -185,7 +186,7 @@ def test_a_product_that_is_no_power_of_ten_has_one_reading(text):
     assert len(read_number(text, "mm").values) == 1
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "unit", "value"),
     [
         ("273.9 (273.92)", "mm", 273.9), ("273,9 mm (273,92)", "mm", 273.9), ("273.9 (27.392 cm)", "mm", 273.9),
@@ -202,7 +203,7 @@ def test_a_number_written_twice_alike_is_that_number_and_no_product(text, unit, 
     assert read_number(text, unit).values == pytest.approx((value,), rel=1e-14)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "value", "echo"),
     [
         ("π/3", 60, "1.047198 rad"),
@@ -238,7 +239,7 @@ def test_two_numbers_are_one_only_where_they_agree(one, other, form):
         assert reading.code == "two_values"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "unit", "echo", "given"),
     [
         ("319,8 mm", "mm", "319.8 mm", True),
@@ -261,9 +262,7 @@ def test_the_echo_has_a_point_and_the_unit_as_written(text, unit, echo, given):
     assert reading.unit_given is given
 
 
-@pytest.mark.parametrize(
-    "blank", [None, "", " ", "\t\n", NBSP, THIN + NARROW, "\u3000\u200b", "\ufeff", " " * 20_000]
-)
+@each_row("blank", [None, "", " ", "\t\n", NBSP, THIN + NARROW, "\u3000\u200b", "\ufeff", " " * 20_000])
 def test_nothing_but_spaces_is_missing(blank):
     for reading in (
         read_number(blank, "mm"),
@@ -276,7 +275,7 @@ def test_nothing_but_spaces_is_missing(blank):
         assert reading.values == ()
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "code"),
     [
         ("nan", "not_finite"), ("NaN", "not_finite"), ("inf", "not_finite"), ("-Infinity", "not_finite"),
@@ -312,7 +311,7 @@ def test_what_cannot_be_read_says_why_and_is_kept(text, code):
     assert 0 < len(reading.found) <= 60
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "unit", "found"),
     [
         ("3 kg", "mm", "kg"), ("0 s", "mm", "s"), ("0.0*m", "mm/s", "m"), ("5 mm", "deg", "mm"), ("1 rad",
@@ -331,7 +330,7 @@ def test_numbers_of_json_are_taken_as_they_are():
     assert read_number(3, "mm") == Reading("3", "read", (3.0,), ("3",))
 
 
-@pytest.mark.parametrize(
+@each_row(
     "answer",
     [
         np.float64(238.4367), np.array(238.4367), np.array([238.4367]), np.array([[238.4367]]), [238.4367],
@@ -355,7 +354,7 @@ def test_an_array_is_read_as_its_items_are():
     assert read_number(np.zeros(10_000), "mm").code == "not_a_number"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "values"),
     [("113,466", (113.466,)), ("1,234°", (1.234,)), ("1,234 rad", (pytest.approx(math.degrees(1.234)),)),
      ("-1,234", (-1.234,)), ("1 234", (1234,)), ("1,234.5", (1234.5,))],

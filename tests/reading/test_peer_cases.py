@@ -6,6 +6,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from tables import each_row
 
 from coursework.errors import WrongUnit
 from coursework.kinds.kind import kind_of
@@ -105,7 +106,7 @@ def ours(case: dict) -> str:
 EXPECTED = {i: given for groups in DIFFERENCES.values() for given, ids in groups.items() for i in ids}
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: str(case["id"]))
+@each_row("case", CASES)
 def test_ours_agrees_or_differs_as_the_list_says(case):
     found = ours(case)
     if case["id"] in EXPECTED:

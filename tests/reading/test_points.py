@@ -2,11 +2,12 @@
 
 import pytest
 from strategies import NARROW, NBSP
+from tables import each_row
 
 from coursework.reading.points import read_point
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "values"),
     [
         *[(s, ((12.3, 4.5),)) for s in (
@@ -29,14 +30,12 @@ def test_a_point_is_read_however_it_is_written(text, values):
     assert reading.values == tuple(pytest.approx(v) for v in values)
 
 
-@pytest.mark.parametrize(
-    "text", ["[1, 0, 1]", "1;0;1", "(1 0 1)", "1,0,1", "(1 ; 0 ; 1)", "1, 0, 1", "1,0 ; 0 ; 2/2"]
-)
+@each_row("text", ["[1, 0, 1]", "1;0;1", "(1 0 1)", "1,0,1", "(1 ; 0 ; 1)", "1, 0, 1", "1,0 ; 0 ; 2/2"])
 def test_a_direction_of_three_coordinates_is_read(text):
     assert read_point(text, "1", 3).values == ((1, 0, 1),)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "value"),
     [
         *[(s, (0, 1, 0)) for s in ("y", "Y", "\\vec y", "\\vec{y}", "$\\vec{y}$", "y\u20d7", "vec y", "axe y", "l'axe y", "y axis", "y-axis")],
@@ -49,7 +48,7 @@ def test_an_axis_is_a_direction(text, value):
     assert (reading.values, reading.read_as) == ((value,), (f"({value[0]:g}; {value[1]:g}; {value[2]:g})",))
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "value"),
     [
         ("x_a + z", (1, 0, 1)),
@@ -70,7 +69,7 @@ def test_a_point_may_name_its_base_but_is_no_sum_of_vectors():
     assert read_point("70 x_a", "mm", 3).status == "unreadable"
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "w",
@@ -97,7 +96,7 @@ def test_an_axis_is_no_point_and_none_of_the_plane_has_a_third():
     assert read_point("y", "mm", 3).status == read_point("z", "1", 2).status == "unreadable"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "status", "code"),
     [
         ("1,2,3", "unreadable", "wrong_count"),

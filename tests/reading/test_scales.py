@@ -1,6 +1,7 @@
 """The scale of a drawing, as drawings state it."""
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.reading.numbers import read_number
@@ -8,7 +9,7 @@ from coursework.reading.numbers import read_number
 COURSE = coursework.open_course()
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "unit", "value"),
     [
         ("1 cm = 100 mm", "mm/mm", 10),
@@ -29,12 +30,12 @@ def test_a_scale_is_read_as_drawings_state_it(text, unit, value):
     assert reading.text == text
 
 
-@pytest.mark.parametrize("text", ["1:2", "1/2", "échelle 1:2", "Échelle : 1/2", "k_l = 1:2"])
+@each_row("text", ["1:2", "1/2", "échelle 1:2", "Échelle : 1/2", "k_l = 1:2"])
 def test_a_ratio_of_lengths_has_two_readings_that_of_drawings_first(text):
     assert read_number(text, "mm/mm").values == (2.0, 0.5)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "unit", "code"),
     [
         ("1:20", "mm/s/mm", "not_a_number"),
@@ -48,7 +49,7 @@ def test_what_is_no_scale_is_not_read_as_one(text, unit, code):
     assert read_number(text, unit).code == code
 
 
-@pytest.mark.parametrize("written", ["1:{:g}", "1/{:g}", "1 cm = {:g} cm", "1 mm pour {:g} mm", "{:g}"])
+@each_row("written", ["1:{:g}", "1/{:g}", "1 cm = {:g} cm", "1 mm pour {:g} mm", "{:g}"])
 def test_the_scale_of_a_drawing_is_right_in_any_of_them_and_a_number_upside_down_is_not(written):
     variant = COURSE["two_circles"].variant(1)
     found = variant.solution()

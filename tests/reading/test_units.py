@@ -6,6 +6,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tables import each_row
 
 from coursework.errors import WrongUnit
 from coursework.reading.units import UnknownUnit, convert, find_unit, parse_unit, same_dimension
@@ -102,12 +103,12 @@ SPELLINGS = [
 ]
 
 
-@pytest.mark.parametrize(("spelling", "canonical", "size"), SPELLINGS)
+@each_row(("spelling", "canonical", "size"), SPELLINGS)
 def test_a_spelling_people_use_is_its_unit(spelling, canonical, size):
     assert convert(1.0, spelling, canonical) == pytest.approx(size, rel=1e-14)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("a", "b"),
     [
         ("mm", "s"),
@@ -127,7 +128,7 @@ def test_another_dimension_is_refused_with_both_named(a, b):
     assert repr(b) in str(error.value)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "piece", "offer"),
     [
         ("MM", "MM", "'mm'"),
@@ -142,7 +143,7 @@ def test_an_unknown_unit_names_its_piece_and_the_nearest(text, piece, offer):
     assert offer in str(error.value)
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     ["", " ", "frogs", "mm//s", "mm/", "/mm", "(mm", "mm)", "mm 3", "5 mm", "mm^99", "mm^", "m^1.5", "()",
     "mm()",
@@ -201,7 +202,7 @@ def test_capitals_never_make_one_unit_of_another():
             parse_unit(text)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("unit", "canonical", "constant"),
     [
         *[
@@ -221,7 +222,7 @@ def test_factors_are_those_that_another_table_has(unit, canonical, constant):
     assert convert(1.0, unit, canonical) == pytest.approx(expected, rel=1e-15)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("value", "unit", "target", "expected"),
     [
         *[
@@ -249,7 +250,7 @@ def test_a_temperature_is_converted_exactly():
     assert convert(Fraction("36.6"), "°C", "K") == Fraction("309.75")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "unit", "status"),
     [
         *[("20 °C", "deg", "wrong_unit"), ("90°", "°C", "wrong_unit"), ("10 dB", "1", "wrong_unit")],
@@ -265,7 +266,7 @@ def test_what_is_like_another_unit_is_not_taken_for_it(answer, unit, status):
     assert read_number(answer, unit).status == status
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("unit", "text", "latex"),
     [
         ("cm^4", "cm⁴", r"\ \mathrm{cm^{4}}"),

@@ -11,6 +11,7 @@ import pypdfium2
 import pytest
 import zxingcpp
 from course_of_every_kind import write_course
+from tables import each_row
 
 from coursework import open_course
 from coursework.cli import run
@@ -116,8 +117,8 @@ def codes_on(picture):
     return [(one.text, one.ec_level) for one in zxingcpp.read_barcodes(grey)]
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
-@pytest.mark.parametrize("size", SIZES)
+@each_row("lang", ["fr", "en"])
+@each_row("size", SIZES)
 def test_every_page_says_which_it_is_at_150_dots_an_inch(course, lang, size):
     sheet = handout(course, "slider_extras", lang, size)
     made = builtin_renderer().on(size).pdf(sheet)
@@ -132,7 +133,7 @@ def test_every_page_says_which_it_is_at_150_dots_an_inch(course, lang, size):
     assert (len(found) - len(pages)) % 2 == 0, "answer pages begin on the front of a leaf"
 
 
-@pytest.mark.parametrize("size", SIZES)
+@each_row("size", SIZES)
 def test_a_page_left_blank_before_answer_pages_is_of_their_size(course, size):
     made = pypdfium2.PdfDocument(builtin_renderer().on(size).pdf(handout(course, "grashof", "en", size)))
     assert len(made) == 3, "statement, blank, answers"
@@ -171,7 +172,7 @@ def test_a_sheet_that_is_not_scanned_knows_nothing_of_it(course):
     ]
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_a_page_tells_its_rules_and_its_student_in_words_and_the_code_tells_neither(course, lang):
     sheet = handout(course, "grashof", lang)
     pdf = pypdfium2.PdfDocument(builtin_renderer().pdf(sheet))

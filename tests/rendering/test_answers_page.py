@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from page_scripts import runs
 from paper_samples import COURSE, NAMES, bare, heading, paper
+from tables import each_row
 
 from coursework.gradebook.rows import Rejected, Row
 from coursework.gradebook.submissions import read_file
@@ -166,9 +167,7 @@ def test_a_device_that_stores_nothing_is_told_at_once_and_the_file_is_saved_all_
 
 
 @needs_node
-@pytest.mark.parametrize(
-    "spoilt", ["", "{", "null", "[1]", '{"typed": 3}', '{"typed": {"rA": {"x": 1}, "theta4": [1]}}']
-)
+@each_row("spoilt", ["", "{", "null", "[1]", '{"typed": 3}', '{"typed": {"rA": {"x": 1}, "theta4": [1]}}'])
 def test_a_spoilt_storage_stops_no_page(spoilt):
     page = one("slotted_mechanism")
     done = page.run(("theta4", "2"), stored={page.data["key"]: spoilt})

@@ -10,6 +10,7 @@ from itertools import pairwise
 import pytest
 import typst
 from rendering_samples import answer_sheet, feedback_sheet, handout, many_given
+from tables import each_row
 
 from coursework.cli import run
 from coursework.cli.options import DONE
@@ -29,14 +30,14 @@ def pages_of(sheets, paper="a4") -> list[str]:
     return [p.decode() for p in (pages if isinstance(pages, list) else [pages])]
 
 
-@pytest.mark.parametrize("paper", PAPERS)
-@pytest.mark.parametrize("make", [handout, answer_sheet, feedback_sheet, many_given])
+@each_row("paper", PAPERS)
+@each_row("make", [handout, answer_sheet, feedback_sheet, many_given])
 def test_every_page_of_a_sheet_has_the_size_of_its_paper(make, paper):
     for page in pages_of([make("fr")], paper):
         assert f'width="{WIDTHS[paper]}' in page[:400]
 
 
-@pytest.mark.parametrize("paper", PAPERS)
+@each_row("paper", PAPERS)
 def test_blank_pages_between_the_sheets_of_a_booklet_have_its_size_too(paper):
     pages = pages_of([handout("fr"), handout("en"), answer_sheet("fr")], paper)
     assert all(f'width="{WIDTHS[paper]}' in page[:400] for page in pages)

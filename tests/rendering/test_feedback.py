@@ -16,6 +16,7 @@ from paper_samples import COURSE, bare, heading
 from paper_samples import feedback as paper_feedback
 from pdf_text import page_texts
 from rendering_samples import answer_sheet, feedback_sheet
+from tables import each_row
 
 from coursework.gradebook.columns import VERDICTS
 from coursework.language.words import languages, words
@@ -71,7 +72,7 @@ def together(pages: list[str], words_of: list[str]) -> bool:
 
 
 @every_language
-@pytest.mark.parametrize("seed", range(6))
+@each_row("seed", range(6))
 def test_a_question_and_all_that_is_said_of_it_stand_on_one_page(lang, seed):
     sheet = synthetic(lang, 25, seed)
     whole = FeedbackPaper(heading(lang), (sheet, synthetic(lang, 8, seed + 100)), 1.0, 2.0, "12")
@@ -99,7 +100,7 @@ def test_an_answer_longer_than_a_page_follows_what_is_said_of_it(lang):
 
 
 @every_language
-@pytest.mark.parametrize("answer", TYPED, ids=range(len(TYPED)))
+@each_row("answer", TYPED)
 def test_a_typed_answer_is_copied_as_it_was_typed(lang, answer):
     sheet = feedback_sheet(lang)
     lines = tuple(replace(line, answer=answer, read_as="") for line in sheet.lines)
@@ -250,7 +251,7 @@ def test_a_sign_tells_the_share_of_the_points_and_none_is_told_by_colour_alone()
     assert all(word.strip() for _, word in drawn)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("prompt", "symbol", "shown"),
     [
         ("The angle. Check it.", "", "The angle."),
@@ -267,7 +268,7 @@ def test_a_question_is_called_by_its_first_sentence(prompt, symbol, shown):
     )
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("typed", "read", "shown"),
     [
         ("60.5", "60,5", ""),

@@ -7,6 +7,7 @@ import json
 import pytest
 import typst
 from sweeps import sampled
+from tables import each_row
 
 import coursework
 from coursework.markup.markdown import to_typst_markup
@@ -114,7 +115,7 @@ def test_data_stand_beside_the_widest_figure(lang):
     assert [line for line, (wide, _) in zip(lines.values(), sizes(lines), strict=True) if wide > room] == []
 
 
-@pytest.mark.parametrize(
+@each_row(
     "tall",
     [
         r"$\dfrac{a}{b}$", r"$\tfrac{a}{b}$", r"$\frac{a}{b}$", r"$\sqrt{a}$", r"$\prod_i a_i$", "$$x$$", "a\n\nb", "- a\n- b",

@@ -11,6 +11,7 @@ import pytest
 from formula_samples import FORMULAS, call
 from rendering_samples import ANSWER_DIGITS, answer_sheet, handout, many_given
 from sweeps import sampled
+from tables import each_row
 
 from coursework.cli import run
 from coursework.cli.options import DONE
@@ -87,7 +88,7 @@ def test_characters_that_latex_would_join_or_does_not_have_are_written_out():
     assert plain_latex("3\u202fmm\u00a0") == r"3\,mm~"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("tex", "fr", "en"),
     [
         (r"\num{-1234.5e-3}", r"{-}1234{,}5 \times 10^{-3}", r"{-}1234.5 \times 10^{-3}"),
@@ -108,7 +109,7 @@ def test_a_formula_is_written_with_the_numbers_of_its_language(tex, fr, en):
     assert to_latex(tex, "en") == en
 
 
-@pytest.mark.parametrize("tex", [f for f in FORMULAS if not re.search(r"num|text|mathrm|operatorname|'", f)])
+@each_row("tex", [f for f in FORMULAS if not re.search(r"num|text|mathrm|operatorname|'", f)])
 def test_a_formula_read_back_from_its_source_says_the_same(tex):
     written = re.sub(r"\\mkern-?\d+mu|\\relax", " ", to_latex(tex, "en"))
     assert spoken(written, "en") == spoken(tex, "en")
@@ -141,7 +142,7 @@ def test_markdown_of_every_kind_and_hostile_text_compile(tmp_path):
 
 
 @every_language
-@pytest.mark.parametrize("make", [handout, answer_sheet, many_given])
+@each_row("make", [handout, answer_sheet, many_given])
 def test_a_source_is_whole_and_the_same_twice(make, lang):
     source = RENDERER.tex(make(lang), "figure.pdf")
     check_source(source)

@@ -16,6 +16,7 @@ import pytest
 from page_scripts import allowed, digest, runs
 from paper_samples import ALT, COURSE, NAMES, bare, feedback, heading, paper, solution
 from pdf_text import page_texts
+from tables import each_row
 
 from coursework.errors import BadInput
 from coursework.language.words import words
@@ -89,7 +90,7 @@ def test_every_paper_is_an_accessible_pdf_and_the_same_bytes_twice(make, lang):
 
 
 @every_language
-@pytest.mark.parametrize("cover", [False, True])
+@each_row("cover", [False, True])
 def test_the_head_says_what_the_paper_is_and_its_total(lang, cover):
     top = heading(lang, cover=cover)
     first, *others = texts(paper(top))
@@ -121,7 +122,7 @@ def test_every_exercise_says_its_points_and_numbers_its_questions_under_its_own(
 
 
 @every_size
-@pytest.mark.parametrize("names", list(permutations(NAMES)), ids="-".join)
+@each_row("names", list(permutations(NAMES)))
 def test_no_page_ends_with_a_heading_or_with_one_question_alone(names, size):
     made = paper(heading("en"), names)
     pages = texts(made, size)
@@ -257,7 +258,7 @@ def test_questions_of_one_name_in_two_exercises_are_answered_apart():
 
 
 @every_language
-@pytest.mark.parametrize("student", ["", "Zoé"])
+@each_row("student", ["", "Zoé"])
 def test_a_notebook_has_a_cell_of_answers_an_exercise_that_says_whose_it_is(lang, student):
     handed = paper(heading(lang, student), (*NAMES, "grashof"))
     text = RENDERER.paper_notebook(handed)
@@ -289,7 +290,7 @@ def png(wide: int, high: int) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
-@pytest.mark.parametrize(("data", "form"), [(png(40, 10), "png"), (heading("en").logo.data, "svg")])
+@each_row(("data", "form"), [(png(40, 10), "png"), (heading("en").logo.data, "svg")])
 def test_a_logo_is_a_picture_told_in_words(data, form):
     handed = paper(replace(heading("en"), logo=Logo(data, form, "A <blue> & white sign")), NAMES[:1])
     assert b"pdfuaid:part" in RENDERER.paper_pdf(handed)
@@ -299,9 +300,7 @@ def test_a_logo_is_a_picture_told_in_words(data, form):
     )
 
 
-@pytest.mark.parametrize(
-    ("data", "form"), [(b"GIF89a", "png"), (png(1, 1), "svg"), (b"", "svg"), (b"", "png")]
-)
+@each_row(("data", "form"), [(b"GIF89a", "png"), (png(1, 1), "svg"), (b"", "svg"), (b"", "png")])
 def test_a_logo_of_another_format_is_refused(data, form):
     with pytest.raises(BadInput, match=r"logo is no (PNG|SVG)"):
         RENDERER.paper_pdf(paper(replace(heading("en"), logo=Logo(data, form, ALT["en"])), NAMES[:1]))

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from scipy.signal import correlate2d
+from tables import each_row
 
 from coursework.scanning import digits
 from coursework.scanning.digits import CONFIDENT, EMPTY, read_digits, read_signs
@@ -67,7 +68,7 @@ def everyone(**how):
     return np.array([inked(box(), written(index, **how)) for index in CHOSEN])
 
 
-@pytest.mark.parametrize("how", [{}, {"at": (6, -8)}, {"height": 44}, {"height": 80}], ids=str)
+@each_row("how", [{}, {"at": (6, -8)}, {"height": 44}, {"height": 80}])
 def test_digits_of_other_writers_are_read_or_told_unsure(how):
     found, sure = read_digits(everyone(**how))
     taken = sure >= CONFIDENT
@@ -76,7 +77,7 @@ def test_digits_of_other_writers_are_read_or_told_unsure(how):
     assert np.mean(found == LABELS) > 0.95
 
 
-@pytest.mark.parametrize("dots", [0.59, 0.79, 2.36], ids=["150", "200", "600"])
+@each_row("dots", [0.59, 0.79, 2.36])
 def test_another_resolution_says_no_other_digit(dots):
     cells = everyone()
     other = np.array(
@@ -95,11 +96,7 @@ def test_pencil_and_paper_in_the_shade_are_read_as_ink():
     assert np.mean(sure >= CONFIDENT) > 0.6
 
 
-@pytest.mark.parametrize(
-    ("digit", "shapes"),
-    [(1, [[s] for s in ONE_WITH_UPSTROKE]), (7, SEVEN_WITH_BAR), (4, OPEN_FOUR)],
-    ids=["1 with an upstroke", "7 with a bar", "open 4"],
-)
+@each_row(("digit", "shapes"), [(1, [[s] for s in ONE_WITH_UPSTROKE]), (7, SEVEN_WITH_BAR), (4, OPEN_FOUR)])
 def test_digits_as_europe_writes_them_are_read(digit, shapes):
     cells = [inked(box(), stroked(*shape, width=width)) for shape in shapes for width in (3, 5, 7)]
     found, sure = read_digits(np.array(cells))
@@ -107,7 +104,7 @@ def test_digits_as_europe_writes_them_are_read(digit, shapes):
     assert np.mean(sure >= CONFIDENT) > 0.5
 
 
-@pytest.mark.parametrize("grey", [250, 190, 60], ids=["no outline", "light outline", "dark outline"])
+@each_row("grey", [250, 190, 60])
 def test_nothing_is_read_as_nothing(grey):
     rng = np.random.default_rng(1)
     cells = np.array([box(grey) - rng.integers(0, 12, (90, 70), np.uint8) for _ in range(20)])
@@ -134,13 +131,13 @@ def blackened(index):
     return np.maximum(written(index), stroked(*zigzag, width=5))
 
 
-@pytest.mark.parametrize("spoilt", [struck, two, blackened])
+@each_row("spoilt", [struck, two, blackened])
 def test_what_is_struck_out_or_no_single_digit_is_told_unsure(spoilt):
     cells = np.array([inked(box(), spoilt(index)) for index in CHOSEN])
     assert np.mean(read_digits(cells)[1] >= CONFIDENT) < 0.01
 
 
-@pytest.mark.parametrize("letter", "ACEFHKMNRXaknw?")
+@each_row("letter", "ACEFHKMNRXaknw?")
 def test_a_letter_is_told_unsure(letter):
     cell = box()
     cv2.putText(cell, letter, (16, 64), cv2.FONT_HERSHEY_SIMPLEX, 1.8, 40, 4, cv2.LINE_AA)
@@ -156,7 +153,7 @@ NO_MINUSES = {
 }
 
 
-@pytest.mark.parametrize("stroke", MINUSES, ids=str)
+@each_row("stroke", MINUSES)
 def test_a_minus_is_read(stroke):
     present, sure = read_signs(np.array([inked(box(), stroked(stroke, width=w)) for w in (3, 5, 7)]))
     assert present.all()
@@ -169,7 +166,7 @@ def test_no_sign_is_read_as_none():
     assert sure[0] >= CONFIDENT
 
 
-@pytest.mark.parametrize("name", NO_MINUSES)
+@each_row("name", NO_MINUSES)
 def test_what_is_no_minus_is_told_unsure(name):
     assert read_signs(inked(box(), stroked(*NO_MINUSES[name]))[None])[1][0] < CONFIDENT
 
@@ -192,7 +189,7 @@ def test_no_boxes_give_no_digits():
     assert found.shape == sure.shape == (0,)
 
 
-@pytest.mark.parametrize("stride", [1, 2])
+@each_row("stride", [1, 2])
 def test_the_convolution_is_scipys(stride):
     rng = np.random.default_rng(3)
     flow, weight = rng.normal(size=(2, 8, 6, 3)), rng.normal(size=(27, 4))

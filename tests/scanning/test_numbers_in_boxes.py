@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scanned_pages import DOTS, Hand, boxes_of, example_page, plain_digits, template_reader
+from tables import each_row
 
 from coursework.scanning.numbers import Reading, number
 from coursework.scanning.outlines import Shifts
@@ -58,7 +59,7 @@ def said(write):
     return number(flat(write), FIELD, READER)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("write", "text"),
     [
         (row("319", behind="8"), "319.8"),
@@ -86,7 +87,7 @@ def test_an_empty_row_is_a_blank_answer_and_does_not_wait():
     assert said(lambda hand: None) == Reading("")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("write", "why"),
     [
         (row("3_9"), "gap"),
@@ -117,7 +118,7 @@ def test_a_minus_in_a_box_for_a_digit_is_never_dropped():
     assert said(row("7", more=lambda hand: hand.minus(FIELD.digits[-2]))).waits
 
 
-@pytest.mark.parametrize("faint", [0.12, 0.2, 0.3, 0.5])
+@each_row("faint", [0.12, 0.2, 0.3, 0.5])
 def test_a_faint_digit_is_read_or_waits_but_is_not_left_out(faint):
     page = flat(row("31"))
     box = FIELD.digits[-3]
@@ -142,8 +143,8 @@ def test_a_box_with_less_confidence_than_is_stated_waits_with_what_it_looks_like
     assert not number(flat(row("319")), FIELD, doubting, least=0.95).waits
 
 
-@pytest.mark.parametrize("dark", [40, 90, 200])
-@pytest.mark.parametrize("sign", [FIELD.sign, FIELD.power_sign])
+@each_row("dark", [40, 90, 200])
+@each_row("sign", [FIELD.sign, FIELD.power_sign])
 def test_a_short_thin_minus_is_read_or_waits_but_is_not_left_out(sign, dark):
     page = flat(row("31", power="4"))
     ink = page.ink.copy()
@@ -153,7 +154,7 @@ def test_a_short_thin_minus_is_read_or_waits_but_is_not_left_out(sign, dark):
     assert "-" in found.text or found.waits
 
 
-@pytest.mark.parametrize(("lean", "waits"), [(2.8, "digit"), (2.2, "digit"), (0.9, ""), (-0.5, "")])
+@each_row(("lean", "waits"), [(2.8, "digit"), (2.2, "digit"), (0.9, ""), (-0.5, "")])
 def test_the_bar_of_a_fraction_is_no_one(lean, waits):
     box = FIELD.digits[-2]
     x, y = box.x + 3.5, box.y + 4.5
@@ -170,7 +171,7 @@ def test_a_slanted_one_at_the_end_of_a_number_is_one():
     assert number(flat(leaning), FIELD, lambda cells: (np.array([4, 5, 1]), np.ones(3))).waits == ""
 
 
-@pytest.mark.parametrize("dark", [30, 60, 120])
+@each_row("dark", [30, 60, 120])
 def test_an_edge_that_runs_through_a_box_is_no_one(dark):
     page = flat(row("8", at=0))
     ink, box = page.ink.copy(), FIELD.digits[1]
@@ -182,8 +183,8 @@ def test_an_edge_that_runs_through_a_box_is_no_one(dark):
     assert found.waits == "digit"
 
 
-@pytest.mark.parametrize("below", [False, True])
-@pytest.mark.parametrize("dark", [30, 60, 120])
+@each_row("below", [False, True])
+@each_row("dark", [30, 60, 120])
 def test_nor_is_one_that_cuts_its_corner(dark, below):
     import cv2
 

@@ -16,6 +16,7 @@ from scanned_pages import (
     plain_sheet,
     scanned,
 )
+from tables import each_row
 
 from coursework.scanning.codes import codes_in
 from coursework.scanning.pages import read_page
@@ -48,7 +49,7 @@ def told(page):
     return [(f.field.part, f.text, f.cases, f.waits) for f in page.fields]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@each_row("kind", KINDS)
 def test_however_a_page_is_scanned_nothing_is_read_that_was_not_written(kind, sheet):
     rng = np.random.default_rng([7, *kind.encode()])
     filled, wrote = answered(sheet, rng)
@@ -61,8 +62,8 @@ def test_however_a_page_is_scanned_nothing_is_read_that_was_not_written(kind, sh
     assert len(sure) >= 2
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("is_written", [False, True], ids=["nothing below", "an answer below"])
+@each_row("kind", KINDS)
+@each_row("is_written", [False, True])
 def test_what_is_written_below_the_rows_may_be_the_answer_of_a_blank_one(kind, is_written):
     page = example_page(rows=1)
     page = replace(
@@ -86,14 +87,14 @@ def test_what_is_written_below_the_rows_may_be_the_answer_of_a_blank_one(kind, i
     assert [f.crop is not None for f in found.fields] == [is_written, False, is_written]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@each_row("kind", KINDS)
 def test_a_scan_in_black_and_white_is_known_for_one(kind, sheet):
     rng = np.random.default_rng([3, *kind.encode()])
     filled, _ = answered(sheet, rng)
     assert is_two_toned(scanned(filled, KINDS[kind](rng), rng)) == (kind in ("black and white", "dithered"))
 
 
-@pytest.mark.parametrize(("bilevel", "waits"), [("", False), ("otsu", True)])
+@each_row(("bilevel", "waits"), [("", False), ("otsu", True)])
 def test_in_black_and_white_doubt_counts_fivefold(bilevel, waits, sheet):
     def hesitant(cells):
         found, sure = READER(cells)
@@ -106,7 +107,7 @@ def test_in_black_and_white_doubt_counts_fivefold(bilevel, waits, sheet):
     assert {bool(f.waits) for f in found.fields if f.field.what == "number" and f.text} == {waits}
 
 
-@pytest.mark.parametrize("pen", simulated.PENS)
+@each_row("pen", simulated.PENS)
 def test_a_good_scan_is_read_whole_whatever_the_pen(pen, sheet):
     hand = Hand(pen=pen, bank=plain_digits, jitter=0.2, rng=np.random.default_rng(5))
     filled, wrote = filled_in(sheet, PAGE, hand, odd=0.0)
@@ -115,14 +116,14 @@ def test_a_good_scan_is_read_whole_whatever_the_pen(pen, sheet):
     assert [f.text for f in found.fields] == [w.text for w in wrote]
 
 
-@pytest.mark.parametrize("turn", [1, 2, 3])
+@each_row("turn", [1, 2, 3])
 def test_a_page_says_the_same_however_it_is_turned(turn, sheet):
     filled, _ = answered(sheet, 11)
     upright = scanned(filled, Scan(dpi=200), np.random.default_rng(0))
     assert told(read(np.rot90(upright, turn))) == told(read(upright))
 
 
-@pytest.mark.parametrize("corner", [0, 2, 3])
+@each_row("corner", [0, 2, 3])
 def test_three_marks_are_enough(corner, sheet):
     filled, wrote = answered(sheet, 2, "black")
     found = read(scanned(filled, Scan(dpi=200, cut_corner=corner, skew=2.0), np.random.default_rng(0)))
@@ -139,7 +140,7 @@ def test_two_marks_are_not(sheet):
     assert read(scanned(cut, Scan(), np.random.default_rng(0))).found == "not straight"
 
 
-@pytest.mark.parametrize(
+@each_row(
     "scan",
     [
         Scan(dpi=200, skew=9.0, shear=1.0),
@@ -180,7 +181,7 @@ def coded(text, sheet):
     return scanned(other, Scan(), np.random.default_rng(0))
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "what"),
     [
         ("CW1 ABCDEFGHIJKLM 0/1", "statement"),
@@ -228,7 +229,7 @@ def said_of_choice(sheet, write):
     return next(f for f in page.fields if f.field.part == choice.part)
 
 
-@pytest.mark.parametrize(
+@each_row(
     "write",
     [
         lambda hand, box, row: ring(hand, box.x + 2.5, box.y + 2.5, 4.2),
@@ -236,7 +237,6 @@ def said_of_choice(sheet, write):
         lambda hand, box, row: hand.scribble(replace(box, x=row.ticks[-1][1].right + 12, width=20)),
         lambda hand, box, row: (hand.cross(row.ticks[-1][1]), ring(hand, box.x + 2.5, box.y + 2.5, 4.2)),
     ],
-    ids=["ring about a box", "ring about a letter", "a word", "ring, and a cross elsewhere"],
 )
 def test_what_is_written_beside_boxes_to_tick_waits(write, sheet):
     assert said_of_choice(sheet, write).waits == "free"
@@ -252,7 +252,7 @@ def test_a_cross_may_go_beyond_its_box(sheet):
     assert (found.cases, found.waits) == (("case1",), "")
 
 
-@pytest.mark.parametrize("called", ["none", "0"])
+@each_row("called", ["none", "0"])
 def test_none_ticked_with_others_waits_whatever_it_is_called(called, sheet):
     several = next(f for f in PAGE.fields if f.several)
     ticks = (*several.ticks[:-1], (called, several.ticks[-1][1]))

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from scanned_pages import KINDS, Scan, scanned, sheet_of_pdf
+from tables import each_row
 
 from coursework import cli
 from coursework.api import open_course
@@ -149,9 +150,7 @@ def test_anothers_page_with_a_pasted_code_waits_for_a_person(built, places, tmp_
     assert [card["waits"] for card in cards] == [OTHER_NAME]
 
 
-@pytest.mark.parametrize(
-    "kind", ["office scanner", "150 dpi", "black and white", "photograph", "light copy", "coffee"]
-)
+@each_row("kind", ["office scanner", "150 dpi", "black and white", "photograph", "light copy", "coffee"])
 def test_an_honest_page_is_never_taken_for_anothers(kind, built, places):
     """However it is scanned; and whose it is, where the scan is clean."""
     from coursework.scanning.codes import codes_in

@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from study_words import BOTH, SAID, flat, start_of
+from tables import each_row
 
 import coursework
 from coursework.errors import UnknownName, WrongValue
@@ -94,7 +95,7 @@ def test_a_wrong_angle_is_not_drawn_as_if_it_were_nearly_right(lang, here):
     assert re.search(r'h2.8l-1.4 -2z" fill="#b3261e"', svg)
 
 
-@pytest.mark.parametrize(("low", "high"), [(-4.7, 3.6), (-5.5, 3.5), (-1, 1), (40, 110), (0.013, 0.0189)])
+@each_row(("low", "high"), [(-4.7, 3.6), (-5.5, 3.5), (-1, 1), (40, 110), (0.013, 0.0189)])
 def test_a_scale_has_three_round_numbers_at_least(low, high):
     ticks = _ticks(low, high, 4)
     assert 3 <= len(ticks) <= 6

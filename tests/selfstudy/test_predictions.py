@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from study_words import BOTH, SAID, flat, start_of
+from tables import each_row
 
 import coursework
 from coursework.errors import UnknownName
@@ -18,7 +19,7 @@ COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_what_is_offered_as_a_prediction_is_read(lang):
     offered = words(lang)["study"]["options"]
     assert [wording.sign(option) for option in offered["sign"].split(" / ")] == ["+", "-"]
@@ -82,7 +83,7 @@ READ = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("reader", READ, ids=lambda reader: reader.__name__)
+@each_row("reader", READ)
 def test_predictions_are_read_in_the_words_of_their_questions(reader):
     for meant, texts in READ[reader].items():
         for text in texts:
@@ -90,9 +91,7 @@ def test_predictions_are_read_in_the_words_of_their_questions(reader):
 
 
 @BOTH
-@pytest.mark.parametrize(
-    "text", ["90 degrés", "90 degrees", "90°", "90", "environ 90", "vers 90°", "1,5708 rad", 90.0]
-)
+@each_row("text", ["90 degrés", "90 degrees", "90°", "90", "environ 90", "vers 90°", "1,5708 rad", 90.0])
 def test_the_place_of_a_peak_is_read_with_its_unit(text, lang):
     variant = COURSE["slotted_mechanism"].variant(1, lang)
     (one,) = [p for p in predictions.over_the_cycle(variant) if p.kind == "highest"]
@@ -275,7 +274,7 @@ AGREE = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("guess", "value", "agrees"), AGREE)
+@each_row(("guess", "value", "agrees"), AGREE)
 def test_a_lesson_reads_predictions_as_they_are_written(guess, value, agrees):
     for lang in ("fr", "en"):
         assert str(coursework.compare({"a": guess}, {"a": value}, lang)).startswith(

@@ -9,6 +9,7 @@ from datetime import UTC, date, datetime, timedelta
 
 import pytest
 from study_words import BOTH, SAID, flat, start_of
+from tables import each_row
 
 import coursework
 from coursework.cli import run
@@ -69,7 +70,7 @@ def test_what_a_reader_does_not_know_it_keeps():
     assert len(questions(told)) == 1
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     ["", "[]", "{}", '{"format": "x", "version": 1, "entries": []}', '{"format": "coursework progress", "version": 1, "entries": [{}]}',
      '{"format": "coursework progress", "version": 1, "entries": [{"at": "2026-01-01", "exercise": "x", "seed": 1, "part": "a", "what": "hint"}]}',
@@ -201,7 +202,7 @@ def test_an_outing_before_it_is_due_moves_nothing():
     assert questions(Progress(early))[0].due == (START + timedelta(days=1)).date()
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("happened", "is_right", "is_clean"),
     [
         ([answered(0, "a", "correct")], True, True),

@@ -6,6 +6,7 @@ import re
 
 import pytest
 from sweeps import sampled
+from tables import each_row
 
 import coursework
 from coursework.authoring.check_alone import asked_alone
@@ -16,7 +17,7 @@ from coursework.selfstudy.examples import has_example
 NAME, PARTS = "four_bar_motion", ("theta3", "omega3")
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_each_level_leaves_more_to_the_reader(lang):
     shown = [coursework.worked(NAME, seed=3, lang=lang, level=level) for level in range(5)]
     left = [len(one.left) for one in shown]
@@ -26,7 +27,7 @@ def test_each_level_leaves_more_to_the_reader(lang):
     assert len({str(one) for one in shown}) == 5
 
 
-@pytest.mark.parametrize("level", [1, 2, 3, 4])
+@each_row("level", [1, 2, 3, 4])
 def test_what_is_left_is_not_told(level):
     shown = coursework.worked(NAME, seed=3, lang="en", level=level, parts=PARTS)
     text = "".join(piece for piece in shown.pieces if isinstance(piece, str))
@@ -69,7 +70,7 @@ def test_what_is_none_is_refused():
         coursework.mistakes(NAME, "normal_terms")
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_named_mistakes_are_told_in_the_exercise_s_words(lang):
     exercise = coursework.open_course()[NAME]
     names = list(exercise.solution.mistakes)
@@ -79,7 +80,7 @@ def test_named_mistakes_are_told_in_the_exercise_s_words(lang):
     assert lines.splitlines() == ["- " + " ".join(told.sections[f"mistake {n}"].text.split()) for n in names]
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_a_question_names_its_symbol_once(lang):
     shown = coursework.worked(
         "four_bar_positions", seed=5, lang=lang, level=4, parts=("a", "theta3_open", "mu")
@@ -92,7 +93,7 @@ def test_a_question_names_its_symbol_once(lang):
         assert f"({unit})" in line
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_choices_are_lettered_as_their_answer_is(lang):
     bare = coursework.worked("grashof", seed=1, lang=lang, level=4, parts=("linkage_type",))
     letter = bare.right[0].rpartition("**")[0].rpartition("**")[2].partition(" ")[0]
@@ -119,7 +120,7 @@ def test_what_is_judged_together_is_left_together():
     assert left_at("velocity_polygon", 1, parts=("omega4", "known_B")) == drawn
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_a_drawing_that_is_left_is_marked_as_one(lang):
     shown = coursework.worked("velocity_polygon", seed=2, lang=lang, level=1)
     values = shown.variant.solution()
@@ -138,7 +139,7 @@ def test_what_every_variant_shares_is_left_in_a_lesson_and_not_in_a_study_sessio
     assert not has_example(coursework.open_course()["vocabulary"].variant(2, "en"))
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_a_choice_that_is_left_stands_by_its_question_and_the_others_are_told(lang):
     shown = coursework.worked("vocabulary", seed=2, lang=lang, level=1)
     (left,) = shown.left

@@ -9,6 +9,7 @@ from itertools import combinations, pairwise
 import numpy as np
 import pytest
 from course_of_every_kind import write_course
+from tables import each_row
 
 import coursework
 from coursework.course.builtin import builtin_root
@@ -168,7 +169,7 @@ def test_what_a_page_says_rightly_is_marked_as_right(name, unit):
     assert {marking[part].verdict for part in variant.part_ids} == {"correct"}
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("kind", "reference", "found", "unit", "answer"),
     [
         ("number", 3.5, ["3.5"], "mm", "3.5 mm"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from tables import each_row
 
 from coursework.degrees import acos, angle, atan2, cos, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
@@ -114,7 +114,7 @@ NUMBERS = {
 }
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("function", "symbols", "numbers"),
     [
         (
@@ -220,7 +220,7 @@ def beside_bytes(a):
     return a + b"1"
 
 
-@pytest.mark.parametrize("function", [beside_nothing, beside_dots, beside_bytes])
+@each_row("function", [beside_nothing, beside_dots, beside_bytes])
 def test_a_formula_with_what_is_no_number_is_left_to_words(function):
     assert formula_latex(function, SYMBOLS) == ""
 
@@ -258,15 +258,13 @@ def times(k, OB):
     return k * OB * 2
 
 
-@pytest.mark.parametrize("segment", ["OB", "OB_1", r"\angle DOB_{+}", "p_a b", "b'' b"])
+@each_row("segment", ["OB", "OB_1", r"\angle DOB_{+}", "p_a b", "b'' b"])
 def test_a_symbol_of_several_letters_is_told_from_a_product(segment):
     shown = {"k": ("k_a", False), "OB": (segment, False)}
     assert formula_latex(times, shown) == rf"k_a \times {segment} \times \num{{2}}"
 
 
-@pytest.mark.parametrize(
-    "letter", ["r_{A,x}", r"\ddot{r}_1", r"V_{1/4}(A_1)", r"\mathrm{MA}", r"\theta_{4+}", r"\ell_3"]
-)
+@each_row("letter", ["r_{A,x}", r"\ddot{r}_1", r"V_{1/4}(A_1)", r"\mathrm{MA}", r"\theta_{4+}", r"\ell_3"])
 def test_a_symbol_of_one_letter_stands_beside_its_factor(letter):
     shown = {"k": ("k_a", False), "OB": (letter, False)}
     assert formula_latex(times, shown).startswith(rf"k_a\,{letter} ")
@@ -283,7 +281,7 @@ def test_each_asked_step_says_which_question_it_answers(course):
                 assert bool(said) == ("*Question " in step.words), f"{name}: {step.name}"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("reason", "lang", "said"),
     [
         ("", "en", "*Question 3.* Answer: **oscillates**."),

@@ -12,6 +12,7 @@ from site_browser import chromium, context_of, served
 from site_people import TEACHER, Class
 from site_walk import Patient, Scripts
 from sqlalchemy import select
+from tables import each_row
 
 from coursework.database.assignments import put_issued
 from coursework.database.decisions import Place, decide
@@ -112,7 +113,7 @@ def held(page):
     return [*found.inline, *found.handlers, *odd, *led]
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_no_page_of_the_staff_holds_a_text_as_html(hostile, lang):
     browser = hostile.browser(TEACHER, lang)
     for address in [*hostile.desk(), *hostile.of(hostile.names[0]), *hostile.cards()[:3]]:

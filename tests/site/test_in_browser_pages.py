@@ -4,6 +4,7 @@ its title says, a thumb hits what there is, nothing fails behind it, and it prin
 import pytest
 from site_browser import chromium, context_of, cut_in_print, low, serious, served, too_wide, watched
 from site_lived import NO_PAGES, Lived, shown
+from tables import each_row
 
 from coursework.site.application import PAGES
 
@@ -70,7 +71,7 @@ def test_every_address_is_looked_at_or_is_no_page(lived):
     assert not seen & NO_PAGES
 
 
-@pytest.mark.parametrize(("lang", "size"), LOOKS)
+@each_row(("lang", "size"), LOOKS)
 def test_the_pages_that_most_see_are_without_fault(lived, lang, size):
     assert looked_at(lived, lang, size, lambda one: one.path in FAST) == {}
 

@@ -9,6 +9,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from site_assignments import CLOSES, FORM, OPENS, USUAL, dealt, dealt_by, handed_in, handed_out
 from site_people import MAX, TEACHER, ZOE
+from tables import each_row
 
 from coursework.database.assignments import issued_content, names
 from coursework.database.audit import noted
@@ -387,7 +388,7 @@ def test_a_publication_is_kept_and_read_back_whole():
     assert Publication.of({"of a later version": 1}) == Publication()
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("late", "share"), [(0, 0), (1, 0.1), (86400, 0.1), (86401, 0.2), (9 * 86400, 0.9), (99 * 86400, 1.0)]
 )
 def test_a_day_that_has_begun_counts_and_nobody_owes_more_than_all(late, share):

@@ -8,6 +8,7 @@ import pytest
 from site_accounts import PASSWORD, is_in, join, sign_in
 from site_people import MAX, TEACHER, ZOE, Class
 from sqlalchemy import event, select, update
+from tables import each_row
 
 from coursework.database import sessions as kept
 from coursework.database.dump import dump, restore
@@ -245,7 +246,7 @@ def test_a_number_that_is_none_ends_nothing(class_of_three, odd):
     assert is_in(here)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("told", "says"),
     [
         ("Mozilla/5.0 (X11; Linux x86_64; rv:140.0) Gecko/20100101 Firefox/140.0", "Firefox, Linux"),

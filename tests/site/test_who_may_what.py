@@ -5,6 +5,7 @@ import re
 
 import pytest
 from site_walk import MAX, TEACHER, ZOE, Filled, Scripts, filled, fillings, text_of
+from tables import each_row
 
 from coursework.database.permissions import Permission, is_of_staff
 from coursework.site.application import PAGES
@@ -82,7 +83,7 @@ def test_an_administrator_may(site, page):
 
 
 @every_page
-@pytest.mark.parametrize("name", [None, ZOE])
+@each_row("name", [None, ZOE])
 def test_no_reply_holds_what_is_not_for_them(site, page, name):
     """Neither an answer before its time, nor anything of another student, wherever they stand; whatever is asked."""
     for others in (False, True):
@@ -116,7 +117,7 @@ def test_what_is_practised_is_no_variant_that_was_issued(site, page):
 
 
 @every_page
-@pytest.mark.parametrize("name", [ZOE, TEACHER])
+@each_row("name", [ZOE, TEACHER])
 def test_no_link_signs_anybody_in_or_out(site, page, name):
     browser = site.browser(name)
     reply = browser.get(address_of(site, page))
@@ -125,7 +126,7 @@ def test_no_link_signs_anybody_in_or_out(site, page, name):
 
 
 @posting
-@pytest.mark.parametrize("name", [ZOE, TEACHER])
+@each_row("name", [ZOE, TEACHER])
 def test_no_form_is_taken_without_its_seal(site, page, name):
     if is_of_staff(page.needs) and name == ZOE:
         return

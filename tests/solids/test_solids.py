@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.errors import CannotTell, UnknownName, WrongValue
 from coursework.solids import (
@@ -76,7 +77,7 @@ def numbers(chain):
 # ------------------------------------------------------------------- one joint
 
 
-@pytest.mark.parametrize("name", JOINTS)
+@each_row("name", JOINTS)
 def test_a_joint_is_recognised_as_itself(name):
     rng = np.random.default_rng(3)
     for _ in range(5):
@@ -105,7 +106,7 @@ def test_a_joint_is_recognised_as_itself(name):
                 assert found.pitch == pytest.approx(5.0, rel=1e-12)
 
 
-@pytest.mark.parametrize("name", JOINTS)
+@each_row("name", JOINTS)
 def test_a_joint_with_itself(name):
     """In parallel every action is shared, in series every motion is twofold."""
     given, f = joint(name, X, (10, 20, 30)), FREEDOMS[name]
@@ -114,7 +115,7 @@ def test_a_joint_with_itself(name):
     assert (row.Nc, row.m, row.m_useful, row.m_internal, row.h) == (2 * f, 2 * f, f, f, 0)
 
 
-@pytest.mark.parametrize("name", JOINTS)
+@each_row("name", JOINTS)
 def test_no_transmitted_action_works_in_a_free_motion(name):
     given = joint_of(joint(name, (1, 2, 2), (10, -20, 30), (0, 1, -1)))
     twists = np.array(given.twists((5.0, 4.0, 3.0), 7.0)).reshape(-1, 6)
@@ -137,7 +138,7 @@ def test_a_right_handed_screw_advances_along_its_axis():
 # ------------------------------------------------------- parallel and in series
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("joints", "expected", "direction", "point", "h"),
     [
         # Two journal bearings, one of which holds the shaft along it: a hinge, once too stiff in two ways.
@@ -171,7 +172,7 @@ def test_joints_in_parallel(joints, expected, direction, point, h):
     _check_line(found.equivalent, direction, point)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("joints", "expected", "direction", "point", "m_internal"),
     [
         ([joint("spherical", X, O), joint("planar", Z)], "point_contact", Z, O, 1),
@@ -412,14 +413,14 @@ LOSING_ROWS = [
 ]
 
 
-@pytest.mark.parametrize("joints", FREE_ROWS, ids=lambda row: " ".join(j["joint"] for j in row))
+@each_row("joints", FREE_ROWS)
 def test_six_freedoms_at_every_pose_are_no_joint(joints):
     assert in_series(joints).equivalent.name == "free"
     rng = np.random.default_rng(1)
     assert min(least_of_six(posed(rng, joints)) for _ in range(500)) > 0.01
 
 
-@pytest.mark.parametrize("joints", LOSING_ROWS, ids=lambda row: " ".join(j["joint"] for j in row))
+@each_row("joints", LOSING_ROWS)
 def test_six_freedoms_at_one_pose_alone_are_no_joint_of_the_table(joints):
     found = in_series(joints)
     assert (found.m_useful, found.equivalent.name) == (6, "other")
@@ -474,7 +475,7 @@ def test_the_gap_of_a_decision_is_reported():
 # ---------------------------------------------------------------------- planar
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("name", "axis", "normal", "kind"),
     [
         ("revolute", Z, X, "revolute"),
@@ -533,7 +534,7 @@ def test_an_inclined_axis_is_no_plane_problem():
 # --------------------------------------------------------------------- refusals
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("given", "error", "match"),
     [
         ({"joint": "pivot"}, UnknownName, "no joint 'pivot'"),

@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.cli import run
 from coursework.errors import BadInput, BadStatement
@@ -575,7 +576,7 @@ def test_an_answer_accepted_by_hand_is_right_in_the_report(small_course, tmp_pat
     assert small("report", out / "marks") == 0
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_a_letter_with_an_arrow_is_drawn_in_the_labels_of_charts(course, lang):
     """Every question of the course as a chart names it: no square stands for a letter."""
     from coursework.figures.charts import bars

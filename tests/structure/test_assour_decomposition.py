@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations, permutations
 
 import pytest
+from tables import each_row
 
 from coursework.errors import Undefined, WrongValue
 from coursework.structure import LIBRARY, JointGraph, decompose, grow
@@ -127,7 +128,7 @@ def test_a_shared_pivot_may_be_written_as_any_chain_of_pairs():
     assert tried > 10
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("figure", "driver", "name", "groups"),
     [
         ("figure_3", 2, "II", [(3, 4)]),
@@ -196,13 +197,13 @@ def test_handed_out_mechanisms_have_classes_two_to_four_and_some_figures_among_t
 FOUR_BAR = LIBRARY["figure_3"].records()
 
 
-@pytest.mark.parametrize("driver", [(2, 3), (1, 3), (1,), 2, (1, 2, 3), "12", (1, 9), None, (1, 2.5)])
+@each_row("driver", [(2, 3), (1, 3), (1,), 2, (1, 2, 3), "12", (1, 9), None, (1, 2.5)])
 def test_a_driver_is_a_body_joined_to_the_frame(driver):
     with pytest.raises(WrongValue, match="driver"):
         decompose(FOUR_BAR, driver)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("joints", "message"),
     [
         (LIBRARY["figure_6_cam"], "lower pairs alone"),

@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.errors import WrongValue
 from coursework.structure import LIBRARY, Counts, JointGraph, grow
@@ -34,7 +35,7 @@ def mechanisms(count):
         yield grow(number, groups, drivers=1 + choices.below(2))
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("figure", "counts"),
     [
         # n, b, h, w, L, N, gamma: the notes print w of Figures 3, 7, 13, 14 and gamma of Figure 14.
@@ -63,7 +64,7 @@ def test_every_figure_of_the_library_moves_by_one():
     assert {graph.counts.w for graph in LIBRARY.values()} == {1}
 
 
-@pytest.mark.parametrize("kind", range(4))
+@each_row("kind", range(4))
 def test_a_shared_pivot_counts_alike_however_it_is_written(kind):
     writings = (
         [pivot(2, 3, 4, at="A")],
@@ -148,7 +149,7 @@ def test_grown_mechanisms_count_as_their_groups_say():
                     assert 3 * size - 2 * inside >= 0
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("joints", "message"),
     [
         ([], "the list is empty"),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
 import sweeps
+from tables import each_row
 
 from coursework.figures import circle, contact, line, note
 from coursework.structure import LIBRARY, JointGraph
@@ -15,7 +15,7 @@ def elements(joints, kind):
     return [e for e in kinematic_graph(joints).elements if isinstance(e, kind)]
 
 
-@pytest.mark.parametrize("figure", sorted(LIBRARY))
+@each_row("figure", sorted(LIBRARY))
 def test_bodies_joints_and_shared_pivots_are_all_drawn(figure):
     graph = LIBRARY[figure]
     assert sorted(e.label for e in elements(graph, note)) == sorted(map(str, graph.bodies))

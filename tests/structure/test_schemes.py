@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 
-import pytest
+from tables import each_row
 
 from coursework.figures import Figure, contact, ground_pivot, pin, rail, slider
 from coursework.structure import LIBRARY, JointGraph
@@ -34,7 +34,7 @@ def distance(z: complex, a: complex, b: complex) -> float:
     return abs(z - a - min(1.0, max(0.0, along)) * (b - a))
 
 
-@pytest.mark.parametrize("figure", sorted(LIBRARY))
+@each_row("figure", sorted(LIBRARY))
 def test_a_scheme_of_the_library_has_each_moving_body_and_each_letter(figure):
     graph = LIBRARY[figure]
     found = labels(kinematic_scheme(graph))

@@ -7,9 +7,9 @@ import io
 import re
 
 import hypothesis.strategies as st
-import pytest
 from hypothesis import example, given
 from rows_of_strangers import is_computed, seen_by_a_spreadsheet
+from tables import each_row
 
 from coursework.system.tables import SPREADSHEETS, as_written, csv_text, inert
 
@@ -25,8 +25,8 @@ PLAIN = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("spreadsheet", SPREADSHEETS.values(), ids=SPREADSHEETS)
-@pytest.mark.parametrize("text", ALIVE)
+@each_row("spreadsheet", SPREADSHEETS.values())
+@each_row("text", ALIVE)
 def test_no_way_to_part_the_cells_makes_one_that_is_computed(text, spreadsheet):
     assert any(map(is_computed, seen_by_a_spreadsheet(csv_text_of(text, raw=True))))
     for columns in (("student", "answer"), (text, "answer")):
@@ -40,7 +40,7 @@ def csv_text_of(text, raw):
     return out.getvalue()
 
 
-@pytest.mark.parametrize("text", PLAIN)
+@each_row("text", PLAIN)
 def test_numbers_with_their_units_and_words_stay_as_they_are(text):
     assert inert(text) == text == as_written(text)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 
 import pytest
+from tables import each_row
 
 from coursework.system.processes import processes
 
@@ -19,7 +20,7 @@ def fail_at_work(fault, tasks):
         raise fault
 
 
-@pytest.mark.parametrize("fault", [KeyboardInterrupt, ValueError])
+@each_row("fault", [KeyboardInterrupt, ValueError])
 def test_a_fault_ends_the_processes_whatever_they_do(fault):
     tasks, started = [], time.monotonic()
     with pytest.raises(fault):

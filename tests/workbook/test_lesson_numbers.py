@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tables import each_row
 
 from coursework.course.lessons import lesson_file
 from coursework.language.words import languages
@@ -70,10 +71,8 @@ def solved(course):
     }
 
 
-@pytest.mark.parametrize("lang", languages())
-@pytest.mark.parametrize(
-    ("lesson", "quoted"), [(one, text) for one, texts in QUOTED.items() for text in texts]
-)
+@each_row("lang", languages())
+@each_row(("lesson", "quoted"), [(one, text) for one, texts in QUOTED.items() for text in texts])
 def test_a_number_of_a_lesson_is_that_of_the_solution(course, solved, lesson, quoted, lang):
     assert quoted in lesson_file(course.folder, lesson, lang).read_text("utf-8")
     name, _, scale = QUOTED[lesson][quoted].partition("/")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from tables import each_row
 
 from coursework.errors import BadCourse
 from coursework.markup.links import Link, links, relinked
@@ -60,7 +61,7 @@ def test_nothing_of_a_text_is_lost():
     ] == []
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "told"),
     [
         ("\n```python {tags=show}\n```\n", r"rods, line 2: no tag 'show'; did you mean 'shown'"),

@@ -8,6 +8,7 @@ from functools import cache
 import nbformat
 import pytest
 from sweeps import sampled
+from tables import each_row
 
 import coursework
 from coursework.cli import run
@@ -74,7 +75,7 @@ def test_a_lesson_is_read_drawn_and_run_and_is_the_same_in_every_language(course
 
 
 @every_language
-@pytest.mark.parametrize("name", LESSONS)
+@each_row("name", LESSONS)
 def test_a_lesson_teaches_and_lets_try(course, name, lang):
     """Goals, something to predict, an example that fades, usual mistakes, three questions, figures, terms."""
     found = blocks(lesson_file(course.folder, name, lang).read_text("utf-8"), name)

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.figures.elements import bar, pin, point
@@ -41,14 +42,14 @@ def _place(figure, label):
     return next(e.p for e in figure.elements if isinstance(e, (pin, point)) and e.label == label)
 
 
-@pytest.mark.parametrize("name", LINKAGES)
+@each_row("name", LINKAGES)
 def test_bars_keep_their_lengths_in_motion(name):
     frames = getattr(GRASHOF, name)()
     sides = np.array([_sides(frame) for frame in frames])
     assert np.ptp(sides, axis=0) == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", LINKAGES)
+@each_row("name", LINKAGES)
 def test_a_moving_figure_has_no_jump(name):
     """From instant to instant, and from the last to the first, no pin goes far."""
     frames = getattr(GRASHOF, name)()
@@ -57,7 +58,7 @@ def test_a_moving_figure_has_no_jump(name):
     assert abs(np.diff(ways, axis=0)).max() < 0.15 * size
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("name", "kind"),
     [
         ("crank_rocker", "crank-rocker"),
@@ -112,7 +113,7 @@ def test_hoekens_point_keeps_to_a_line():
     assert np.ptp(P.real) > 4 * bars[1]
 
 
-@pytest.mark.parametrize("number", [13, 14])
+@each_row("number", [13, 14])
 def test_a_joint_graph_is_that_of_its_mechanism(number):
     drawn = [bodies for bodies, _ in getattr(MOBILITY, f"_JOINTS_{number}")]
     assert sorted(drawn) == sorted(LIBRARY[f"figure_{number}"].pairs())

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 
@@ -47,7 +48,7 @@ def exact(R, h, e, theta1, omega1):
         }
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_every_number_agrees_with_fifty_digits(seed):
     given = dict(EXERCISE.variant(seed).given)
     found = EXERCISE.solve(**given, only=ASKED)
@@ -112,7 +113,7 @@ def _verdicts(part, texts):
     return [variant.grade({part: text})[part].verdict == "correct" for text in texts]
 
 
-@pytest.mark.parametrize("part", FORMS)
+@each_row("part", FORMS)
 def test_an_equation_is_right_in_any_form(part):
     assert _verdicts(part, FORMS[part]) == [True] * len(FORMS[part])
     assert _verdicts(part, WRONG[part]) == [False] * len(WRONG[part])

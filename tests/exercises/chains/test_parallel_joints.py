@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from exact_joints import COUNTS, FREE, actions, arrangement, exact_rank
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotTell, UnknownName, WrongValue
@@ -58,7 +59,7 @@ def test_the_conditions_are_those_of_whole_numbers_and_all_are_met():
     assert min(met.count(case) for case in names) >= 8
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("joints", "condition"),
     [
         # Two sleeves on one shaft: coaxial.
@@ -120,7 +121,7 @@ def test_the_axis_is_asked_where_there_is_one():
         )
 
 
-@pytest.mark.parametrize("kind", [list, tuple])
+@each_row("kind", [list, tuple])
 def test_a_caller_gives_any_joints(kind):
     hinge = {"joint": "revolute", "axis": [0.6, 0.8, 0], "point": [1, 2, 3]}
     found = EXERCISE.solve(joints=kind([hinge, {**hinge, "point": [1.6, 2.8, 3]}]))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from exact_chains import freedoms, hindered
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotTell, WrongValue
@@ -145,7 +146,7 @@ def test_four_bodies_with_inclined_joints_against_whole_numbers():
     assert len(met) >= 6
 
 
-@pytest.mark.parametrize("block", range(3))
+@each_row("block", range(3))
 def test_answers_are_those_of_exact_motions_of_the_bodies(block):
     for variant in EXERCISE.variants(range(60 * block, 60 * block + 60), parts=["all"]):
         a, joints = variant.solution(), joints_of(variant.given)

@@ -1,8 +1,8 @@
 """Joints in series: the answers against exact ranks, and lists of joints that a caller gives."""
 
 import numpy as np
-import pytest
 from exact_joints import COUNTS, FREE, arrangement, exact_rank, motions
+from tables import each_row
 
 import coursework
 from coursework.solids import FREEDOMS, aligned
@@ -85,7 +85,7 @@ def test_a_caller_gives_any_joints_in_any_order_of_the_row():
     assert EXERCISE.solve(joints=arm((1, 0, 0))[::-1], only=only) == straight
 
 
-@pytest.mark.parametrize("pitch", [5.0, -12.0])
+@each_row("pitch", [5.0, -12.0])
 def test_a_screw_in_a_row_with_itself_stays_a_screw(pitch):
     screw = {"joint": "helical", "axis": [0, 0, 2], "point": [10, 20, 0], "pitch": pitch}
     found = EXERCISE.solve(joints=[screw, {**screw, "point": [10, 20, 70]}])

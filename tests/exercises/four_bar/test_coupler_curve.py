@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 
@@ -45,7 +46,7 @@ def exact(given):
         }
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_every_quantity_agrees_with_fifty_digits(seed):
     given = dict(EXERCISE.variant(seed).given)
     right, found = exact(given), EXERCISE.solve(**given, only=ASKED)
@@ -66,7 +67,7 @@ def _curve(given, beta=0.0, mode="", at_B=False):
     return np.array(points)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@each_row("seed", range(6))
 def test_the_right_drawing_is_that_of_P_and_the_others_those_of_the_mistakes(seed):
     """Each drawing is, up to place and scale, the curve that its name stands for."""
     variant = EXERCISE.variant(seed)

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
@@ -65,7 +66,7 @@ def assert_agrees(answers, reference, digits=1e-11):
         assert abs(float(answers[name] - value)) < digits * abs(value), name
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     assert set(variant.solution()) == set(ASKED)
@@ -76,8 +77,8 @@ def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
 CHANGE_POINT = {**PLAIN, "r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0}
 
 
-@pytest.mark.parametrize("away", [1e-2, 1e-5, 1e-8])
-@pytest.mark.parametrize("mode", ["open", "crossed"])
+@each_row("away", [1e-2, 1e-5, 1e-8])
+@each_row("mode", ["open", "crossed"])
 def test_rates_keep_their_digits_next_to_a_change_point(away, mode):
     given = {**CHANGE_POINT, "theta2": 180.0 - away, "mode": mode}
     names = tuple(n for n in ASKED if not n.startswith("theta"))

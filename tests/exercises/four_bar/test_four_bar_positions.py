@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
@@ -40,7 +41,7 @@ def off(value, reference, is_angle):
     return float(abs(difference) / abs(reference))
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers = variant.solution()
@@ -48,7 +49,7 @@ def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
         assert off(answers[name], reference, name.startswith("theta")) < 1e-14, name
 
 
-@pytest.mark.parametrize("short", [1e-2, 1e-6, 1e-9, 1e-12])
+@each_row("short", [1e-2, 1e-6, 1e-9, 1e-12])
 def test_nothing_is_lost_near_a_dead_point(short):
     """Crank-rocker stretched out at theta2 = 180: its lengths leave only ``short`` to spare."""
     given = {"r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0 + short, "theta2": 180.0}
@@ -99,7 +100,7 @@ def test_b_is_zero_when_the_crank_lies_along_the_frame():
     assert answers["b"].tolist() == [0.0, 0.0]
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_the_notes_sign_of_r1_squared_moves_every_position(seed):
     given = {name: np.array([value]) for name, value in EXERCISE.variant(seed).given.items()}
     right = EXERCISE.solution.graph.evaluate(("c", "theta3_open"), given)
@@ -108,7 +109,7 @@ def test_the_notes_sign_of_r1_squared_moves_every_position(seed):
     assert not abs(wrong["theta3_open"] - right["theta3_open"]) < 2  # it may not close at all
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("lengths", "kind"),
     [
         ((250, 60, 80, 90), "impossible"),

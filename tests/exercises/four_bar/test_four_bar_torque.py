@@ -5,6 +5,7 @@ import itertools
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, MissingQuantity, UnknownName
@@ -141,7 +142,7 @@ def test_the_stated_mechanism_bears_the_same_over_a_turn(seed):
             np.testing.assert_allclose(values, found, atol=1e-11 * abs(found).max())
 
 
-@pytest.mark.parametrize("away", [1.0, 1e-3, 1e-6, 1e-9])
+@each_row("away", [1.0, 1e-3, 1e-6, 1e-9])
 def test_the_digits_stay_beside_a_change_point(away):
     """Bars of 50, 70, 80 and 100: at half a turn they lie on one line, where every force grows without bound."""
     given = {**PLAIN, "r1": 400.0, "r2": 200.0, "r3": 280.0, "r4": 320.0, "theta2": 180.0 - away}
@@ -171,7 +172,7 @@ def test_effects_add_up(seed):
         np.testing.assert_allclose(together[name], sum(parts), atol=1e-12 * sum(map(abs, parts)).max())
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("effect", "needs", "absent"),
     [
         ("load", {"M", "omega2"}, ACCELERATIONS),
@@ -217,7 +218,7 @@ def test_what_does_not_close_is_refused_alone_and_is_nan_in_a_row():
 
 
 @every_seed
-@pytest.mark.parametrize(
+@each_row(
     ("mistake", "changed"),
     [
         ("moment_along_the_motion", lambda given: {"M": -given["M"]}),

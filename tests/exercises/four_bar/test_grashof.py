@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import WrongValue
@@ -43,7 +44,7 @@ def test_a_bar_has_a_length():
         EXERCISE.solve(r1=100, r2=0, r3=50, r4=60)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("bars", "kind"),
     [
         ((100.0, 50.0, 70.0, 80.0), "change-point"),

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import Cycle, Undefined
@@ -40,7 +41,7 @@ def exact(r1, r2, r3, r4, theta2, omega2, mode, F_e):
         }
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_power_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(**variant.given)
@@ -49,7 +50,7 @@ def test_answers_are_those_of_the_power_in_fifty_digits(seed):
         assert abs(float(answers[name] - value)) < 1e-12 * abs(value), name
 
 
-@pytest.mark.parametrize("away", [1e-2, 1e-5, 1e-8])
+@each_row("away", [1e-2, 1e-5, 1e-8])
 def test_the_advantage_keeps_its_digits_next_to_a_change_point(away):
     given = {**PLAIN, "r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0, "theta2": 180.0 - away}
     answers, reference = EXERCISE.solve(**given, only=ASKED), exact(**given)

@@ -5,7 +5,7 @@ import math
 import random
 
 import mpmath
-import pytest
+from tables import each_row
 
 import coursework
 
@@ -49,7 +49,7 @@ def verdicts(marking):
     return {name: marking[name].verdict for name in (*POINTS, *ANGLES, "kl")}
 
 
-@pytest.mark.parametrize("in_order", [True, False])
+@each_row("in_order", [True, False])
 def test_a_careful_student_is_right_in_either_order(in_order):
     chance = random.Random(3)
     for variant in EXERCISE.variants(range(40)):
@@ -95,7 +95,7 @@ def test_a_crank_drawn_at_another_angle_costs_only_A():
     assert costs == {"mistake:a_direction"}
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_the_same_point_twice_is_told(lang):
     variant = EXERCISE.variant(4, lang)
     points, angles, scale = student(variant.given, random.Random(5))
@@ -105,7 +105,7 @@ def test_the_same_point_twice_is_told(lang):
     assert "AC" in marking["b2"].feedback
 
 
-@pytest.mark.parametrize("off", [1.8, 2.6])
+@each_row("off", [1.8, 2.6])
 def test_a_point_is_on_its_circles_to_two_millimetres(off):
     variant = EXERCISE.variant(7)
     points, angles, scale = student(variant.given, random.Random(5), noise=0.0)
@@ -117,7 +117,7 @@ def test_a_point_is_on_its_circles_to_two_millimetres(off):
     assert found["b1"] == ("correct" if off < 2 else "mistake:off_circle_A")
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_points_and_angles_are_those_of_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     found = variant.solution()

@@ -5,6 +5,7 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.figures import contact, line, point, trace, wheel
@@ -67,7 +68,7 @@ def exact(given):
         }
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_no_slip_velocities_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed, parts=["all"])
     answers = variant.solution()
@@ -89,7 +90,7 @@ def test_three_independent_conditions_on_four_rates_leave_one_mobility():
     )
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_the_three_central_axes_and_z_meet_below_the_ball(seed):
     variant = EXERCISE.variant(seed, parts=["all"])
     answers = variant.solution()
@@ -135,7 +136,7 @@ def test_any_point_of_an_axis_and_any_multiple_of_its_direction_is_right():
         assert [marks[part].verdict for part in told] == ["correct", "correct"]
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("part", "text", "verdict"),
     [
         ("no_slip_A", "(R+r)*phi_dot = -r*omega", "correct"),
@@ -194,7 +195,7 @@ def test_the_condition_at_B_is_the_one_at_A_and_no_other():
     assert {p for p, verdict in verdicts.items() if verdict == "correct"} == {"A", "B"}
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("answer", "verdict", "points"),
     [
         ("S0-S1 pivot, S0-S2 pivot, S0-S3 ponctuelle ×2, S1-S3 ponctuelle, S2-S3 ponctuelle", "correct", 2),
@@ -227,7 +228,7 @@ def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
     assert variant.record["version"] == 1
 
 
-@pytest.mark.parametrize("case", range(3))
+@each_row("case", range(3))
 def test_known_cases(case):
     given, expected = EXERCISE.solution.known[case]
     found = EXERCISE.solve(**given, only=tuple(expected))

@@ -5,6 +5,7 @@ import random
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 
@@ -24,7 +25,7 @@ def right(variant, scale=None):
     return {n: found[n] * found["kv"] / scale for n in VECTORS}, scale
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_arrows_are_the_velocities_that_the_planetary_computes(seed):
     variant = EXERCISE.variant(seed)
     found = variant.solution()
@@ -52,8 +53,8 @@ def test_arrows_within_two_millimetres_are_right_at_any_scale():
         assert {marking[n].verdict for n in (*VECTORS, "kv")} == {"correct"}
 
 
-@pytest.mark.parametrize("name", VECTORS)
-@pytest.mark.parametrize(
+@each_row("name", VECTORS)
+@each_row(
     ("kind", "change"),
     [
         ("length", lambda v: v * (1 + 12 / np.hypot(*v))),

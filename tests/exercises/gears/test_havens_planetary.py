@@ -4,6 +4,7 @@ still or has no direction."""
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import Undefined
@@ -45,7 +46,7 @@ def exact(d, r2, r3, b, theta1, omega1):
         }
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_places_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(**variant.given)
@@ -54,7 +55,7 @@ def test_answers_are_those_of_the_places_in_fifty_digits(seed):
         assert abs(mpmath.mpf(float(answers[name])) - value) < 2e-13 * size, name
 
 
-@pytest.mark.parametrize(("d", "turns_of_guide"), [(30.0, 1), (90.0, 0)])
+@each_row(("d", "turns_of_guide"), [(30.0, 1), (90.0, 0)])
 def test_over_a_turn_wheel_and_pinion_turn_as_their_teeth_say(d, turns_of_guide):
     """By Willis: turns of the pinion = turns of the crank + (crank - guide) r2 / r3; a guide beyond the crank only
     swings."""
@@ -74,7 +75,7 @@ def test_I_and_B2_have_the_same_velocity_along_their_line():
     assert (1j * found["v_I"] * crank * line).real == pytest.approx(by_wheel, rel=1e-12)
 
 
-@pytest.mark.parametrize("away", [1e-2, 1e-6, 1e-10])
+@each_row("away", [1e-2, 1e-6, 1e-10])
 def test_rates_keep_their_digits_beside_O4(away):
     """A guide hardly shorter than the crank, A1 passing beside its pivot."""
     given = {**PLAIN, "d": 58.0 * (1 - 1e-9), "theta1": 180.0 - away}

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
@@ -51,7 +52,7 @@ def exact(a, xB, yB, L_min, L_max, L, L_dot, L_ddot, c, eta):
         }
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_every_quantity_agrees_with_fifty_digits(seed):
     given = dict(EXERCISE.variant(seed).given)
     right, found = exact(**given), EXERCISE.solve(**given, only=ASKED)
@@ -75,7 +76,7 @@ def test_the_four_terms_along_and_across_the_jack_are_the_acceleration_of_A():
     assert by_jack == pytest.approx(by_body, rel=1e-13)
 
 
-@pytest.mark.parametrize("gap", [1e-3, 1e-7, 1e-10])
+@each_row("gap", [1e-3, 1e-7, 1e-10])
 def test_near_the_dead_point_no_digit_is_lost(gap):
     """The jack nearly in line with OA: its length close to the sum of the two other sides."""
     given = {"a": 500.0, "xB": 300.0, "yB": -400.0, "L": 1000.0 * (1 - gap), "L_dot": 100.0}

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble
@@ -49,7 +50,7 @@ def exact(given):
         return found
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers = variant.solution()
@@ -82,7 +83,7 @@ def test_the_slider_keeps_its_digits_near_D():
     assert found == pytest.approx(float(right), rel=1e-14)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("change", "words"),
     [({"r3": 20.0}, "coupler and rocker"), ({"r4": 400.0}, "coupler and rocker"), ({"r5": 90.0}, "rod")],
 )
@@ -143,7 +144,7 @@ def test_the_loop_equations_hold_for_the_positions_and_fail_for_those_of_the_mis
                 assert abs(parse_equation(text, symbols).difference(values)) > 1, name
 
 
-@pytest.mark.parametrize("case", range(3))
+@each_row("case", range(3))
 def test_known_cases(case):
     given, expected = EXERCISE.solution.known[case]
     found = EXERCISE.solve(**given, only=tuple(expected))
@@ -151,8 +152,8 @@ def test_known_cases(case):
         assert found[name] == pytest.approx(value, rel=1e-12, abs=1e-12), name
 
 
-@pytest.mark.parametrize("beside", [1e-1, 1e-4, 1e-7])
-@pytest.mark.parametrize("mode", ["open", "crossed"])
+@each_row("beside", [1e-1, 1e-4, 1e-7])
+@each_row("mode", ["open", "crossed"])
 def test_nothing_is_lost_beside_a_change_point(beside, mode):
     """r1 + r2 = r3 + r4: crank and frame stretch coupler and rocker out where the crank points down."""
     given = {**LENGTHS, "r1": 120.0, "r2": 40.0, "r3": 70.0, "r4": 90.0, "r5": 300.0, "mode": mode}

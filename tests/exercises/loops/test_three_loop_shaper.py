@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble
@@ -54,7 +55,7 @@ def exact(given):
         return found
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(variant.given)
@@ -136,9 +137,7 @@ def test_the_letters_that_the_notes_mix_move_the_answers():
     assert abs(mixed["d5"] - right["d5"]) > 100
 
 
-@pytest.mark.parametrize(
-    ("change", "words"), [({"r3": 30.0}, "coupler and rocker"), ({"r7": 20.0}, "rod reaches only")]
-)
+@each_row(("change", "words"), [({"r3": 30.0}, "coupler and rocker"), ({"r7": 20.0}, "rod reaches only")])
 def test_what_cannot_close_is_said_of_its_own_loop(change, words):
     with pytest.raises(CannotAssemble, match=words):
         EXERCISE.solve(**{**PLAIN, **change}, only="x8_ddot")
@@ -172,7 +171,7 @@ def test_freedoms_and_cycles_are_those_of_the_graph_of_figure_14():
     assert (found["w"], found["gamma"]) == (counts.w, counts.gamma) == (1, 3)
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("part", "answer", "verdict"),
     [
         ("w", "0", "mistake:block_left_out"),

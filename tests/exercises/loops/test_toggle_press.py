@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
@@ -134,8 +135,8 @@ def test_answers_are_those_of_five_bodies_in_fifty_digits(seed):
     assert answers["v_C"] < 0
 
 
-@pytest.mark.parametrize("phi", [1.0, 1e-3, 1e-6, 1e-9, 1e-12])
-@pytest.mark.parametrize("A_side", ["left", "right"])
+@each_row("phi", [1.0, 1e-3, 1e-6, 1e-9, 1e-12])
+@each_row("A_side", ["left", "right"])
 def test_no_digit_is_lost_where_the_toggle_is_nearly_in_line(phi, A_side):
     given = {**PLAIN, "phi": phi, "A_side": A_side}
     found = EXERCISE.solve(**given, only=(*ASKED, "F_3"), effects=("load",))
@@ -159,7 +160,7 @@ def test_the_advantage_grows_as_the_toggle_straightens():
     np.testing.assert_allclose(found * phi, found[0] * phi[0], rtol=1e-6)
 
 
-@pytest.mark.parametrize("away", [1.0, 1e-4, 1e-8])
+@each_row("away", [1.0, 1e-4, 1e-8])
 def test_near_a_dead_point_of_the_crank_no_power_is_lost(away):
     """O as far from the knee as crank and coupler reach, but for a little."""
     with mpmath.workdps(30):

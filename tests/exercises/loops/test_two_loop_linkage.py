@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble
@@ -51,7 +52,7 @@ def exact(given):
         return found
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers = variant.solution()
@@ -126,9 +127,7 @@ def test_the_outer_loop_says_nothing_new():
             assert (abs(total) < 1e-9) == (shift == 0)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"), [({"r3": 30.0}, "coupler and rocker"), ({"r6": 30.0}, "coupler")]
-)
+@each_row(("change", "words"), [({"r3": 30.0}, "coupler and rocker"), ({"r6": 30.0}, "coupler")])
 def test_what_cannot_close_is_said(change, words):
     with pytest.raises(CannotAssemble, match=words):
         EXERCISE.solve(**{**PLAIN, **change}, only="theta7")
@@ -154,7 +153,7 @@ def test_both_loops_keep_their_transmission_angles_over_the_turn():
         assert 24.99 < at_E.min() <= at_E.max() < 155.01
 
 
-@pytest.mark.parametrize("seed", range(6))
+@each_row("seed", range(6))
 def test_the_outer_loop_is_the_sum_of_the_two_others(seed):
     variant = EXERCISE.variant(seed)
     symbols = EXERCISE.spec.part("loop_3_x").variables
@@ -175,7 +174,7 @@ def test_the_outer_loop_is_the_sum_of_the_two_others(seed):
     assert abs(equations["loop_3"].difference(turned)) < 1e-9
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "verdict"),
     [
         ("r2*cos(theta2) + r3*cos(theta3) - r4*cos(theta4) + r5*cos(theta4+beta) + r6*cos(theta6) - xF - r7*cos(theta7) = 0", "correct"),

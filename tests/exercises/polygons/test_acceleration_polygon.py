@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 
@@ -9,7 +10,7 @@ COURSE = coursework.open_course()
 FOUR_BAR, SLIDER = COURSE["acceleration_polygon"], COURSE["acceleration_polygon_slider"]
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_four_bar_is_that_of_the_computed_motion(seed):
     variant = FOUR_BAR.variant(seed)
     found = variant.solution()
@@ -21,7 +22,7 @@ def test_four_bar_is_that_of_the_computed_motion(seed):
     assert found["bb_t"] * k == pytest.approx(abs(motion["a_BA_t"]), rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_slider_crank_is_that_of_the_computed_motion(seed):
     variant = SLIDER.variant(seed)
     found = variant.solution()
@@ -30,8 +31,8 @@ def test_slider_crank_is_that_of_the_computed_motion(seed):
         assert found[name] == pytest.approx(value, rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("seed", range(5))
+@each_row("lang", ["fr", "en"])
 def test_the_statement_gives_the_speeds_that_the_normal_parts_need(seed, lang):
     variant = FOUR_BAR.variant(seed, lang)
     motion = COURSE["four_bar_motion"].solve(**variant.given, alpha2=0.0)
@@ -41,7 +42,7 @@ def test_the_statement_gives_the_speeds_that_the_normal_parts_need(seed, lang):
         assert printed in variant.text.opening
 
 
-@pytest.mark.parametrize("exercise", [FOUR_BAR, SLIDER], ids=lambda e: e.name)
+@each_row("exercise", [FOUR_BAR, SLIDER])
 def test_normal_part_left_out_is_told_and_all_the_rest_is_kept(exercise):
     told = 0
     for variant in exercise.variants(range(20)):

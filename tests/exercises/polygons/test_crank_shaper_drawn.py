@@ -7,6 +7,7 @@ import random
 import mpmath
 import pytest
 from paper_student import Student, rounded
+from tables import each_row
 
 import coursework
 
@@ -126,7 +127,7 @@ def test_accelerations_from_ones_own_wrong_velocities_follow():
     assert told_so > 5
 
 
-@pytest.mark.parametrize("seed", range(6))
+@each_row("seed", range(6))
 def test_the_ram_is_that_of_fifty_digits(seed):
     """Its abscissa as a function of the crank angle, differentiated numerically."""
     variant = EXERCISE.variant(seed)
@@ -146,7 +147,7 @@ def test_the_ram_is_that_of_fifty_digits(seed):
     assert float(found["a_C"]) == pytest.approx(float(mp.diff(abscissa, 0, 2)), rel=1e-10)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@each_row("seed", range(8))
 def test_velocity_and_time_ratio_are_those_of_the_computed_shaper(seed):
     variant = EXERCISE.variant(seed)
     found = variant.solution()

@@ -7,6 +7,7 @@ import random
 import mpmath
 import pytest
 from paper_student import Student, rounded
+from tables import each_row
 
 import coursework
 
@@ -67,9 +68,7 @@ def drawn_accelerations(variant, chance, rod_normal=1.0):
     }
 
 
-@pytest.mark.parametrize(
-    ("exercise", "drawn"), [(VELOCITY, drawn_velocities), (ACCELERATION, drawn_accelerations)], ids=["v", "a"]
-)
+@each_row(("exercise", "drawn"), [(VELOCITY, drawn_velocities), (ACCELERATION, drawn_accelerations)])
 def test_a_careful_student_has_every_point_of_the_drawing(exercise, drawn):
     chance = random.Random(12)
     for variant in exercise.variants(range(40)):
@@ -90,7 +89,7 @@ def test_a_normal_part_laid_off_backwards_is_told_and_the_slider_follows():
     assert told_so == 20
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_both_are_those_of_the_computed_motion(seed):
     names = {VELOCITY: ("omega3", "omega4", "omega5", "r6_dot"), ACCELERATION: ("alpha3", "r6_ddot")}
     for exercise, asked in names.items():
@@ -100,7 +99,7 @@ def test_both_are_those_of_the_computed_motion(seed):
             assert found[name] == pytest.approx(value, rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@each_row("seed", range(6))
 def test_the_slider_is_that_of_fifty_digits(seed):
     variant = ACCELERATION.variant(seed)
     mp = mpmath.MPContext()

@@ -7,6 +7,7 @@ import random
 import mpmath
 import pytest
 from paper_student import Student, rounded
+from tables import each_row
 
 import coursework
 
@@ -64,9 +65,7 @@ def drawn_accelerations(variant, chance, side=1, factor=2):
     }
 
 
-@pytest.mark.parametrize(
-    ("exercise", "drawn"), [(VELOCITY, drawn_velocities), (ACCELERATION, drawn_accelerations)], ids=["v", "a"]
-)
+@each_row(("exercise", "drawn"), [(VELOCITY, drawn_velocities), (ACCELERATION, drawn_accelerations)])
 def test_a_careful_student_has_every_point_of_the_drawing(exercise, drawn):
     chance = random.Random(8)
     for variant in exercise.variants(range(40)):
@@ -87,7 +86,7 @@ def test_coriolis_on_the_wrong_side_is_told_and_costs_nothing_after_it():
         assert found["a"] == found["n"] == "correct"
 
 
-@pytest.mark.parametrize(("lang", "word"), [("fr", "Coriolis"), ("en", "Coriolis")])
+@each_row(("lang", "word"), [("fr", "Coriolis"), ("en", "Coriolis")])
 def test_coriolis_without_its_two_and_left_out_are_told(lang, word):
     variant = ACCELERATION.variant(2, lang)
     marking = variant.grade(drawn_accelerations(variant, random.Random(1), factor=1))
@@ -104,7 +103,7 @@ def test_coriolis_without_its_two_and_left_out_are_told(lang, word):
     assert right.keys() >= sheet.keys()
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_both_are_those_of_the_computed_motion(seed):
     for exercise, names in ((VELOCITY, ("rA_dot", "omega4")), (ACCELERATION, ("rA_ddot", "alpha4"))):
         variant = exercise.variant(seed)
@@ -113,7 +112,7 @@ def test_both_are_those_of_the_computed_motion(seed):
             assert found[name] == pytest.approx(other[name], rel=1e-10)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@each_row("seed", range(8))
 def test_accelerations_are_those_of_fifty_digits(seed):
     """The arm as a function of the crank angle, differentiated numerically."""
     variant = ACCELERATION.variant(seed)
@@ -132,7 +131,7 @@ def test_accelerations_are_those_of_fifty_digits(seed):
     assert float(found["alpha4"]) == pytest.approx(float(alpha4), rel=1e-12)
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@each_row("lang", ["fr", "en"])
 def test_the_statement_tells_the_rates_that_the_known_terms_need(lang):
     for variant in ACCELERATION.variants(range(6), lang=lang):
         other = motion(variant.given)

@@ -6,6 +6,7 @@ import random
 
 import pytest
 from paper_student import Student, rounded
+from tables import each_row
 
 import coursework
 
@@ -13,7 +14,7 @@ COURSE = coursework.open_course()
 FOUR_BAR, SLIDER = COURSE["velocity_polygon"], COURSE["velocity_polygon_slider"]
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_four_bar_is_that_of_the_computed_motion(seed):
     variant = FOUR_BAR.variant(seed)
     found = variant.solution()
@@ -23,7 +24,7 @@ def test_four_bar_is_that_of_the_computed_motion(seed):
     assert found["ab"] * found["kv"] == pytest.approx(motion["v_BA"], rel=1e-10)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_slider_crank_is_that_of_the_computed_motion(seed):
     variant = SLIDER.variant(seed)
     found = variant.solution()
@@ -32,7 +33,7 @@ def test_slider_crank_is_that_of_the_computed_motion(seed):
         assert found[name] == pytest.approx(value, rel=1e-10)
 
 
-@pytest.mark.parametrize("exercise", [FOUR_BAR, SLIDER], ids=lambda e: e.name)
+@each_row("exercise", [FOUR_BAR, SLIDER])
 def test_the_reference_drawing_fits_the_box_and_can_be_measured(exercise):
     for variant in exercise.variants(range(200)):
         found = variant.solution()
@@ -42,7 +43,7 @@ def test_the_reference_drawing_fits_the_box_and_can_be_measured(exercise):
         assert min(found["ab"], found["pv_b"]) > 10
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("wrong", "verdict"),
     [
         (lambda v: v["v_B"] / v["kv"], "mistake:scale_forgotten"),

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.course import draws
@@ -91,7 +92,7 @@ def exact(given):
         }
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(variant.given)
@@ -111,7 +112,7 @@ def sweep(given, count=20_000):
     return B.real + np.sqrt(given["r5"] ** 2 - rise**2), rise / given["r5"]
 
 
-@pytest.mark.parametrize("seed", range(20))
+@each_row("seed", range(20))
 def test_stroke_and_arcs_are_those_of_a_swept_turn(seed):
     given = dict(EXERCISE.variant(seed).given)
     position, slope = sweep(given)

@@ -4,6 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from swept_turn import TURN
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble
@@ -45,7 +46,7 @@ def exact(r2, r3, e, theta2, omega2):
         }
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_answers_are_those_of_the_loop_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(**variant.given)
@@ -54,9 +55,7 @@ def test_answers_are_those_of_the_loop_in_fifty_digits(seed):
         assert abs(float(answers[name] - value)) < 1e-13 * abs(value), name
 
 
-@pytest.mark.parametrize(
-    "change", [{"e": 1e-9}, {"r2": 1e-6}, {"r3": 85.0 + 1e-12}, {"e": -90 * (1 - 1e-13)}, {"r3": 1e6}]
-)
+@each_row("change", [{"e": 1e-9}, {"r2": 1e-6}, {"r3": 85.0 + 1e-12}, {"e": -90 * (1 - 1e-13)}, {"r3": 1e6}])
 def test_the_strokes_keep_their_digits_where_the_formulas_lose_them(change):
     """A piston nearly in line, a tiny crank, a rod nearly square to its line: stroke and asymmetry both."""
     given = {**PLAIN, **change}

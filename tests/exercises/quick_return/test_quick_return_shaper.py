@@ -4,6 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from swept_turn import TURN, swept, turns_back
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
@@ -44,7 +45,7 @@ def exact(r1, r2, r4, r5, h, theta2, omega2):
         }
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_answers_are_those_of_the_loops_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(**variant.given)
@@ -58,7 +59,7 @@ STRETCHED = {"r1": 100.0, "r2": 60.0, "r4": 200.0, "r5": 100.0, "h": 256.0, "the
 FOLDED = {"r1": 100.0, "r2": 80.0, "r4": 100.0, "r5": 260.0, "h": -140.0, "theta2": 90.0, "omega2": 1.0}
 
 
-@pytest.mark.parametrize("given", [STRETCHED, FOLDED], ids=["stretched", "folded"])
+@each_row("given", [STRETCHED, FOLDED])
 def test_a_rod_in_line_with_the_guide_leaves_a_stroke_and_no_arcs(given):
     found = swept(EXERCISE, given)
     assert turns_back(found) == 4
@@ -94,7 +95,7 @@ def test_whether_the_rod_lines_up_is_decided_as_a_swept_turn_shows():
     assert counts.count(4) > 5
 
 
-@pytest.mark.parametrize("change", [{"r2": 1e-9}, {"r2": 250 * (1 - 1e-12), "r5": 500.0, "h": 0.0}])
+@each_row("change", [{"r2": 1e-9}, {"r2": 250 * (1 - 1e-12), "r5": 500.0, "h": 0.0}])
 def test_the_strokes_keep_their_digits_where_the_formulas_lose_them(change):
     """A guide that hardly moves, and one that swings by nearly half a turn."""
     given = {**PLAIN, **change}

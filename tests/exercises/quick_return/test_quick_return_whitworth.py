@@ -4,6 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from swept_turn import TURN, swept
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
@@ -46,7 +47,7 @@ def exact(r1, r2, r4, r5, h, theta2, omega2):
         }
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_answers_are_those_of_the_loops_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(**variant.given)
@@ -55,7 +56,7 @@ def test_answers_are_those_of_the_loops_in_fifty_digits(seed):
         assert abs(float(answers[name] - value)) < 1e-12 * abs(value), name
 
 
-@pytest.mark.parametrize("h", [-219.0, -150.0, 150.0, 219.0])
+@each_row("h", [-219.0, -150.0, 150.0, 219.0])
 def test_a_line_far_from_the_pivot_may_make_either_arc_the_longer(h):
     """Low enough, the near and the far end are seen from O4 so differently that the arcs change places."""
     given = {**PLAIN, "h": h, "r1": 10.0}
@@ -64,9 +65,7 @@ def test_a_line_far_from_the_pivot_may_make_either_arc_the_longer(h):
     assert max(forward, 360 - forward) == pytest.approx(answers["alpha"], abs=0.03)
 
 
-@pytest.mark.parametrize(
-    "change", [{"r1": 1e-9}, {"r1": 110 * (1 - 1e-12), "h": 0.0}, {"r5": 130 + 1e-11}, {"r4": 1e-7}]
-)
+@each_row("change", [{"r1": 1e-9}, {"r1": 110 * (1 - 1e-12), "h": 0.0}, {"r5": 130 + 1e-11}, {"r4": 1e-7}])
 def test_the_strokes_keep_their_digits_where_the_formulas_lose_them(change):
     """A guide that turns evenly or hardly turns fully, a rod nearly too short, a tiny arm."""
     given = {**PLAIN, **change}
@@ -76,7 +75,7 @@ def test_the_strokes_keep_their_digits_where_the_formulas_lose_them(change):
     assert found["beta"] == pytest.approx(float(reference["beta"]), abs=1e-12)
 
 
-@pytest.mark.parametrize("theta2", [-90 + 1e-7, -90 - 1e-9, -89.999])
+@each_row("theta2", [-90 + 1e-7, -90 - 1e-9, -89.999])
 def test_the_guide_keeps_its_digits_where_the_block_passes_its_pivot(theta2):
     given = {**PLAIN, "r1": 110 * (1 - 1e-7), "theta2": theta2}
     assert EXERCISE.solve(**given, only="v_C")["v_C"] == pytest.approx(float(exact(**given)["v_C"]), rel=1e-7)

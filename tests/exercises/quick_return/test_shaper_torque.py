@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
@@ -77,7 +78,7 @@ def test_answers_are_those_of_powers_and_areas_in_fifty_digits(seed):
     assert max(errors(answers, exact(**variant.given)).values()) < 1e-12
 
 
-@pytest.mark.parametrize("change", [{"r2": 1e-6}, {"r2": 225.0, "r5": 400.0, "h": 300.0}, {"r5": 2e4}])
+@each_row("change", [{"r2": 1e-6}, {"r2": 225.0, "r5": 400.0, "h": 300.0}, {"r5": 2e4}])
 def test_crossings_and_excess_keep_their_digits(change):
     """A guide that hardly swings, one that swings far, a very long rod."""
     given = {**PLAIN, **change}

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
@@ -33,7 +34,7 @@ def exact(r2, r3, e, theta2, omega2, Gamma_e):
         }
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_power_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(**variant.given)

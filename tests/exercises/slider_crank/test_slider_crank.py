@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble
@@ -50,7 +51,7 @@ def exact(r2, r3, e, theta2, omega2, alpha2, kv=1.0, ka=1.0):
         }
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
     variant = EXERCISE.variant(seed)
     answers, reference = variant.solution(), exact(**variant.given)
@@ -59,9 +60,7 @@ def test_answers_are_those_of_the_loop_equations_in_fifty_digits(seed):
         assert abs(float(answers[name] - value)) < 1e-12 * abs(value), name
 
 
-@pytest.mark.parametrize(
-    "change", [{}, {"alpha2": -400.0}, {"omega2": 0.0}, {"e": -35.0}, {"theta2": -120.0}]
-)
+@each_row("change", [{}, {"alpha2": -400.0}, {"omega2": 0.0}, {"e": -35.0}, {"theta2": -120.0}])
 def test_an_accelerated_crank_moves_rod_and_piston_as_its_positions_do(change):
     answers = EXERCISE.solve(**{**PLAIN, **change}, only=MOTION)
     reference = exact(**{**PLAIN, **change})
@@ -70,7 +69,7 @@ def test_an_accelerated_crank_moves_rod_and_piston_as_its_positions_do(change):
         assert abs(float(answers[name] - reference[name])) < 1e-12 * scale, name
 
 
-@pytest.mark.parametrize("theta2", [90 - 1e-9, 90 - 1e-6, 90 + 1e-7, -90 + 1e-8, 89.0])
+@each_row("theta2", [90 - 1e-9, 90 - 1e-6, 90 + 1e-7, -90 + 1e-8, 89.0])
 def test_a_rod_as_long_as_the_crank_keeps_its_digits_where_it_stands_upright(theta2):
     """The triangle is isosceles, r1 = 2 r2 cos theta2 up to 90 degrees, 0 beyond: all digits of a tiny r1."""
     found = EXERCISE.solve(r2=100, r3=100, theta2=theta2, omega2=1, only=("r1", "q"))
@@ -121,7 +120,7 @@ def test_the_drawing_is_asked_of_a_crank_at_constant_rate_only():
     }
 
 
-@pytest.mark.parametrize("gap", ["1e-2", "1e-4", "1e-6", "1e-8"])
+@each_row("gap", ["1e-2", "1e-4", "1e-6", "1e-8"])
 def test_accelerations_of_a_rod_as_long_as_its_crank_keep_their_digits(gap):
     """x = 2 r cos theta there: the rod is the crank's mirror image, and its acceleration that of the crank."""
     theta = float(90 - mpmath.mpf(gap))

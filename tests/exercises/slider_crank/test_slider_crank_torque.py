@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, MissingQuantity, Undefined, UnknownName
@@ -111,7 +112,7 @@ def bodies(given, f):
 
 
 @every_seed
-@pytest.mark.parametrize("f", [0, 0.35, 0.9])
+@each_row("f", [0, 0.35, 0.9])
 def test_forces_are_those_of_three_bodies_in_a_linear_system(seed, f):
     given = {**given_of(seed), "f": f} if f else given_of(seed)
     effects = EFFECTS if f else EFFECTS[:3]
@@ -152,7 +153,7 @@ def test_effects_without_friction_add_up(seed):
         np.testing.assert_allclose(together[name], sum(parts), atol=1e-12 * sum(map(abs, parts)).max())
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("effect", "needs", "absent"),
     [
         ("load", {"F"}, {"omega3", "r1_dot", *ACCELERATIONS}),
@@ -230,7 +231,7 @@ def test_what_does_not_close_is_refused_alone_and_is_nan_in_a_row():
 
 
 @every_seed
-@pytest.mark.parametrize(
+@each_row(
     ("mistake", "changed"),
     [
         ("rod_massless", {"m3": 0.0, "J3": 0.0}),

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import Undefined, WrongValue
@@ -22,7 +23,7 @@ def exact(omega, r_dot, theta):
         return abs(acceleration), mpmath.degrees(mpmath.arg(acceleration))
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_size_and_direction_are_those_of_a_second_derivative(seed):
     variant = EXERCISE.variant(seed)
     answers = variant.solution()

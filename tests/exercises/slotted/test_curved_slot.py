@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import Undefined
@@ -53,7 +54,7 @@ def exact(r1, r2, d, rho, theta2, omega2, mode):
         }
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_every_quantity_is_what_is_seen_from_the_lever(seed):
     given = dict(EXERCISE.variant(seed).given)
     right, found = exact(**given), EXERCISE.solve(**given, only=ASKED)
@@ -61,7 +62,7 @@ def test_every_quantity_is_what_is_seen_from_the_lever(seed):
         assert found[name] == pytest.approx(float(right[name]), rel=3e-12), name
 
 
-@pytest.mark.parametrize("seed", range(4))
+@each_row("seed", range(4))
 def test_the_pin_stays_in_the_slot_that_is_drawn(seed):
     """Within both of its ends over the whole turn, on its middle line."""
     moved = EXERCISE.variant(seed).animation()

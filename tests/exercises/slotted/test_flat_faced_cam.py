@@ -4,6 +4,7 @@ three points."""
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import Undefined
@@ -63,7 +64,7 @@ def exact(h, beta, Rb, rho_min, theta, omega):
         }
 
 
-@pytest.mark.parametrize("seed", range(10))
+@each_row("seed", range(10))
 def test_every_quantity_agrees_with_fifty_digits(seed):
     given = dict(EXERCISE.variant(seed).given)
     right, found = exact(**given), EXERCISE.solve(**given, only=ASKED)

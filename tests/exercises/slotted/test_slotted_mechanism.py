@@ -5,6 +5,7 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import Undefined
@@ -46,7 +47,7 @@ def reference(given):
         return rates
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each_row("seed", range(12))
 def test_every_quantity_agrees_with_fifty_digits(seed):
     given = dict(EXERCISE.variant(seed).given)
     exact = reference(given)
@@ -71,7 +72,7 @@ def test_on_the_pivot_the_guide_has_no_direction():
         EXERCISE.solve(r1=200, r2=200, only="guide")
 
 
-@pytest.mark.parametrize("gap", [1e-3, 1e-9, 1e-12])
+@each_row("gap", [1e-3, 1e-9, 1e-12])
 def test_the_swing_is_exact_as_the_crank_nears_the_frame(gap):
     r1, r2 = 200.0, 200.0 * (1 - gap)
     with mpmath.workdps(50):
@@ -106,7 +107,7 @@ def _exact_motion(r1, r2, theta1, theta2, omega2, alpha2):
         }
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("r1", "r2", "theta2"),
     [(200.0, 200.0001, -90 + 1e-8), (200.0, 100.0, -90 + 1e-9), (1e-6, 200.0, 30.0), (250.0, 0.001, 100.0)],
 )

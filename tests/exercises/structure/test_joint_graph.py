@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.structure import LIBRARY, JointGraph
@@ -11,7 +12,7 @@ EXERCISE = coursework.open_course()["joint_graph"]
 SOLUTION = EXERCISE.solution
 
 
-@pytest.mark.parametrize("figure", LIBRARY)
+@each_row("figure", LIBRARY)
 def test_the_edges_are_those_of_the_records_counted_by_hand(figure):
     records = LIBRARY[figure].records()
     pairs = sum(len(r["between"]) - 1 for r in records)

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.errors import WrongValue
@@ -25,7 +26,7 @@ def test_a_list_of_joints_answers_under_the_asked_names():
     assert EXERCISE.solve(joints=json.dumps(joints), only="gamma") == {"gamma": 1}
 
 
-@pytest.mark.parametrize("joints", [[], 3, "four-bar", [[1, 2]], None, np.arange(3.0)])
+@each_row("joints", [[], 3, "four-bar", [[1, 2]], None, np.arange(3.0)])
 def test_what_is_no_list_of_joints_is_refused(joints):
     with pytest.raises(WrongValue):
         EXERCISE.solve(joints=joints)

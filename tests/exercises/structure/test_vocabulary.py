@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.api import Variant
@@ -30,7 +31,7 @@ def labels(lang):
     return list(constants(EXERCISES / f"vocabulary.{lang}.md.j2").labels)
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_each_question_has_the_same_cases_in_the_same_order_in_every_language(lang):
     assert labels(lang) == labels("en")
     asked = {question for theme in THEMES.values() for question in theme["questions"]}
@@ -38,7 +39,7 @@ def test_each_question_has_the_same_cases_in_the_same_order_in_every_language(la
     assert all(2 <= n <= 5 for n in Counter(question for question, _ in labels(lang)).values())
 
 
-@pytest.mark.parametrize("lang", languages())
+@each_row("lang", languages())
 def test_remarks_are_to_wrong_cases_and_the_same_in_every_language(lang):
     def remarks(one):
         texts = constants(SOLUTIONS / f"vocabulary.{one}.md.j2").texts
@@ -65,7 +66,7 @@ def test_the_right_case_stands_at_no_favourite_place():
     assert max(places.values()) <= 0.5 * len(ANSWERS)
 
 
-@pytest.mark.parametrize(("fixed", "driven", "turns"), [(40.0, 100.0, 1), (100.0, 40.0, 0)])
+@each_row(("fixed", "driven", "turns"), [(40.0, 100.0, 1), (100.0, 40.0, 0)])
 def test_the_guide_of_an_inversion_turns_or_swings_as_the_bank_says(fixed, driven, turns):
     """The crank fixed and the longer rod driven: the guide turns. The rod fixed, the shorter crank driven: it swings."""
     assert (ANSWERS["inversion_crank"], ANSWERS["inversion_slotted"]) == ("turns", "rod")
