@@ -12,6 +12,7 @@ from pathlib import Path
 from zlib import crc32
 
 import pytest
+from sweeps import mark_sweeps
 
 import coursework
 from coursework.authoring.scaffold import new_course
@@ -31,9 +32,14 @@ def pytest_addoption(parser):
     )
 
 
-@pytest.hookimpl(trylast=True)
+@pytest.hookimpl(wrapper=True)
 def pytest_collection_modifyitems(config, items):
-    """Every process finds the same share, since it goes by the names of the tests."""
+    """Mark the sweeps before ``-m`` chooses, and take a share of the slow tests after it.
+
+    Every process finds the same share, since it goes by the names of the tests.
+    """
+    mark_sweeps(items, set(coursework.open_course().names))
+    yield
     told = re.fullmatch(r"(\d+)/([1-9]\d*)", config.option.share)
     if told is None or int(told[1]) >= int(told[2]):
         raise pytest.UsageError(

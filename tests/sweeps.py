@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Collection, Iterable
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,3 +25,46 @@ def seeds(few: int, every: int) -> pytest.MarkDecorator:
     """Seeds from 0 on in two blocks: the first few, and the others, slow."""
     blocks = [range(few), pytest.param(range(few, every), marks=slow)]
     return pytest.mark.parametrize("seeds", blocks, ids=["few", "many"])
+
+
+_MANY = 20  #: exercises from which on a test is a sweep over the course
+
+
+def mark_sweeps(items: Iterable[pytest.Item], names: Collection[str]) -> None:
+    """Mark as ``sweep`` the items of tests over most exercises, except a handful of exercises and those that differ."""
+    tests: dict[str, list[tuple[pytest.Item, str]]] = {}
+    for item in items:
+        values = item.callspec.params.values() if hasattr(item, "callspec") else ()
+        exercise = next((value for value in values if isinstance(value, str) and value in names), None)
+        if exercise is not None:
+            tests.setdefault(item.nodeid.partition("[")[0], []).append((item, exercise))
+    for found in tests.values():
+        if len({exercise for _, exercise in found}) < _MANY:
+            continue
+        for item, exercise in found:
+            if exercise not in HANDFUL and exercise not in changed_exercises():
+                item.add_marker(pytest.mark.sweep)
+
+
+@cache
+def changed_exercises() -> frozenset[str]:
+    """Return the stems of the files in exercises/ and solutions/ that differ from the main branch.
+
+    Without git or a main branch there are none. On the main branch itself, its upstream is what they are compared with.
+    """
+    root = Path(__file__).resolve().parent.parent
+    for base in ("origin/main", "main"):
+        fork = _git(root, "merge-base", base, "HEAD")
+        if fork:
+            files = _git(root, "diff", "--name-only", fork[0], "--", "exercises", "solutions")
+            added = _git(root, "ls-files", "--others", "--exclude-standard", "exercises", "solutions")
+            return frozenset(Path(file).name.partition(".")[0] for file in (*files, *added))
+    return frozenset()
+
+
+def _git(root: Path, *arguments: str) -> list[str]:
+    try:
+        done = subprocess.run(["git", *arguments], cwd=root, capture_output=True, text=True, check=False)
+    except OSError:
+        return []
+    return done.stdout.splitlines() if done.returncode == 0 else []

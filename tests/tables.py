@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any
 
 import pytest
@@ -20,12 +20,14 @@ def each_row(
     The arguments are those of ``pytest.mark.parametrize``. Fixtures are made once for all rows.
     """
     columns = [name.strip() for name in names.split(",")] if isinstance(names, str) else list(names)
-    lines = [_values(row, len(columns)) for row in rows]
-    assert lines, "a table without rows tests nothing"
+    rows = rows if isinstance(rows, Collection) else list(rows)
 
     def of_all_rows(test: Callable[..., None]) -> Callable[..., None]:
         @functools.wraps(test)
         def run(**fixtures: Any) -> None:
+            # Some tables are filled after the test is defined.
+            lines = [_values(row, len(columns)) for row in rows]
+            assert lines, "a table without rows tests nothing"
             failures: list[tuple[Any, BaseException]] = []
             for line in lines:
                 try:

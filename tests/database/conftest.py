@@ -12,7 +12,7 @@ def postgres():
         yield server
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
+@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.e2e)])
 def url(request, tmp_path):
     """The address of an empty database."""
     if request.param == "sqlite":

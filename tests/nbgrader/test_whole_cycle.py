@@ -27,6 +27,8 @@ import coursework
 from coursework.cli import run
 from coursework.course.answer_keys import answer_keys
 
+pytestmark = pytest.mark.e2e
+
 pytest.importorskip("nbgrader.api", reason="nbgrader is not installed: pip install '.[nbgrader]'")
 
 NAME = "slotted_mechanism"

@@ -12,6 +12,8 @@ from site_browser import chromium
 from coursework.scanning import queue
 from coursework.scanning.scan import scan
 
+pytestmark = pytest.mark.e2e
+
 NAMES = ("Zoé Öztürk", "Max <b>", "=cmd()|x")
 
 

@@ -10,6 +10,8 @@ from site_browser import chromium
 
 from coursework.scanning.scan import scan
 
+pytestmark = pytest.mark.e2e
+
 ADA = "Ada"
 
 

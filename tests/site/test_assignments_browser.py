@@ -11,7 +11,7 @@ from site_people import ZOE
 from coursework.database.deliveries import deliveries
 from coursework.database.drafts import drafts
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

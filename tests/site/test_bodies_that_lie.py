@@ -10,6 +10,8 @@ from tables import each_row
 
 from coursework.site.frame.cookies import cookie_name
 
+pytestmark = pytest.mark.e2e
+
 MEGABYTE = 1024 * 1024
 
 

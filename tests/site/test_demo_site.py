@@ -13,6 +13,8 @@ from coursework.database.people import people
 from coursework.database.store import Store
 from coursework.database.tables import METADATA
 
+pytestmark = pytest.mark.e2e
+
 _DIFFER = {"setting", "audit"}  #: a key that is drawn, and what was done when
 
 

@@ -18,6 +18,8 @@ from coursework.database.tables import mark, person
 from coursework.database.tables import progress as entries
 from coursework.site.frame.cookies import cookie_name
 
+pytestmark = pytest.mark.e2e
+
 OPEN = Publication(tries=None)
 CLASS = (ZOE, MAX, "Chloé", "David", "Émilie", "Farid")
 TRIES = 4

@@ -24,6 +24,8 @@ from coursework.database.tables import person
 from coursework.gradebook.rows import Rejected, Row
 from coursework.site.frame.forms import clean
 
+pytestmark = pytest.mark.e2e
+
 
 class Hostile(Class):
     """A student for each hostile text: it is their name, number, group and e-mail, their answers, and the name of their file."""

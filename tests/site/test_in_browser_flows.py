@@ -17,6 +17,8 @@ from coursework.database.people import put_account, put_person
 from coursework.making.students import folded
 from coursework.site.people import accounts
 
+pytestmark = pytest.mark.e2e
+
 HARD = ("Zoé D’Arc-O'Neil", "محمد العلي", "🦊 Renard <b>", "Nguyễn Thị Mai-Anh de la Très Longue Ascendance")
 SAVED = "#state >> text=/^(Saved|Enregistré)\\.$/"
 KEPT = "[data-kept] >> text=/is kept|est gardé/"

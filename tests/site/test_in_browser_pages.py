@@ -8,6 +8,8 @@ from tables import each_row
 
 from coursework.site.application import PAGES
 
+pytestmark = pytest.mark.e2e
+
 REPORT = "/report"  #: a page of its own, to keep; it is printed as a PDF
 FAST = ("/practice", "/assignments/{number:int}", "/desk/{assignment:int}", "/desk/{assignment:int}/queue")
 LOOKS = [("fr", "telephone"), ("en", "desk")]  #: the longer words where there is less room

@@ -13,6 +13,8 @@ from tables import each_row
 from coursework.database.drafts import drafts
 from coursework.site.frame.cookies import COOKIE
 
+pytestmark = pytest.mark.e2e
+
 KEPT = "is kept|Saved"
 #: One a test: what one typed is not there for another.
 _EXERCISES = iter(

@@ -7,6 +7,8 @@ from site_practising import right_answer
 
 from coursework.site.frame.cookies import COOKIE
 
+pytestmark = pytest.mark.e2e
+
 EXERCISE = "slotted_mechanism"
 SAVED = "#state >> text=/^Saved.$/"
 

@@ -10,6 +10,8 @@ from coursework.cli import run
 from coursework.site.preview.preview_page import preview
 from coursework.site.preview.under_work import UnderWork
 
+pytestmark = pytest.mark.e2e
+
 NAME = "my_crank"
 
 

@@ -7,6 +7,8 @@ from site_people import TEACHER
 
 from coursework.site.desk.class_at_hand import class_now
 
+pytestmark = pytest.mark.e2e
+
 WRITTEN = {"Ada": {"rA": "je sais pas"}, "Bo": {"rA": "je sais pas"}, "Cy": {"rA": "?", "theta4": "??"}}
 
 

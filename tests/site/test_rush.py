@@ -25,6 +25,8 @@ from coursework.site.frame.cookies import COOKIE
 from coursework.site.papers import handing_in
 from coursework.site.worker import SETTLES, Worker
 
+pytestmark = pytest.mark.e2e
+
 SECOND = timedelta(seconds=1)
 CROWD = tuple(f"Student {k}" for k in range(40))
 

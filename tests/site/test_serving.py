@@ -22,6 +22,8 @@ from coursework.database.publication import Publication
 from coursework.database.standing import graded
 from coursework.database.store import Store
 
+pytestmark = pytest.mark.e2e
+
 needs_processes = pytest.mark.skipif(
     not Path("/proc/self/stat").exists(), reason="this system does not list processes in /proc"
 )

@@ -30,6 +30,8 @@ from coursework.system import cluster as clusters
 from coursework.system.cluster import SELDOM, cluster
 from coursework.system.processes import Lost, Task, in_turn, processes
 
+pytestmark = pytest.mark.e2e
+
 FORMATS = "pdf,html,ipynb,tex"
 
 
