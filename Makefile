@@ -39,20 +39,21 @@ site: $(VENV)/ready-site  ## The site on this machine, opened in the browser
 PYTEST := python -m pytest -n auto -q
 
 # Of each sweep over seeds, exercises or languages the first few: see tests/sweeps.py.
-test: $(VENV)/ready-test lint  ## Every promise, sweeps in short
-	$(BIN)/$(PYTEST) -m "not slow"
+test: $(VENV)/ready-test lint  ## Every promise on a handful of exercises and on those that differ from the main branch
+	$(BIN)/$(PYTEST) -m "not slow and not sweep and not e2e"
 
 test-all: $(VENV)/ready-test $(VENV)/ready-e2e lint  ## Every test, sweeps at full length
 	$(BIN)/$(PYTEST)
 
-# An eighth of what test-all has more than test; each commit names one of the eight by its own digits.
+# Each commit names one of eight shares by its own digits.
 SHARE ?= $(shell printf '%d/8' "$$((0x$$(git rev-parse --short=7 HEAD) % 8))")
 
-test-share: $(VENV)/ready-test $(VENV)/ready-e2e lint  ## Every promise, and of the long ends of sweeps an eighth, with each commit another
+# What test has, all with other programs, a quarter of the sweeps over exercises and an eighth of their long ends.
+test-share: $(VENV)/ready-test $(VENV)/ready-e2e lint  ## Every promise, and a share of the sweeps that changes with each commit
 	$(BIN)/$(PYTEST) --share $(SHARE)
 
-# The tests of numbers, where a last bit would show.
-NUMBERS := exercises kinematics mechanics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py
+# The tests of the numeric core, where a last bit would show.
+NUMBERS := kinematics mechanics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py
 
 # The vector units that numpy has found here and would use; nothing where it names none.
 VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extensions', {}).get('found', []))
@@ -62,7 +63,7 @@ VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extens
 test-plain: $(VENV)/ready-test  ## The numbers once more, with other last bits
 	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c "$(VECTOR_UNITS)")" OPENBLAS_CORETYPE=Nehalem \
 	GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable \
-	$(BIN)/$(PYTEST) -m "not slow" $(NUMBERS:%=tests/%)
+	$(BIN)/$(PYTEST) -m "not slow and not sweep and not e2e" $(NUMBERS:%=tests/%)
 
 # The oldest numpy that pyproject.toml allows, in a folder that goes before what is installed.
 OLDEST := numpy==1.26.0 scipy==1.11.1
@@ -93,23 +94,17 @@ wheel: $(VENV)/ready-test  ## The wheel, in dist, and its digest
 	$(BIN)/python -m build --quiet --no-isolation --wheel --outdir dist .
 	cd dist && sha256sum *.whl
 
-# What a wheel could lack are files: those who read some are tested from it, of each room.
-IN_THE_WHEEL := authoring/test_examples.py cli course database/test_desk.py database/test_documented.py database/test_store.py \
-	figures language lti/test_settings_keys_and_roles.py making nbgrader/test_course_tree.py platforms/test_exporting.py \
-	promises/test_statements.py rendering/test_booklets.py rendering/test_feedback.py rendering/test_latex.py \
-	rendering/test_notebooks.py rendering/test_pages.py rendering/test_pdf.py scanning/test_digits.py selfstudy/test_sessions.py \
-	site/test_demo_site.py site/test_home.py site/test_preview.py statistics/test_alike.py workbook/test_lessons.py
-
-# The wheel in an environment of its own, the tests beside it, and no source in reach.
-wheel-test: $(VENV)/ready-test
+# What a wheel could lack are files: all are compared with the repository, then the demonstration and the first page of its
+# site are made from the wheel alone.
+wheel-test: $(VENV)/ready-test  ## The wheel has every file and does the job
 	rm -rf build/wheel
-	mkdir -p build/wheel
-	$(BIN)/python -m build --quiet --outdir build/wheel .
-	$(PYTHON) -m venv build/wheel/venv
-	build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls build/wheel/*.whl)[test]"
-	cp -r tests docs pyproject.toml build/wheel/
-	cd build/wheel && venv/bin/python -P -m pytest -n auto -q -m "not slow" $(IN_THE_WHEEL:%=tests/%)
-	cd build/wheel && venv/bin/coursework demo --out demo
+	mkdir -p build/wheel/unpacked
+	$(BIN)/python -m build --quiet --no-isolation --wheel --outdir build/wheel .
+	$(BIN)/python tests/wheel_contents.py build/wheel/*.whl
+	$(BIN)/python -m zipfile -e build/wheel/*.whl build/wheel/unpacked
+	cd build/wheel && PYTHONPATH=unpacked ../../$(BIN)/python -P -m coursework demo --out demo
+	cp tests/first_page.py build/wheel/
+	cd build/wheel && PYTHONPATH=unpacked ../../$(BIN)/python -P first_page.py
 
 # What a server installs, with digests, for each Python and system: all.txt decides each version, the others follow it.
 # The versions that stand there stay while they fit pyproject.toml: make lock UPGRADE=--upgrade takes the newest.

@@ -28,7 +28,7 @@ def pytest_addoption(parser):
         "--share",
         metavar="K/N",
         default="0/1",
-        help="run the K-th of N shares of the slow tests, K from 0 on",
+        help="run the K-th of N shares of the slow tests, K from 0 on, and one of N/2 shares of the sweeps",
     )
 
 
@@ -49,10 +49,17 @@ def pytest_collection_modifyitems(config, items):
     others = {
         item
         for item in items
-        if item.get_closest_marker("slow") and crc32(item.nodeid.encode()) % shares != share
+        if crc32(item.nodeid.encode()) % _shares_of(item, shares) != share % _shares_of(item, shares)
     }
     config.hook.pytest_deselected(items=[*others])
     items[:] = [item for item in items if item not in others]
+
+
+def _shares_of(item, shares):
+    """Return how many shares the tests of the item's sort are split into."""
+    if item.get_closest_marker("slow"):
+        return shares
+    return max(1, shares // 2) if item.get_closest_marker("sweep") else 1
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -119,7 +119,7 @@ class Filled(Class):
         found = []
         for value in self.variants[name].solution().values():
             if isinstance(value, (int, float)) and round(abs(value), 1) not in given and abs(value) > 10:
-                found.append(re.compile(rf"(?<![\d.,]){_digits(f'{abs(value):.1f}')}\d{{0,9}}(?!\d)"))
+                found.append(re.compile(rf"(?<![\d.,]){_digits(f'{abs(value):.1f}')}\d{{1,9}}(?!\d)"))
             elif isinstance(value, (int, float)) and abs(value) > 1e-3:
                 found.append(re.compile(_digits(f"{abs(value):.9f}")))
         return found
