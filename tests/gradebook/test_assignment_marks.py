@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from fractions import Fraction
+from types import SimpleNamespace
 
 import pytest
 from small_assignment import grade, issue, item, right, table, write
 
 import coursework
+from coursework.gradebook.book import Result, counted_one
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.placing import placed
 from coursework.gradebook.scale import mark_of
@@ -210,3 +213,14 @@ def test_a_rule_that_there_is_not_is_told(course, tmp_path, capsys):
     issued = issue(tmp_path, [item(course, "Ada", 5)], marking={"slips": 0.25})
     assert grade(course, issued, right(course, "Ada", 5))[0] == 2
     assert "did you mean 'slip'" in capsys.readouterr().err
+
+
+def test_the_later_of_two_equal_sittings_counts():
+    """Whatever their order; of sittings that differ the best, and without points to earn the later too."""
+    sittings = {(of, points): Result(of, points, 9.0, {}, {}) for of in (1, 2, 3) for points in (4.0, 6.0)}
+    issued = SimpleNamespace(assignment={"sittings": "best"})
+    for order in itertools.permutations([sittings[1, 4.0], sittings[2, 6.0], sittings[3, 6.0]]):
+        assert counted_one(issued, order).sitting == 3
+    for order in itertools.permutations([sittings[1, 6.0], sittings[2, 6.0], sittings[3, 4.0]]):
+        assert counted_one(issued, order).sitting == 2
+    assert counted_one(issued, [Result(2, 0.0, 0.0, {}, {}), Result(1, 0.0, 0.0, {}, {})]).sitting == 2

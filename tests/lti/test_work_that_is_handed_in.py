@@ -249,6 +249,18 @@ def test_a_score_waits_while_the_platform_does_not_take_it(tool, visitor, down):
     assert tool.platform.scores[0]["scoreGiven"] == 9
 
 
+def test_each_failure_puts_the_next_attempt_off_for_longer(tool, monkeypatch):
+    monkeypatch.setattr(tool.storage, "_clock", lambda: 1000.0 + tool.ahead)
+    tool.storage.put_score(launched(tool.platform), Score(1, 9))
+    tool.platform.down, delays = 503, []
+    for _ in range(4):
+        assert tool.sender.send_due() == (0, 1)
+        (waiting,) = tool.storage.scores().values()
+        delays.append(waiting.due - tool.storage._clock())
+        tool.ahead += 3700
+    assert (delays, waiting.failures) == ([5, 10, 20, 40], 4)
+
+
 def test_waits_grow_to_an_hour():
     assert [wait_after(n) for n in (0, 1, 2, 3)] == [5, 10, 20, 40]
     assert wait_after(50) == wait_after(10**6) == 3600

@@ -174,3 +174,19 @@ def test_a_students_own_coefficients_count():
     own = EXERCISE.solve(**given, c=1.01 * right["c"], only=("psi", "theta3_open"))
     assert own["psi"] != right["psi"]
     assert own["theta3_open"] - right["theta3_open"] == pytest.approx(right["psi"] - own["psi"], abs=1e-9)
+
+
+def test_one_answer_that_fits_the_other_assembly_by_chance_exchanges_nothing(course):
+    """Of four answers one is right in its box: had the groups been exchanged, another would fit instead and none more."""
+    variant = course["four_bar_positions"].variant(3, "en")
+    right = {part.id: variant.solution()[part.quantity] for part in variant.parts}
+    pairs = variant.exercise.spec.either_order
+    boxes = [box for group in pairs for box in group]
+    far = {box: f"{right[box] + 37:.1f}" for box in boxes}
+    for mine, its in ((pairs[0], pairs[1]), (pairs[1], pairs[0])):
+        marking = variant.grade({**far, mine[0]: f"{right[its[0]]:.2f}"})
+        assert not any(marking[box].in_other_order for box in boxes)
+        assert marking[mine[0]].verdict != "correct"
+        exchanged = {mine[0]: right[its[0]], mine[1]: right[its[1]], its[0]: right[mine[0]]}
+        marking = variant.grade({**far, **{box: f"{value:.2f}" for box, value in exchanged.items()}})
+        assert all(marking[box].verdict == "correct" for box in exchanged)
