@@ -230,6 +230,11 @@ def uploads() -> None:
         "a table of 255 kB": ("a.csv", header + row * 700 + b"\n" * 240_000),
         "JSON in brackets, 255 kB": ("a.json", b"[" * 255 * 1024),
         "a notebook of 2 MB": ("a.ipynb", b'{"cells": [' + b'{"cell_type": "code", "source": ["answers = {"]},' * 42_000),
+        "a cell of 250 kB": ("a.csv", header + b"Ada,grashof,1,part," + b"(1+" * 83_000),
+        "a row of 250 000 cells": ("a.csv", header + b"," * 250_000),
+        "a notebook in brackets, 2 MB": ("a.ipynb", b'{"cells": ' + b"[" * 2_000_000),
+        "a bomb of 1 GB as a notebook": ("a.ipynb", _bomb(1024 * MEGABYTE)),
+        "a bomb of 200 MB as a table": ("a.csv", _bomb(200 * MEGABYTE)),
     }  # fmt: skip
     student = r'value="(\d+)">[^<]*<span[^>]*>(?:student|étudiant)'
     with (
@@ -240,6 +245,7 @@ def uploads() -> None:
         address = re.search(r'href="(/assignments/\d+)"', one.get("/assignments").text)[1]
         for what, (name, data) in files.items():
             own.append((what, *_uploaded(pid, one, other, address, name, data)))
+        own.append(("100 slow bodies at once", *_trickled(pid, one, other, f"{address}/file", url)))
     print_table(("ten times", "status", "s", "another's page, s", "MB before", "at most", "after"), own)
 
 
@@ -260,6 +266,36 @@ def _uploaded(pid: int, one, other, address: str, name: str, data: bytes) -> tup
     statuses = ", ".join(f"{count} × {status}" for status, count in sorted(told.items()))
     memory = (before, _memory(pid, "VmHWM"), _memory(pid, "VmRSS"))
     return (statuses, f"{took:.1f}", f"{waited:.2f}", *(f"{one:.0f}" for one in memory))
+
+
+def _bomb(size: int) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.csv", bytes(size))
+    return packed.getvalue()
+
+
+def _trickled(pid: int, one, other, address: str, url: str) -> tuple[str, ...]:
+    """Begin a hundred bodies that send a byte a second, for 10 s; then the lines are closed."""
+    head = [f"POST {address} HTTP/1.1", f"Host: {url.removeprefix('http://')}", f"X-Seal: {_seal(one)}",
+            "Content-Type: multipart/form-data; boundary=x", "Content-Length: 200000",
+            "Cookie: " + "; ".join(f"{name}={value}" for name, value in one.cookies.items())]  # fmt: skip
+    before, begun, longest = _memory(pid, "VmRSS"), time.perf_counter(), 0.0
+    lines = [socket.create_connection(("127.0.0.1", int(url.rpartition(":")[2]))) for _ in range(100)]
+    for line in lines:
+        line.sendall("\r\n".join([*head, "", ""]).encode())
+    for _ in range(10):
+        for line in lines:
+            with suppress(OSError):  # refused, since too many wait
+                line.sendall(b"-")
+        asked = time.perf_counter()
+        other.get("/assignments")
+        longest = max(longest, time.perf_counter() - asked)
+        time.sleep(1)
+    for line in lines:
+        line.close()
+    took, memory = time.perf_counter() - begun, (before, _memory(pid, "VmHWM"), _memory(pid, "VmRSS"))
+    return ("given up", f"{took:.1f}", f"{longest:.2f}", *(f"{one:.0f}" for one in memory))
 
 
 def _seal(client) -> str:

@@ -24,15 +24,16 @@ def spelled(secret):
 
 def holds(data, ways):
     """Whether a file holds one of the ways: in its members, streams, and what is packed within, too."""
-    return any(way in part for part in _parts(data) for way in ways)
+    return any(way in part for part in parts_of(data) for way in ways)
 
 
-def _parts(data):
+def parts_of(data):
+    """A file, its members and streams, and what is packed within them."""
     yield data
     if data[:2] == b"PK":
         with zipfile.ZipFile(io.BytesIO(data)) as file:
             for name in file.namelist():
-                yield from _parts(file.read(name))
+                yield from parts_of(file.read(name))
     for start in re.finditer(rb"stream\r?\n", data) if data[:4] == b"%PDF" else ():
         try:
             yield zlib.decompressobj().decompress(data[start.end() :])

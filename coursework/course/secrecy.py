@@ -7,6 +7,8 @@ import re
 import secrets
 from typing import Self
 
+from coursework.errors import counted
+
 _BYTES = 16
 _FEWEST_DIGITS = 6  #: different ones; random bits have fewer once in a thousand million
 
@@ -39,7 +41,7 @@ class Secret:
             raise ValueError(f"a secret is a text of {2 * _BYTES} hexadecimal digits; found no text")
         if not re.fullmatch(rf"[0-9A-Fa-f]{{{2 * _BYTES}}}", text):
             raise ValueError(
-                f"a secret is {2 * _BYTES} hexadecimal digits; found {len(text)} characters"
+                f"a secret is {2 * _BYTES} hexadecimal digits; found {counted(len(text), 'character')}"
                 + ("" if len(text) != 2 * _BYTES else ", not all of them such digits")
             )
         if len(set(text.lower())) < _FEWEST_DIGITS:

@@ -173,6 +173,7 @@ def _logs(tells_all: bool) -> dict[str, Any]:
         "loggers": {
             "coursework": {"handlers": ["out"], "level": "INFO" if tells_all else "WARNING"},
             "uvicorn": {"handlers": ["out"], "level": "WARNING"},
+            "python_multipart": {"level": "ERROR"},  # its warnings quote what was sent
         },
     }
 

@@ -17,6 +17,7 @@ import coursework
 from coursework.cli import run
 from coursework.cli.commands import commands as cli
 from coursework.course.marking_rules import Rules
+from coursework.errors import BadInput
 from coursework.gradebook.class_marking import _waiting
 from coursework.making.assignment import OPTIONS, read_assignment
 from coursework.markup.mathml import to_mathml
@@ -277,7 +278,12 @@ def test_the_picture_of_a_sheet_is_one_page_as_png():
 
 
 def test_the_assignment_that_is_shown_is_one_of_the_course(tmp_path):
+    """Its secret is none, so that who copies it shares none with all who read the page."""
     (shown,) = blocks(DOCS / "assignments.md", "toml")
+    (tmp_path / "midterm.toml").write_text(shown, "utf-8")
+    with pytest.raises(BadInput, match="a secret is 32 hexadecimal digits"):
+        read_assignment(tmp_path / "midterm.toml", COURSE)
+    shown = re.sub("(?m)^secret = .*\n", "", shown)
     (tmp_path / "midterm.toml").write_text(shown, "utf-8")
     assignment = read_assignment(tmp_path / "midterm.toml", COURSE)
     assert set(assignment.names) == {"slotted_mechanism", "vocabulary", "grashof"}

@@ -1,16 +1,20 @@
 """On the site too nobody draws a paper from public words, and no page or file of a student holds the secret."""
 
 import re
+from datetime import timedelta
 
 import pytest
-from secret_words import holds, spelled
-from site_assignments import FORM, dealt_by, handed_out
+from secret_words import holds, parts_of, spelled
+from site_assignments import FORM, OPENS, dealt, dealt_by, handed_out
 from site_people import MAX, TEACHER, ZOE, Class
 from sqlalchemy import select
 
 import coursework
+from coursework.course.secrecy import Secret
 from coursework.database.assignments import issued_content
 from coursework.database.tables import assignment
+from coursework.site.application import PAGES
+from coursework.site.worker import Worker
 
 COURSE = coursework.open_course()
 TOML = (
@@ -72,6 +76,36 @@ def test_no_page_and_no_file_of_a_student_holds_the_secret(class_of_three, in_fi
         assert not holds(staff.get(address).content, ways), address
     assert holds(staff.get(f"/desk/assignments/{number}/issued.json").content, ways)
     assert row.secret not in caplog.text
+
+
+def test_no_address_tells_a_paper_before_it_opens(class_of_three):
+    """Every address of the site, asked for and filled in by a student who knows all numbers."""
+    class_of_three.site.has_worker = True
+    class_of_three.at = OPENS - timedelta(hours=1)
+    number = dealt(class_of_three, secret=Secret.of(SECRET))
+    worker = Worker(class_of_three.site, "test")
+    worker.prepare_all()
+    while worker.work_once():
+        pass
+    codes = {e: str(code) for e, code in class_of_three.issued.issued_to(ZOE).items()}
+    zoe, told = class_of_three.browser(ZOE), []
+    known = {"number": number, "assignment": number, "person": class_of_three.ids[ZOE], "exercise": "grashof"}
+    for page in PAGES:
+        for file in ("paper.pdf", "notebook.ipynb", "issued.json"):
+            address = re.sub(r"{(\w+)[^}]*}", lambda place, f=file: str(known.get(place[1], f)), page.path)
+            replies = [zoe.get(address)]
+            if page.posts and not page.path.startswith("/sign-"):
+                replies.append(zoe.fill(address))
+            for reply in replies:
+                parts = b"\n".join(parts_of(reply.content))
+                told += [
+                    (address, c) for c in codes.values() if re.search(rb"(?<!\d)%b(?!\d)" % c.encode(), parts)
+                ]
+            if "{file}" not in page.path:
+                break
+    assert told == []
+    class_of_three.at = OPENS
+    assert all(code in zoe.get(f"/assignments/{number}").text for code in codes.values())
 
 
 def _crawled(browser, addresses):
