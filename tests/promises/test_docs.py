@@ -182,14 +182,13 @@ def test_the_marks_of_the_first_hour_are_those_that_marking_gives():
     assert found == told
 
 
-def test_the_marking_that_the_readme_states_is_that_of_a_course_that_states_none():
-    if (readme := ROOT / "README.md").exists():
-        (stated,) = (tomllib.loads(b)["marking"] for b in blocks(readme, "toml") if "[marking]" in b)
-        slip = COURSE["slotted_mechanism"].variant(1).grade({"omega4": "1.96"})["omega4"]
-        assert slip.verdict == "slip:sign"
-        assert stated == {name: getattr(Rules(), name) for name in stated} | {
-            "slip": slip.points / slip.out_of
-        }
+def test_the_marking_that_is_shown_is_that_of_a_course_that_states_none():
+    shown = blocks(DOCS / "build_and_mark.md", "toml")
+    (stated,) = (tomllib.loads(b)["marking"] for b in shown if "[marking]" in b)
+    slip = COURSE["slotted_mechanism"].variant(1).grade({"omega4": "1.96"})["omega4"]
+    assert slip.verdict == "slip:sign"
+    usual = {name: getattr(Rules(), name) for name in stated}
+    assert stated == usual | {"slip": slip.points / slip.out_of}
 
 
 # ------------------------------------------------------------------------- code
