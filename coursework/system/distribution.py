@@ -7,14 +7,9 @@ it would run code on every machine whose user types what a message says. No comm
 
 from __future__ import annotations
 
-import json
 import os
-import shlex
-from importlib import metadata
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
-from urllib.request import url2pathname
 
 DISTRIBUTION = "mechanism-coursework"
 VERSION = "0.1.0"
@@ -43,6 +38,8 @@ def add_extra(extra: str) -> str:
     if not source:
         return pip_install(extra=extra)
     requirement = f"{source}[{extra}]" if "://" not in source else f"{DISTRIBUTION}[{extra}] @ {source}"
+    import shlex
+
     quoted = f'"{requirement}"' if os.name == "nt" else shlex.quote(requirement)
     return f"pip install {'--editable ' if editable else ''}{quoted}"
 
@@ -50,6 +47,12 @@ def add_extra(extra: str) -> str:
 def _source() -> tuple[str, bool]:
     """Return the folder, file or address that pip installed the package from, "" where that is gone or unknown, and whether
     it is an editable folder."""
+    # Loaded where an extra is missing: each command would wait for them.
+    import json
+    from importlib import metadata
+    from urllib.parse import urlsplit
+    from urllib.request import url2pathname
+
     try:
         told = metadata.distribution(DISTRIBUTION).read_text("direct_url.json")
         url = json.loads(told or "{}")

@@ -250,7 +250,7 @@ def test_an_extra_is_added_from_where_the_package_was_installed(told, said, tmp_
         def read_text(self, name):
             return told if name == "direct_url.json" else None
 
-    monkeypatch.setattr(distribution.metadata, "distribution", lambda name: Installed())
+    monkeypatch.setattr(metadata, "distribution", lambda name: Installed())
     monkeypatch.setattr(distribution.os, "name", "posix")
     assert add_extra("site") == said.replace("{place}", str(tmp_path))
 
