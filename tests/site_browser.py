@@ -46,10 +46,10 @@ def served(class_, port=0):
 
 @contextmanager
 def chromium():
-    """A browser, for all tests of a process."""
-    from playwright.sync_api import sync_playwright
+    """A browser, for all tests of a process; the test is skipped where the extra is not installed."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="browsers need pip install -e '.[e2e]'")
 
-    with sync_playwright() as playwright:
+    with playwright.sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=chromium_path(), args=["--no-sandbox", "--disable-gpu"]
         )

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from coursework.cli.options import FilePath
+from coursework.system.cache import made_of
 from coursework.system.distribution import VERSION
 
 if TYPE_CHECKING:
@@ -55,6 +57,23 @@ class _Commands(click.Group):
         file, function = COMMANDS[cmd_name]
         command: click.Command = getattr(import_module(f"coursework.cli.{file}"), function)
         return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands with what each does, as :mod:`click` does; their files are loaded where one has changed."""
+        files = sorted(Path(__file__).parent.glob("*.py"))
+        told = made_of(files, "commands.json", lambda: {n: self._help(ctx, n) for n in COMMANDS})
+        limit = formatter.width - 6 - max(map(len, COMMANDS))
+        with formatter.section("Commands"):
+            formatter.write_dl(
+                [
+                    (n, click.Command(n, help=told[n]).get_short_help_str(limit))
+                    for n in self.list_commands(ctx)
+                ]
+            )
+
+    def _help(self, ctx: click.Context, name: str) -> str:
+        command = self.get_command(ctx, name)
+        return command.help or "" if command else ""
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """The commands by their names, which need not be loaded, and the options of them all."""

@@ -320,7 +320,7 @@ _LOGS: dict[str, Any] = {
     "disable_existing_loggers": False,
     "formatters": {
         "line": {
-            "class": "coursework.system.visible.VisibleLines",
+            "class": "coursework.system.log_lines.VisibleLines",
             "format": "%(asctime)s %(levelname)s %(message)s",
         }
     },

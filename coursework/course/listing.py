@@ -17,10 +17,9 @@ from typing import Any, NamedTuple
 
 from coursework.course.folder import Folder
 from coursework.errors import CourseworkError
-from coursework.system.cache import State, keep, kept, state, states
+from coursework.system.cache import State, is_settled, keep, kept, state, states
 
 _ENGINE = Path(__file__).parent.parent
-_SETTLED = 2_000_000_000  #: ns after which another change of a file shows in its dates, on any file system
 
 
 class Listing(NamedTuple):
@@ -80,8 +79,7 @@ def _loaded(files: Mapping[str, State]) -> dict[str, State]:
 
 def _remember(folder: Folder, content: _Kept, begun: int) -> None:
     """Keep it, unless a file was changed just now: it may change again within the grain of its dates."""
-    last = max(date for state in (*content.files.values(), *content.loaded.values()) for date in state[1:])
-    if last < begun - _SETTLED:
+    if is_settled((*content.files.values(), *content.loaded.values()), begun):
         keep(_name(folder), content._asdict())
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import MISSING, Field, FrozenInstanceError, dataclass, fields, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
 
 from coursework.errors import CourseworkError, WrongValue
 from coursework.figures.ink import EDGE, PINS, WHITE, Disc, turn
@@ -24,22 +24,60 @@ AWAY = 1.15  #: where a label starts, from a line
 Bars = tuple[tuple[complex, complex], ...]
 
 
-@dataclass(frozen=True)
+@dataclass_transform(frozen_default=True)
 class Element:
-    """Element of a figure, in mechanism coordinates: complex numbers, mm, y up; degrees from +x."""
+    """Element of a figure, in mechanism coordinates: complex numbers, mm, y up; degrees from +x.
 
-    def __post_init__(self) -> None:
-        for name, kind in self._told():
-            object.__setattr__(self, name, self._checked(name, kind))
+    Each subclass is a frozen dataclass of the fields that it names. All share these methods: compiling some for each
+    class would double the time in which a figure's module is loaded.
+    """
+
+    if TYPE_CHECKING:
+        __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    def __init_subclass__(cls) -> None:
+        dataclass(init=False, repr=False, eq=False)(cls)
+
+    def __init__(self, *values: object, **named: object) -> None:
+        told = self._told()
+        given = dict(zip((name for name, _, _ in told), values, strict=False)) | named
+        unknown = given.keys() - {name for name, _, _ in told}
+        if unknown or len(given) < len(values) + len(named):
+            asked = ", ".join(name for name, _, _ in told)
+            raise TypeError(
+                f"{type(self).__name__} takes {asked}, each once; found {len(values)} values and {[*named]}"
+            )
+        for name, kind, default in told:
+            value = given.get(name, default)
+            if value is MISSING:
+                raise TypeError(f"{type(self).__name__}: {name} is missing")
+            self.__dict__[name] = self._checked(name, kind, value)
+
+    def _values(self) -> tuple[object, ...]:
+        return tuple(self.__dict__[name] for name, _, _ in self._told())
+
+    def __eq__(self, other: object) -> bool:
+        return self._values() == other._values() if type(other) is type(self) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._values())
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{n}={self.__dict__[n]!r}' for n, _, _ in self._told())})"
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise FrozenInstanceError(f"cannot assign to field {name!r}")
+
+    def __delattr__(self, name: str) -> None:
+        raise FrozenInstanceError(f"cannot delete field {name!r}")
 
     @classmethod
     @lru_cache(maxsize=128)
-    def _told(cls) -> tuple[tuple[str, str], ...]:
-        """Return the name of each field and its type, as written."""
-        return tuple((item.name, str(item.type)) for item in fields(cls))
+    def _told(cls) -> tuple[tuple[str, str, object], ...]:
+        """Return the name of each field, its type as written, and its default."""
+        return tuple((item.name, str(item.type), item.default) for item in fields(cls))
 
-    def _checked(self, name: str, kind: str) -> object:
-        value = getattr(self, name)
+    def _checked(self, name: str, kind: str, value: Any) -> object:
         try:
             value = _READ[kind](value)
         except CourseworkError:  # a label says itself what is wrong with it
@@ -53,7 +91,7 @@ class Element:
 
     def settled(self, decimals: int) -> Element:
         """Return the element with its points and numbers rounded to ``decimals`` decimals."""
-        told = {name: getattr(self, name) for name, _ in self._told()}
+        told = {name: self.__dict__[name] for name, _, _ in self._told()}
         changed = {
             name: new for name, old in told.items() if repr(new := _rounded(old, decimals)) != repr(old)
         }
@@ -61,7 +99,7 @@ class Element:
 
     def reach(self) -> tuple[complex, ...]:
         """Return the points that bound the element."""
-        return tuple(z for name, _ in self._told() for z in _points(getattr(self, name)))
+        return tuple(z for value in self._values() for z in _points(value))
 
     def bars(self) -> Bars:
         """Return the segments of links, which labels and pin supports avoid."""

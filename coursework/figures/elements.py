@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
     from coursework.figures.paper import FigurePaper
 
 
-@dataclass(frozen=True)
 class ground_pivot(Element):
     """Revolute joint with the frame: a pin on a hatched support."""
 
@@ -59,7 +57,6 @@ class ground_pivot(Element):
         paper.around(self.label, p, NEAR, (down * turn(35), down * turn(-35)), self.toward)
 
 
-@dataclass(frozen=True)
 class pin(Element):
     """Revolute joint between moving bodies."""
 
@@ -72,7 +69,6 @@ class pin(Element):
         paper.around(self.label, paper.at(self.p), NEAR, toward=self.toward)
 
 
-@dataclass(frozen=True)
 class point(Element):
     """Point marked by a dot."""
 
@@ -86,7 +82,6 @@ class point(Element):
         paper.around(self.label, p, 0.9, toward=self.toward)
 
 
-@dataclass(frozen=True)
 class contact(Element):
     """Point of contact between two bodies: a larger dot."""
 
@@ -100,7 +95,6 @@ class contact(Element):
         paper.around(self.label, p, 1.2, toward=self.toward)
 
 
-@dataclass(frozen=True)
 class bar(Element):
     """Link between the pins ``points``: see :func:`link`."""
 
@@ -145,7 +139,6 @@ def link(p: complex, q: complex, *more: complex, label: str | None = None, weld:
     return bar((p, q, *more), label, weld)
 
 
-@dataclass(frozen=True)
 class slot_link(Element):
     """Slotted guide from ``p`` to ``q``: a block slides between its two edges."""
 
@@ -166,7 +159,6 @@ class slot_link(Element):
         paper.beside(self.label, p, q, SLOT + AWAY)
 
 
-@dataclass(frozen=True)
 class slider(Element):
     """Block centred on ``p``, its length along ``direction`` (degrees). Its pin, if any, is a ``pin``."""
 
@@ -181,7 +173,6 @@ class slider(Element):
         paper.around(self.label, p, BLOCK.imag + AWAY, (way, -way))
 
 
-@dataclass(frozen=True)
 class rail(Element):
     """Fixed guide for a slider whose centre moves from ``p`` to ``q``.
 
@@ -202,7 +193,6 @@ class rail(Element):
         paper.hatch(p + shift, q + shift, side)
 
 
-@dataclass(frozen=True)
 class section(Element):
     """Solid cut by the plane of the figure: a polygon with hatching.
 
@@ -282,7 +272,6 @@ def _by_two(cuts: list[float]) -> list[tuple[float, float]]:
     return list(zip(cuts[::2], cuts[1::2], strict=True))
 
 
-@dataclass(frozen=True)
 class ball(Element):
     """Ball, or disc, in section: a tinted circle."""
 
@@ -300,7 +289,6 @@ class ball(Element):
         paper.around(self.label, center, 0.9, area=disc.outline())
 
 
-@dataclass(frozen=True)
 class wheel(Element):
     """Wheel or cam: a tinted disc beneath the bars, the supports and the pins."""
 
@@ -318,7 +306,6 @@ class wheel(Element):
         paper.around(self.label, center, 0.9, area=disc.outline())
 
 
-@dataclass(frozen=True)
 class profile(Element):
     """Body of any closed outline, such as a cam: tinted, beneath the bars, the supports and the pins."""
 

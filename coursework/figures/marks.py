@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from coursework.figures.base import AWAY, Element, Positive, arc_points, circle_points
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from coursework.figures.paper import FigurePaper
 
 
-@dataclass(frozen=True)
 class note(Element):
     """Words or a symbol centred on a point if there is room, else near it; nothing is drawn at the point."""
 
@@ -42,7 +40,6 @@ class note(Element):
             paper.toward(self.label, paper.at(self.p), 1j, -text.box[1] / 2, SIDES)
 
 
-@dataclass(frozen=True)
 class line(Element):
     """Plain line."""
 
@@ -58,7 +55,6 @@ class line(Element):
         paper.beside(self.label, p, q, AWAY)
 
 
-@dataclass(frozen=True)
 class centre_line(Element):
     """Axis of symmetry or of rotation, chain-dotted."""
 
@@ -72,7 +68,6 @@ class centre_line(Element):
         paper.toward(self.label, q, q - p, 0.6, SIDES)
 
 
-@dataclass(frozen=True)
 class circle(Element):
     """Circle: the path of a pin, a construction, a gear's pitch circle."""
 
@@ -90,7 +85,6 @@ class circle(Element):
         paper.toward(self.label, center, turn(45), radius + 0.7, SIDES)
 
 
-@dataclass(frozen=True)
 class arc(Element):
     """Arc, counter-clockwise when ``to_deg`` is the larger angle."""
 
@@ -109,7 +103,6 @@ class arc(Element):
         paper.draw(Arc(paper.at(self.center), radius, *ends, THIN, DASHED if self.dashed else ""))
 
 
-@dataclass(frozen=True)
 class axes(Element):
     """Two arrows, along +x and +y."""
 
@@ -127,7 +120,6 @@ class axes(Element):
             paper.toward(label, origin + length * way, way * turn(-45 if way == 1 else 45), 0.6, SIDES)
 
 
-@dataclass(frozen=True)
 class rotation_arrow(Element):
     """Arc with an arrow head at ``to_deg``: a sense of rotation."""
 
@@ -147,7 +139,6 @@ class rotation_arrow(Element):
         paper.toward(self.label, center, turn((start + end) / 2), radius + AWAY)
 
 
-@dataclass(frozen=True)
 class angle_mark(Element):
     """Angle: an arc from a thin reference line at ``from_deg`` to an arrow head at ``to_deg``.
 
@@ -173,7 +164,6 @@ class angle_mark(Element):
         paper.toward(self.label, center, turn((start + end) / 2), radius + AWAY)
 
 
-@dataclass(frozen=True)
 class dimension(Element):
     """Dimension line with two arrow heads and its extension lines.
 
@@ -224,7 +214,6 @@ def _measured(paper: FigurePaper, a: complex, b: complex) -> None:
         paper.arrow(b + way * 2.2 * size, b, THIN, size)
 
 
-@dataclass(frozen=True)
 class vector(Element):
     """Arrow from ``p`` to ``p + v``; the author scales a velocity or a force to mm of mechanism."""
 
@@ -241,7 +230,6 @@ class vector(Element):
         paper.beside(self.label, p, tip, AWAY)
 
 
-@dataclass(frozen=True)
 class scale_bar(Element):
     """Bar from ``p`` to the right with a tick at each end, labelled with the value of its length."""
 
@@ -258,7 +246,6 @@ class scale_bar(Element):
         paper.beside(self.label, p, q, AWAY, -1j)
 
 
-@dataclass(frozen=True)
 class trace(Element):
     """Thin curve through points, such as the path of one; dotted by default."""
 

@@ -43,7 +43,6 @@ _FEW, _SMALLER = 2, 0.75  #: more joints than a few have smaller symbols
 _UNITS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-@dataclass(frozen=True)
 class _face(Element):
     """Face of a symbol, or a line in front of it: it hides earlier elements."""
 
@@ -56,7 +55,6 @@ class _face(Element):
         paper.draw(Path(points, EDGE, WHITE, closed=len(points) > 2, layer=BLOCKS))
 
 
-@dataclass(frozen=True)
 class _ball(Element):
     """Ball of a symbol."""
 

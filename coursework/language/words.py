@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadCourse, UnknownName
+from coursework.system.cache import made_of
 
 _FOLDER = Path(__file__).parent
 _FAULTS = 5  #: of a words file that are told at once
@@ -39,6 +40,14 @@ def words(lang: str, of: str = "") -> Mapping[str, Any]:
     """
     if lang not in languages():
         raise no_language(lang)
+    files = [file_of(one, of) for one in dict.fromkeys((lang, "en"))]
+    found: Mapping[str, Any] = made_of(
+        [*files, Path(__file__)], f"words-{of}-{lang}.json", partial(_compared, lang, of)
+    )
+    return found
+
+
+def _compared(lang: str, of: str) -> Mapping[str, Any]:
     found = _read(file_of(lang, of))
     if lang != "en":
         _compare(dict(texts_of(found)), dict(texts_of(words("en", of))), file_of(lang, of))

@@ -165,7 +165,7 @@ def _logs(tells_all: bool) -> dict[str, Any]:
         "disable_existing_loggers": False,
         "formatters": {
             "line": {
-                "class": "coursework.system.visible.VisibleLines",
+                "class": "coursework.system.log_lines.VisibleLines",
                 "format": "%(asctime)s %(levelname)s %(message)s",
             }
         },

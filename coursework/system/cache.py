@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
+
+_SETTLED = 2_000_000_000  #: ns after which another change of a file shows in its dates, on any file system
 
 
 def kept(name: str) -> Any:
@@ -41,6 +44,26 @@ def _folder() -> Path:
             Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "coursework" / "Cache"
         )
     return Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache") / "coursework"
+
+
+def made_of(files: Sequence[Path], name: str, make: Callable[[], Any]) -> Any:
+    """Return what ``make`` makes of some files, or what an earlier run kept of it under a name while none has changed since.
+
+    What is made holds tables, lists, texts, numbers and truth values, no more.
+    """
+    begun, now = time.time_ns(), {str(file): state(str(file)) for file in files}
+    match kept(name):
+        case [was, content] if was == now:
+            return content
+    content = make()
+    if is_settled(now.values(), begun):
+        keep(name, [now, content])
+    return content
+
+
+def is_settled(found: Iterable[State], begun: int) -> bool:
+    """Whether no file was changed just before a time: it might change again within the grain of its dates."""
+    return max((date for one in found for date in one[1:]), default=begun) < begun - _SETTLED
 
 
 State = list[

@@ -10,10 +10,10 @@ import pytest
 from tables import each_row
 
 from coursework.cli import run
-from coursework.course import listing as listings
 from coursework.course.folder import course_folder
 from coursework.course.listing import listing
 from coursework.errors import BadCourse
+from coursework.system import cache
 
 AN_HOUR_AGO = time.time_ns() - 3_600_000_000_000
 
@@ -28,7 +28,7 @@ def own_cache(tmp_path, monkeypatch):
 @pytest.fixture
 def settled(monkeypatch):
     """Files are trusted however lately they were changed: their dates are finer than a test is quick."""
-    monkeypatch.setattr(listings, "_SETTLED", -(10**12))
+    monkeypatch.setattr(cache, "_SETTLED", -(10**12))
 
 
 @pytest.fixture
@@ -180,8 +180,8 @@ def test_list_sees_an_edited_exercise(small_course, own_cache, settled, capsys):
 CODE = """
 import sys
 from coursework.cli import run
-from coursework.course import listing
-listing._SETTLED = -(10**12)
+from coursework.system import cache
+cache._SETTLED = -(10**12)
 sys.exit(run(sys.argv[1:]))
 """
 

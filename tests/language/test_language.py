@@ -12,6 +12,7 @@ from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
 from coursework.language import words as language
 from coursework.language.numbers import significant
+from coursework.system import cache
 
 
 @pytest.fixture
@@ -77,3 +78,19 @@ def test_a_language_that_is_not_there_names_the_file_that_would_make_it_one():
 def test_a_number_halfway_between_two_is_printed_alike_whatever_its_last_bits(halfway, digits, text):
     for off in range(-100, 101):
         assert significant(halfway * (1 + off * 2.0**-52), digits) == text
+
+
+def test_words_kept_from_an_earlier_run_give_way_to_a_changed_file(spanish, monkeypatch):
+    """The file is read once while it stays as it is, and again when it has changed."""
+    monkeypatch.setattr(cache, "_SETTLED", -(10**12))
+
+    def title():
+        language.words.cache_clear()
+        return language.words("es")["sheet"]["data"]
+
+    first = title()
+    with monkeypatch.context() as patch:
+        patch.setattr(language, "_read", None)
+        assert title() == first
+    spanish.write_text(spanish.read_text("utf-8").replace(f'"{first}"', '"Datos"'), "utf-8")
+    assert title() == "Datos"

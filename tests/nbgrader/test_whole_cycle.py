@@ -29,7 +29,7 @@ from coursework.course.answer_keys import answer_keys
 
 pytestmark = pytest.mark.e2e
 
-pytest.importorskip("nbgrader.api", reason="nbgrader is not installed: pip install '.[nbgrader]'")
+pytest.importorskip("nbgrader.api", reason="nbgrader needs pip install -e '.[e2e]'")
 
 NAME = "slotted_mechanism"
 

@@ -31,7 +31,6 @@ in_both = pytest.mark.parametrize(
 @pytest.fixture(scope="module")
 def room(tmp_path_factory):
     """A class behind a server, and a browser."""
-    pytest.importorskip("playwright")
     class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('flows')}/site.db")
     with chromium() as browser, served(class_) as address:
         yield class_, address, browser

@@ -18,7 +18,6 @@ LOOKS = [("fr", "telephone"), ("en", "desk")]  #: the longer words where there i
 @pytest.fixture(scope="module")
 def lived(tmp_path_factory):
     """The class of twelve behind a server, and a browser."""
-    pytest.importorskip("playwright")
     site = Lived(tmp_path_factory.mktemp("lived"))
     with chromium() as browser, served(site) as address:
         yield site, address, browser

@@ -28,7 +28,6 @@ _ON_DEVICE = "Object.entries(localStorage).filter(([key]) => key.startsWith('cou
 def desk(tmp_path_factory):
     """A site behind a server, and a browser."""
     class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
-    pytest.importorskip("playwright")
     with served(class_) as address, chromium() as browser:
         yield class_, address, browser
 

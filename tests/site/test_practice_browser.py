@@ -17,7 +17,6 @@ SAVED = "#state >> text=/^Saved.$/"
 def desk(tmp_path_factory):
     """A site behind a server, and a browser."""
     class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
-    pytest.importorskip("playwright")
     with served(class_) as address, chromium() as browser:
         yield class_, address, browser
 

@@ -21,7 +21,7 @@ from coursework.database.store import Store, is_shared
 from coursework.database.tables import audit
 from coursework.lti.keys import KeyFolder
 from coursework.site.frame.cookies import Cookies
-from coursework.system.visible import VisibleLines
+from coursework.system.log_lines import VisibleLines
 
 posix = pytest.mark.skipif(os.name != "posix", reason="permissions of files are those of POSIX")
 
