@@ -7,7 +7,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo site test test-all test-share test-plain golden docs lint wheel wheel-test lock lock-test sbom audit clean
+.PHONY: demo site test test-all test-share test-clients test-plain golden docs lint wheel wheel-test lock lock-test sbom audit clean
 .DEFAULT_GOAL := demo
 
 # A stamp for each extra, all in one environment: a command installs what it still lacks. Renewed when the requirements
@@ -51,6 +51,10 @@ SHARE ?= $(shell printf '%d/8' "$$((0x$$(git rev-parse --short=7 HEAD) % 8))")
 # What test has, all with other programs, a quarter of the sweeps over exercises and an eighth of their long ends.
 test-share: $(VENV)/ready-test $(VENV)/ready-e2e lint  ## Every promise, and a share of the sweeps that changes with each commit
 	$(BIN)/$(PYTEST) --share $(SHARE)
+
+# CLIENTS names what no registry has: make test-clients CLIENTS="--moodle ../moodle --qti-sdk ../qti-sdk"
+test-clients: $(VENV)/ready-test $(VENV)/ready-e2e  ## Exports in the real players and platforms that can be set up here
+	$(BIN)/python tests/clients/run.py $(CLIENTS)
 
 # The tests of the numeric core, where a last bit would show.
 NUMBERS := kinematics mechanics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py

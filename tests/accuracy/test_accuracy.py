@@ -48,6 +48,7 @@ def error(rows, what, method, place="generic"):
     return row.max_error
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("name", STUDIED)
 def test_the_stable_form_keeps_all_digits_where_the_textbook_loses_half(rows, name):
     for what in ("position", "rate"):
@@ -149,6 +150,7 @@ def test_rows_are_whole(rows):
 PAGES = [("fr", STUDIED[:1]), *((lang, STUDIED) for lang in languages())]
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize(
     ("lang", "studied"),
     [PAGES[0], *(pytest.param(*page, marks=slow) for page in PAGES[1:])],
@@ -168,6 +170,7 @@ def test_the_page_reads_the_rows_in_every_language(course, rows, lang, studied):
         assert "the solver" not in html
 
 
+@pytest.mark.e2e
 @each_row("place", ["generic", HARD])
 def test_the_page_passes_over_differences_that_have_no_answer(course, rows, place):
     def lost(row):
@@ -179,6 +182,7 @@ def test_the_page_passes_over_differences_that_have_no_answer(course, rows, plac
     assert "no answer" in html
 
 
+@pytest.mark.e2e
 def test_the_command_writes_page_and_rows(tmp_path, capsys):
     assert run(["accuracy", "slotted_mechanism", "--quick", "--lang", "en", "--out", str(tmp_path)]) == 0
     capsys.readouterr()

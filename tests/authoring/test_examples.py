@@ -58,6 +58,7 @@ def test_it_builds_in_every_format_and_language(built):
                 assert any(re.fullmatch(rf"{exercise}/\d{{5}}\.{lang}\.{form}", name) for name in names)
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("variants", [20, pytest.param(100, marks=slow)])
 @pytest.mark.parametrize("exercise", EXERCISES)
 def test_the_check_finds_no_failure(copied, exercise, variants, capsys):

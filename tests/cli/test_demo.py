@@ -11,6 +11,7 @@ from sweeps import sampled
 from coursework.cli import demo
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("exercises", sampled(["a pair", "the class's"], ["a pair"]))
 def test_the_demo_does_the_whole_job(cli, tmp_path, monkeypatch, exercises):
     if exercises == "a pair":

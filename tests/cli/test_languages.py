@@ -125,6 +125,7 @@ def test_a_bare_title_does_where_one_language_is_spoken(english, told):
     assert "Statics" in told("--course", english, "show", "crank_pin")[1]
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize(
     ("lang", "langs"), [("en_US.UTF-8", {"en"}), ("fr_FR.UTF-8", {"fr"}), ("C", {"en", "fr"})]
 )
@@ -168,6 +169,7 @@ def test_a_new_assignment_in_a_language_that_an_exercise_lacks_is_refused(englis
     assert tomllib.loads((tmp_path / "dm.toml").read_text("utf-8"))["lang"] == "en"
 
 
+@pytest.mark.e2e
 def test_notebooks_lead_to_notebooks_that_are_there(told, tmp_path):
     """And a seed that is not worth issuing is told, where it was asked for."""
     for asked in (("slotted_mechanism", "--seed", "3", "--lang", "fr,en"), ("quick_return", "--lang", "en")):

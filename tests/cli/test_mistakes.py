@@ -7,6 +7,7 @@ import json
 import pytest
 
 
+@pytest.mark.e2e
 def test_a_new_course_lists_builds_and_checks_as_it_is(cli, tmp_path):
     folder = tmp_path / "mine"
     assert cli("new", folder)[0] == 0

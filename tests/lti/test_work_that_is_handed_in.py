@@ -235,6 +235,7 @@ def test_what_an_older_try_held_stands_in_the_boxes_again(tool, visitor):
 # ------------------------------------------------------------------------- scores
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("down", [-1, 500, 503, 429, 403])
 def test_a_score_waits_while_the_platform_does_not_take_it(tool, visitor, down):
     page, path = visitor.enter()

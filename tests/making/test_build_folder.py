@@ -178,6 +178,7 @@ def test_a_folder_that_cannot_be_written_is_told_by_the_name_that_was_asked(smal
     assert ".building" not in told
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize(
     ("command", "name"),
     [(["notebook", "grashof", "mobility"], "grashof.fr.ipynb"), (["lesson", "rolling"], "rolling.fr.ipynb")],

@@ -21,6 +21,7 @@ def written(folder):
     return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("name", sampled(COURSE.names))
 def test_a_file_sent_to_another_process_is_the_same_there(name):
     roster = [Student("Zoé", "fr"), Student("John & Mary", "en")]
@@ -47,6 +48,7 @@ def test_a_variant_goes_with_the_parts_that_were_chosen_and_what_its_key_has_com
     assert there.key.half_width(there.parts[0]) == width > 0
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("count", sampled([2, 5], [2]))
 def test_processes_write_what_threads_write(tmp_path, monkeypatch, count):
     names = ["slotted_mechanism", "grashof"]

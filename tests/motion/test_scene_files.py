@@ -162,6 +162,7 @@ def test_a_file_that_is_not_there_or_no_toml_is_told(course, write, tmp_path):
         read_scene(write("seed = 3"), course)
 
 
+@pytest.mark.e2e
 def test_the_commands_run_a_file(write, tmp_path, capsys):
     path, out = write(SCENE), tmp_path / "out"
     assert run(["simulate", str(path), "--out", str(out)]) == 0

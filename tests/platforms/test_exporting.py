@@ -28,6 +28,7 @@ def read(made):
     return {file.path.as_posix(): file.make() for file in made.files}
 
 
+@pytest.mark.e2e
 @every_platform
 def test_the_same_export_has_the_same_bytes(platform):
     assert read(made(platform)) == read(made(platform))

@@ -24,6 +24,8 @@ from coursework.course.answer_keys import answer_keys
 from coursework.platforms.gradescope import REQUIREMENTS
 from coursework.system.links import LEADS_OUT
 
+pytestmark = pytest.mark.e2e
+
 PAPER = """title = "Week 3"
 lang = "en"
 mark = { of = 20 }

@@ -151,6 +151,7 @@ def test_a_command_that_does_not_exist_would_be_found(wrong):
         read_command(wrong)
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize(("page", "course"), [("first_hour.md", None), ("writing.md", "mine")])
 def test_what_check_is_shown_to_print_is_what_it_prints(page, course, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
@@ -204,6 +205,7 @@ def test_every_python_block_runs(page, tmp_path, monkeypatch):
 # ----------------------------------------------------------------- architecture
 
 
+@pytest.mark.e2e
 def test_the_page_on_architecture_tells_of_every_room_and_draws_it():
     house = gallery("house")
     page = (DOCS / "architecture.md").read_text("utf-8")
@@ -246,6 +248,7 @@ def test_a_page_of_the_gallery_tells_all_questions_in_every_language(name):
         assert f"<td><code>{given}</code></td>" in page
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("name", ["slotted_mechanism", "vocabulary", "ball_reducer"])
 def test_every_picture_and_page_that_the_gallery_points_to_is_made(name):
     exercise, made = COURSE[name], {file for file, _ in gallery().attached(COURSE[name])}

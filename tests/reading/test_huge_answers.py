@@ -68,6 +68,7 @@ SHIFTS = st.tuples(
 )
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("kind", COLUMN_KINDS)
 @given(
     pairs=st.lists(st.tuples(REFERENCES, HUGE | SHIFTS), min_size=1, max_size=8),

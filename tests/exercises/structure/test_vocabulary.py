@@ -116,6 +116,7 @@ def add(path: Path, text: str) -> None:
     path.write_text(path.read_text("utf-8") + text, "utf-8")
 
 
+@pytest.mark.e2e
 def test_a_teacher_adds_a_question_by_texts_alone(own_course):
     add(
         own_course / "exercises" / EXERCISES.name / "vocabulary.toml",
