@@ -244,7 +244,7 @@ def between_an_annular_and_a_cylindrical_joint_of_one_axis_there_are_two_interna
 
 @claim(
     "mobility_and_groups",
-    "unless a loop is made of slides only",
+    "unless a loop is made of prismatic joints only",
     "à moins qu'une boucle ne soit faite que de glissières",
 )
 def two_wedges_have_a_varying_parameter_more_than_moving_bodies(course):
