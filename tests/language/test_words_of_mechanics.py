@@ -1,0 +1,67 @@
+"""One thing has one name in the texts that students and teachers read, in each language."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+ROOMS = ("exercises", "solutions", "templates", "coursework/language")
+FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+
+#: What no text says, and what it says instead.
+BANNED = {
+    "en": {
+        r"\bderiv(e|es|ed|ing) (once|twice|with respect)\b": "differentiate",
+        r"\btorsors?\b": "twist or wrench",
+        r"\b(given|sought) (are|is) (the|in)\b(?! *same)": "we are given, we look for",
+        r"\bwhich nobody joints\b": "which no joint connects",
+        r"\blets be\b": "allows",
+        r"\bsquare to\b|\bare square (there|to)\b": "perpendicular to",
+        r"(?<!\*)\bhinge[ds]?\b": "revolute joint, pinned",
+        r"\b(two|three|four|six|seven|eight|eleven) (pivots(?!:)(?! \$)|slides)\b(?! (of|on|in)\b)": "revolute, prismatic joints",
+        r"\b(a|one) (pivot|slide) (and a|or a) (pivot|slide)\b": "a revolute and a prismatic joint",
+    },
+    "fr": {
+        r"\bépures?\b": "polygone",
+        r"\b(un|du|le|au) quatre[- ]barres\b|\bmécanisme (à )?quatre barres\b(?!\*)": "quadrilatère articulé",
+        r"\b(la|une|cette|sa)\s+coulisses?\b": "guide",
+        r"\bprédi(sez|re)\b": "prévoyez, prévoir",
+    },
+}
+
+
+def texts(lang: str) -> list[Path]:
+    """Every file that a reader of this language sees, without the sections of names alone."""
+    files = [file for room in ROOMS for file in (ROOT / room).rglob("*") if file.is_file()]
+    return [file for file in files if re.search(rf"(^|\.){lang}\.(md|md\.j2|toml)$", file.name)]
+
+
+def slips(lang: str, text: str) -> list[str]:
+    """The banned phrases of a text."""
+    found = [(re.finditer(pattern, text, re.IGNORECASE), better) for pattern, better in BANNED[lang].items()]
+    return [f"{hit[0]!r}: write {better!r}" for hits, better in found for hit in hits]
+
+
+def test_no_text_names_a_thing_by_a_second_name():
+    told = [
+        f"{file.relative_to(ROOT)}: {slip}"
+        for lang in BANNED
+        for file in texts(lang)
+        for slip in slips(lang, readable(file))
+    ]
+    assert not told, "\n".join(told)
+    assert min(len(texts(lang)) for lang in BANNED) > 80
+
+
+def readable(file: Path) -> str:
+    """The prose of a file: no code, no heading that is a name of the code, no list of spellings that are read."""
+    text = FENCE.sub("", file.read_text("utf-8"))
+    text = re.sub(r"^## (\w+|mistake \w+)$", "", text, flags=re.MULTILINE)
+    text = re.sub(r"^\w+ = \[.*?\]", "", text, flags=re.MULTILINE | re.DOTALL)
+    return re.sub(r"^\w+ = ", "", text, flags=re.MULTILINE)
+
+
+def test_slips_would_be_found():
+    assert slips("en", "Sought are the angles, square to the torsor that a hinge lets be.")
+    assert len(slips("fr", "L'épure du quatre barres : prédisez où va la coulisse.")) == 4
