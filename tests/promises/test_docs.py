@@ -125,6 +125,23 @@ def test_the_site_names_no_other_place():
         ), source.name
 
 
+def test_every_page_begins_with_what_its_reader_can_do_after_it():
+    """But the front page, which says to each reader where to go."""
+    pages = {page for page in DOCS.rglob("*.md") if page != DOCS / "index.md"}
+    first = {page.name: page.read_text("utf-8").split("\n\n", 2)[1] for page in pages}
+    assert not {
+        name
+        for name, lead in first.items()
+        if not re.match("After th(is|ese) pages? |Après cette page, ", lead)
+    }
+
+
+def test_the_readme_is_one_screen_and_the_changes_are_a_summary():
+    for name, most in (("README.md", 90), ("CHANGELOG.md", 40)):
+        if (ROOT / name).exists():
+            assert len((ROOT / name).read_text("utf-8").splitlines()) <= most, name
+
+
 # --------------------------------------------------------------------- commands
 
 
