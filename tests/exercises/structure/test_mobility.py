@@ -67,7 +67,7 @@ def test_the_words_of_the_figure_list_the_joints_that_are_solved_and_the_stateme
         words = variant.text.section("figure").text
         for joint in variant.printed["joints"]:
             *others, last = joint["between"]
-            kind = {"revolute": "revolute", "prismatic": "slide", "higher": "contact"}[joint["kind"]]
+            kind = {"revolute": "revolute", "prismatic": "prismatic", "higher": "contact"}[joint["kind"]]
             assert f"{kind} between {', '.join(map(str, others))} and {last}" in words
         assert words.count(" between ") == len(graph.joints)
 
