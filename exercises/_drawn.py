@@ -1,4 +1,5 @@
-"""What the drawn polygons share: parts, and the four-bar linkages and slider-cranks that make good drawings."""
+"""Common base of exercises with drawn polygons: parts, and four-bar linkages and slider-cranks that make good
+drawings."""
 
 from typing import Any, NamedTuple
 
@@ -26,7 +27,7 @@ KNOWN = ("both", "direction", "length", "neither")
 
 
 def known(*quantities, count=2):
-    """What is known of a vector before it is drawn: so many rows of the table, in turn."""
+    """Return the data of a vector before it is drawn, for a number of rows of the table."""
     rows = (Part(quantity, kind="choice", choices=KNOWN) for quantity in quantities)
     return in_turn(count, ("r2", "theta2", "omega2"), *rows)
 
@@ -152,7 +153,7 @@ def slider_crank_figure(rod, r2, theta2, e):
 
 
 def all_long(share, *vectors):
-    """Whether the shortest has this share of the longest at least."""
+    """Return whether the shortest vector has at least this share of the longest."""
     lengths = [abs(v) for v in vectors]
     return np.minimum.reduce(lengths) > share * np.maximum.reduce(lengths)
 

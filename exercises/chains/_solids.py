@@ -1,4 +1,4 @@
-"""What the exercises on chains of solids share."""
+"""Common base of the exercises on spatial chains."""
 
 from functools import cache
 from inspect import Parameter, Signature
@@ -149,7 +149,8 @@ def _rows(joint, along) -> np.ndarray:
 
 
 def _carry(point, shape) -> np.ndarray:
-    """What takes a torsor from a point, columns in mm, to the origin: resultants stay, moments follow."""
+    """Return the matrix that moves a torsor from a point, columns in mm, to the origin: the moment changes,
+    the resultant does not."""
     x, y, z = (np.broadcast_to(np.asarray(c, float) / 20, shape) for c in point)
     carry = np.zeros((*shape, 6, 6))
     carry[..., range(6), range(6)] = 1.0

@@ -23,7 +23,7 @@ LENGTHS = ("R", "h", "e")
 
 
 def across(R, e, theta1):
-    """How far the ball lies from the output axis along y."""
+    """Distance of the ball from the output axis along y."""
     return R * sin(theta1) - e
 
 

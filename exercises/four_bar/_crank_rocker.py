@@ -1,4 +1,4 @@
-"""What exercises share about a crank-rocker."""
+"""Common base of exercises about a crank-rocker."""
 
 import numpy as np
 

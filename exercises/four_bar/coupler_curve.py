@@ -41,7 +41,7 @@ def curves(r1, r2, r3, r4, AP, beta, mode):
 
 
 def _outlines(curves):
-    """How far each curve reaches from the middle of its box, in directions 15 degrees apart."""
+    """Return the distances from the middle of its box to each curve, in directions 15 degrees apart."""
     middle = sum(
         unit * (part.max(axis=-1) + part.min(axis=-1)) / 2
         for unit, part in ((1, curves.real), (1j, curves.imag))

@@ -9,7 +9,7 @@ from .four_bar_positions import crank_off_the_axes
 
 
 def figure(r1, r2, theta2):
-    """What is known before the construction: no B."""
+    """Draw the data before the construction, without B."""
     O, A, C = 0j, polar(r2, theta2), complex(r1)
     return Figure(
         line(O, C, dashed=True, label="r_1"),

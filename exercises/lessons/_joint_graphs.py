@@ -1,4 +1,4 @@
-"""What the figures of several lessons share: joint graphs with several joints between two bodies."""
+"""Common base of lesson figures: joint graphs with several joints between two bodies."""
 
 from coursework.figures import circle, line, note, trace
 

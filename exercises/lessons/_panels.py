@@ -1,4 +1,5 @@
-"""What the figures of lessons share: drawings side by side, joint graphs, and what no element of a figure draws."""
+"""Common base of lesson figures: drawings side by side, joint graphs, and shapes without an element of their
+own."""
 
 from dataclasses import fields, replace
 

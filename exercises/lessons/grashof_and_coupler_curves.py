@@ -154,7 +154,7 @@ def _paths(bars):
 
 
 def _turns(way, pivot):
-    """Whether a path goes all round its pivot."""
+    """Return whether a path goes all round its pivot."""
     return abs(np.unwrap(np.angle(way - pivot))[[0, -1]] @ [-1, 1]) > 6
 
 

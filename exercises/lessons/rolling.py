@@ -113,7 +113,7 @@ def _places():
 
 
 def ball_axis():
-    """Why the ball turns about AB: distances of the four points and of the centre to that line."""
+    """Draw the distances of the four points and of the centre from AB, the axis of the ball's rotation."""
     at = _places()
     along = polar(1.0, 45)
     feet = {

@@ -38,7 +38,7 @@ def C(B, r5):
 
 
 def theta2(A, crank_pivot):
-    """Where the crank stands in the figure."""
+    """Crank angle in the figure."""
     return angle(A - crank_pivot)
 
 
@@ -53,7 +53,7 @@ def with_the_crank_at(driven, crank_pivot, A, B, r2, r3, r4):
 
 
 def _stretched(r2, r3, r4, yO, phi):
-    """Where O lies if the crank, in line with the coupler, leaves the upper bar at this angle."""
+    """Position of O for which the crank, in line with the coupler, leaves the upper bar at this angle."""
     return -r4 * sin(phi) - sqrt((r2 + r3) ** 2 - (r4 * cos(phi) + yO) ** 2)
 
 

@@ -48,7 +48,7 @@ def _cosine_at(side, next_side, opposite):
 
 
 def _within(cosine, least):
-    """Whether an angle lies at least so many degrees from 0 and from 180."""
+    """Return whether an angle lies at least this many degrees from 0 and from 180."""
     return abs(cosine) <= cos(least)
 
 

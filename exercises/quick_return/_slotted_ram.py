@@ -1,4 +1,4 @@
-"""What exercises share in which a slotted guide drives a ram."""
+"""Common base of exercises in which a slotted guide drives a ram."""
 
 from coursework.degrees import polar, wrap
 from coursework.kinematics.dyads import rrp

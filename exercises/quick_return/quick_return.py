@@ -36,7 +36,7 @@ def C(B, r5, h):
 
 
 def theta2(A):
-    """Where the crank stands in the figure."""
+    """Crank angle in the figure."""
     return angle(A)
 
 
@@ -73,7 +73,8 @@ def unequal_halves(OB_at_the_ends, r1, r4):
 
 
 def _passes(ends, direction):
-    """Whether the swing between two directions, less than half a turn apart, passes another one or nearly."""
+    """Return whether the swing between two directions, less than half a turn apart, passes near or through
+    another one."""
     low = np.minimum(ends[0], ends[1])
     swing = abs(ends[1] - ends[0])
     return (direction - low + 6) % 360 < swing + 12

@@ -1,4 +1,4 @@
-"""What exercises share about a slider-crank."""
+"""Common base of exercises about a slider-crank."""
 
 import numpy as np
 

@@ -43,7 +43,7 @@ def _when(question):
 
 
 def speaks_of_figure(deck):
-    """Whether a question of the variant does."""
+    """Return whether a question of the variant refers to the figure."""
     return not OF_THE_FIGURE.isdisjoint(asked(deck))
 
 

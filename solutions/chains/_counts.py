@@ -1,4 +1,4 @@
-"""What is counted on a chain of solids, in space or in the plane, and the rank of its loop equations.
+"""Counts on a chain of solids, in space or in the plane, and the rank of its loop equations.
 
 A solution that takes these has the hidden ``_solids``: the chain, or an array of chains.
 """

@@ -1,4 +1,4 @@
-"""What the solutions on chains of solids share. Names begin with an underscore: none of it is a quantity."""
+"""Common base of the solutions on spatial chains. Names begin with an underscore: none of it is a quantity."""
 
 from __future__ import annotations
 

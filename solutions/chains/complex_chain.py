@@ -63,7 +63,7 @@ def output_body(_solids, layout=""):
 
 
 def role(m_useful):
-    """What the mechanism is for, by its useful mobility."""
+    """Purpose of the mechanism, by its useful mobility."""
     return np.where(
         np.asarray(m_useful) == 0, "clamp", np.where(np.asarray(m_useful) == 1, "transforms", "adjusted")
     )

@@ -79,7 +79,7 @@ def axis_point(_combined):
 
 
 def condition(_combined):
-    """Whether what is superfluous is held by moments, by forces, or by both."""
+    """Kind of the redundant constraints: held by moments, by forces, or by both."""
     return each_stacked(lambda one: one.condition, _combined)
 
 

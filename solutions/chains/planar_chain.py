@@ -94,7 +94,7 @@ def h_space(gamma, rc_space):
 
 
 def comparison(h, h_space):
-    """What the plane study tells of the constraint of the real chain."""
+    """Conclusion from the plane study about the constraint of the real chain."""
     return np.where(np.asarray(h) > 0, "plane", np.where(np.asarray(h_space) > 0, "hidden", "sound"))
 
 

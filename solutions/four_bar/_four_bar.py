@@ -1,4 +1,5 @@
-"""What four-bar linkages with the frame along x have in common: the triangle A, B, C, and the loop's first derivative.
+"""Quantities common to four-bar linkages with the frame along x: the triangle A, B, C, and the loop's first
+derivative.
 
 The formulas are the course's; the numeric core keeps their digits near a dead point.
 """

@@ -37,7 +37,7 @@ def links_accelerate_visibly(motion, omega2):
 
 
 def _tells(wrong, right):
-    """Whether a mistake moves every answer by two tolerances of 1 % and more, or not at all."""
+    """Return whether a mistake changes the values by at least two tolerances, or not at all."""
     apart = [
         abs(mistaken - value) / abs(0.01 * value)
         for mistaken, value in zip(_answers(wrong), _answers(right), strict=True)

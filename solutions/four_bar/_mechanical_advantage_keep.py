@@ -29,7 +29,7 @@ def links_turn_visibly(rates):
 
 
 def _tells(wrong, right):
-    """Whether a mistake moves a value by two tolerances of 1 % and more, or not at all."""
+    """Return whether a mistake changes the values by at least two tolerances, or not at all."""
     gap = abs(wrong - right) / abs(0.01 * right)
     return (gap > 2) | (gap < 0.25)
 

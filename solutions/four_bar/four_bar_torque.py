@@ -113,8 +113,8 @@ MECHANISM = Mechanism(
 
 
 class _Loads(NamedTuple):
-    """What acts on the bodies besides the joints: on the coupler the force X3, Y3 at G3, in N, and its moment M_A about
-    A, in N*m; on the rocker X4, Y4 at G4 and M_C about C; on the crank Y2 at O and M2."""
+    """Loads on the bodies besides the joints: on the coupler the force X3, Y3 at G3, in N, and its moment M_A
+    about A, in N*m; on the rocker X4, Y4 at G4 and M_C about C; on the crank Y2 at O and M2."""
 
     X3: Any = 0.0
     Y3: Any = 0.0

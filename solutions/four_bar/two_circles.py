@@ -139,7 +139,7 @@ def drawing(answers, r1, r2, r3, r4, theta2):
 
 
 def _frame(A, r1):
-    """What is known before the construction, as vectors from O."""
+    """Vectors from O known before the construction."""
     return Polygon(
         "position",
         (
@@ -294,7 +294,7 @@ def _wrong_circles(images, kl, center, radius_A, radius):
 
 @mistake("b1", "b2", kind="exchanged")
 def radii_exchanged(_images, r3, r4, kl):
-    """That of the coupler about C, that of the rocker about A."""
+    """Exchange the radii: the coupler's about C, the rocker's about A."""
     return _wrong_circles(_images, kl, _images[1], r4, r3)
 
 

@@ -42,7 +42,7 @@ def B2_moves_visibly(velocity_of_B2, r2, r3):
 
 
 def _tells(wrong, right):
-    """Whether a mistake moves a value by two tolerances of 1 % and more, or not at all."""
+    """Return whether a mistake changes the values by at least two tolerances, or not at all."""
     gap = abs(wrong - right) / abs(0.01 * right)
     return (gap > 2) | (gap < 0.25)
 

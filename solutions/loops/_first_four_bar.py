@@ -1,4 +1,4 @@
-"""What mechanisms share whose first loop is a four-bar linkage O, A, B, C with the pivot C anywhere.
+"""Quantities of mechanisms whose first loop is a four-bar linkage O, A, B, C, with the pivot C anywhere.
 
 Each solves it as its own ``_loop_1``, by the numeric core, which keeps digits near a dead point.
 """

@@ -53,7 +53,8 @@ def sliders_accelerate_visibly(motion, r2):
 
 
 def _tell(wrong, right):
-    """Whether values differ by two tolerances of 1 % and more, or not at all; what does not close says nothing."""
+    """Return whether values differ by at least two tolerances of 1 %, or not at all; poses that do not close
+    are ignored."""
     gap = abs(wrong - right) / abs(0.01 * right)
     return ~((gap > 0.25) & (gap < 2))
 

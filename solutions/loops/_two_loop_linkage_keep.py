@@ -45,8 +45,7 @@ def links_accelerate_visibly(motion):
 
 
 def _tells(wrong, right):
-    """Whether a mistake moves every answer by two tolerances and more, or not at all; what does not close
-    says nothing."""
+    """Return whether a mistake changes the values by at least two tolerances, or not at all."""
     turned = [abs(angle(bad / good)) for bad, good in zip(wrong[0], right[0], strict=True)]
     moved = [
         abs(bad - good) / abs(0.01 * good)

@@ -170,7 +170,7 @@ def p7(yD, r5, theta5, d3):
 
 @stable(lambda r7, p7: np.real(rrp(0j, r7, p7)))
 def q7(r7, p7):
-    """How far G lies to the right of F: r7 cos theta7, positive."""
+    """Distance of G to the right of F: r7 cos theta7, positive."""
     return sqrt(r7**2 - p7**2)
 
 

@@ -1,4 +1,4 @@
-"""What every drawn polygon begins with: the pole p, and the end a of the first vector, which is known whole."""
+"""Beginning of every drawn polygon: the pole p, and the end a of the first vector, which is completely known."""
 
 from coursework.marking.drawn_polygons import to_paper, turned
 from coursework.solution import mistake

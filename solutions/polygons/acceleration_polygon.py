@@ -45,7 +45,7 @@ def _lines(_bars):
 
 
 def _start(m):
-    """Where the line of the tangential acceleration of B starts."""
+    """Start of the line of the tangential acceleration of B."""
     return m
 
 

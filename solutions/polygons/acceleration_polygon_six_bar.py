@@ -47,7 +47,7 @@ def _images(_links, _rates, _gains):
 
 
 def _slider(_images, _links, _rates, _gains):
-    """That of C, which has no part across its guide."""
+    """Acceleration of C, which has no component across its guide."""
     return (_images[3] + (1j * _gains[2] - _rates[3] ** 2) * _links[3]).real + 0j
 
 
@@ -57,7 +57,7 @@ def _lines(_links):
 
 
 def _start(m):
-    """Where the line of the tangential acceleration of B starts."""
+    """Start of the line of the tangential acceleration of B."""
     return m
 
 

@@ -47,7 +47,7 @@ def known_B():
 
 
 def _start(p):
-    """Where the line of the acceleration of B starts."""
+    """Start of the line of the acceleration of B."""
     return p
 
 

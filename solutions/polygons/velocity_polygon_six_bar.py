@@ -22,7 +22,7 @@ def _images(_links, _rates):
 
 
 def _slider(_images, _links, _rates):
-    """That of C, which has no part across its guide."""
+    """Velocity of C, which has no component across its guide."""
     return (_images[1] + 1j * _rates[3] * _links[3]).real + 0j
 
 

@@ -41,7 +41,7 @@ def piston_accelerates_visibly(piston_gain, r2):
 
 
 def _told_apart(wrong, right):
-    """Whether a mistake moves a value by two tolerances and more, or not at all."""
+    """Return whether a mistake changes the values by at least two tolerances, or not at all."""
     gap = abs(wrong - right) / abs(0.01 * right)
     return (gap > 2) | (gap < 0.25)
 

@@ -9,7 +9,7 @@ __all__ = ["HELPERS", "KEEP"]
 
 
 def _rod_share(P, C):
-    """What the turning of the rod adds to the velocity of C, over omega4."""
+    """Contribution of the rod's rotation to the velocity of C, over omega4."""
     rod = C - P
     return P.real * rod.imag / rod.real
 
@@ -47,7 +47,7 @@ def ram_moves_visibly(ram, r4):
 
 
 def _told_apart(wrong, right):
-    """Whether a mistake moves a value by two tolerances and more, or not at all."""
+    """Return whether a mistake changes the values by at least two tolerances, or not at all."""
     gap = abs(wrong - right) / abs(0.01 * right)
     return (gap > 2) | (gap < 0.25)
 

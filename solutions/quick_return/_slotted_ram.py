@@ -72,7 +72,7 @@ def p(h, yP):
 
 @stable(lambda r4, r5, h, theta4: SliderCrank(r4, r5, h).run(Degrees(theta4)))
 def q(r5, p):
-    """How far C lies to the right of P."""
+    """Distance of C to the right of P."""
     return sqrt(r5**2 - p**2)
 
 

@@ -1,4 +1,4 @@
-"""What every quick return has in common: two strokes of one turn, and the times that they take.
+"""Quantities common to quick returns: two strokes of one turn, and their times.
 
 The crank turns at a constant rate, so that times are as the arcs ``alpha`` (the longer) and ``beta``.
 """

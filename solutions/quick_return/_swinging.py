@@ -14,7 +14,7 @@ from coursework.solution import stable
 
 
 class _Turn(NamedTuple):
-    """What a whole turn of the crank does to the ram."""
+    """Effect of a full turn of the crank on the ram."""
 
     stroke: Any
     lines_up: Any  #: whether rod and guide line up inside the swing, where the ram turns back too

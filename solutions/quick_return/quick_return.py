@@ -140,7 +140,7 @@ def theta5(r5, h, yB):
 
 
 def _run(rod, rise):
-    """How far C lies to the right of B, for how far it lies above."""
+    """Distance of C to the right of B, for its height above B."""
     if np.ndim(rod - rise) == 0 and abs(rise) > rod:
         raise CannotAssemble(
             f"the rod does not reach the line: it is {abs(rise):.6g} from B, the rod is {rod:.6g} long "

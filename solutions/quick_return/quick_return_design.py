@@ -118,7 +118,8 @@ def figure(r2, r3, e):
 
 
 def residual(stroke, Q, alpha, r2, r3, e, mode):
-    """Where the piston turns back, found as points; the ratio of the arcs between them; no rod leans less."""
+    """Residual of the design: dead points computed as points, the ratio of the arcs between them, and the
+    least inclination of the rod."""
     far = (r3 + r2) * np.exp(1j * np.arcsin(e / (r3 + r2)))
     near = (r3 - r2) * np.exp(1j * np.arcsin(e / (r3 - r2)))
     # Anticlockwise from the far end to the near one the crank turns half a turn and what lies between.

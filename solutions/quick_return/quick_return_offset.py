@@ -81,7 +81,7 @@ def p(e, r2, theta2):
 
 @stable(lambda r2, r3, e, theta2: SliderCrank(r2, r3, e).run(Degrees(theta2)))
 def q(r3, p):
-    """How far C lies to the right of A."""
+    """Distance of C to the right of A."""
     return sqrt(r3**2 - p**2)
 
 

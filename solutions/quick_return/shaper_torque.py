@@ -69,7 +69,7 @@ def load(F, omega2, omega4, v_C):
 
 
 def torque(v_C, omega2, load=0.0):
-    """What the drive supplies, the cutting force takes; N*m."""
+    """Torque of the drive, balanced by the cutting force; N*m."""
     return -load * v_C / (1000 * omega2)
 
 
@@ -115,13 +115,13 @@ def _ram(theta, r1, r2, r4, r5, h):
 
 
 def _excess_of_speed(theta, r1, r2, r4, r5, h):
-    """How far the ram goes to the left per radian of the crank, beyond the average over a turn."""
+    """Displacement of the ram to the left per radian of the crank, beyond the average over a turn."""
     return -_ram(theta, r1, r2, r4, r5, h)[0] - r4 * r2 / (pi * r1)
 
 
 def _crossing(low, high, *lengths):
-    """Where the torque equals its mean, between a crank angle where it is less and one where it is more: halved, then by
-    Newton's steps."""
+    """Crank angle at which the torque equals its mean, between one where it is less and one where it is more:
+    by bisection, then by Newton's method."""
     for _ in range(10):
         middle = 0.5 * (low + high)
         is_less = _excess_of_speed(middle, *lengths) < 0
@@ -151,13 +151,13 @@ def _crossings(r1, r2, r4, r5, h, _turn):
 
 @stable(lambda _crossings: _crossings[..., 0][()])
 def theta_rise(r1, r2, r4, r5, h):
-    """Where the torque rises above its mean, and the flywheel begins to give."""
+    """Crank angle at which the torque rises above its mean, and the flywheel begins to give energy."""
     return _crossing(-90.0, 90.0, r1, r2, r4, r5, h)
 
 
 @stable(lambda _crossings: _crossings[..., 1][()])
 def theta_fall(r1, r2, r4, r5, h):
-    """Where it falls below, and the flywheel begins to store."""
+    """Crank angle at which the torque falls below its mean, and the flywheel begins to store energy."""
     return _crossing(270.0, 90.0, r1, r2, r4, r5, h)
 
 
@@ -198,7 +198,7 @@ def travel(xC_rise, xC_fall):
 
 
 def arc(theta_fall, theta_rise):
-    """How far the crank turns while the torque is above its mean."""
+    """Rotation of the crank while the torque is above its mean."""
     return theta_fall - theta_rise
 
 
@@ -206,7 +206,7 @@ def arc(theta_fall, theta_rise):
     r"\frac{<F> \times <travel>}{\num{1000}} - <mean_torque> \times 2\pi \times \frac{<arc>}{360^{\circ}}"
 )
 def excess(F, travel, mean_torque, arc):
-    """What the flywheel gives: the work that the cut takes, less what the drive supplies meanwhile; J."""
+    """Energy that the flywheel gives: the work of the cut minus that of the drive meanwhile; J."""
     return F * travel / 1000 - mean_torque * 2 * pi * arc / 360
 
 

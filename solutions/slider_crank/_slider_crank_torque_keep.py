@@ -27,7 +27,7 @@ def answers(scene):
 
 
 def _told_apart(right, wrong):
-    """Whether a mistake moves every answer by two tolerances and more, or not at all."""
+    """Return whether a mistake changes the values by at least two tolerances, or not at all."""
     moved = abs(wrong / right - 1)
     return ((moved > 0.022) | (moved < 0.002)).all(axis=0)
 

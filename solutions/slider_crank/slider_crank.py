@@ -52,7 +52,7 @@ def p(e, r2, theta2):
 
 @stable(lambda r2, r3, e, theta2: SliderCrank(r2, r3, e).run(Degrees(theta2)))
 def q(r3, p):
-    """How far B lies to the right of A: r3 cos theta3, positive."""
+    """Distance of B to the right of A: r3 cos theta3, positive."""
     return sqrt(r3**2 - p**2)
 
 

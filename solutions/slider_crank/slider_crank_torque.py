@@ -79,7 +79,7 @@ MECHANISM = Mechanism(
 
 
 class _Loads(NamedTuple):
-    """What acts on the bodies besides the joints: forces X4, Y4 on the piston and X3, Y3 on the rod, in N;
+    """Loads on the bodies besides the joints: forces X4, Y4 on the piston and X3, Y3 on the rod, in N;
     moments M_A on the rod about A and M2 on the crank about O, in N*m."""
 
     X4: Any = 0.0
@@ -100,7 +100,7 @@ def p(e, r2, theta2):
 
 @stable(lambda r2, r3, e, theta2: SliderCrank(r2, r3, e).run(Degrees(theta2)))
 def q(r3, p):
-    """How far B lies to the right of A: r3 cos theta3, positive."""
+    """Distance of B to the right of A: r3 cos theta3, positive."""
     return sqrt(r3**2 - p**2)
 
 

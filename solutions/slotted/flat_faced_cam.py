@@ -98,7 +98,7 @@ def rho(Rb, s, s2):
 
 
 def w(b):
-    """Where the derivative of s + s'' vanishes: u (1 - u) there, the smaller root of a quadratic equation."""
+    """Zero of the derivative of s + s'': u (1 - u) there, the smaller root of a quadratic equation."""
     return 2 / (6 + np.sqrt(36 - 2 * b**2))
 
 

@@ -46,7 +46,7 @@ def group_count(groups):
 
 
 def group_size(groups, body):
-    """How many bodies stand in the named body's group; 1 for the driver alone."""
+    """Number of bodies in the named body's group; 1 for the driver alone."""
     return each(lambda found, one: len(_group(found, one)["bodies"]), groups, body, dtype=int)
 
 
@@ -55,7 +55,7 @@ def group_class(groups, body):
 
 
 def assour_class(groups):
-    """That of the highest group; I where there is none."""
+    """Class of the highest group; I where there is none."""
     return each(lambda found: assour.roman(max(map(_rank, found), default=1)), groups, dtype=str)
 
 
