@@ -75,9 +75,9 @@ def study(
 
     chosen = open_course(course_folder(course, lang or UNTOLD))
     lang = chosen.folder.language if lang is None else lang
-    told = {} if clock is None else {"clock": clock}
+    text = {} if clock is None else {"clock": clock}
     return open_session(
-        chosen, exercise, seed=seed, lang=lang, named=course, version=version, folder=folder, **told
+        chosen, exercise, seed=seed, lang=lang, named=course, version=version, folder=folder, **text
     )
 
 

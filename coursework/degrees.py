@@ -81,25 +81,25 @@ def polar(length: Any, theta: Angle) -> Any:
 def angle(vector: Any) -> Angle:
     """Return the direction of a complex vector, in (-180, 180], by its quadrant rather than by a quotient."""
     if _is_scalar(vector):
-        found = math.degrees(cmath.phase(vector))
-        return 180.0 if found == -180.0 else found
+        result = math.degrees(cmath.phase(vector))
+        return 180.0 if result == -180.0 else result
     mp = _digits_of(vector)
     if mp is not None:
         return mp.degrees(mp.arg(vector))
-    found = np.degrees(np.angle(vector))
-    return np.where(found == -180.0, -found, found)
+    result = np.degrees(np.angle(vector))
+    return np.where(result == -180.0, -result, result)
 
 
 def atan2(y: Any, x: Any) -> Angle:
     """Return the direction of the vector (x, y), in (-180, 180]."""
     if _is_scalar(y, x):
-        found = math.degrees(math.atan2(y, x))
-        return 180.0 if found == -180.0 else found
+        result = math.degrees(math.atan2(y, x))
+        return 180.0 if result == -180.0 else result
     mp = _digits_of(y, x)
     if mp is not None:
         return mp.degrees(mp.atan2(y, x))
-    found = np.degrees(np.arctan2(y, x))
-    return np.where(found == -180.0, -found, found)
+    result = np.degrees(np.arctan2(y, x))
+    return np.where(result == -180.0, -result, result)
 
 
 def atan(x: Any) -> Angle:

@@ -224,10 +224,10 @@ class Part:
     @property
     def loop_form(self) -> tuple[str, int]:
         """Form of a loop equation, ``x``, ``y`` or ``complex``, and its order of differentiation."""
-        found = _loop_form(self)
-        if found is None:
+        result = _loop_form(self)
+        if result is None:
             raise BadCourse(f"part {self.quantity!r} closes no loop")
-        return found
+        return result
 
     def half_width(self, reference: float) -> float:
         """Return the largest accepted distance from a reference, in the part's unit."""
@@ -265,8 +265,8 @@ def in_turn(count: int, by: Sequence[str], *groups: Part | Sequence[Part]) -> tu
     parts = [(group,) if isinstance(group, Part) else tuple(group) for group in groups]
     worth = {sum(part.points for part in group) for group in parts}
     if len(worth) > 1:
-        told = ", ".join(f"{group[0].id} {sum(p.points for p in group):g}" for group in parts)
-        raise BadCourse(f"groups that are asked in turn are worth the same; found {told} points")
+        text = ", ".join(f"{group[0].id} {sum(p.points for p in group):g}" for group in parts)
+        raise BadCourse(f"groups that are asked in turn are worth the same; found {text} points")
     names = [group[0].id for group in parts]
     return tuple(
         replace(part, takes_turns=True, when=_turn_of(group[0].id, names, count, tuple(by)))
@@ -279,9 +279,9 @@ def _turn_of(name: str, names: Sequence[str], count: int, by: Sequence[str]) -> 
     """Return the function of given quantities that says whether it is a group's turn."""
 
     def is_asked(*values: Any) -> bool:
-        told = "/".join(v if isinstance(v, str) else f"{float(v):.9g}" for v in values)
+        text = "/".join(v if isinstance(v, str) else f"{float(v):.9g}" for v in values)
         order = sorted(
-            names, key=lambda one: hashlib.shake_128(f"coursework/turn/{one}/{told}".encode()).digest(8)
+            names, key=lambda item: hashlib.shake_128(f"coursework/turn/{item}/{text}".encode()).digest(8)
         )
         return name in order[:count]
 
@@ -308,17 +308,17 @@ def loop_equations(
     ``usual``: ``("x", "y")``. A named mistake of the solution is known up to a factor of ``parameters``.
     """
     parts = []
-    known = tuple(symbols)
+    known_names = tuple(symbols)
     for ending, more in (("", ()), ("_dot", rates), ("_ddot", second_rates)):
         if ending and not more:
             continue
-        known += tuple(more)
+        known_names += tuple(more)
         for form in ("x", "y", "complex"):
             parts.append(
                 Part(
                     f"{loop}_{form}{ending}",
                     kind="equation",
-                    variables=known,
+                    variables=known_names,
                     parameters=tuple(parameters),
                     loop=loop,
                     points=2 * points if form == "complex" else points,

@@ -273,7 +273,7 @@ class Solution:
         BadCourse
             It defines no quantity, a mistake about something that it does not have, or a ``FILM`` that is none.
         """
-        own = {
+        selected = {
             key: value
             for key, value in vars(module).items()
             if not key.startswith("_")
@@ -281,10 +281,10 @@ class Solution:
             and not isinstance(value, type)
             and _belongs(value, module)
         }
-        mistakes = {k: f.__mistake__ for k, f in own.items() if hasattr(f, "__mistake__")}
-        judges = {k: f for k, f in own.items() if hasattr(f, "__judge__")}
+        mistakes = {k: f.__mistake__ for k, f in selected.items() if hasattr(f, "__mistake__")}
+        judges = {k: f for k, f in selected.items() if hasattr(f, "__judge__")}
         special = {"residual", "figure", "motion", "polygons"}
-        functions = {k: f for k, f in own.items() if k not in {*special, *mistakes, *judges}}
+        functions = {k: f for k, f in selected.items() if k not in {*special, *mistakes, *judges}}
         if not functions:
             raise BadCourse(f"{source} defines no quantity; a quantity is a function of its name")
         functions |= _hidden(functions, module)
@@ -313,14 +313,14 @@ class Solution:
             graph,
             mistakes,
             tuple(getattr(module, "KNOWN", ())),
-            own.get("residual"),
-            own.get("figure"),
-            own.get("motion"),
+            selected.get("residual"),
+            selected.get("figure"),
+            selected.get("motion"),
             units,
             dict(getattr(module, "SYMBOLS", {})),
             frozenset(getattr(module, "STRUCTURES", ())),
             judges,
-            own.get("polygons"),
+            selected.get("polygons"),
             loops,
             _film(source, module),
             _mechanism(source, module, graph),
@@ -408,10 +408,10 @@ def _mechanism(source: str, module: ModuleType, graph: Graph) -> Mechanism | Non
         return None
     if not isinstance(mechanism, Mechanism):
         raise BadCourse(f"{source}: MECHANISM is a Mechanism(…); found {str(mechanism)[:60]}")
-    known = graph.names | graph.leaves
+    known_names = graph.names | graph.leaves
     for name in mechanism.angles:  # what places are given by may be data that no formula takes
-        if name not in known:
-            raise BadCourse(f"{source}: MECHANISM names no quantity by {name!r}{nearest(name, known)}")
+        if name not in known_names:
+            raise BadCourse(f"{source}: MECHANISM names no quantity by {name!r}{nearest(name, known_names)}")
     return mechanism
 
 
@@ -437,13 +437,13 @@ def _belongs(function: Any, module: ModuleType) -> bool:
 def _hidden(functions: Mapping[str, Callable[..., Any]], module: ModuleType) -> dict[str, Callable[..., Any]]:
     """Return the hidden functions that quantities take as parameters: the module's, or those of a shared
     module."""
-    found: dict[str, Callable[..., Any]] = {}
+    results: dict[str, Callable[..., Any]] = {}
     waiting = list(functions.values())
     while waiting:
         function = waiting.pop()
         for name in QuantityNode.of(function).needs:
             hidden = getattr(module, name, function.__globals__.get(name)) if name.startswith("_") else None
-            if callable(hidden) and name not in found:
-                found[name] = hidden
+            if callable(hidden) and name not in results:
+                results[name] = hidden
                 waiting.append(hidden)
-    return found
+    return results

@@ -24,14 +24,14 @@ class Closure:
 
     def gaps(self, values: Mapping[str, Any], cos: Function = np.cos, sin: Function = np.sin) -> list[Any]:
         """Return the gap of each loop, along x and y in turn."""
-        found = []
+        results = []
         for loop in self.loops:
             x = y = 0.0
             for v in loop:
                 length, turned = self._polar(v, values)
                 x, y = x + length * cos(turned), y + length * sin(turned)
-            found += [x, y]
-        return found
+            results += [x, y]
+        return results
 
     def jacobian(
         self, values: Mapping[str, Any], cos: Function = np.cos, sin: Function = np.sin
@@ -79,7 +79,7 @@ def _solved(matrix: list[list[Any]], right: list[Any]) -> list[Any]:
     count = len(right)
     stacked = np.stack(flat[: count * count], axis=-1).reshape(*flat[0].shape, count, count)
     try:
-        found = np.linalg.solve(stacked, np.stack(flat[count * count :], axis=-1)[..., None])[..., 0]
+        result = np.linalg.solve(stacked, np.stack(flat[count * count :], axis=-1)[..., None])[..., 0]
     except np.linalg.LinAlgError:
         return [np.full_like(right[0], np.nan)] * count
-    return [found[..., i] for i in range(count)]
+    return [result[..., i] for i in range(count)]

@@ -40,8 +40,8 @@ class Arithmetic:
         if self.tape is not None and name in _MARGINS:
             kind, margin = _MARGINS[name]
             self.tape(kind, margin(self.functions, *plain))
-        found = self.functions[name](*plain)
-        return found if _is_truth(found) else Followed(found, self)
+        result = self.functions[name](*plain)
+        return result if _is_truth(result) else Followed(result, self)
 
     def __getattr__(self, name: str) -> Any:
         """Return the function that ``coursework.degrees`` takes from an mpmath context."""
@@ -99,8 +99,8 @@ class Followed:
     def __bool__(self) -> bool:
         return bool(self.value)
 
-    def __getitem__(self, place: Any) -> Followed:
-        if place == () or place is Ellipsis:
+    def __getitem__(self, point: Any) -> Followed:
+        if point == () or point is Ellipsis:
             return self
         raise NotFollowed("it takes its values apart")
 
@@ -152,10 +152,10 @@ class Followed:
         raise NotFollowed(f"np.{name} is not followed")
 
     def _select(self, conditions: Any, choices: Any, default: Any = 0) -> Any:
-        found = default
+        result = default
         for condition, choice in reversed(list(zip(conditions, choices, strict=True))):
-            found = self.context("where", condition, choice, found)
-        return found
+            result = self.context("where", condition, choice, result)
+        return result
 
 
 def _operator(name: str, *, turned: bool = False) -> Any:
@@ -196,9 +196,9 @@ def of_arrays(tape: Tape | None = None) -> Arithmetic:
 
 def _sinpi(turns: Any) -> Any:
     """Return the sine of a number of half turns, reduced by whole half turns first."""
-    whole = np.rint(turns)
-    sign = 1.0 - 2.0 * np.mod(whole, 2.0)
-    return sign * np.sin((turns - whole) * math.pi)
+    full = np.rint(turns)
+    sign = 1.0 - 2.0 * np.mod(full, 2.0)
+    return sign * np.sin((turns - full) * math.pi)
 
 
 # --------------------------------------------------------------------- many digits
@@ -240,10 +240,10 @@ def of_many_digits(digits: int, tape: Tape | None = None) -> Arithmetic:
     def taking(function: Callable[..., Any]) -> Callable[..., Any]:
         return lambda *values: function(*[_exact(mp, v) for v in values])
 
-    made = Arithmetic({name: taking(function) for name, function in functions.items()}, tape)
-    made.functions["where"] = lambda c, a, b: _exact(mp, a) if _truth(c) else _exact(mp, b)
-    made.mp = mp
-    return made
+    created = Arithmetic({name: taking(function) for name, function in functions.items()}, tape)
+    created.functions["where"] = lambda c, a, b: _exact(mp, a) if _truth(c) else _exact(mp, b)
+    created.mp = mp
+    return created
 
 
 def _truth(value: Any) -> bool:

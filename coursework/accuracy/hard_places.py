@@ -111,8 +111,8 @@ def hard_places(exercise: CourseExercise, wanted: Sequence[str], most: int = _MO
     None where the formulas cannot be followed, beyond vanishing lengths.
     """
     terrain = Terrain(exercise, wanted)
-    found = [*_turning_points(terrain), *_crossings(terrain), *_vanishing(terrain)]
-    return tuple(_ranked(terrain, _merged(terrain, found))[:most])
+    results = [*_turning_points(terrain), *_crossings(terrain), *_vanishing(terrain)]
+    return tuple(_ranked(terrain, _merged(terrain, results))[:most])
 
 
 class Terrain:
@@ -139,16 +139,16 @@ class Terrain:
     def bases(self) -> list[dict[str, Any]]:
         """Complete sets of given values from which the search starts: variants, and one with zeros where they
         are allowed."""
-        found = [self._whole(v.given) for v in self.exercise.variants(range(_BASES))]
-        first = found[0]
+        results = [self._whole(v.given) for v in self.exercise.variants(range(_BASES))]
+        first = results[0]
         noughts = {n: 0.0 for n in self.names if self._may_be_nought(n) and first[n]}
         if noughts:
-            found.append({**first, **noughts})
-        return found
+            results.append({**first, **noughts})
+        return results
 
     def _whole(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        known = {**self.exercise.intake.defaults, **given}
-        return {n: v for n, v in known.items() if n in self.exercise.quantity_names}
+        known_values = {**self.exercise.intake.defaults, **given}
+        return {n: v for n, v in known_values.items() if n in self.exercise.quantity_names}
 
     def _may_be_nought(self, name: str) -> bool:
         spec = self.exercise.spec.given[name]
@@ -167,18 +167,20 @@ class Terrain:
     @cached_property
     def ranges(self) -> dict[str, tuple[float, float]]:
         """Search range of each quantity: for a size, that of all sizes of its unit; for an angle, a turn."""
-        found = {}
+        results = {}
         for name, (least, largest) in self._drawn.items():
             low, high = self._of_unit(self.unit(name))
             if self.unit(name) == "deg":
                 # Off the quarters of the turn, so that what vanishes there changes sign between two points.
-                found[name] = (-183.7, 176.3) if self.turns(name) else (min(least, 0.0), max(largest, 180.0))
+                results[name] = (
+                    (-183.7, 176.3) if self.turns(name) else (min(least, 0.0), max(largest, 180.0))
+                )
             elif self._is_size(name):
-                found[name] = (low, high)
+                results[name] = (low, high)
             else:
                 reach = max(high, abs(least), abs(largest))
-                found[name] = (-reach, reach) if least < 0 else (least, reach)
-        return {n: r for n, r in found.items() if r[1] > r[0]}
+                results[name] = (-reach, reach) if least < 0 else (least, reach)
+        return {n: r for n, r in results.items() if r[1] > r[0]}
 
     def _of_unit(self, unit: str) -> tuple[float, float]:
         """Return half the least and twice the largest of the sizes of a unit; (0, 0) where it has none."""
@@ -200,9 +202,9 @@ class Terrain:
     @property
     def sizes(self) -> tuple[str, ...]:
         """Quantities that may be far smaller than others of their unit."""
-        own = [n for n in self.names if self._is_size(n)]
-        units = [self.unit(n) for n in own]
-        return tuple(n for n in own if units.count(self.unit(n)) > 1)
+        selected = [n for n in self.names if self._is_size(n)]
+        units = [self.unit(n) for n in selected]
+        return tuple(n for n in selected if units.count(self.unit(n)) > 1)
 
     @property
     def angles(self) -> tuple[str, ...]:
@@ -223,16 +225,16 @@ class Terrain:
         """Return every margin of the formulas of some quantities, at each place of arrays of one shape."""
         shape = np.broadcast_shapes(*(np.shape(v) for v in given.values()))
         self._notes.clear()
-        found: Margins = {}
-        self._margins = found
+        results: Margins = {}
+        self._margins = results
         wrapped = {n: self._followed(v, shape) if n in self.names else v for n, v in given.items()}
         try:
             values = self._watched.everything(tuple(wanted), wrapped, self.effects)
         except _FAILURES:
             values = self._one_by_one(wanted, wrapped)
-        found = {key: m for key, m in found.items() if np.shape(m) == shape}
-        found |= self._determinant({**wrapped, **values}, shape)
-        return found
+        results = {key: m for key, m in results.items() if np.shape(m) == shape}
+        results |= self._determinant({**wrapped, **values}, shape)
+        return results
 
     def _followed(self, value: Any, shape: tuple[int, ...]) -> Followed:
         return Followed(np.broadcast_to(np.asarray(value, dtype=float), shape), self._arithmetic)
@@ -290,8 +292,8 @@ class Terrain:
             scaled = np.where(
                 finite[..., None, None], matrix / np.where(sizes > 0, sizes, 1.0), np.eye(count)
             )
-            found = np.where(finite, np.linalg.det(scaled), np.nan)
-        return {(_LOOPS, DETERMINANT, 0): found}
+            result = np.where(finite, np.linalg.det(scaled), np.nan)
+        return {(_LOOPS, DETERMINANT, 0): result}
 
     @cached_property
     def _loop_names(self) -> dict[str, bool]:
@@ -317,7 +319,7 @@ class Terrain:
     @cached_property
     def usual(self) -> dict[_Key, float]:
         """Typical size of each margin that varies."""
-        found = {}
+        results = {}
         for key, values in self._sampled.items():
             sizes = abs(values[np.isfinite(values)])
             if (
@@ -325,8 +327,8 @@ class Terrain:
                 and np.ptp(sizes) > 1e-9 * sizes.max()
                 and (size := float(np.median(sizes))) > 0
             ):
-                found[key] = size
-        return found
+                results[key] = size
+        return results
 
     def relative(self, given: Mapping[str, Any]) -> Margins:
         """Return the varying margins in parts of their typical size; of those that vanish together the first."""
@@ -338,11 +340,11 @@ class Terrain:
     def distinct(self) -> tuple[_Key, ...]:
         """Margins whose zeros differ."""
         usual = {key: values for key, values in self._sampled.items() if key in self.usual}
-        kept: dict[_Key, np.ndarray] = {}
+        retained: dict[_Key, np.ndarray] = {}
         for key, values in usual.items():
-            if not any(_vanish_together(values, other) for other in kept.values()):
-                kept[key] = values
-        return tuple(kept)
+            if not any(_vanish_together(values, other) for other in retained.values()):
+                retained[key] = values
+        return tuple(retained)
 
 
 def _vanish_together(a: np.ndarray, b: np.ndarray) -> bool:
@@ -395,14 +397,14 @@ def _alike(spots: Sequence[_Spot]) -> list[list[_Spot]]:
 
 def _together(spots: Sequence[_Spot], shape: tuple[int, ...] = ()) -> dict[str, Any]:
     """Return the given values of many spots as arrays, one row a spot."""
-    found: dict[str, Any] = {}
+    results: dict[str, Any] = {}
     for name, value in spots[0].given.items():
         if isinstance(value, str):
-            found[name] = value
+            results[name] = value
         else:
             column = np.array([float(s.given[name]) for s in spots]).reshape(-1, *[1] * len(shape))
-            found[name] = np.array(np.broadcast_to(column, (len(spots), *shape)))
-    return found
+            results[name] = np.array(np.broadcast_to(column, (len(spots), *shape)))
+    return results
 
 
 def _own_margins(
@@ -412,8 +414,8 @@ def _own_margins(
     flat = {n: v if isinstance(v, str) else v.ravel() for n, v in given.items()}
     margins = terrain.relative(flat)
     none = np.full(shape, np.nan)
-    whole = {key: m.reshape(len(spots), *shape) for key, m in margins.items()}
-    return np.stack([whole[s.key][i] if s.key in whole else none for i, s in enumerate(spots)])
+    full = {key: m.reshape(len(spots), *shape) for key, m in margins.items()}
+    return np.stack([full[s.key][i] if s.key in full else none for i, s in enumerate(spots)])
 
 
 # ------------------------------------------------------------------------ crossings
@@ -428,11 +430,11 @@ def _crossings(terrain: Terrain) -> list[_Spot]:
             for key, m in terrain.relative({**_arrays(base, _ALONG), name: at}).items():
                 turns = np.flatnonzero(np.isfinite(m[:-1]) & np.isfinite(m[1:]) & (m[:-1] * m[1:] < 0))
                 brackets += [(_Spot(base, name, key), at[i], at[i + 1]) for i in turns[:4]]
-    found: list[_Spot] = []
+    results: list[_Spot] = []
     for group in _alike([spot for spot, _, _ in brackets]):
         ends = {id(s): (low, high) for s, low, high in brackets}
-        found += _bisected(terrain, group, *np.array([ends[id(s)] for s in group]).T)
-    return found
+        results += _bisected(terrain, group, *np.array([ends[id(s)] for s in group]).T)
+    return results
 
 
 def _bisected(terrain: Terrain, spots: Sequence[_Spot], low: np.ndarray, high: np.ndarray) -> Iterator[_Spot]:
@@ -483,7 +485,7 @@ def _touching(terrain: Terrain, base: Mapping[str, Any], moved: str, tuned: str)
 
 def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
     """Return the cells of a plane where an extremum along the rows vanishes, or is about to, from row to row."""
-    found = []
+    results = []
     with np.errstate(all="ignore"):
         for least in (True, False):
             own = m if least else -m
@@ -498,8 +500,8 @@ def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
                 crosses = value[i] * value[i + 1] < 0
                 touches = i and inside[i - 1] and abs(value[i]) <= min(0.3, *abs(value[[i - 1, i + 1]]))
                 if crosses or touches:
-                    found.append((i, int(j[i])))
-    return found
+                    results.append((i, int(j[i])))
+    return results
 
 
 def _zoomed(terrain: Terrain, spots: Sequence[_Spot]) -> Iterator[_Spot]:
@@ -555,7 +557,7 @@ def _short(value: float, apart: float) -> float:
 
 def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
     """Return the row whose extremum is nearest to zero, and its position on the row, from -1 to 1."""
-    best, place = np.inf, (plane.shape[0] // 2, 0.0)
+    best, point = np.inf, (plane.shape[0] // 2, 0.0)
     last = plane.shape[1] - 1
     for row, values in enumerate(plane):
         if not np.isfinite(values).all():
@@ -568,8 +570,8 @@ def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
                 shift = 0.5 * (a - c) / bend if bend > 0 else 0.0
                 low = abs(b - 0.125 * (a - c) ** 2 / bend if bend > 0 else b)
                 if low < best:
-                    best, place = low, (row, (j + shift) * 2 / last - 1)
-    return place
+                    best, point = low, (row, (j + shift) * 2 / last - 1)
+    return point
 
 
 # ---------------------------------------------------------------------- other places
@@ -583,10 +585,10 @@ def _vanishing(terrain: Terrain) -> list[_Spot]:
     return [_Spot({**base, name: end}, name, (name, VANISHING, 0)) for name, end in ends]
 
 
-def _merged(terrain: Terrain, found: Sequence[_Spot]) -> list[HardPlace]:
+def _merged(terrain: Terrain, results: Sequence[_Spot]) -> list[HardPlace]:
     """Merge the zeros at one place; of one kind of place, keep the first."""
     by_place: dict[Any, list[_Spot]] = {}
-    for zero in found:
+    for zero in results:
         where = tuple(
             v if isinstance(v, str) else round(v / _SAME / max(abs(v), 1.0)) for v in zero.given.values()
         )
@@ -608,21 +610,21 @@ def _merged(terrain: Terrain, found: Sequence[_Spot]) -> list[HardPlace]:
 def _ranked(terrain: Terrain, places: Sequence[HardPlace]) -> list[HardPlace]:
     """Return the places with their loss of digits, the largest first."""
     weighed = sorted((replace(p, lost=_lost(terrain, p)) for p in places), key=lambda p: -p.lost)
-    kept: dict[Any, list[HardPlace]] = {}
-    for place in weighed:
-        own = kept.setdefault((place.kind, place.quantity, place.double and place.moved), [])
-        if place.lost > _LOST and len(own) < _OF_A_SORT:
-            own.append(place)
-    return sorted((p for own in kept.values() for p in own), key=lambda p: -p.lost)
+    retained: dict[Any, list[HardPlace]] = {}
+    for point in weighed:
+        own = retained.setdefault((point.kind, point.quantity, point.double and point.moved), [])
+        if point.lost > _LOST and len(own) < _OF_A_SORT:
+            own.append(point)
+    return sorted((p for own in retained.values() for p in own), key=lambda p: -p.lost)
 
 
-def _lost(terrain: Terrain, place: HardPlace) -> float:
+def _lost(terrain: Terrain, point: HardPlace) -> float:
     """Return the relative change near a place due to the textbook formula, or to the last digit of a datum."""
     worst = 0.0
     graph, textbook = terrain.exercise.solution.graph, terrain.graph
     eps = np.finfo(float).eps
-    for side in place.sides:
-        given = place.at(side * _NEAR)
+    for side in point.sides:
+        given = point.at(side * _NEAR)
         names = [n for n in terrain.names if given[n]]
         count = 1 + len(names)
         spread = _arrays(given, count)
@@ -640,10 +642,10 @@ def _lost(terrain: Terrain, place: HardPlace) -> float:
             if np.asarray(stable).dtype.kind not in "f" or not np.isfinite(stable[0]):
                 continue
             size = abs(stable[0]) or 1.0
-            whole = terrain.exercise.units.get(wanted) == "deg"
+            full = terrain.exercise.units.get(wanted) == "deg"
             apart = abs(formula[0] - stable[0])
             moves = abs(stable[1:] - stable[0])
-            if whole:
+            if full:
                 size = 57.3
                 apart, moves = min(apart, abs(360 - apart)), np.minimum(moves, abs(360 - moves))
             moves = moves[np.isfinite(moves)]

@@ -166,10 +166,10 @@ class _Trial:
         reference = self._reference(self.compared)
         scales = usual_sizes(subject, self.wanted, reference)
         times = self._times(own)
-        for way, spent in zip(own, times, strict=True):
-            compared = _first(self.compared, self._few) if way.one_by_one else self.compared
-            error, failed, count = compare(subject, _computed(way, compared), reference, scales)
-            yield self._row(way, GENERIC, spent, error, count, failed)
+        for method, spent in zip(own, times, strict=True):
+            compared = _first(self.compared, self._few) if method.one_by_one else self.compared
+            error, failed, count = compare(subject, _computed(method, compared), reference, scales)
+            yield self._row(method, GENERIC, spent, error, count, failed)
         yield from self._hard_rows(own, times, scales)
 
     @property
@@ -178,13 +178,14 @@ class _Trial:
 
     def _times(self, own: Sequence[Way]) -> list[Times]:
         """Return the times of every way at generic places, measured in rounds."""
-        counts = [10 if way.one_by_one else _TIMED for way in own]
+        counts = [10 if method.one_by_one else _TIMED for method in own]
         calls = [
-            partial(_computed, way, _first(self.timed, count)) for way, count in zip(own, counts, strict=True)
+            partial(_computed, method, _first(self.timed, count))
+            for method, count in zip(own, counts, strict=True)
         ]
         at_least, budget = (1e-3, 0.05) if self.quick else (5e-3, 0.5)
-        found = interleaved(calls, at_least, budget, 15 if self.quick else 25)
-        return [spent.per(count) for spent, count in zip(found, counts, strict=True)]
+        result = interleaved(calls, at_least, budget, 15 if self.quick else 25)
+        return [spent.per(count) for spent, count in zip(result, counts, strict=True)]
 
     def _hard_rows(
         self, own: Sequence[Way], times: Sequence[Times], scales: Mapping[str, float]
@@ -195,19 +196,19 @@ class _Trial:
         """
         worst: dict[str, tuple[float | None, int, int]] = {}
         least = 0.0
-        for place in self._places:
-            places = together(list(place.approach(place.distances(self.quick))))
+        for point in self._places:
+            places = together(list(point.approach(point.distances(self.quick))))
             reference = self._reference(places)
-            fixed = place.given if place.moved == self.subject.driver else None
-            sizes = dict.fromkeys(scales, 0.0) if place.kind == VANISHING else scales
+            fixed = point.given if point.moved == self.subject.driver else None
+            sizes = dict.fromkeys(scales, 0.0) if point.kind == VANISHING else scales
             least = max(least, unavoidable_of(self.subject, places, reference, sizes))
-            for way in ways(self.subject, self.what, fixed):
-                found = compare(self.subject, _computed(way, places), reference, sizes)
-                worst[way.name] = _worse(worst.get(way.name), found)
-        for way, spent in zip(own, times, strict=True):
-            if way.name in worst and worst[way.name][2]:
-                error, failed, count = worst[way.name]
-                yield self._row(way, HARD, spent, error, count, failed)
+            for method in ways(self.subject, self.what, fixed):
+                result = compare(self.subject, _computed(method, places), reference, sizes)
+                worst[method.name] = _worse(worst.get(method.name), result)
+        for method, spent in zip(own, times, strict=True):
+            if method.name in worst and worst[method.name][2]:
+                error, failed, count = worst[method.name]
+                yield self._row(method, HARD, spent, error, count, failed)
         if worst:
             count = max(n for _, _, n in worst.values())
             yield Measurement(
@@ -222,11 +223,11 @@ class _Trial:
         return (driven or list(self.subject.hard))[:_PLACES_OF_A_SORT]
 
     def _row(
-        self, way: Way, place: str, spent: Times, error: float | None, count: int, failed: int
+        self, method: Way, point: str, spent: Times, error: float | None, count: int, failed: int
     ) -> Measurement:
         return Measurement(
-            self.subject.exercise.name, self.what, way.name, place, 1e9 * spent.median, error, count, failed, way.family,
-            way.setting, 1e9 * spent.low, 1e9 * spent.high, spent.rounds, way.build and 1e9 * way.build,
+            self.subject.exercise.name, self.what, method.name, point, 1e9 * spent.median, error, count, failed, method.family,
+            method.setting, 1e9 * spent.low, 1e9 * spent.high, spent.rounds, method.build and 1e9 * method.build,
         )  # fmt: skip
 
     def _reference(self, places: Places) -> dict[str, list[Any]]:
@@ -235,7 +236,7 @@ class _Trial:
 
 def right_values(subject: Subject, places: Places, wanted: Sequence[str]) -> dict[str, list[Any]]:
     """Return the reference at each place; None where there is no value."""
-    rows = [subject.reference.at(place) for place in one_by_one(places)]
+    rows = [subject.reference.at(point) for point in one_by_one(places)]
     return {name: [row[name] for row in rows] for name in wanted}
 
 
@@ -243,10 +244,10 @@ def _first(places: Places, count: int) -> Places:
     return {n: v if np.ndim(v) == 0 else v[:count] for n, v in places.items()}
 
 
-def _computed(way: Way, places: Places) -> Values:
+def _computed(method: Way, places: Places) -> Values:
     """Return the values of a way; nothing where it stops with an error."""
     try:
-        return way.compute(places)
+        return method.compute(places)
     except CourseworkError:
         return {}
 
@@ -265,26 +266,26 @@ def usual_sizes(
 
 def compare(
     subject: Subject,
-    found: Mapping[str, Any],
+    results: Mapping[str, Any],
     reference: Mapping[str, Sequence[Any]],
     scales: Mapping[str, float],
 ) -> tuple[float | None, int, int]:
     """Return the largest error, the number of places with a missing answer, and the number of places with a
     right answer."""
-    count = _count(found, reference)
+    count = _count(results, reference)
     errors = np.zeros(count)
     exists = np.zeros(count, dtype=bool)
     for name, scale in scales.items():
-        whole = subject.exercise.units.get(name) == "deg"
-        values = found.get(name)
+        full = subject.exercise.units.get(name) == "deg"
+        values = results.get(name)
         values = [math.nan] * count if values is None else values
         values = values if isinstance(values, list) else np.broadcast_to(values, (count,))
         for i in range(count):
             right = reference[name][i]
             if right is not None:
                 exists[i] = True
-                size = scale if whole and scale else max(scale, abs(float(right))) or 1.0
-                errors[i] = np.maximum(errors[i], _difference(values[i], right, whole) / size)
+                size = scale if full and scale else max(scale, abs(float(right))) or 1.0
+                errors[i] = np.maximum(errors[i], _difference(values[i], right, full) / size)
     answered = exists & np.isfinite(errors)
     largest = float(errors[answered].max()) if answered.any() else None
     return largest, int((exists & ~answered).sum()), int(exists.sum())
@@ -295,22 +296,22 @@ def unavoidable_of(
 ) -> float:
     """Return the largest error due to the last digits of the data, measured like all other errors."""
     largest = 0.0
-    for i, place in enumerate(one_by_one(places)):
+    for i, point in enumerate(one_by_one(places)):
         values = {name: reference[name][i] for name in scales if reference[name][i] is not None}
-        for name, moves in unavoidable(subject.reference, place, values).items():
-            whole = subject.exercise.units.get(name) == "deg"
+        for name, moves in unavoidable(subject.reference, point, values).items():
+            full = subject.exercise.units.get(name) == "deg"
             size = (
-                scales[name] if whole and scales[name] else max(scales[name], abs(float(values[name]))) or 1.0
+                scales[name] if full and scales[name] else max(scales[name], abs(float(values[name]))) or 1.0
             )
             largest = max(largest, moves / size)
     return largest
 
 
-def _count(found: Mapping[str, Any], reference: Mapping[str, Sequence[Any]]) -> int:
+def _count(results: Mapping[str, Any], reference: Mapping[str, Sequence[Any]]) -> int:
     """Return the number of places that a way computed; single solves take fewer."""
-    whole = len(next(iter(reference.values())))
-    sizes = [len(v) for v in found.values() if np.ndim(v)]
-    return min([whole, *sizes])
+    full = len(next(iter(reference.values())))
+    sizes = [len(v) for v in results.values() if np.ndim(v)]
+    return min([full, *sizes])
 
 
 def _difference(value: Any, right: Any, whole: bool) -> float:
@@ -330,9 +331,9 @@ def _difference(value: Any, right: Any, whole: bool) -> float:
 
 
 def _worse(
-    one: tuple[float | None, int, int] | None, other: tuple[float | None, int, int]
+    first: tuple[float | None, int, int] | None, other: tuple[float | None, int, int]
 ) -> tuple[float | None, int, int]:
-    if one is None:
+    if first is None:
         return other
-    errors = [e for e in (one[0], other[0]) if e is not None]
-    return max(errors, default=None), one[1] + other[1], one[2] + other[2]
+    errors = [e for e in (first[0], other[0]) if e is not None]
+    return max(errors, default=None), first[1] + other[1], first[2] + other[2]

@@ -113,9 +113,9 @@ def motion_rows(exercise: CourseExercise, study: Study, quick: bool) -> Iterator
         yield from _measured(_Tightest(scene, motion.effort, motion.duration, quick), RUBBING, quick)
 
 
-def _measured(right: _Right, place: str, quick: bool) -> Iterator[MotionRow]:
+def _measured(right: _Right, point: str, quick: bool) -> Iterator[MotionRow]:
     # What friction takes is no function of the angle alone, and in no table.
-    methods = [m for m in METHODS if place == FREE or m is not by_table]
+    methods = [m for m in METHODS if point == FREE or m is not by_table]
     runs = [run for method in methods for run in method(right.scene, right.effort, right.duration, quick)]
     samples: list[list[float]] = [[] for _ in runs]
     ends = [(0.0, 0.0)] * len(runs)
@@ -125,7 +125,7 @@ def _measured(right: _Right, place: str, quick: bool) -> Iterator[MotionRow]:
             ends[i] = run.end()
             samples[i].append(clock() - start)
     for run, spent, end in zip(runs, samples, ends, strict=True):
-        yield MotionRow(run.method, run.setting, place, times_of(spent), right.error(*end), run.build)
+        yield MotionRow(run.method, run.setting, point, times_of(spent), right.error(*end), run.build)
 
 
 # --------------------------------------------------------------------------- right
@@ -229,11 +229,11 @@ class EnergyIntegral:
 
 def _given(scene: Scene) -> dict[str, Any]:
     exercise = scene.exercise
-    known = {
+    known_values = {
         **exercise.intake.defaults,
         **{n: exercise.intake.value(n, v) for n, v in scene.given.items()},
     }
-    return {n: v for n, v in known.items() if n in exercise.quantity_names}
+    return {n: v for n, v in known_values.items() if n in exercise.quantity_names}
 
 
 # ------------------------------------------------------------------------- methods
@@ -262,14 +262,14 @@ class _Acceleration:
             self.driver.speed: np.broadcast_to(speeds, shape)[..., None],
             self.driver.acceleration: np.array([0.0, 1.0]),
         }
-        found = self.graph.evaluate((self.driver.effort,), given, self.effects)[self.driver.effort]
-        return found[..., 0], found[..., 1] - found[..., 0]
+        result = self.graph.evaluate((self.driver.effort,), given, self.effects)[self.driver.effort]
+        return result[..., 0], result[..., 1] - result[..., 0]
 
     def __call__(self, state: np.ndarray) -> np.ndarray:
         held, inertia = self.efforts(state[0], state[1])
         # Where friction acts, the effort bends in the acceleration: a secant or two set it right.
-        found = (self.effort - held) / inertia
-        return np.array([state[1], self._refined(state, found) if "friction" in self.effects else found])
+        result = (self.effort - held) / inertia
+        return np.array([state[1], self._refined(state, result) if "friction" in self.effects else result])
 
     def _refined(self, state: np.ndarray, guess: float) -> float:
         for _ in range(4):

@@ -93,8 +93,8 @@ class _Survey:
         reference = right_values(self.subject, compared, self.wanted)
         scales = usual_sizes(self.subject, self.wanted, reference)
         generic = {
-            way: compare(self.subject, self._values(way, compared), reference, scales)[0]
-            for way in self.graphs
+            method: compare(self.subject, self._values(method, compared), reference, scales)[0]
+            for method in self.graphs
         }
         times = self._times()
         return OverviewLine(
@@ -114,22 +114,22 @@ class _Survey:
 
     def _hard(self, scales: dict[str, float]) -> dict[str, Any]:
         """Return the largest errors over all hard places, and the place where the solver's is largest."""
-        found: dict[str, Any] = {}
-        for place in self.subject.hard:
-            own = self._at(place, dict.fromkeys(scales, 0.0) if place.kind == VANISHING else scales)
+        results: dict[str, Any] = {}
+        for point in self.subject.hard:
+            own = self._at(point, dict.fromkeys(scales, 0.0) if point.kind == VANISHING else scales)
             if own is None:
                 continue
-            if own["beyond"] > found.get("beyond", -1.0):
-                found["place"] = _told(place)
+            if own["beyond"] > results.get("beyond", -1.0):
+                results["place"] = _told(point)
             for name, value in own.items():
                 if value is not None:
-                    found[name] = max(found.get(name, 0), value)
-        return found
+                    results[name] = max(results.get(name, 0), value)
+        return results
 
-    def _at(self, place: HardPlace, scales: dict[str, float]) -> dict[str, Any] | None:
-        places = together(list(place.approach(place.distances(self.quick))))
+    def _at(self, point: HardPlace, scales: dict[str, float]) -> dict[str, Any] | None:
+        places = together(list(point.approach(point.distances(self.quick))))
         reference = right_values(self.subject, places, self.wanted)
-        solver, textbook = (self._values(way, places) for way in self.graphs)
+        solver, textbook = (self._values(method, places) for method in self.graphs)
         names = [n for n in self.wanted if self._is_same_case(n, solver, reference)]
         if not names:
             return None
@@ -161,7 +161,7 @@ class _Survey:
         """Return the largest error of the solver, relative to eight times the unavoidable error at the same
         place."""
         worst = 0.0
-        for i, place in enumerate(one_by_one(places)):
+        for i, point in enumerate(one_by_one(places)):
             doubtful = {}
             for name in names:
                 own = {name: reference[name][i : i + 1]}
@@ -170,24 +170,24 @@ class _Survey:
                     doubtful[name] = error
             # What is right to the last digits needs no conditioning.
             values = {name: reference[name][i] for name in doubtful}
-            least = unavoidable(self.subject.reference, place, values) if doubtful else {}
+            least = unavoidable(self.subject.reference, point, values) if doubtful else {}
             for name, error in doubtful.items():
                 size = abs(float(values[name])) or 1.0
                 worst = max(worst, error * size / (ALLOWED * least[name]) if least[name] else math.inf)
         return worst
 
     def _values(self, way: str, places: Places) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+        results: dict[str, Any] = {}
         for name in self.wanted:
             try:
-                found |= self.graphs[way].evaluate((name,), places, self.subject.effects)
+                results |= self.graphs[way].evaluate((name,), places, self.subject.effects)
             except CourseworkError:
                 continue
-        return found
+        return results
 
     def _times(self) -> Sequence[Times]:
         timed = self.subject.generic(_TIMED)
-        calls = [partial(self._together, way, timed) for way in self.graphs]
+        calls = [partial(self._together, method, timed) for method in self.graphs]
         at_least, rounds = (1e-3, 7) if self.quick else (1e-2, 11)
         return [t.per(_TIMED) for t in interleaved(calls, at_least, rounds=rounds)]
 
@@ -204,11 +204,11 @@ def _entry(values: Any, i: int) -> Any:
     return np.asarray(values)[i : i + 1] if np.ndim(values) else np.array([values])
 
 
-def _told(place: HardPlace) -> dict[str, Any]:
+def _told(point: HardPlace) -> dict[str, Any]:
     return {
-        "moved": place.moved,
-        "tuned": place.tuned,
-        "kind": place.kind,
-        "quantity": place.quantity,
-        "given": dict(place.given),
+        "moved": point.moved,
+        "tuned": point.tuned,
+        "kind": point.kind,
+        "quantity": point.quantity,
+        "given": dict(point.given),
     }

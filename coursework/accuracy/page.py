@@ -25,105 +25,107 @@ _MOTION_LIMITS = (1e-3, 1e-6)
 
 def report(course: Course, rows: Sequence[Measurement], lang: str) -> Report:
     """Return the report, a section for each exercise and kind of quantity, in the order of the rows."""
-    said = words(lang)["accuracy"]
+    texts = words(lang)["accuracy"]
     sections = []
     kinds = {POSITION: "positions", RATE: "rates", ACCELERATION: "accelerations", OTHER: "others"}
     for name, of_one in groupby(rows, key=lambda row: row.exercise):
         own = list(of_one)
-        title, data = course[name].title(lang), _data(Subject(course[name]), said, lang)
+        title, data = course[name].title(lang), _data(Subject(course[name]), texts, lang)
         for what, key in kinds.items():
             if chosen := [row for row in own if row.what == what]:
-                sections.append(_quantities(f"{title} – {said[key]}", chosen, data, said, what))
+                sections.append(_quantities(f"{title} – {texts[key]}", chosen, data, texts, what))
                 data = ""
         if chosen := [row for row in own if row.what == MOTION]:
-            sections.append(_motion(f"{title} – {said['motion']}", chosen, said))
+            sections.append(_motion(f"{title} – {texts['motion']}", chosen, texts))
     return Report(
         lang,
         course.folder.title(lang),
-        said["title"],
+        texts["title"],
         "coursework accuracy",
-        said["opening"].format(50) + no_charts(said),
+        texts["opening"].format(50) + no_charts(texts),
         tuple(sections),
     )
 
 
-def no_charts(said: Words) -> str:
+def no_charts(texts: Words) -> str:
     """Return the note for a report without charts."""
-    return f" {said['no_charts']}" if lacking() else ""
+    return f" {texts['no_charts']}" if lacking() else ""
 
 
 # ------------------------------------------------------------------------ sections
 
 
-def _quantities(title: str, rows: Sequence[Measurement], data: str, said: Words, what: str) -> Section:
+def _quantities(title: str, rows: Sequence[Measurement], data: str, texts: Words, what: str) -> Section:
     own = Rows(rows)
     charts: list[Chart] = []
-    for place in own.places if what in (POSITION, RATE) else ():
-        charts += (_position_charts if what == POSITION else _rate_charts)(own, place, said)
-    read = _read_rates(own, said) if what == RATE else _read_positions(own, said)
-    return Section(title, _paragraphs([data, *read]), tuple(charts), (_table(own, said),))
+    for point in own.places if what in (POSITION, RATE) else ():
+        charts += (_position_charts if what == POSITION else _rate_charts)(own, point, texts)
+    read = _read_rates(own, texts) if what == RATE else _read_positions(own, texts)
+    return Section(title, _paragraphs([data, *read]), tuple(charts), (_table(own, texts),))
 
 
-def _position_charts(rows: Rows, place: str, said: Words) -> tuple[Chart, ...]:
-    shown = [r for r in rows.rows if r.place == place and r.max_error is not None]
-    shown = [r for r in shown if r.family not in ("mpmath", DATA)]
-    heading = said["chart_positions"].format(said["places"][place])
+def _position_charts(rows: Rows, point: str, texts: Words) -> tuple[Chart, ...]:
+    displayed = [r for r in rows.rows if r.place == point and r.max_error is not None]
+    displayed = [r for r in displayed if r.family not in ("mpmath", DATA)]
+    heading = texts["chart_positions"].format(texts["places"][point])
     return (
-        charts_of(_series(shown, said, lambda row: row.median), heading, said["time"], said) if shown else ()
+        charts_of(_series(displayed, texts, lambda row: row.median), heading, texts["time"], texts)
+        if displayed
+        else ()
     )
 
 
-def _rate_charts(rows: Rows, place: str, said: Words) -> tuple[Chart, ...]:
-    differences = rows.answered("differences", place)
+def _rate_charts(rows: Rows, point: str, texts: Words) -> tuple[Chart, ...]:
+    differences = rows.answered("differences", point)
     if not differences:
         return ()
     ends = [min(map(_set, differences)), max(map(_set, differences))]
-    others = [r for r in rows.rows if r.place == place and r.max_error is not None]
+    others = [r for r in rows.rows if r.place == point and r.max_error is not None]
     # What has no step is a level line.
     levels = {
-        _method(r, said): (ends, [max(_measured(r), _LEAST)] * 2)
+        _method(r, texts): (ends, [max(_measured(r), _LEAST)] * 2)
         for r in others
         if r.family not in ("differences", "mpmath", DATA)
     }
-    heading = said["chart_rates"].format(said["places"][place])
-    return charts_of({**_series(differences, said, _set), **levels}, heading, said["step"], said)
+    heading = texts["chart_rates"].format(texts["places"][point])
+    return charts_of({**_series(differences, texts, _set), **levels}, heading, texts["step"], texts)
 
 
-def _motion(title: str, rows: Sequence[Measurement], said: Words) -> Section:
+def _motion(title: str, rows: Sequence[Measurement], texts: Words) -> Section:
     charts: list[Chart] = []
     text: list[str] = []
     tables = []
-    for place in (FREE, RUBBING):
-        own = [r for r in rows if r.place == place]
-        if own:
-            where = said["places"][place]
-            points = _series(own, said, lambda row: row.median * 1e-9)
-            charts += charts_of(points, said["chart_motion"].format(where), said["duration"], said)
-            text += _read_motion(own, where, said)
-            tables.append(_motion_table(own, where, said))
+    for point in (FREE, RUBBING):
+        selected = [r for r in rows if r.place == point]
+        if selected:
+            where = texts["places"][point]
+            points = _series(selected, texts, lambda row: row.median * 1e-9)
+            charts += charts_of(points, texts["chart_motion"].format(where), texts["duration"], texts)
+            text += _read_motion(selected, where, texts)
+            tables.append(_motion_table(selected, where, texts))
     return Section(title, _paragraphs(text), tuple(charts), tuple(tables))
 
 
-def _motion_table(rows: Sequence[Measurement], where: str, said: Words) -> Table:
+def _motion_table(rows: Sequence[Measurement], where: str, texts: Words) -> Table:
     lines = [
         (
-            _method(r, said),
+            _method(r, texts),
             number(r.median * 1e-9),
             _spread(r),
             number(_measured(r)),
         )
         for r in rows
     ]
-    heads = said["method"], said["duration_head"], said["spread_head"], said["error_head"].format(where)
+    heads = texts["method"], texts["duration_head"], texts["spread_head"], texts["error_head"].format(where)
     return Table(heads, tuple(lines), (False, True, True, True), where)
 
 
-def _read_motion(rows: Sequence[Measurement], where: str, said: Words) -> list[str]:
-    reading, found = said["reading"], []
+def _read_motion(rows: Sequence[Measurement], where: str, texts: Words) -> list[str]:
+    reading, result = texts["reading"], []
     tolerances = [r for r in rows if r.family == "integration"]
     if tolerances:
         first, last = tolerances[0], tolerances[-1]
-        found.append(
+        result.append(
             reading["motion"].format(
                 loose=number(_set(first)), tight=number(_set(last)), first=number(_measured(first)),
                 last=number(_measured(last)), place=where,
@@ -134,22 +136,22 @@ def _read_motion(rows: Sequence[Measurement], where: str, said: Words) -> list[s
         best = cheapest(good)
         key = "motion_none" if not good else "motion_alike" if best[1:] else "motion_best"
         if good and Rows(rows).is_busy:
-            return [*found, reading["busy"]]
-        methods = listed(best, said, lambda r: _method(r, said)) if best else ""
-        found.append(reading[key].format(limit=number(limit), place=where, methods=methods))
-    return found
+            return [*result, reading["busy"]]
+        methods = listed(best, texts, lambda r: _method(r, texts)) if best else ""
+        result.append(reading[key].format(limit=number(limit), place=where, methods=methods))
+    return result
 
 
-def _data(subject: Subject, said: Words, lang: str) -> str:
+def _data(subject: Subject, texts: Words, lang: str) -> str:
     """Return the description of the generic and of the hard places."""
-    lines = [said["generic_variants"]]
+    lines = [texts["generic_variants"]]
     if subject.driver:
-        shown = {n: v for n, v in subject.base.items() if n != subject.driver}
-        lines = [said["generic_data"].format(_values(subject, shown, lang))]
+        displayed = {n: v for n, v in subject.base.items() if n != subject.driver}
+        lines = [texts["generic_data"].format(_values(subject, displayed, lang))]
     driven = [p for p in subject.hard if p.moved == subject.driver] or list(subject.hard)
     if driven:
         lines.append(
-            said["hard_data"].format("; ".join(told_place(subject, p, said, lang) for p in driven[:3]))
+            texts["hard_data"].format("; ".join(told_place(subject, p, texts, lang) for p in driven[:3]))
         )
     return " ".join(lines)
 
@@ -165,18 +167,18 @@ def _value(subject: Subject, name: str, value: Any, lang: str) -> str:
     return f"${subject.exercise.symbol(name)} = $ {number(value, unit, lang, 6)}"
 
 
-def told_place(subject: Subject, place: HardPlace, said: Words, lang: str) -> str:
+def told_place(subject: Subject, point: HardPlace, texts: Words, lang: str) -> str:
     """Describe a hard place in words: which quantities come near each other, and what vanishes there."""
-    unit = subject.exercise.units.get(place.moved, "1")
+    unit = subject.exercise.units.get(point.moved, "1")
     tuned = ""
-    if place.tuned:
-        tuned = said["hard_tuned"].format(_value(subject, place.tuned, place.given[place.tuned], lang))
-    symbol = subject.exercise.solution.symbols.get(place.quantity) or subject.exercise.symbol(place.quantity)
-    return said["hard_place"].format(
-        moved=f"${subject.exercise.symbol(place.moved)}$",
-        value=number(place.given[place.moved], unit, lang, 6),
+    if point.tuned:
+        tuned = texts["hard_tuned"].format(_value(subject, point.tuned, point.given[point.tuned], lang))
+    symbol = subject.exercise.solution.symbols.get(point.quantity) or subject.exercise.symbol(point.quantity)
+    return texts["hard_place"].format(
+        moved=f"${subject.exercise.symbol(point.moved)}$",
+        value=number(point.given[point.moved], unit, lang, 6),
         tuned=tuned,
-        why=said["kinds"][place.kind].format(f"${symbol}$"),
+        why=texts["kinds"][point.kind].format(f"${symbol}$"),
     )
 
 
@@ -187,102 +189,102 @@ def _paragraphs(sentences: Iterable[str]) -> str:
 # ------------------------------------------------------------------------- reading
 
 
-def _read_positions(rows: Rows, said: Words) -> list[str]:
-    reading, stable = said["reading"], rows.one("stable")
-    found = [" ".join(enough(rows, said, lambda row: _method(row, said), number))]
-    found.append(" ".join(filter(None, (_read_hard(rows, said), _read_data(rows, said)))))
+def _read_positions(rows: Rows, texts: Words) -> list[str]:
+    reading, stable = texts["reading"], rows.one("stable")
+    results = [" ".join(enough(rows, texts, lambda row: _method(row, texts), number))]
+    results.append(" ".join(filter(None, (_read_hard(rows, texts), _read_data(rows, texts)))))
     newton, hard_newton = rows.of("newton"), rows.of("newton", HARD)
     if newton:
-        errors = ", ".join(_error(r, said) for r in newton)
+        errors = ", ".join(_error(r, texts) for r in newton)
         # Where two solutions meet, Newton's method halves the error and no more.
         key = "newton" if halves(hard_newton) else "newton_generic"
-        hard_error = _error(hard_newton[-1], said) if halves(hard_newton) else ""
-        found.append(reading[key].format(errors=errors, hard=hard_error))
+        hard_error = _error(hard_newton[-1], texts) if halves(hard_newton) else ""
+        results.append(reading[key].format(errors=errors, hard=hard_error))
     solver, hard_solver = rows.of("fsolve"), rows.of("fsolve", HARD)
     costs_more = solver and stable and solver[0].low > _MANY_TIMES * stable.high
     if costs_more and hard_solver:
-        found.append(
-            reading["solver"].format(error=_error(solver[0], said), hard=_error(hard_solver[0], said))
+        results.append(
+            reading["solver"].format(error=_error(solver[0], texts), hard=_error(hard_solver[0], texts))
         )
     tables = rows.of("table")
     if tables and stable and not rows.is_busy:
         pays = any(paid_after(row, stable) is not None for row in tables)
-        found.append(reading["table_pays" if pays else "table_never"])
+        results.append(reading["table_pays" if pays else "table_never"])
     if newton and rows.one("mpmath"):
-        found.append(reading["digits"])
-    return found
+        results.append(reading["digits"])
+    return results
 
 
-def _read_hard(rows: Rows, said: Words) -> str:
-    reading = said["reading"]
+def _read_hard(rows: Rows, texts: Words) -> str:
+    reading = texts["reading"]
     hard, hard_stable = rows.one("textbook", HARD), rows.one("stable", HARD)
     if hard is None or hard_stable is None:
         return ""
     failed = reading["hard_textbook_failed"].format(hard.failed, hard.n) if hard.failed else ""
     return reading["hard_textbook"].format(
-        error=_error(hard, said), failed=failed, stable=_error(hard_stable, said)
+        error=_error(hard, texts), failed=failed, stable=_error(hard_stable, texts)
     )
 
 
-def _read_data(rows: Rows, said: Words) -> str:
+def _read_data(rows: Rows, texts: Words) -> str:
     data = rows.one(DATA, HARD)
     if data is None or not data.max_error:
         return ""
-    reading = said["reading"]
+    reading = texts["reading"]
     return str(reading["data_all"] if data.max_error >= 1 else reading["data"].format(number(data.max_error)))
 
 
-def _read_rates(rows: Rows, said: Words) -> list[str]:
-    reading = said["reading"]
+def _read_rates(rows: Rows, texts: Words) -> list[str]:
+    reading = texts["reading"]
     stable, complex_step = rows.one("stable"), rows.one("complex_step")
-    found = [" ".join(filter(None, (_read_hard(rows, said), _read_data(rows, said))))]
+    results = [" ".join(filter(None, (_read_hard(rows, texts), _read_data(rows, texts))))]
     best = min(rows.answered("differences"), key=_measured, default=None)
     if best is not None and stable is not None:
         key = "differences" if complex_step else "differences_plain"
-        found.append(
+        results.append(
             reading[key].format(
                 step=number(_set(best)),
-                error=_error(best, said),
-                stable=_error(stable, said),
-                complex=_error(complex_step, said) if complex_step else "",
+                error=_error(best, texts),
+                stable=_error(stable, texts),
+                complex=_error(complex_step, texts) if complex_step else "",
             )
         )
     hard, hard_stable = rows.answered("differences", HARD), rows.one("stable", HARD)
     if hard and hard_stable:
         least = min(hard, key=_measured)
-        found.append(
-            reading["differences_hard"].format(error=_error(least, said), stable=_error(hard_stable, said))
+        results.append(
+            reading["differences_hard"].format(error=_error(least, texts), stable=_error(hard_stable, texts))
         )
-    return found
+    return results
 
 
 # -------------------------------------------------------------------------- pieces
 
 
 def _series(
-    rows: Sequence[Measurement], said: Words, across: Any
+    rows: Sequence[Measurement], texts: Words, across: Any
 ) -> dict[str, tuple[list[float], list[float]]]:
     """Return the points by family; points of one family are joined."""
-    found: dict[str, tuple[list[float], list[float]]] = {}
+    results: dict[str, tuple[list[float], list[float]]] = {}
     for row in rows:
-        name = said["series"].get(row.family) or _method(row, said)
-        x, y = found.setdefault(name, ([], []))
+        name = texts["series"].get(row.family) or _method(row, texts)
+        x, y = results.setdefault(name, ([], []))
         x.append(across(row))
         y.append(max(_measured(row), _LEAST))
-    return found
+    return results
 
 
 def charts_of(
-    points: Mapping[str, Any], heading: str, horizontal: str, said: Words, *, digits: bool = False
+    points: Mapping[str, Any], heading: str, horizontal: str, texts: Words, *, digits: bool = False
 ) -> tuple[Chart, ...]:
     """Return the chart; none where charts cannot be drawn."""
     if lacking():
         return ()
-    svg = scatter(points, heading, horizontal, said["error"], whole=digits).decode("utf-8")
-    return (Chart(svg, said["alt"].format(heading)),)
+    svg = scatter(points, heading, horizontal, texts["error"], whole=digits).decode("utf-8")
+    return (Chart(svg, texts["alt"].format(heading)),)
 
 
-def _table(rows: Rows, said: Words) -> Table:
+def _table(rows: Rows, texts: Words) -> Table:
     """Return the table of the methods, with both kinds of places side by side."""
     by_method: dict[str, dict[str, Measurement]] = {}
     for row in rows.rows:
@@ -291,17 +293,17 @@ def _table(rows: Rows, said: Words) -> Table:
     lines = []
     for own in by_method.values():
         first = own.get(GENERIC)
-        shown = next(iter(own.values()))
+        displayed = next(iter(own.values()))
         times = ("", "") if first is None else (number(first.median), _spread(first))
-        paid = (_paid(first, rows, said),) if has_tables else ()
-        errors = [_error_cell(own.get(p), said) for p in rows.places]
-        lines.append((_method(shown, said), *times, *paid, *errors))
+        paid = (_paid(first, rows, texts),) if has_tables else ()
+        errors = [_error_cell(own.get(p), texts) for p in rows.places]
+        lines.append((_method(displayed, texts), *times, *paid, *errors))
     heads = (
-        said["method"],
-        said["time_head"],
-        said["spread_head"],
-        *([said["paid_head"]] if has_tables else []),
-        *(said["error_head"].format(said["places"][p]) for p in rows.places),
+        texts["method"],
+        texts["time_head"],
+        texts["spread_head"],
+        *([texts["paid_head"]] if has_tables else []),
+        *(texts["error_head"].format(texts["places"][p]) for p in rows.places),
     )
     return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))
 
@@ -311,11 +313,11 @@ def _spread(row: Measurement) -> str:
     return f"{number(100 * (row.high - row.low) / row.median)}\N{NO-BREAK SPACE}%"
 
 
-def _paid(row: Measurement | None, rows: Rows, said: Words) -> str:
+def _paid(row: Measurement | None, rows: Rows, texts: Words) -> str:
     if row is None or row.build_ns is None:
         return ""
     uses = paid_after(row, rows.one("stable"))
-    return said["never_paid"] if uses is None else said["paid"].format(number(uses))
+    return texts["never_paid"] if uses is None else texts["paid"].format(number(uses))
 
 
 def _set(row: Measurement) -> float:
@@ -330,21 +332,21 @@ def _measured(row: Measurement) -> float:
     return row.max_error
 
 
-def _error_cell(row: Measurement | None, said: Words) -> str:
+def _error_cell(row: Measurement | None, texts: Words) -> str:
     if row is None:
         return ""
     if row.family == DATA:
         return number(min(_measured(row), 1.0))  # more than the whole is the whole
-    failed = said["failed"].format(row.failed, row.n) if row.failed and row.max_error is not None else ""
-    return ", ".join(filter(None, (_error(row, said), failed)))
+    failed = texts["failed"].format(row.failed, row.n) if row.failed and row.max_error is not None else ""
+    return ", ".join(filter(None, (_error(row, texts), failed)))
 
 
-def _error(row: Measurement, said: Words) -> str:
-    return said["none"] if row.max_error is None else number(row.max_error)
+def _error(row: Measurement, texts: Words) -> str:
+    return texts["none"] if row.max_error is None else number(row.max_error)
 
 
-def _method(row: Measurement, said: Words) -> str:
-    return said["methods"][row.family].format("" if row.setting is None else _setting(row.setting))
+def _method(row: Measurement, texts: Words) -> str:
+    return texts["methods"][row.family].format("" if row.setting is None else _setting(row.setting))
 
 
 def _setting(value: float) -> str:
@@ -357,10 +359,10 @@ def _setting(value: float) -> str:
 
 def number(value: float, unit: str = "1", lang: str = "en", digits: int = 2) -> str:
     """Format a number of these pages as inline Markdown."""
-    shown = unit_text(unit, lang)
-    space = "" if shown in ("", "°") else "\N{NO-BREAK SPACE}"
+    displayed = unit_text(unit, lang)
+    space = "" if displayed in ("", "°") else "\N{NO-BREAK SPACE}"
     if 10 <= value < 1e4 and digits == 2:
         return rf"$\num{{{round(value):d}}}$"
     if value >= 1e4 and digits == 2:
         return rf"$\num{{{value:.1e}}}$".replace("e+0", "e").replace("e+", "e")
-    return rf"$\num{{{significant(value, digits)}}}${space}{shown}"
+    return rf"$\num{{{significant(value, digits)}}}${space}{displayed}"

@@ -26,53 +26,53 @@ def overview_report(
 ) -> Report:
     """Return the overview, a row for each exercise: digits, times, the hardest place, the check of the
     reference."""
-    said = words(lang)["accuracy"]
-    told = said["overview"]
+    texts = words(lang)["accuracy"]
+    text = texts["overview"]
     right = [line for line in lines if not line.wrong and line.quantities]
     sections = (
-        Section(told["short"], _short(course, lines, without, told, lang)),
-        Section(told["table"], "", (), (_digits_table(course, right, told, lang),)),
-        Section(told["where"], told["where_text"], (), (_places_table(course, right, said, lang),)),
-        Section(told["vouched"], told["vouched_text"], (), (_vouched_table(course, right, told, lang),)),
+        Section(text["short"], _short(course, lines, without, text, lang)),
+        Section(text["table"], "", (), (_digits_table(course, right, text, lang),)),
+        Section(text["where"], text["where_text"], (), (_places_table(course, right, texts, lang),)),
+        Section(text["vouched"], text["vouched_text"], (), (_vouched_table(course, right, text, lang),)),
     )
-    opening = said["overview_opening"]
+    opening = texts["overview_opening"]
     return Report(
-        lang, course.folder.title(lang), said["overview_title"], "coursework accuracy", opening, sections
+        lang, course.folder.title(lang), texts["overview_title"], "coursework accuracy", opening, sections
     )
 
 
 def _short(
-    course: Course, lines: Sequence[OverviewLine], without: Sequence[str], told: Words, lang: str
+    course: Course, lines: Sequence[OverviewLine], without: Sequence[str], texts: Words, lang: str
 ) -> str:
     right = [line for line in lines if not line.wrong and line.quantities]
     losing = [_titled(course, line, lang) for line in right if line.beyond > 1]
     key = "keeps_but" if losing else "keeps_all"
-    found = [told[key].format(count=len(right), kept=len(right) - len(losing), others=", ".join(losing))]
+    results = [texts[key].format(count=len(right), kept=len(right) - len(losing), others=", ".join(losing))]
     lost = [line for line in right if line.hard_textbook_failed or _digits(line.hard_textbook) <= _HALF]
-    found.append(told["textbook"].format(count=len(lost)))
+    results.append(texts["textbook"].format(count=len(lost)))
     wrong = [_titled(course, line, lang) for line in lines if line.wrong]
     if wrong:
-        found.append(told["wrong"].format(", ".join(wrong)))
+        results.append(texts["wrong"].format(", ".join(wrong)))
     if lacking := [
         f"{_titled(course, line, lang)} ({', '.join(line.lacking)})" for line in lines if line.lacking
     ]:
-        found.append(told["lacking"].format(", ".join(lacking)))
+        results.append(texts["lacking"].format(", ".join(lacking)))
     if is_busy(line.stable_ns for line in right if line.stable_ns):
-        found.append(told["busy"])
+        results.append(texts["busy"])
     if without:
-        found.append(told["without"].format(", ".join(course[name].title(lang) for name in without)))
-    return "\n\n".join(found)
+        results.append(texts["without"].format(", ".join(course[name].title(lang) for name in without)))
+    return "\n\n".join(results)
 
 
 def _titled(course: Course, line: OverviewLine, lang: str) -> str:
     return course[line.exercise].title(lang)
 
 
-def _digits_table(course: Course, lines: Sequence[OverviewLine], told: Words, lang: str) -> Table:
+def _digits_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> Table:
     heads = [
-        told[key] for key in ("exercise", "generic", "generic_textbook", "hard", "hard_textbook", "allowed")
+        texts[key] for key in ("exercise", "generic", "generic_textbook", "hard", "hard_textbook", "allowed")
     ]
-    heads += [told["ns"], told["ns_textbook"]]
+    heads += [texts["ns"], texts["ns_textbook"]]
     rows = [
         (
             _titled(course, line, lang),
@@ -80,13 +80,13 @@ def _digits_table(course: Course, lines: Sequence[OverviewLine], told: Words, la
             _shown(line.generic_textbook),
             _shown(line.hard),
             _shown(line.hard_textbook, line.hard_textbook_failed),
-            _allowed(line, told),
+            _allowed(line, texts),
             _nanoseconds(line.stable_ns),
             _nanoseconds(line.textbook_ns),
         )
         for line in lines
     ]
-    return Table(tuple(heads), tuple(rows), (False, *[True] * 7), told["caption"])
+    return Table(tuple(heads), tuple(rows), (False, *[True] * 7), texts["caption"])
 
 
 def _digits(error: float | None) -> int:
@@ -100,41 +100,41 @@ def _shown(error: float | None, failed: int = 0) -> str:
     return "–" if error is None or failed else str(_digits(error))
 
 
-def _allowed(line: OverviewLine, told: Words) -> str:
+def _allowed(line: OverviewLine, texts: Words) -> str:
     if not line.places:
         return "–"
     if line.beyond <= 1:
-        return str(told["yes"])
+        return str(texts["yes"])
     lost = math.ceil(math.log10(line.beyond)) if math.isfinite(line.beyond) else _MOST_DIGITS
-    return str(told["loses"].format(lost))
+    return str(texts["loses"].format(lost))
 
 
 def _nanoseconds(times: Times | None) -> str:
     return "–" if times is None else number(1e9 * times.median)
 
 
-def _places_table(course: Course, lines: Sequence[OverviewLine], said: Words, lang: str) -> Table:
-    told = said["overview"]
+def _places_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> Table:
+    text = texts["overview"]
     rows = []
     for line in lines:
         if line.place is not None:
             subject = Subject(course[line.exercise])
-            place = HardPlace(scale=1.0, **line.place)
-            rows.append((_titled(course, line, lang), told_place(subject, place, said, lang)))
-    return Table((told["exercise"], told["place"]), tuple(rows), (False, False))
+            point = HardPlace(scale=1.0, **line.place)
+            rows.append((_titled(course, line, lang), told_place(subject, point, texts, lang)))
+    return Table((text["exercise"], text["place"]), tuple(rows), (False, False))
 
 
-def _vouched_table(course: Course, lines: Sequence[OverviewLine], told: Words, lang: str) -> Table:
+def _vouched_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> Table:
     rows = [
         (
             _titled(course, line, lang),
-            told["none"] if line.lack is None else number(line.lack),
-            "" if line.lack is None else told["doubles" if line.in_doubles else "many"],
+            texts["none"] if line.lack is None else number(line.lack),
+            "" if line.lack is None else texts["doubles" if line.in_doubles else "many"],
             f"{line.vouched} / {line.quantities}",
         )
         for line in lines
     ]
-    heads = tuple(told[key] for key in ("exercise", "lack", "digits", "held"))
+    heads = tuple(texts[key] for key in ("exercise", "lack", "digits", "held"))
     return Table(heads, tuple(rows), (False, True, False, True))
 
 
@@ -143,96 +143,105 @@ def _vouched_table(course: Course, lines: Sequence[OverviewLine], told: Words, l
 
 def paper_report(course: Course, rows: Sequence[PaperRow], variants: int, lang: str) -> Report:
     """Return the one-page report that justifies the number of digits and the margin."""
-    said = words(lang)["accuracy"]
-    told = said["paper"]
+    texts = words(lang)["accuracy"]
+    text = texts["paper"]
     digits = course.folder.rules.digits
-    whole = total(rows)
+    full = total(rows)
     sections = (
-        Section(told["short"], _paper_words(whole, digits, told), _paper_charts(whole, said)),
-        Section(told["table"], "", (), (_paper_table(whole, told),)),
+        Section(text["short"], _paper_words(full, digits, text), _paper_charts(full, texts)),
+        Section(text["table"], "", (), (_paper_table(full, text),)),
         Section(
-            told["by_exercise"],
-            told["by_exercise_text"].format(digits=digits),
+            text["by_exercise"],
+            text["by_exercise_text"].format(digits=digits),
             (),
-            (_by_exercise(course, rows, digits, told, lang),),
+            (_by_exercise(course, rows, digits, text, lang),),
         ),
     )
-    opening = told["opening"].format(variants=variants) + no_charts(said)
+    opening = text["opening"].format(variants=variants) + no_charts(texts)
     return Report(
-        lang, course.folder.title(lang), said["paper_title"], "coursework accuracy --paper", opening, sections
+        lang,
+        course.folder.title(lang),
+        texts["paper_title"],
+        "coursework accuracy --paper",
+        opening,
+        sections,
     )
 
 
-def _paper_words(rows: Sequence[PaperRow], digits: int, told: Words) -> str:
+def _paper_words(rows: Sequence[PaperRow], digits: int, texts: Words) -> str:
     by_digits = {row.digits: row for row in rows}
-    found = []
+    results = []
     if own := by_digits.get(digits):
         plain = by_digits[PLAIN]
-        found += [
-            told["kept"].format(digits=digits, plain=_percent(own.wronged, told), ours=_percent(own.wronged_ours, told)),
-            told["passes"].format(
-                mistakes=_percent(own.mistakes, told), neighbours=_percent(own.neighbours, told),
-                plain_mistakes=_percent(plain.mistakes, told), plain_neighbours=_percent(plain.neighbours, told),
+        results += [
+            texts["kept"].format(digits=digits, plain=_percent(own.wronged, texts), ours=_percent(own.wronged_ours, texts)),
+            texts["passes"].format(
+                mistakes=_percent(own.mistakes, texts), neighbours=_percent(own.neighbours, texts),
+                plain_mistakes=_percent(plain.mistakes, texts), plain_neighbours=_percent(plain.neighbours, texts),
             ),
         ]  # fmt: skip
     for fewer in (digits - 1, digits - 2):
         if row := by_digits.get(fewer):
-            found.append(told["fewer"].format(digits=fewer, mistakes=_percent(row.mistakes, told)))
-    return " ".join(found)
+            results.append(texts["fewer"].format(digits=fewer, mistakes=_percent(row.mistakes, texts)))
+    return " ".join(results)
 
 
-def _percent(share: Share, told: Words) -> str:
+def _percent(share: Share, texts: Words) -> str:
     if not share.found:
-        return str(told["none_of"])
+        return str(texts["none_of"])
     value = 100 * share.value
-    return str(told["few"]) if value < 0.1 else str(told["percent"].format(number(value)))
+    return str(texts["few"]) if value < 0.1 else str(texts["percent"].format(number(value)))
 
 
-def _paper_charts(rows: Sequence[PaperRow], said: Words) -> tuple[Chart, ...]:
-    told = said["paper"]
+def _paper_charts(rows: Sequence[PaperRow], texts: Words) -> tuple[Chart, ...]:
+    text = texts["paper"]
     series: dict[str, tuple[list[float], list[float]]] = {}
     for name in ("wronged", "wronged_ours", "mistakes", "neighbours"):
         shares = [(row.digits, 100 * getattr(row, name).value) for row in rows if row.digits != PLAIN]
-        kept = [(float(digits), share) for digits, share in shares if share > 0]
-        if kept:
-            series[told[name]] = [d for d, _ in kept], [s for _, s in kept]
+        retained = [(float(digits), share) for digits, share in shares if share > 0]
+        if retained:
+            series[text[name]] = [d for d, _ in retained], [s for _, s in retained]
     return charts_of(
-        series, told["chart"], told["axis_digits"], {**said, "error": told["axis_share"]}, digits=True
+        series, text["chart"], text["axis_digits"], {**texts, "error": text["axis_share"]}, digits=True
     )
 
 
-def _paper_table(rows: Sequence[PaperRow], told: Words) -> Table:
-    heads = tuple(told[key] for key in ("digits", "wronged", "wronged_ours", "mistakes", "neighbours"))
-    return Table(heads, tuple(_paper_line(_kept(row, told), row, told) for row in rows), (False, *[True] * 4))
+def _paper_table(rows: Sequence[PaperRow], texts: Words) -> Table:
+    heads = tuple(texts[key] for key in ("digits", "wronged", "wronged_ours", "mistakes", "neighbours"))
+    return Table(
+        heads, tuple(_paper_line(_kept(row, texts), row, texts) for row in rows), (False, *[True] * 4)
+    )
 
 
-def _kept(row: PaperRow, told: Words) -> str:
-    return str(told["plain"]) if row.digits == PLAIN else str(row.digits)
+def _kept(row: PaperRow, texts: Words) -> str:
+    return str(texts["plain"]) if row.digits == PLAIN else str(row.digits)
 
 
-def _paper_line(first: str, row: PaperRow, told: Words) -> tuple[str, ...]:
+def _paper_line(first: str, row: PaperRow, texts: Words) -> tuple[str, ...]:
     wronged: Sequence[Any] = ("", "")
     if row.digits != PLAIN:
-        wronged = _percent(row.wronged, told), _percent(row.wronged_ours, told)
-    return (first, *wronged, _percent(row.mistakes, told), _percent(row.neighbours, told))
+        wronged = _percent(row.wronged, texts), _percent(row.wronged_ours, texts)
+    return (first, *wronged, _percent(row.mistakes, texts), _percent(row.neighbours, texts))
 
 
-def _by_exercise(course: Course, rows: Sequence[PaperRow], digits: int, told: Words, lang: str) -> Table:
+def _by_exercise(course: Course, rows: Sequence[PaperRow], digits: int, texts: Words, lang: str) -> Table:
     """Return a row for each exercise: errors of a plain margin at each number of digits, then of the course's
     margin."""
-    kept = [d for d in dict.fromkeys(row.digits for row in rows) if d != PLAIN]
+    retained = [d for d in dict.fromkeys(row.digits for row in rows) if d != PLAIN]
     heads = (
-        told["exercise"],
-        *map(str, kept),
-        *(told[k] for k in ("ours_short", "mistakes_short", "neighbours_short")),
+        texts["exercise"],
+        *map(str, retained),
+        *(texts[k] for k in ("ours_short", "mistakes_short", "neighbours_short")),
     )
     lines = []
     for name in dict.fromkeys(row.exercise for row in rows):
-        own = {row.digits: row for row in rows if row.exercise == name}
-        shares = [own[d].wronged for d in kept]
+        selected = {row.digits: row for row in rows if row.exercise == name}
+        shares = [selected[d].wronged for d in retained]
         shares += (
-            [own[digits].wronged_ours, own[digits].mistakes, own[digits].neighbours] if digits in own else []
+            [selected[digits].wronged_ours, selected[digits].mistakes, selected[digits].neighbours]
+            if digits in selected
+            else []
         )
-        cells = (_percent(share, told) if share.found else "–" for share in shares)
+        cells = (_percent(share, texts) if share.found else "–" for share in shares)
         lines.append((course[name].title(lang), *cells))
     return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))

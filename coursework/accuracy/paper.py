@@ -67,7 +67,7 @@ def on_paper(exercise: CourseExercise, variants: int, digits: Sequence[int] = DI
     if not parts:
         return []
     room = _Room(exercise, parts, variants)
-    return [room.row(PLAIN), *(room.row(kept) for kept in digits)]
+    return [room.row(PLAIN), *(room.row(stored) for stored in digits)]
 
 
 class _Room:
@@ -87,41 +87,43 @@ class _Room:
     def _answers(self, graph: Any) -> dict[str, np.ndarray]:
         return self._whole(graph.evaluate(self.wanted, self.given, self.effects))
 
-    def _whole(self, found: Mapping[str, Any]) -> dict[str, np.ndarray]:
-        return {n: np.broadcast_to(np.asarray(v, dtype=float), (self.count,)) for n, v in found.items()}
+    def _whole(self, results: Mapping[str, Any]) -> dict[str, np.ndarray]:
+        return {n: np.broadcast_to(np.asarray(v, dtype=float), (self.count,)) for n, v in results.items()}
 
     def _mistaken(self) -> list[dict[str, np.ndarray]]:
         """Return the answers of students who make each named mistake and continue correctly."""
-        found = []
+        results = []
         for name in self.exercise.solution.mistakes:
             try:
-                found.append(self._answers(self.exercise.solution.mistaken(name)))
+                results.append(self._answers(self.exercise.solution.mistaken(name)))
             except (CourseworkError, TypeError, ValueError):
                 continue  # it gives no number
-        return found
+        return results
 
-    def row(self, kept: int) -> PaperRow:
+    def row(self, stored: int) -> PaperRow:
         ours = self.exercise.folder.rules.digits
         wronged = wronged_ours = Share()
-        if kept != PLAIN:
+        if stored != PLAIN:
             rounded = self._whole(
-                student_who_rounds(self.exercise.solution.graph, self.wanted, self.given, self.effects, kept)
+                student_who_rounds(
+                    self.exercise.solution.graph, self.wanted, self.given, self.effects, stored
+                )
             )
             wronged, wronged_ours = self._refused(rounded, PLAIN), self._refused(rounded, ours)
-        mistakes = sum((self._passed(own, kept) for own in self.wrong), Share())
-        return PaperRow(self.exercise.name, kept, wronged, wronged_ours, mistakes, self._neighbours(kept))
+        mistakes = sum((self._passed(own, stored) for own in self.wrong), Share())
+        return PaperRow(self.exercise.name, stored, wronged, wronged_ours, mistakes, self._neighbours(stored))
 
     def _refused(self, answers: Mapping[str, np.ndarray], margin: int) -> Share:
-        found = Share()
+        result = Share()
         for part in self.parts:
-            asked = self.asked[part.id] & np.isfinite(self.right[part.quantity])
-            refused = asked & ~self._accepted(part, answers[part.quantity], margin)
-            found += Share(int(asked.sum()), int(refused.sum()))
-        return found
+            requested = self.asked[part.id] & np.isfinite(self.right[part.quantity])
+            refused = requested & ~self._accepted(part, answers[part.quantity], margin)
+            result += Share(int(requested.sum()), int(refused.sum()))
+        return result
 
     def _passed(self, answers: Mapping[str, np.ndarray], margin: int) -> Share:
         """Return the share of accepted answers among those that are visibly wrong."""
-        found = Share()
+        result = Share()
         for part in self.parts:
             right, own = self.right[part.quantity], answers[part.quantity]
             apart = abs(own - right)
@@ -129,8 +131,8 @@ class _Room:
                 apart = np.minimum(apart % part.sort.turn, -apart % part.sort.turn)
             shows = self.asked[part.id] & np.isfinite(own) & (apart > _SEES * np.maximum(abs(right), 1e-9))
             passed = shows & self._accepted(part, own, margin)
-            found += Share(int(shows.sum()), int(passed.sum()))
-        return found
+            result += Share(int(shows.sum()), int(passed.sum()))
+        return result
 
     def _neighbours(self, margin: int) -> Share:
         shifted = [{n: np.roll(v, k) for n, v in self.right.items()} for k in _NEIGHBOURS]
@@ -146,8 +148,8 @@ class _Room:
     def _widths(self, digits: int) -> dict[str, np.ndarray]:
         """Return the possible effect of rounding to ``digits`` digits at each step."""
         if digits not in self._kept_widths:
-            found = envelopes(self.exercise, self.wanted, self.given, self.effects, digits)
-            finite = {n: np.where(np.isfinite(v), v, 0.0) for n, v in self._whole(found).items()}
+            result = envelopes(self.exercise, self.wanted, self.given, self.effects, digits)
+            finite = {n: np.where(np.isfinite(v), v, 0.0) for n, v in self._whole(result).items()}
             self._kept_widths[digits] = finite
         return self._kept_widths[digits]
 
@@ -158,12 +160,12 @@ class _Room:
 
 def total(rows: Sequence[PaperRow]) -> list[PaperRow]:
     """Return the sums over all exercises, one row for each number of digits."""
-    found = {}
+    results = {}
     for digits in dict.fromkeys(row.digits for row in rows):
-        own = [row for row in rows if row.digits == digits]
+        selected = [row for row in rows if row.digits == digits]
         columns = [
-            sum((getattr(row, name) for row in own), Share())
+            sum((getattr(row, name) for row in selected), Share())
             for name in ("wronged", "wronged_ours", "mistakes", "neighbours")
         ]
-        found[digits] = PaperRow("", digits, *columns)
-    return list(found.values())
+        results[digits] = PaperRow("", digits, *columns)
+    return list(results.values())

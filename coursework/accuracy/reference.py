@@ -85,21 +85,21 @@ class Reference:
             return self._one_by_one(start, names)
 
     def _one_by_one(self, start: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+        results: dict[str, Any] = {}
         for name in names:
             try:
-                found |= self.graph.evaluate((name,), start, self.effects)
+                results |= self.graph.evaluate((name,), start, self.effects)
             except _FAILURES:
                 continue
-        return found
+        return results
 
     def _start(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        known = {**self.exercise.intake.defaults, **given}
-        known = {n: v for n, v in known.items() if n in self.exercise.quantity_names}
+        known_values = {**self.exercise.intake.defaults, **given}
+        known_values = {n: v for n, v in known_values.items() if n in self.exercise.quantity_names}
         if self.pinned:
-            plain = {n: v if isinstance(v, str) else float(v) for n, v in known.items()}
-            known |= self.exercise.solution.graph.evaluate(self.pinned, plain, self.effects)
-        return {n: self._followed(v) for n, v in known.items()}
+            plain = {n: v if isinstance(v, str) else float(v) for n, v in known_values.items()}
+            known_values |= self.exercise.solution.graph.evaluate(self.pinned, plain, self.effects)
+        return {n: self._followed(v) for n, v in known_values.items()}
 
     def _followed(self, value: Any) -> Any:
         if hasattr(value, "context"):  # many digits already
@@ -120,11 +120,11 @@ class Reference:
         """Find the quantities pinned to their float values, being step functions, and those that cannot be
         followed."""
         given = {**self.exercise.intake.defaults, **self.exercise.variant(0).given}
-        known = {n: v for n, v in given.items() if n in self.exercise.quantity_names}
-        values: dict[str, Any] = {n: self._followed(v) for n, v in known.items()}
+        known_values = {n: v for n, v in given.items() if n in self.exercise.quantity_names}
+        values: dict[str, Any] = {n: self._followed(v) for n, v in known_values.items()}
         lacking: set[str] = set()
         pinned = []
-        for name in self.graph.plan(self.asked, known, self.effects):
+        for name in self.graph.plan(self.asked, known_values, self.effects):
             node = self.graph.node(name)
             if lacking & set(node.arguments):
                 lacking.add(name)
@@ -134,10 +134,10 @@ class Reference:
             try:
                 values |= self.graph.evaluate((name,), values, self.effects)
             except _FAILURES:
-                if self._is_step(name, known):
+                if self._is_step(name, known_values):
                     pinned.append(name)
                     values[name] = self._followed(
-                        self.exercise.solution.graph.evaluate((name,), known, self.effects)[name]
+                        self.exercise.solution.graph.evaluate((name,), known_values, self.effects)[name]
                     )
                 else:
                     lacking.add(name)
@@ -180,12 +180,12 @@ class Reference:
 
     def lacks(self, given: Mapping[str, Any]) -> dict[str, float]:
         """Return the residual of each stated equation, relative to its terms."""
-        found = {}
+        results = {}
         for name, loop in self.exercise.solution.loops.items():
             for order in range(loop.known + 1):
                 if loop.moves(order) and (lack := self._of_loop(loop, order, given)) is not None:
-                    found[name + ("", "_dot", "_ddot")[order]] = lack
-        return found | self._of_residual(given)
+                    results[name + ("", "_dot", "_ddot")[order]] = lack
+        return results | self._of_residual(given)
 
     def _of_loop(self, loop: Loop, order: int, given: Mapping[str, Any]) -> float | None:
         rates = [r for pair in loop.rates.values() for r in pair[:order] if r]
@@ -232,10 +232,12 @@ class Reference:
             return {}
         ending = ""
         try:
-            found = self._residual_graph.evaluate(("residual",), self._start(given), self.effects)["residual"]
+            result = self._residual_graph.evaluate(("residual",), self._start(given), self.effects)[
+                "residual"
+            ]
         except _FAILURES:
-            found, ending = self._residual_in_doubles(given), _DOUBLES
-        parts = found if isinstance(found, tuple) else (found,)
+            result, ending = self._residual_in_doubles(given), _DOUBLES
+        parts = result if isinstance(result, tuple) else (result,)
         lacks = {}
         for i, part in enumerate(parts, 1):
             if (number := self._number(abs(part))) is not None:
@@ -244,12 +246,12 @@ class Reference:
 
     def _residual_in_doubles(self, given: Mapping[str, Any]) -> Any:
         """Return ``residual`` of the values rounded to doubles, for equations that require plain arrays."""
-        known = {**self.exercise.intake.defaults, **given}
-        known = {n: v for n, v in known.items() if n in self.exercise.quantity_names}
+        known_values = {**self.exercise.intake.defaults, **given}
+        known_values = {n: v for n, v in known_values.items() if n in self.exercise.quantity_names}
         rounded = {n: float(v) for n, v in self.at(given).items() if v is not None}
         try:
             graph = self.exercise.solution.residual_graph
-            return graph.evaluate(("residual",), {**known, **rounded}, self.effects)["residual"]
+            return graph.evaluate(("residual",), {**known_values, **rounded}, self.effects)["residual"]
         except _FAILURES:
             return ()
 

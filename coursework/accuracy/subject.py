@@ -38,13 +38,13 @@ def numbers_of(exercise: CourseExercise) -> tuple[str, ...]:
         The course has none at all: it is a students' copy.
     """
     try:
-        known = exercise.quantity_names
+        known_names = exercise.quantity_names
     except NoSolution:
         if not exercise.folder.has_solutions:
             raise
         return ()
-    asked = (p.quantity for p in exercise.spec.parts if p.kind in ("number", "angle"))
-    return tuple(n for n in dict.fromkeys(asked) if n in known)
+    requested = (p.quantity for p in exercise.spec.parts if p.kind in ("number", "angle"))
+    return tuple(n for n in dict.fromkeys(requested) if n in known_names)
 
 
 def study_of(exercise: CourseExercise) -> Study:
@@ -107,8 +107,8 @@ class Subject:
 
     def _sort(self, name: str) -> str:
         sort = _OF_UNITS.get(self.exercise.units.get(name, "1"), OTHER)
-        taken = {POSITION: self.unknowns, RATE: tuple(self.rate_of.values())}.get(sort, ())
-        return OTHER if taken and name not in taken else sort
+        used = {POSITION: self.unknowns, RATE: tuple(self.rate_of.values())}.get(sort, ())
+        return OTHER if used and name not in used else sort
 
     # ---------------------------------------------------------------------- places
 
@@ -127,10 +127,10 @@ class Subject:
     @cached_property
     def base(self) -> dict[str, Any]:
         """Given values of the generic mechanism."""
-        known = {**self.exercise.intake.defaults, **self.exercise.variant(0).given, **self.study.given}
+        known_values = {**self.exercise.intake.defaults, **self.exercise.variant(0).given, **self.study.given}
         return {
             n: v if isinstance(v, str) else float(v)
-            for n, v in known.items()
+            for n, v in known_values.items()
             if n in self.exercise.quantity_names
         }
 
@@ -156,8 +156,8 @@ def one_by_one(places: Places) -> list[dict[str, Any]]:
 
 def together(rows: list[dict[str, Any]]) -> Places:
     """Join places into arrays; a text stays single where it is the same in all."""
-    found: Places = {}
+    results: Places = {}
     for name, first in rows[0].items():
         values = [row[name] for row in rows]
-        found[name] = first if isinstance(first, str) and len(set(values)) == 1 else np.array(values)
-    return found
+        results[name] = first if isinstance(first, str) and len(set(values)) == 1 else np.array(values)
+    return results

@@ -48,9 +48,9 @@ def misses(
     """Yield the answers of the solver that are worse than their conditioning, on the approach to each hard
     place."""
     reference = Reference(exercise, wanted)
-    for place in hard_places(exercise, reference.wanted, most):
-        for aside in ASIDE if place.tuned else ASIDE[:1]:
-            yield from _on_the_way(reference, place, distances, aside)
+    for point in hard_places(exercise, reference.wanted, most):
+        for aside in ASIDE if point.tuned else ASIDE[:1]:
+            yield from _on_the_way(reference, point, distances, aside)
     yield from _after_turns(reference)
 
 
@@ -60,31 +60,31 @@ def _after_turns(reference: Reference) -> Iterator[Miss]:
     base = terrain.bases[0]
     for name in terrain.angles:
         if terrain.turns(name):
-            place = HardPlace(base, name, 360.0, TURNS, name)
-            yield from _along(reference, place, 0.0, [(n, place.at(n)) for n in WHOLE_TURNS])
+            point = HardPlace(base, name, 360.0, TURNS, name)
+            yield from _along(reference, point, 0.0, [(n, point.at(n)) for n in WHOLE_TURNS])
 
 
 def _on_the_way(
-    reference: Reference, place: HardPlace, distances: Sequence[float], aside: float
+    reference: Reference, point: HardPlace, distances: Sequence[float], aside: float
 ) -> Iterator[Miss]:
-    for side in place.sides:
-        way = [(d, place.at(side * d, aside)) for d in distances]
+    for side in point.sides:
+        way = [(d, point.at(side * d, aside)) for d in distances]
         way = [(d, given) for d, given in way if _has_lengths(reference, given)]
         if way:
-            yield from _along(reference, place, aside, way)
+            yield from _along(reference, point, aside, way)
 
 
 def _along(
-    reference: Reference, place: HardPlace, aside: float, way: Sequence[tuple[float, Mapping[str, Any]]]
+    reference: Reference, point: HardPlace, aside: float, way: Sequence[tuple[float, Mapping[str, Any]]]
 ) -> Iterator[Miss]:
     """Yield the misses from far to near on one side; a quantity that has an answer somewhere must have one
     everywhere."""
-    found = solved(reference, [given for _, given in way])
-    answers = {n for n, values in found.items() if np.isfinite(values).any()}
+    result = solved(reference, [given for _, given in way])
+    answers = {n for n, values in result.items() if np.isfinite(values).any()}
     other: set[str] = set()
     for i, (distance, given) in enumerate(way):
         right = {n: v for n, v in reference.at(given).items() if v is not None and n in answers - other}
-        off = {n: _off(reference, n, found[n][i], v) for n, v in right.items()}
+        off = {n: _off(reference, n, result[n][i], v) for n, v in right.items()}
         if distance >= _FAR:
             # So far from the place no rounding explains this: the formula is of another case of the mechanism.
             other |= {n for n, error in off.items() if error > 1e-6 * _largest(right[n])}
@@ -99,10 +99,10 @@ def _along(
             error = off[name]
             if error != error:
                 if not _is_judged(reference, name, given, distance):
-                    yield Miss(name, given, place, distance, aside, None, None, None)
+                    yield Miss(name, given, point, distance, aside, None, None, None)
             elif error > ALLOWED * allowed[name]:
                 size = abs(float(right[name])) or 1.0
-                yield Miss(name, given, place, distance, aside, error, error / size, error / allowed[name])
+                yield Miss(name, given, point, distance, aside, error, error / size, error / allowed[name])
 
 
 def _is_judged(reference: Reference, name: str, given: Mapping[str, Any], distance: float) -> bool:
@@ -111,9 +111,9 @@ def _is_judged(reference: Reference, name: str, given: Mapping[str, Any], distan
     Near the place, an answer that exists when requested alone may be just out of reach when requested with
     others.
     """
-    known = reference.exercise.intake.values(given)
+    known_values = reference.exercise.intake.values(given)
     try:
-        alone = reference.exercise.solution.graph.evaluate((name,), known, reference.effects)[name]
+        alone = reference.exercise.solution.graph.evaluate((name,), known_values, reference.effects)[name]
     except (CannotAssemble, Undefined):
         return True
     return distance < _LAST_BITS and bool(np.isfinite(alone))
@@ -138,18 +138,18 @@ def _off(reference: Reference, name: str, value: float, right: Any) -> float:
 def solved(reference: Reference, places: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
     """Return the solver's own answers, all places in one call."""
     exercise = reference.exercise
-    known = [{**exercise.intake.defaults, **given} for given in places]
+    known_values = [{**exercise.intake.defaults, **given} for given in places]
     given = {
-        n: v if isinstance(v, str) else np.array([float(k[n]) for k in known])
-        for n, v in known[0].items()
+        n: v if isinstance(v, str) else np.array([float(k[n]) for k in known_values])
+        for n, v in known_values[0].items()
         if n in exercise.quantity_names
     }
-    taken = exercise.intake.values(given)  # as every request is: angles reduced to one turn
-    found = {}
+    used = exercise.intake.values(given)  # as every request is: angles reduced to one turn
+    results = {}
     for name in reference.wanted:
         try:
-            value = exercise.solution.graph.evaluate((name,), taken, reference.effects)[name]
-            found[name] = np.broadcast_to(np.asarray(value, dtype=float), (len(places),))
+            value = exercise.solution.graph.evaluate((name,), used, reference.effects)[name]
+            results[name] = np.broadcast_to(np.asarray(value, dtype=float), (len(places),))
         except CourseworkError:
-            found[name] = np.full(len(places), np.nan)
-    return found
+            results[name] = np.full(len(places), np.nan)
+    return results

@@ -26,16 +26,16 @@ def _degrees_of(angle: Any) -> Any:
     return angle.angle
 
 
-def third_side(one: Any, other: Any, angle: Any) -> Any:
-    return degrees.sqrt(one**2 + other**2 - 2 * one * other * degrees.cos(_degrees_of(angle)))
+def third_side(first: Any, other: Any, angle: Any) -> Any:
+    return degrees.sqrt(first**2 + other**2 - 2 * first * other * degrees.cos(_degrees_of(angle)))
 
 
 def corner(near: Any, other: Any, opposite: Any) -> Any:
     return np.radians(degrees.acos((near**2 + other**2 - opposite**2) / (2 * near * other)))
 
 
-def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
-    return corner(one, third, other)
+def corner_beside(first: Any, other: Any, angle: Any, third: Any) -> Any:
+    return corner(first, third, other)
 
 
 class TextbookFourBar:
@@ -105,11 +105,11 @@ class Twinned:
             return function
         if id(function) not in self._made:
             space = self._space(function)
-            made = FunctionType(
+            created = FunctionType(
                 function.__code__, space, function.__name__, function.__defaults__, function.__closure__
             )
-            made.__kwdefaults__ = function.__kwdefaults__
-            self._made[id(function)] = made
+            created.__kwdefaults__ = function.__kwdefaults__
+            self._made[id(function)] = created
         return self._made[id(function)]
 
     def _space(self, function: FunctionType) -> dict[str, Any]:

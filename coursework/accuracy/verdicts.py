@@ -31,30 +31,30 @@ class Rows:
     def __init__(self, rows: Sequence[Measurement]) -> None:
         self.rows = rows
 
-    def of(self, family: str, place: str = GENERIC) -> list[Measurement]:
-        found = [r for r in self.rows if r.family == family and r.place == place]
-        return sorted(found, key=lambda r: (r.setting is not None, r.setting))
+    def of(self, family: str, point: str = GENERIC) -> list[Measurement]:
+        results = [r for r in self.rows if r.family == family and r.place == point]
+        return sorted(results, key=lambda r: (r.setting is not None, r.setting))
 
-    def answered(self, family: str, place: str = GENERIC) -> list[Measurement]:
+    def answered(self, family: str, point: str = GENERIC) -> list[Measurement]:
         """Return the rows with an answer somewhere, and so an error."""
-        return [r for r in self.of(family, place) if r.max_error is not None]
+        return [r for r in self.of(family, point) if r.max_error is not None]
 
-    def one(self, family: str, place: str = GENERIC) -> Measurement | None:
-        found = self.of(family, place)
-        return found[0] if found else None
+    def one(self, family: str, point: str = GENERIC) -> Measurement | None:
+        result = self.of(family, point)
+        return result[0] if result else None
 
     def within(self, limit: float, places: Sequence[str]) -> list[Measurement]:
         """Return the generic rows of the ways that stay below a limit at all of these places, without
         references."""
-        found = []
+        results = []
         for row in self.rows:
             if row.place != places[0] or row.family in _REFERENCES:
                 continue
-            own = [r for r in self.rows if r.method == row.method and r.place in places]
-            kept = all(not r.failed and r.max_error is not None and r.max_error <= limit for r in own)
-            if kept and {r.place for r in own} == set(places):
-                found.append(row)
-        return found
+            selected = [r for r in self.rows if r.method == row.method and r.place in places]
+            stored = all(not r.failed and r.max_error is not None and r.max_error <= limit for r in selected)
+            if stored and {r.place for r in selected} == set(places):
+                results.append(row)
+        return results
 
     @property
     def is_busy(self) -> bool:
@@ -67,32 +67,32 @@ class Rows:
         return (GENERIC, HARD) if any(r.place == HARD for r in self.rows) else (GENERIC,)
 
 
-def enough(rows: Rows, said: Words, name: Any, number: Any) -> list[str]:
+def enough(rows: Rows, texts: Words, name: Any, number: Any) -> list[str]:
     """Return for some errors the cheapest ways that stay below them everywhere; limits with one answer are
     joined."""
-    told: dict[tuple[str, str], list[float]] = {}
+    entries: dict[tuple[str, str], list[float]] = {}
     for limit in LIMITS:
-        for key, methods in _answers(rows, said, name, limit):
-            told.setdefault((key, methods), []).append(limit)
-    reading = said["reading"]
+        for key, methods in _answers(rows, texts, name, limit):
+            entries.setdefault((key, methods), []).append(limit)
+    reading = texts["reading"]
     return [
-        reading[key].format(limit=_and([number(limit) for limit in limits], said), methods=methods)
-        for (key, methods), limits in told.items()
+        reading[key].format(limit=_and([number(limit) for limit in limits], texts), methods=methods)
+        for (key, methods), limits in entries.items()
     ]
 
 
-def _answers(rows: Rows, said: Words, name: Any, limit: float) -> list[tuple[str, str]]:
+def _answers(rows: Rows, texts: Words, name: Any, limit: float) -> list[tuple[str, str]]:
     """Return the sentences for one limit: each one's key, and the methods that it names."""
     best = cheapest(rows.within(limit, rows.places))
     if best and rows.is_busy:
         return [("busy", "")]
-    found = [("nowhere_below", "")]
+    results = [("nowhere_below", "")]
     if best:
-        found = [("everywhere_alike" if best[1:] else "everywhere", listed(best, said, name))]
+        results = [("everywhere_alike" if best[1:] else "everywhere", listed(best, texts, name))]
     better = [] if rows.is_busy else _cheaper_at_generic_places(rows, limit, best)
     if better:
-        found.append(("generic_only", listed(better, said, name)))
-    return found
+        results.append(("generic_only", listed(better, texts, name)))
+    return results
 
 
 def _cheaper_at_generic_places(rows: Rows, limit: float, best: Sequence[Measurement]) -> list[Measurement]:
@@ -102,13 +102,13 @@ def _cheaper_at_generic_places(rows: Rows, limit: float, best: Sequence[Measurem
     return [] if {row.method for row in best} & {row.method for row in generic} else generic
 
 
-def listed(rows: Sequence[Measurement], said: Words, name: Any) -> str:
+def listed(rows: Sequence[Measurement], texts: Words, name: Any) -> str:
     """Return the names of the methods in alphabetical order, since their times give no order."""
-    return _and(sorted(f"*{name(row)}*" for row in rows), said)
+    return _and(sorted(f"*{name(row)}*" for row in rows), texts)
 
 
-def _and(words: Sequence[str], said: Words) -> str:
-    return str(said["reading"]["and"]).join([", ".join(words[:-1]), words[-1]]) if words[1:] else words[0]
+def _and(words: Sequence[str], texts: Words) -> str:
+    return str(texts["reading"]["and"]).join([", ".join(words[:-1]), words[-1]]) if words[1:] else words[0]
 
 
 def paid_after(row: Measurement, stable: Measurement | None) -> float | None:

@@ -89,7 +89,7 @@ class _Bench:
         return Reference(self.subject.exercise, self.wanted, 50)
 
     def many_digits(self, places: Places) -> Values:
-        rows = [self._fifty.at(place) for place in one_by_one(places)]
+        rows = [self._fifty.at(point) for point in one_by_one(places)]
         return {name: [row[name] for row in rows] for name in self.wanted}
 
 
@@ -145,17 +145,17 @@ class _Turning:
         # Half a step off the quarters of the turn, where a rate may not exist, and one more at either end.
         at = -180.0 + (np.arange(nodes + 2) - 0.5) * (360.0 / nodes)
         rates = self.subject.rate_of
-        found = self._solve((*rates, *rates.values()), at)
+        result = self._solve((*rates, *rates.values()), at)
         splines: dict[str, Callable[[np.ndarray], np.ndarray]] = {}
         for position, rate in rates.items():
-            value = np.broadcast_to(found[position], at.shape)
-            slope = np.broadcast_to(found[rate], at.shape) / self._speed
+            value = np.broadcast_to(result[position], at.shape)
+            slope = np.broadcast_to(result[rate], at.shape) / self._speed
             if position in self.degrees:
                 value = np.unwrap(value, period=360)
             else:
                 slope = np.radians(slope)
-            whole = np.isfinite(value).all() and np.isfinite(slope).all()
-            splines[position] = CubicHermiteSpline(at, value, slope) if whole else _nothing
+            full = np.isfinite(value).all() and np.isfinite(slope).all()
+            splines[position] = CubicHermiteSpline(at, value, slope) if full else _nothing
 
         def compute(places: Places) -> Values:
             angle = places[self.angle]
@@ -182,9 +182,9 @@ class _Turning:
 
     def _start(self, angle: np.ndarray) -> list[np.ndarray]:
         """Return the unknowns at the nearest node, as in a stepwise motion."""
-        nodes, found = self._nodes
+        nodes, result = self._nodes
         nearest = np.rint((angle - nodes[0]) / (360 / NODES)).astype(int) % NODES
-        return [np.broadcast_to(found[name], nodes.shape)[nearest] for name in self.subject.unknowns]
+        return [np.broadcast_to(result[name], nodes.shape)[nearest] for name in self.subject.unknowns]
 
     @cached_property
     def _nodes(self) -> tuple[np.ndarray, Values]:
@@ -195,10 +195,10 @@ class _Turning:
         """Return the known values of the loops, computed constants of the mechanism included."""
         names = {n for loop in self.subject.exercise.solution.loops.values() for n in loop.names}
         computed = names - set(self.subject.unknowns) - set(self.fixed) - {self.angle}
-        known = {n: v for n, v in self.fixed.items() if isinstance(v, float)}
+        known_values = {n: v for n, v in self.fixed.items() if isinstance(v, float)}
         if computed:
-            known |= self._solve(tuple(computed), np.zeros(()))
-        return self._in_radians({**known, self.angle: angle})
+            known_values |= self._solve(tuple(computed), np.zeros(()))
+        return self._in_radians({**known_values, self.angle: angle})
 
     def _in_radians(self, values: Mapping[str, Any]) -> dict[str, Any]:
         return {n: v * (math.pi / 180) if n in self.degrees else v for n, v in values.items()}
@@ -224,7 +224,7 @@ class _Turning:
         def compute(places: Places) -> Values:
             angle = places[self.angle]
             starts = np.stack(self._start(angle), axis=-1)
-            found = np.full(starts.shape, np.nan)
+            result = np.full(starts.shape, np.nan)
             constants = self._known(0.0)
             turned = np.radians(angle)
             for i in range(len(angle)):
@@ -235,8 +235,8 @@ class _Turning:
                     return closure.gaps(values, math.cos, math.sin)
 
                 if np.isfinite(starts[i]).all() and (solved := solve(gaps, starts[i])) is not None:
-                    found[i] = solved
-            return self._in_degrees(list(found.T))
+                    result[i] = solved
+            return self._in_degrees(list(result.T))
 
         return compute
 
@@ -244,8 +244,8 @@ class _Turning:
         from scipy.optimize import fsolve
 
         def solve(gaps: Callable, start: np.ndarray) -> np.ndarray | None:
-            found, _, status, _ = fsolve(gaps, start, xtol=tolerance, full_output=True)
-            return found if status == 1 else None
+            result, _, status, _ = fsolve(gaps, start, xtol=tolerance, full_output=True)
+            return result if status == 1 else None
 
         return self._one_by_one(solve)
 
@@ -253,8 +253,8 @@ class _Turning:
         from scipy.optimize import root
 
         def solve(gaps: Callable, start: np.ndarray) -> np.ndarray | None:
-            found = root(gaps, start, method="lm", options={"xtol": tolerance, "ftol": tolerance})
-            return found.x if found.success else None
+            result = root(gaps, start, method="lm", options={"xtol": tolerance, "ftol": tolerance})
+            return result.x if result.success else None
 
         return self._one_by_one(solve)
 
@@ -267,13 +267,13 @@ class _Turning:
         def compute(places: Places) -> Values:
             angle = places[self.angle]
             before, after = (self._solve(tuple(rates), angle + side * width) for side in (-1, 1))
-            found = {}
+            results = {}
             for position, rate in rates.items():
                 moved = after[position] - before[position]
                 if position in self.degrees:
                     moved = np.radians(moved - 360 * np.rint(moved / 360))
-                found[rate] = moved * (self._speed / (2 * step))
-            return found
+                results[rate] = moved * (self._speed / (2 * step))
+            return results
 
         return compute
 
@@ -292,8 +292,8 @@ class _Turning:
             known[self.angle] = known[self.angle] + 1j * step
             with np.errstate(all="ignore"):
                 start = [closed[n] + 0j for n in self.subject.unknowns]
-                found = closure.newton(known, start, 1)
-            named = zip(self.subject.unknowns, found, strict=True)
+                result = closure.newton(known, start, 1)
+            named = zip(self.subject.unknowns, result, strict=True)
             return {rates[n]: np.imag(x) * (self._speed / step) for n, x in named}
 
         return compute

@@ -39,15 +39,15 @@ class Element:
         dataclass(init=False, repr=False, eq=False)(cls)
 
     def __init__(self, *values: object, **named: object) -> None:
-        told = self._told()
-        given = dict(zip((name for name, _, _ in told), values, strict=False)) | named
-        unknown = given.keys() - {name for name, _, _ in told}
+        text = self._told()
+        given = dict(zip((name for name, _, _ in text), values, strict=False)) | named
+        unknown = given.keys() - {name for name, _, _ in text}
         if unknown or len(given) < len(values) + len(named):
-            asked = ", ".join(name for name, _, _ in told)
+            requested = ", ".join(name for name, _, _ in text)
             raise TypeError(
-                f"{type(self).__name__} takes {asked}, each once; found {len(values)} values and {[*named]}"
+                f"{type(self).__name__} takes {requested}, each once; found {len(values)} values and {[*named]}"
             )
-        for name, kind, default in told:
+        for name, kind, default in text:
             value = given.get(name, default)
             if value is MISSING:
                 raise TypeError(f"{type(self).__name__}: {name} is missing")
@@ -91,9 +91,9 @@ class Element:
 
     def settled(self, decimals: int) -> Element:
         """Return the element with its points and numbers rounded to ``decimals`` decimals."""
-        told = {name: self.__dict__[name] for name, _, _ in self._told()}
+        entries = {name: self.__dict__[name] for name, _, _ in self._told()}
         changed = {
-            name: new for name, old in told.items() if repr(new := _rounded(old, decimals)) != repr(old)
+            name: new for name, old in entries.items() if repr(new := _rounded(old, decimals)) != repr(old)
         }
         return replace(self, **changed) if changed else self
 
@@ -114,7 +114,7 @@ def _rounded(value: Any, decimals: int) -> Any:
         return complex(round(value.real, decimals) + 0.0, round(value.imag, decimals) + 0.0)
     if isinstance(value, float):
         return (round(value, decimals) or value) + 0.0  # what is positive stays so
-    return tuple(_rounded(one, decimals) for one in value) if isinstance(value, tuple) else value
+    return tuple(_rounded(item, decimals) for item in value) if isinstance(value, tuple) else value
 
 
 def _points(value: object) -> tuple[complex, ...]:
@@ -167,7 +167,7 @@ Positive = float
 
 
 def circle_points(center: complex, radius: float) -> tuple[complex, ...]:
-    return tuple(center + radius * way for way in (1, 1j, -1, -1j))
+    return tuple(center + radius * direction for direction in (1, 1j, -1, -1j))
 
 
 def arc_points(center: complex, radius: float, start: float, end: float) -> tuple[complex, ...]:

@@ -192,8 +192,8 @@ def bars(rows: Sequence[tuple[str, float, str]], title: str, horizontal: str, fu
     with pyplot.rc_context(STYLE):
         figure, panel = pyplot.subplots(figsize=(6.6, 0.85 + 0.2 * max(3, len(rows))), layout="constrained")
         panel.barh(range(len(rows)), lengths, height=0.62, color=INK)
-        for place, (_, length, said) in enumerate(rows):
-            panel.annotate(said, (length, place), (3, 0), textcoords="offset points", va="center", fontsize=8)
+        for index, (_, length, text) in enumerate(rows):
+            panel.annotate(text, (length, index), (3, 0), textcoords="offset points", va="center", fontsize=8)
         panel.set_yticks(range(len(rows)), [label for label, *_ in rows])
         panel.set(xlabel=horizontal, title=title, xlim=(0, 1.12 * (full or max(lengths, default=0) or 1)))
         panel.set_ylim(len(rows) - 0.4, -0.6)

@@ -167,10 +167,10 @@ class slider(Element):
     label: str | None = None
 
     def draw(self, paper: FigurePaper) -> None:
-        p, way = paper.at(self.p), turn(paper.degrees(self.direction))
+        p, direction = paper.at(self.p), turn(paper.degrees(self.direction))
         half = (BLOCK, BLOCK.conjugate(), -BLOCK, -BLOCK.conjugate())
-        paper.draw(Path(tuple(p + way * z for z in half), EDGE, TINT, closed=True, layer=BLOCKS))
-        paper.around(self.label, p, BLOCK.imag + AWAY, (way, -way))
+        paper.draw(Path(tuple(p + direction * z for z in half), EDGE, TINT, closed=True, layer=BLOCKS))
+        paper.around(self.label, p, BLOCK.imag + AWAY, (direction, -direction))
 
 
 class rail(Element):
@@ -249,11 +249,15 @@ def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[comple
 
 
 def _hatching(
-    outlines: tuple[tuple[complex, ...], ...], way: complex, spacing: float
+    outlines: tuple[tuple[complex, ...], ...], direction: complex, spacing: float
 ) -> list[tuple[complex, complex]]:
     """Return the segments of parallel lines inside a polygon with holes (even-odd rule), in the lines' own
     axes."""
-    sides = [(a * way.conjugate(), b * way.conjugate()) for points in outlines for a, b in _sides(points)]
+    sides = [
+        (a * direction.conjugate(), b * direction.conjugate())
+        for points in outlines
+        for a, b in _sides(points)
+    ]
     low, high = min(a.imag for a, _ in sides), max(a.imag for a, _ in sides)
     segments = []
     for k in range(math.ceil(low / spacing), math.floor(high / spacing) + 1):
@@ -263,7 +267,7 @@ def _hatching(
             for a, b in sides
             if (a.imag > level) != (b.imag > level)
         )
-        segments += [(complex(s, level) * way, complex(e, level) * way) for s, e in _by_two(cuts)]
+        segments += [(complex(s, level) * direction, complex(e, level) * direction) for s, e in _by_two(cuts)]
     return segments
 
 

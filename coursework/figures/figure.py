@@ -80,7 +80,7 @@ class _Layout:
 
     def letters(self, count: int | None) -> tuple[Letters, ...]:
         """Return the letters of the labels of the first elements."""
-        return tuple(one for element, one in self._letters if count is None or element < count)
+        return tuple(item for element, item in self._letters if count is None or element < count)
 
     @cached_property
     def _letters(self) -> list[tuple[int, Letters]]:

@@ -75,9 +75,9 @@ class Path:
     def outline(self) -> tuple[complex, ...]:
         return (*self.points, self.points[0]) if self.closed else self.points
 
-    def svg(self, place: Place) -> str:
-        way = "L".join(pair(place(z)) for z in self.points) + ("Z" if self.closed else "")
-        return f'<path d="M{way}"{_paint(self.width, self.fill, self.dash)}/>'
+    def svg(self, position: Place) -> str:
+        direction = "L".join(pair(position(z)) for z in self.points) + ("Z" if self.closed else "")
+        return f'<path d="M{direction}"{_paint(self.width, self.fill, self.dash)}/>'
 
 
 @dataclass(frozen=True)
@@ -94,10 +94,10 @@ class Disc:
 
     def outline(self) -> tuple[complex, ...]:
         sides = max(8, min(72, round(4 * self.radius)))
-        return tuple(self.center + self.radius * way for way in _round(sides))
+        return tuple(self.center + self.radius * direction for direction in _round(sides))
 
-    def svg(self, place: Place) -> str:
-        center = place(self.center)
+    def svg(self, position: Place) -> str:
+        center = position(self.center)
         at = f'cx="{number(center.real)}" cy="{number(center.imag)}" r="{number(self.radius)}"'
         return f"<circle {at}{_paint(self.width, self.fill, self.dash)}/>"
 
@@ -122,13 +122,17 @@ class Arc:
         steps = max(2, round(abs(self.end - self.start) / 6))
         return tuple(self.at(self.start + (self.end - self.start) * k / steps) for k in range(steps + 1))
 
-    def svg(self, place: Place) -> str:
+    def svg(self, position: Place) -> str:
         # SVG draws nothing between two equal points, so a long arc goes by thirds.
         stops = [self.start + (self.end - self.start) * k / 3 for k in range(4)]
-        way = self.end < self.start
+        direction = self.end < self.start
         radius = number(self.radius)
-        legs = "".join(f"A{radius} {radius} 0 0 {int(way)} {pair(place(self.at(a)))}" for a in stops[1:])
-        return f'<path d="M{pair(place(self.at(self.start)))}{legs}"{_paint(self.width, NONE, self.dash)}/>'
+        legs = "".join(
+            f"A{radius} {radius} 0 0 {int(direction)} {pair(position(self.at(a)))}" for a in stops[1:]
+        )
+        return (
+            f'<path d="M{pair(position(self.at(self.start)))}{legs}"{_paint(self.width, NONE, self.dash)}/>'
+        )
 
 
 Ink = Path | Disc | Arc

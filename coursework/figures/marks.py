@@ -115,9 +115,15 @@ class axes(Element):
 
     def draw(self, paper: FigurePaper) -> None:
         origin, length = paper.at(self.origin), paper.length(self.length)
-        for way, label in zip((1, 1j), self.labels, strict=True):
-            paper.arrow(origin, origin + length * way, THIN, HEAD * 0.8)
-            paper.toward(label, origin + length * way, way * turn(-45 if way == 1 else 45), 0.6, SIDES)
+        for direction, label in zip((1, 1j), self.labels, strict=True):
+            paper.arrow(origin, origin + length * direction, THIN, HEAD * 0.8)
+            paper.toward(
+                label,
+                origin + length * direction,
+                direction * turn(-45 if direction == 1 else 45),
+                0.6,
+                SIDES,
+            )
 
 
 class rotation_arrow(Element):
@@ -188,13 +194,13 @@ class dimension(Element):
         p, q = paper.at(self.p), paper.at(self.q)
         normal = self._normal(p, q)
         gap = paper.aside(p, q) if self.offset is None else round(self.offset * paper.scale, 1)
-        way = normal if gap >= 0 else -normal
+        direction = normal if gap >= 0 else -normal
         a, b = p + normal * gap, q + normal * gap
         for foot, end in ((p, a), (q, b)):
             if abs(gap) > 1.5:
-                paper.draw(Path((foot + way, end + way), THIN))
+                paper.draw(Path((foot + direction, end + direction), THIN))
         _measured(paper, a, b)
-        paper.beside(self.label, a, b, 0.7, way)
+        paper.beside(self.label, a, b, 0.7, direction)
 
 
 def _measured(paper: FigurePaper, a: complex, b: complex) -> None:
@@ -202,16 +208,16 @@ def _measured(paper: FigurePaper, a: complex, b: complex) -> None:
     between."""
     if a == b:
         return
-    way = (b - a) / abs(b - a)
+    direction = (b - a) / abs(b - a)
     size = 1.9
     if abs(b - a) > 3 * size:
-        paper.draw(Path((a + way * size * 0.8, b - way * size * 0.8), THIN, layer=MARKS))
-        paper.head(a, -way, size)
-        paper.head(b, way, size)
+        paper.draw(Path((a + direction * size * 0.8, b - direction * size * 0.8), THIN, layer=MARKS))
+        paper.head(a, -direction, size)
+        paper.head(b, direction, size)
     else:
         paper.draw(Path((a, b), THIN, layer=MARKS))
-        paper.arrow(a - way * 2.2 * size, a, THIN, size)
-        paper.arrow(b + way * 2.2 * size, b, THIN, size)
+        paper.arrow(a - direction * 2.2 * size, a, THIN, size)
+        paper.arrow(b + direction * 2.2 * size, b, THIN, size)
 
 
 class vector(Element):

@@ -161,9 +161,9 @@ class _Stage(FigurePaper):
 
     def arrow(self, p: complex, q: complex, width: float = ARROW, size: float = TIP) -> None:
         size = min(size, 0.7 * abs(q - p))
-        way = (q - p) / (abs(q - p) or 1.0)
-        self.draw(Path((p, q - way * size * 0.8), width, layer=MARKS))
-        self.head(q, way, size)
+        direction = (q - p) / (abs(q - p) or 1.0)
+        self.draw(Path((p, q - direction * size * 0.8), width, layer=MARKS))
+        self.head(q, direction, size)
 
     def arc_arrow(self, center: complex, radius: float, start: float, end: float, size: float) -> None:
         sign = 1 if end >= start else -1
@@ -226,18 +226,18 @@ def extent(
 def _common(frames: Frames) -> list[list[Element]]:
     """Return the elements present at every instant, matched by kind, label and rank among equals."""
     keyed = [_by_kind(elements) for elements in frames]
-    common = [key for key in keyed[0] if all(key in one for one in keyed)]
-    return [[one[key] for key in common] for one in keyed]
+    common = [key for key in keyed[0] if all(key in item for item in keyed)]
+    return [[item[key] for key in common] for item in keyed]
 
 
 def _by_kind(elements: Sequence[Element]) -> Mapping[tuple, Element]:
-    found: dict[tuple, Element] = {}
+    results: dict[tuple, Element] = {}
     for element in elements:
         label, rank = getattr(element, "label", ""), 0
-        while (type(element), label, rank) in found:
+        while (type(element), label, rank) in results:
             rank += 1
-        found[type(element), label, rank] = element
-    return found
+        results[type(element), label, rank] = element
+    return results
 
 
 def _settled(frames: list[list[Element]]) -> list[list[Element]]:
@@ -260,20 +260,22 @@ def _settled_one(column: tuple[Element, ...]) -> tuple[Element, ...]:
 
 def _on_one_line(column: tuple) -> tuple:
     """Return the union of segments of one line, at every instant; rotating segments stay unchanged."""
-    p, way = column[0].p, column[0].q - column[0].p
-    if abs(way) == 0:
+    p, direction = column[0].p, column[0].q - column[0].p
+    if abs(direction) == 0:
         return column
-    way /= abs(way)
-    ends = [((e.p - p) / way, (e.q - p) / way) for e in column]
+    direction /= abs(direction)
+    ends = [((e.p - p) / direction, (e.q - p) / direction) for e in column]
     size = max(abs(z) for end in ends for z in end)
     if any(abs(z.imag) > 1e-6 * size for end in ends for z in end):
         return column
     if any(q.real < p.real for p, q in ends):
         return column
-    whole = replace(
-        column[0], p=p + way * min(a.real for a, _ in ends), q=p + way * max(b.real for _, b in ends)
+    full = replace(
+        column[0],
+        p=p + direction * min(a.real for a, _ in ends),
+        q=p + direction * max(b.real for _, b in ends),
     )
-    return (whole,) * len(column)
+    return (full,) * len(column)
 
 
 def _stages(frames: list[list[Element]], scale: float, middle: complex) -> list[_Stage]:
@@ -294,11 +296,11 @@ def _stages(frames: list[list[Element]], scale: float, middle: complex) -> list[
     return stages
 
 
-def _free_side(taken: Sequence[Sequence[complex]]) -> complex:
+def _free_side(occupied: Sequence[Sequence[complex]]) -> complex:
     """Return the side of a pivot where bars are least often, below first."""
 
-    def clashes(way: complex) -> int:
-        return sum(any((t * way.conjugate()).real > 0.64 for t in ways) for ways in taken)
+    def clashes(direction: complex) -> int:
+        return sum(any((t * direction.conjugate()).real > 0.64 for t in ways) for ways in occupied)
 
     return min((-1j, 1j, -1 + 0j, 1 + 0j), key=clashes)
 
@@ -312,28 +314,28 @@ def _drawn(stages: Sequence[_Stage]) -> list[MotionTrack]:
     return [_track([stage.ink[i] for stage in stages]) for i in range(count)]
 
 
-def _track(things: Sequence[Ink]) -> MotionTrack:
-    first = things[0]
-    discs = [thing for thing in things if isinstance(thing, Disc)]
-    if isinstance(first, Disc) and [disc.radius for disc in discs] == [first.radius] * len(things):
+def _track(shapes: Sequence[Ink]) -> MotionTrack:
+    first = shapes[0]
+    discs = [shape for shape in shapes if isinstance(shape, Disc)]
+    if isinstance(first, Disc) and [disc.radius for disc in discs] == [first.radius] * len(shapes):
         mark = f'<circle r="{number(first.radius)}"{_paint(first.width, first.fill, first.dash)}/>'
         return MotionTrack(_flat([[disc.center] for disc in discs]), mark=mark, layer=first.layer)
     closed = isinstance(first, Path) and first.closed
     fill = first.fill if isinstance(first, Path | Disc) else "none"
-    points = [_points_of(thing) for thing in things]
+    points = [_points_of(shape) for shape in shapes]
     most = max(map(len, points))
     # A path with fewer points stands on its last one for the rest.
     points = [[*row, *[row[-1]] * (most - len(row))] for row in points]
     return MotionTrack(_flat(points), _paint(first.width, fill, first.dash), closed, layer=first.layer)
 
 
-def _points_of(thing: Ink) -> list[complex]:
-    if isinstance(thing, Path):
-        return list(thing.points)
-    if isinstance(thing, Arc):
+def _points_of(shape: Ink) -> list[complex]:
+    if isinstance(shape, Path):
+        return list(shape.points)
+    if isinstance(shape, Arc):
         steps = range(_ARC_SIDES + 1)
-        return [thing.at(thing.start + (thing.end - thing.start) * k / _ARC_SIDES) for k in steps]
-    return list(thing.outline())
+        return [shape.at(shape.start + (shape.end - shape.start) * k / _ARC_SIDES) for k in steps]
+    return list(shape.outline())
 
 
 def _flat(points: Sequence[Sequence[complex]] | np.ndarray) -> np.ndarray:
@@ -350,9 +352,9 @@ def _moving_marks(arrows: Sequence[Arrow], spots: Sequence[TracedPoint], scale: 
 def _spot_tracks(spot: TracedPoint, scale: float) -> list[MotionTrack]:
     """Return the path of a point, under the links, and its dot, on them."""
     colour, count = COLOURS["position"], len(spot.p)
-    way = spot.p * scale
+    direction = spot.p * scale
     path = MotionTrack(
-        np.repeat(_flat(way[None]), count, axis=0),
+        np.repeat(_flat(direction[None]), count, axis=0),
         f' stroke="{colour}"{_paint(0.25, "none")}',
         spot.closed,
         layer=FILLS,
@@ -360,23 +362,26 @@ def _spot_tracks(spot: TracedPoint, scale: float) -> list[MotionTrack]:
         point=spot.point,
     )
     dot = f'<circle r="0.7" fill="{colour}" stroke="none"/>'
-    return [path, MotionTrack(_flat(way[:, None]), mark=dot, layer=PINS, effect="position", point=spot.point)]
+    return [
+        path,
+        MotionTrack(_flat(direction[:, None]), mark=dot, layer=PINS, effect="position", point=spot.point),
+    ]
 
 
 def _arrow_tracks(arrow: Arrow, scale: float) -> list[MotionTrack]:
     tail = arrow.p * scale
     v = np.where(np.isfinite(arrow.v), arrow.v, 0) * scale
     length = np.abs(v)
-    way = v / np.where(length > 0, length, 1.0)
+    direction = v / np.where(length > 0, length, 1.0)
     size = np.minimum(TIP, 0.7 * length)
-    tip, base = tail + v, tail + v - way * size
-    wing = 0.25 * size * 1j * way
+    tip, base = tail + v, tail + v - direction * size
+    wing = 0.25 * size * 1j * direction
     colour = COLOURS[arrow.effect]
     shaft = f' stroke="{colour}"{_paint(ARROW, "none")}'
     head = f' stroke="none" fill="{colour}"'
     named = partial(MotionTrack, layer=MARKS, effect=arrow.effect, point=arrow.point)
     return [
-        named(_flat(np.stack([tail, tip - 0.8 * way * size], axis=-1)), shaft),
+        named(_flat(np.stack([tail, tip - 0.8 * direction * size], axis=-1)), shaft),
         named(_flat(np.stack([tip, base + wing, base - wing], axis=-1)), head, True),
     ]
 
@@ -416,15 +421,15 @@ def _letters(label: str, colour: str) -> str:
 
 def _segments(inks: Sequence[Sequence[Ink]]) -> tuple[np.ndarray, np.ndarray]:
     """Return the ends of every drawn segment that a label should avoid, one row an instant."""
-    rows = [[side for thing in ink for side in _sides(thing)] for ink in inks]
+    rows = [[side for shape in ink for side in _sides(shape)] for ink in inks]
     most = max(map(len, rows))
     ends = np.array([[*row, *[row[-1]] * (most - len(row))] for row in rows])
     return ends[..., 0], ends[..., 1]
 
 
-def _sides(thing: Ink) -> list[tuple[complex, complex]]:
-    points = _points_of(thing)
-    return list(pairwise([*points, points[0]] if isinstance(thing, Path) and thing.closed else points))
+def _sides(shape: Ink) -> list[tuple[complex, complex]]:
+    points = _points_of(shape)
+    return list(pairwise([*points, points[0]] if isinstance(shape, Path) and shape.closed else points))
 
 
 # ----------------------------------------------------------------------- frame

@@ -9,7 +9,7 @@ from coursework.figures.moving import MotionTrack, MovingDrawing
 
 
 def moving_svg(
-    shown: MovingDrawing,
+    displayed: MovingDrawing,
     *,
     order: Sequence[int],
     first: int,
@@ -37,7 +37,7 @@ def moving_svg(
         ``keyTimes`` of the order, where instants are not evenly spread.
     """
     lines = []
-    for track in shown.tracks:
+    for track in displayed.tracks:
         if not track.moves:
             lines.append(track.svg(first))
             continue
@@ -48,18 +48,18 @@ def moving_svg(
         "<style>.coursework-still{display:none}@media (prefers-reduced-motion:reduce)"
         "{.coursework-still{display:inline}.coursework-moving{display:none}}</style>"
     )
-    return _whole(shown, lines, title, words, lang, style)
+    return _whole(displayed, lines, title, words, lang, style)
 
 
-def still_svg(shown: MovingDrawing, instant: int, *, title: str, words: str, lang: str) -> str:
+def still_svg(displayed: MovingDrawing, instant: int, *, title: str, words: str, lang: str) -> str:
     """Return the drawing at one instant as SVG."""
-    return _whole(shown, (track.svg(instant) for track in shown.tracks), title, words, lang)
+    return _whole(displayed, (track.svg(instant) for track in displayed.tracks), title, words, lang)
 
 
 def _whole(
-    shown: MovingDrawing, lines: Iterable[str], title: str, words: str, lang: str, style: str = ""
+    displayed: MovingDrawing, lines: Iterable[str], title: str, words: str, lang: str, style: str = ""
 ) -> str:
-    width, height = (f"{x:.6g}" for x in shown.size)
+    width, height = (f"{x:.6g}" for x in displayed.size)
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
         f'viewBox="0 0 {width} {height}" role="img" lang="{lang}">',

@@ -55,7 +55,7 @@ class FigurePaper:
 
     def directions(self, p: complex) -> list[complex]:
         """Return the unit vectors of the bars that leave a paper point."""
-        found = []
+        results = []
         for a, b in self._bars:
             if a == b:
                 continue
@@ -63,20 +63,22 @@ class FigurePaper:
             across = ((p - a) * along.conjugate()).imag
             run = ((p - a) * along.conjugate()).real
             if abs(across) < 0.6 and -0.6 < run < abs(b - a) - 0.6:
-                found.append(along)
+                results.append(along)
             if abs(across) < 0.6 and 0.6 < run < abs(b - a) + 0.6:
-                found.append(-along)
-        return found
+                results.append(-along)
+        return results
 
     def ground_side(self, p: complex) -> complex:
         """Return the direction of a pivot's support: below unless a bar leaves that way."""
-        taken = self.directions(p)
+        occupied = self.directions(p)
 
-        def room(way: complex) -> float:
-            return min((abs(cmath.phase(t / way)) for t in taken), default=math.pi)
+        def room(direction: complex) -> float:
+            return min((abs(cmath.phase(t / direction)) for t in occupied), default=math.pi)
 
         ways = (-1j, 1j, -1 + 0j, 1 + 0j)
-        return next((way for way in ways if room(way) > math.radians(50)), max(ways, key=room))
+        return next(
+            (direction for direction in ways if room(direction) > math.radians(50)), max(ways, key=room)
+        )
 
     def room(self, p: complex) -> float:
         """Return the length on paper of the shortest bar that ends at a paper point."""
@@ -87,7 +89,7 @@ class FigurePaper:
         label: str | None,
         p: complex,
         start: float,
-        taken: Sequence[complex] = (),
+        occupied: Sequence[complex] = (),
         toward: float | None = None,
         area: tuple[complex, ...] = (),
     ) -> None:
@@ -97,21 +99,23 @@ class FigurePaper:
         ``area`` is the outline of the body that the label names.
         """
         if label:
-            gap = _widest_gap([*self.directions(p), *taken])
-            way = gap if toward is None else turn(toward)
-            self.wishes.append(LabelRequest(label, p, way, start, NAMES, area=area))
+            gap = _widest_gap([*self.directions(p), *occupied])
+            direction = gap if toward is None else turn(toward)
+            self.wishes.append(LabelRequest(label, p, direction, start, NAMES, area=area))
 
     def toward(
         self,
         label: str | None,
         p: complex,
-        way: complex,
+        direction: complex,
         start: float,
         rank: int = ANGLES,
         area: tuple[complex, ...] = (),
     ) -> None:
         if label:
-            self.wishes.append(LabelRequest(label, p, way / (abs(way) or 1.0), start, rank, area=area))
+            self.wishes.append(
+                LabelRequest(label, p, direction / (abs(direction) or 1.0), start, rank, area=area)
+            )
 
     def inside(self, label: str, center: complex, height: float) -> None:
         """Request a label centred on a point of a hatched area."""
@@ -119,7 +123,7 @@ class FigurePaper:
         self.wishes.append(LabelRequest(label, center, 1j, -height / 2, INSIDE, inside=True))
 
     def beside(
-        self, label: str | None, p: complex, q: complex, start: float, way: complex | None = None
+        self, label: str | None, p: complex, q: complex, start: float, direction: complex | None = None
     ) -> None:
         """Request a label beside a segment, by default on the outer side of the figure."""
         if not label:
@@ -131,8 +135,8 @@ class FigurePaper:
         outer = ((p + q) / 2 - self.middle) * normal.conjugate()
         # Above or to the left when the bar passes through the middle of the figure.
         rule = outer.real if abs(outer.real) > 1 else (normal.imag or -normal.real)
-        way = way or (normal if rule >= 0 else -normal)
-        self.wishes.append(LabelRequest(label, (p + q) / 2, way, start, SIDES, (p, q)))
+        direction = direction or (normal if rule >= 0 else -normal)
+        self.wishes.append(LabelRequest(label, (p + q) / 2, direction, start, SIDES, (p, q)))
 
     def aside(self, p: complex, q: complex) -> float:
         """Return the distance to the left of p→q at which a dimension line meets no bar, outer side first."""
@@ -146,18 +150,18 @@ class FigurePaper:
         gaps = [side * outer * mm for mm in (7.0, 9.0, 12.0, 16.0, 21.0, 27.0, 34.0) for side in (1, -1)]
         return next(filter(free, gaps), gaps[0])
 
-    def head(self, tip: complex, way: complex, size: float = HEAD) -> None:
-        base = tip - way * size
-        wing = 0.23 * size * 1j * way
+    def head(self, tip: complex, direction: complex, size: float = HEAD) -> None:
+        base = tip - direction * size
+        wing = 0.23 * size * 1j * direction
         self.draw(Path((tip, base + wing, base - wing), 0, BLACK, closed=True, layer=MARKS))
 
     def arrow(self, p: complex, q: complex, width: float = EDGE, size: float = HEAD) -> None:
         if p == q:
             return
-        way = (q - p) / abs(q - p)
+        direction = (q - p) / abs(q - p)
         size = min(size, 0.7 * abs(q - p))
-        self.draw(Path((p, q - way * size * 0.8), width, layer=MARKS))
-        self.head(q, way, size)
+        self.draw(Path((p, q - direction * size * 0.8), width, layer=MARKS))
+        self.head(q, direction, size)
 
     def arc_arrow(self, center: complex, radius: float, start: float, end: float, size: float) -> None:
         """Draw an arc with a head at its end; no head on an arc too short for one."""
@@ -185,7 +189,7 @@ def _widest_gap(ways: Sequence[complex]) -> complex:
     """Return the middle of the widest angle between the given directions; up and right when there are none."""
     if not ways:
         return turn(45)
-    angles = sorted(math.degrees(cmath.phase(way)) for way in ways)
+    angles = sorted(math.degrees(cmath.phase(direction)) for direction in ways)
     gaps = [(b - a, a) for a, b in zip(angles, [*angles[1:], angles[0] + 360], strict=True)]
     width, start = max(gaps, key=lambda gap: round(gap[0], 6))
     return turn(start + width / 2)

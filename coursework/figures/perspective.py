@@ -72,7 +72,7 @@ def _looking(about: float, above: float) -> tuple[See, Place]:
     right = (-math.sin(phi), math.cos(phi), 0.0)
     up = (-math.cos(phi) * math.sin(eps), -math.sin(phi) * math.sin(eps), math.cos(eps))
     forward = (math.cos(phi) * math.cos(eps), math.sin(phi) * math.cos(eps), math.sin(eps))
-    return lambda place: complex(_dot(place, right), _dot(place, up)), forward
+    return lambda position: complex(_dot(position, right), _dot(position, up)), forward
 
 
 def _dot(u: Place, v: Place) -> float:
@@ -83,9 +83,9 @@ def _beyond(p: Place, u: Place, far: float) -> Place:
     return tuple(a + far * b for a, b in zip(p, u, strict=True))
 
 
-def _steps(place: Place) -> list[tuple[Place, Place]]:
+def _steps(position: Place) -> list[tuple[Place, Place]]:
     """Return the lines from the origin to a point along y, then x, then z, without those of length zero."""
-    x, y, z = place
+    x, y, z = position
     return list(pairwise(dict.fromkeys([(0, 0, 0), (0, y, 0), (x, y, 0), (x, y, z)])))
 
 
@@ -126,7 +126,7 @@ class _Chain:
 
     @cached_property
     def steps(self) -> list[tuple[Place, Place]]:
-        return list(dict.fromkeys(step for place in self.places for step in _steps(place)))
+        return list(dict.fromkeys(step for position in self.places for step in _steps(position)))
 
     @cached_property
     def corners(self) -> list[Place]:
@@ -155,19 +155,19 @@ class _Chain:
         mm = (1.0 if len(self.rows) <= _FEW else _SMALLER) / scale
         left, up = min(see(c).real for c in self.corners), [see(c).imag for c in self.corners]
         corner = complex(left, (min(up) + max(up)) / 2) + _CORNER / scale
-        found: list[Element] = [
+        results: list[Element] = [
             vector(corner, _BASE / scale * see(u), rf"\vec{{{letter}}}") for letter, u in _UNITS.items()
         ]
-        found += [line(see(p), see(q), dashed=True) for p, q in self.steps]
-        found += [line(see(p), see(q), thin=False, label=f"S_{k}") for k, p, q in self.bodies if p != q]
-        for k, (row, place) in enumerate(zip(self.rows, self.places, strict=True)):
-            before, there = self.places[:k].count(place), self.places.count(place)
+        results += [line(see(p), see(q), dashed=True) for p, q in self.steps]
+        results += [line(see(p), see(q), thin=False, label=f"S_{k}") for k, p, q in self.bodies if p != q]
+        for k, (row, position) in enumerate(zip(self.rows, self.places, strict=True)):
+            before, there = self.places[:k].count(position), self.places.count(position)
             aside = 0.0 if there == 1 else _ASIDE * mm * (1 if before % 2 else -1)
-            found += _symbol(row, place, aside, see, forward, mm)
-        for place in dict.fromkeys(self.places):
-            names = [f"A_{k}" for k, other in enumerate(self.places, start=1) if other == place]
-            found.append(point(see(place), "=".join(names)))
-        return list(dict.fromkeys(found))
+            results += _symbol(row, position, aside, see, forward, mm)
+        for position in dict.fromkeys(self.places):
+            names = [f"A_{k}" for k, other in enumerate(self.places, start=1) if other == position]
+            results.append(point(see(position), "=".join(names)))
+        return list(dict.fromkeys(results))
 
 
 def _least(see: See, places: Sequence[Place], bodies: Sequence[tuple[int, Place, Place]]) -> float:
@@ -181,19 +181,19 @@ def _least(see: See, places: Sequence[Place], bodies: Sequence[tuple[int, Place,
 
 
 def _symbol(
-    row: Mapping[str, Any], place: Place, aside: float, see: See, forward: Place, mm: float
+    row: Mapping[str, Any], position: Place, aside: float, see: See, forward: Place, mm: float
 ) -> list[Element]:
     """Return a joint's axis and its symbol, which hides what is behind it; ``mm`` is a mm of the symbol."""
     kind = row["joint"]
     shape, depth = _DRAWN[kind]
     if kind == "spherical":
-        return shape(place, _UNITS["z"], see, forward, mm)
+        return shape(position, _UNITS["z"], see, forward, mm)
     u = _unit(row["axis"]) if "axis" in row else _UNITS[row["along"]]
-    center = _beyond(place, u, aside) if kind in _ALONG else place
+    center = _beyond(position, u, aside) if kind in _ALONG else position
     front = 1 if _dot(u, forward) >= 0 else -1
     arm = _ARM * mm + abs(aside)
-    behind = line(see(_beyond(place, u, -front * arm)), see(place), thin=False)
-    before = _face((see(_beyond(center, u, front * depth * mm)), see(_beyond(place, u, front * arm))))
+    behind = line(see(_beyond(position, u, -front * arm)), see(position), thin=False)
+    before = _face((see(_beyond(center, u, front * depth * mm)), see(_beyond(position, u, front * arm))))
     return [behind, *shape(center, u, see, forward, mm), before]
 
 
@@ -229,8 +229,10 @@ def _stopped(center: Place, u: Place, see: See, forward: Place, mm: float) -> li
 def _threaded(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
     """Return a cylinder with a thread across it."""
     _, e2 = _across(u)
-    way = [_beyond(_beyond(center, u, far * 0.7 * _LONG * mm), e2, far * _RADIUS * mm) for far in (-1, 1)]
-    return [*_tube(center, u, see, forward, mm), _face(tuple(map(see, way)))]
+    direction = [
+        _beyond(_beyond(center, u, far * 0.7 * _LONG * mm), e2, far * _RADIUS * mm) for far in (-1, 1)
+    ]
+    return [*_tube(center, u, see, forward, mm), _face(tuple(map(see, direction)))]
 
 
 def _box(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
@@ -238,9 +240,9 @@ def _box(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[E
     e1, e2 = _across(u)
     half = ((u, _LONG * mm), (e1, _RADIUS * mm), (e2, _RADIUS * mm))
     faces: list[Element] = []
-    for k, (way, far) in enumerate(half):
+    for k, (direction, far) in enumerate(half):
         (v, a), (w, b) = half[k - 2], half[k - 1]
-        middle = _beyond(center, way, far if _dot(way, forward) >= 0 else -far)
+        middle = _beyond(center, direction, far if _dot(direction, forward) >= 0 else -far)
         corners = [
             _beyond(_beyond(middle, v, i * a), w, j * b) for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1))
         ]
@@ -340,12 +342,14 @@ def _hull(points: Sequence[complex]) -> tuple[complex, ...]:
         {complex(round(z.real, 6), round(z.imag, 6)) for z in points}, key=lambda z: (z.real, z.imag)
     )
 
-    def half(way: Sequence[complex]) -> list[complex]:
-        found: list[complex] = []
-        for z in way:
-            while len(found) > 1 and ((found[-1] - found[-2]).conjugate() * (z - found[-2])).imag <= 0:
-                found.pop()
-            found.append(z)
-        return found[:-1]
+    def half(direction: Sequence[complex]) -> list[complex]:
+        results: list[complex] = []
+        for z in direction:
+            while (
+                len(results) > 1 and ((results[-1] - results[-2]).conjugate() * (z - results[-2])).imag <= 0
+            ):
+                results.pop()
+            results.append(z)
+        return results[:-1]
 
     return (*half(ordered), *half(ordered[::-1]))

@@ -185,8 +185,8 @@ def _of_svg(data: bytes) -> tuple[str, float, float]:
 
 def _length(text: str) -> float:
     """Return a length of SVG in mm; 0 where none is given, or a percentage."""
-    found = _LENGTH.fullmatch(text)
-    return float(found[1]) * _MM[found[2].lower()] if found and found[2].lower() in _MM else 0.0
+    match = _LENGTH.fullmatch(text)
+    return float(match[1]) * _MM[match[2].lower()] if match and match[2].lower() in _MM else 0.0
 
 
 def _dangers(root: ElementTree.Element) -> Iterator[str]:

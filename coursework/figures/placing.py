@@ -65,14 +65,18 @@ def _places(beside: bool, angle: bool) -> tuple[LabelPosition, ...]:
         for step in _STEPS[5:] if beside else _STEPS:
             costed.append((late + step + turning * away, (turn(360 * ray / _ROUND), step, None)))
     rays: dict[tuple[complex, float | None], int] = {}
-    for _, (way, _, along) in costed:
-        rays.setdefault((way, along), len(rays))
+    for _, (direction, _, along) in costed:
+        rays.setdefault((direction, along), len(rays))
     tries = [
-        (round(cost + more, 6), number, LabelPosition(*place, clear, number, rays[place[0], place[2]]))
-        for number, (cost, place) in enumerate(costed)
+        (
+            round(cost + more, 6),
+            number,
+            LabelPosition(*position, clear, number, rays[position[0], position[2]]),
+        )
+        for number, (cost, position) in enumerate(costed)
         for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
     ]
-    return tuple(place for _, _, place in sorted(tries, key=lambda one: one[:2]))
+    return tuple(position for _, _, position in sorted(tries, key=lambda item: item[:2]))
 
 
 @dataclass(frozen=True)
@@ -120,18 +124,20 @@ class LabelRequest:
         center = self.center(self.places()[0], half)
         return center - half, center + half
 
-    def center(self, place: LabelPosition, half: complex) -> complex:
+    def center(self, position: LabelPosition, half: complex) -> complex:
         """Return the centre of a box of these half-sides at a place."""
-        way, foot = self.toward * place.way, self.anchor
-        if self.along and place.fraction is not None:
-            foot = self.along[0] + (self.along[1] - self.along[0]) * place.fraction
+        direction, foot = self.toward * position.way, self.anchor
+        if self.along and position.fraction is not None:
+            foot = self.along[0] + (self.along[1] - self.along[0]) * position.fraction
         # The last two are what ``_support`` says, without a call.
-        return foot + way * (self.start + place.step + half.real * abs(way.real) + half.imag * abs(way.imag))
+        return foot + direction * (
+            self.start + position.step + half.real * abs(direction.real) + half.imag * abs(direction.imag)
+        )
 
 
-def _support(half: complex, way: complex) -> float:
+def _support(half: complex, direction: complex) -> float:
     """Return the half-width of a box in a direction."""
-    return half.real * abs(way.real) + half.imag * abs(way.imag)
+    return half.real * abs(direction.real) + half.imag * abs(direction.imag)
 
 
 #: A line with its half-width, mm: the left, low, right and high sides of the least box round it, its middle (across
@@ -166,10 +172,10 @@ def _meets(line: Line, across: float, up: float, wide: float, tall: float) -> bo
     return abs(turned) <= (wide + half) * abs(half_up) + (tall + half) * abs(half_across)
 
 
-def _way_out(line: Line, across: float, up: float, wide: float, tall: float, way: complex) -> float:
+def _way_out(line: Line, across: float, up: float, wide: float, tall: float, direction: complex) -> float:
     """Return the distance that a box on a line moves in a direction until some axis separates them."""
     left, low, right, high, middle_across, middle_up, half_across, half_up, half = line
-    x, y = way.real, way.imag
+    x, y = direction.real, direction.imag
     out = math.inf
     if x:
         out = (right - across + wide) / x if x > 0 else (left - across - wide) / x
@@ -189,15 +195,15 @@ def _gap(line: Line, across: float, up: float, wide: float, tall: float) -> floa
     """Return the distance between a box and a thin line that does not meet it."""
     x, y, dx, dy = line[4] - across, line[5] - up, line[6], line[7]
     square = dx * dx + dy * dy
-    found = math.inf
+    result = math.inf
     # What is nearest is an end of the line, or a corner of the box.
     for end in (-1, 1):
         a, b = max(abs(x + end * dx) - wide, 0.0), max(abs(y + end * dy) - tall, 0.0)
-        found = min(found, a * a + b * b)
+        result = min(result, a * a + b * b)
     for a, b in ((x - wide, y - tall), (x - wide, y + tall), (x + wide, y - tall), (x + wide, y + tall)):
         if abs(a * dx + b * dy) < square:
-            found = min(found, (a * dy - b * dx) ** 2 / square)
-    return math.sqrt(found)
+            result = min(result, (a * dy - b * dx) ** 2 / square)
+    return math.sqrt(result)
 
 
 class Obstacles:
@@ -247,10 +253,10 @@ class Obstacles:
                 it for it in self._things if it[0] <= c and it[2] >= a and it[1] <= d and it[3] >= b
             ]
 
-    def white(self, center: complex, half: complex, way: complex, inside: bool = False) -> float:
+    def white(self, center: complex, half: complex, direction: complex, inside: bool = False) -> float:
         """Return the white space round a box: the preferred one, or the least one allowed.
 
-        Where there is less, return minus the distance to go in direction ``way``, at least, until there may
+        Where there is less, return minus the distance to go in direction ``direction``, at least, until there may
         be more.
         """
         cx, cy, wide, tall = center.real, center.imag, half.real, half.imag
@@ -264,28 +270,28 @@ class Obstacles:
             if _meets(line, cx, cy, x, y):
                 if k:
                     self._blocking.insert(0, self._blocking.pop(k))
-                return -_way_out(line, cx, cy, x, y, way)
+                return -_way_out(line, cx, cy, x, y, direction)
         for across, up, width, height in self._boxes:
             x, y = wide + width, tall + height
             if abs(cx - across) < x and abs(cy - up) < y:
-                return -_way_out((across, up, across, up, across, up, 0.0, 0.0, 0.0), cx, cy, x, y, way)
-        found, x, y = _AIRY, wide + _AIRY, tall + _AIRY
+                return -_way_out((across, up, across, up, across, up, 0.0, 0.0, 0.0), cx, cy, x, y, direction)
+        result, x, y = _AIRY, wide + _AIRY, tall + _AIRY
         left, low, right, high = cx - x, cy - y, cx + x, cy + y
         self._look(left, low, right, high)
-        for thing in self._near:
-            if thing[0] > right or thing[2] < left or thing[1] > high or thing[3] < low:
+        for shape in self._near:
+            if shape[0] > right or shape[2] < left or shape[1] > high or shape[3] < low:
                 continue
-            for line in thing[4]:
+            for line in shape[4]:
                 if line[0] > right or line[2] < left or line[1] > high or line[3] < low:
                     continue
                 if _meets(line, cx, cy, x, y):
                     less_x, less_y = wide + _CLEAR, tall + _CLEAR
-                    if found == _CLEAR or _meets(line, cx, cy, less_x, less_y):
+                    if result == _CLEAR or _meets(line, cx, cy, less_x, less_y):
                         self._blocking.insert(0, line)
-                        return -_way_out(line, cx, cy, less_x, less_y, way)
-                    found, x, y = _CLEAR, less_x, less_y
+                        return -_way_out(line, cx, cy, less_x, less_y, direction)
+                    result, x, y = _CLEAR, less_x, less_y
                     left, low, right, high = cx - x, cy - y, cx + x, cy + y
-        return 0.0 if not inside and any(within(center, area) for area in self.areas) else found
+        return 0.0 if not inside and any(within(center, area) for area in self.areas) else result
 
     @property
     def right(self) -> float:
@@ -406,8 +412,8 @@ def _from_box(z: complex, center: complex, half: complex) -> float:
 
 
 def _crosses(line: Line, a: complex, b: complex) -> bool:
-    middle, way = complex(line[4], line[5]), complex(line[6], line[7])
-    return _meet(a, b, middle - way, middle + way)
+    middle, direction = complex(line[4], line[5]), complex(line[6], line[7])
+    return _meet(a, b, middle - direction, middle + direction)
 
 
 def _choose(wish: LabelRequest, obstacles: Obstacles, rivals: _Rivals) -> Label:
@@ -419,40 +425,40 @@ def _choose(wish: LabelRequest, obstacles: Obstacles, rivals: _Rivals) -> Label:
     tried: dict[int, tuple[complex, float]] = {}  #: the centre of each place, and its white
     # A label is in sight of what it names; failing that, a leader may pass over a bar.
     for in_sight in (True, False):
-        found: dict[int, Label] = {}  #: the best places where it may be mistaken, by how
-        for place in wish.places():
-            if place.step > _FAR and (1 in found or 2 in found):
+        results: dict[int, Label] = {}  #: the best places where it may be mistaken, by how
+        for position in wish.places():
+            if position.step > _FAR and (1 in results or 2 in results):
                 break
-            if place.step < beyond[place.ray]:
+            if position.step < beyond[position.ray]:
                 continue
-            if place.number not in tried:
-                if place.ray not in rays:
-                    way = wish.toward * place.way
-                    rays[place.ray] = wish.center(place, half) - way * place.step, way
-                center, way = rays[place.ray]
-                center += way * place.step
-                white = obstacles.white(center, half, way, wish.inside)
-                tried[place.number] = center, white
+            if position.number not in tried:
+                if position.ray not in rays:
+                    direction = wish.toward * position.way
+                    rays[position.ray] = wish.center(position, half) - direction * position.step, direction
+                center, direction = rays[position.ray]
+                center += direction * position.step
+                white = obstacles.white(center, half, direction, wish.inside)
+                tried[position.number] = center, white
                 if white <= 0:
-                    beyond[place.ray] = place.step - white
+                    beyond[position.ray] = position.step - white
                     continue
-            center, white = tried[place.number]
-            if white != place.clear:
+            center, white = tried[position.number]
+            if white != position.clear:
                 continue
             leader = _leader(wish, center, half)
             if (in_sight or leader is None) and obstacles.hides(wish.source, center):
                 continue
             if leader is None or obstacles.leader_free(*leader):
                 mistaken = rivals.mistaken(center, half, leader)
-                if mistaken not in found:
-                    found[mistaken] = Label(wish.label, text, center, width, height, leader)
+                if mistaken not in results:
+                    results[mistaken] = Label(wish.label, text, center, width, height, leader)
                 if not mistaken:
                     break
                 # Farther on it is no better: a leader crosses the same line, and without one it leaves its own first.
                 if mistaken >= 2:
-                    beyond[place.ray] = _LEADER - wish.start if leader is None else math.inf
-        if found:
-            return found[min(found)]
+                    beyond[position.ray] = _LEADER - wish.start if leader is None else math.inf
+        if results:
+            return results[min(results)]
     return _outside(wish, text, obstacles)
 
 
@@ -464,11 +470,11 @@ def _leader(wish: LabelRequest, center: complex, half: complex) -> tuple[complex
     foot, start, near = (
         (wish.source, 0.0, _AT_ARC) if wish.rank == ANGLES else (wish.anchor, wish.start, _LEADER)
     )
-    way = (center - foot) / (abs(center - foot) or 1.0)
-    if abs(center - foot) - _support(half, way) <= start + near:
+    direction = (center - foot) / (abs(center - foot) or 1.0)
+    if abs(center - foot) - _support(half, direction) <= start + near:
         return None
-    edge = min(half.real / (abs(way.real) or 1e-9), half.imag / (abs(way.imag) or 1e-9))
-    return foot + way * start, center - way * (edge + _APART)
+    edge = min(half.real / (abs(direction.real) or 1e-9), half.imag / (abs(direction.imag) or 1e-9))
+    return foot + direction * start, center - direction * (edge + _APART)
 
 
 def _outside(wish: LabelRequest, text: LabelText, obstacles: Obstacles) -> Label:

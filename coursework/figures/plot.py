@@ -132,9 +132,9 @@ class Plot:
             )
         )
 
-    def _shown_of(self, place: int) -> tuple[float, float]:
-        values = np.asarray(self.panels[place].values, dtype=float)
-        return _range(values, [s.y for s in self.spots[place]])
+    def _shown_of(self, position: int) -> tuple[float, float]:
+        values = np.asarray(self.panels[position].values, dtype=float)
+        return _range(values, [s.y for s in self.spots[position]])
 
     @cached_property
     def _reach(self) -> tuple[float, float]:
@@ -162,11 +162,11 @@ class Plot:
             f'<rect width="{width}" height="{height}" fill="#fff"/>', *body, "</svg>\n",
         ])  # fmt: skip
 
-    def _panel(self, place: int) -> list[str]:
-        panel, spots = self.panels[place], self.spots[place]
-        top = _TOP + place * (_HEIGHT + _GAP)
+    def _panel(self, position: int) -> list[str]:
+        panel, spots = self.panels[position], self.spots[position]
+        top = _TOP + position * (_HEIGHT + _GAP)
         values = np.asarray(panel.values, dtype=float)
-        low, high = self._shown_of(place)
+        low, high = self._shown_of(position)
 
         def y(value: float) -> float:
             inside = min(max(value, low), high)
@@ -210,9 +210,9 @@ class Plot:
             f'<path d="M{number(x - 1.4)} {number(edge)}h2.8l-1.4 {number(2.0 * out)}z" '
             f'fill="{RIGHT if spot.right else WRONG}"/>'
         )
-        told = spot.y if spot.written is None else spot.written
+        text = spot.y if spot.written is None else spot.written
         at = complex(x - 2.2 if to_left else x + 2.2, edge + (-0.3 if is_above else 1.9))
-        return [arrow, self._number(told, at, "end" if to_left else "start")]
+        return [arrow, self._number(text, at, "end" if to_left else "start")]
 
     def _number(self, value: float, at: complex, anchor: str) -> str:
         return _letters(read(localise(significant(value, 6), self.lang)), at, anchor, _SMALL)

@@ -35,7 +35,7 @@ def ride(rows: Sequence[Sequence[LabelRequest]], segments: Segments, closed: boo
     count = len(segments[0])
     looked_at = np.unique(np.linspace(0, count, min(count, _LOOKED_AT), endpoint=False).astype(int))
     near = tuple(z[looked_at] for z in segments)
-    found: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    results: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     for index in sorted(range(len(rows)), key=lambda i: rows[i][0].rank):
         box = read(rows[index][0].label).box
         half = np.array(box) / 2
@@ -43,13 +43,13 @@ def ride(rows: Sequence[Sequence[LabelRequest]], segments: Segments, closed: boo
         places = np.array(centres)
         seen = places[:, looked_at]
         price = np.array(costs)[:, None] + _ON_LINE * _on_line(near, seen, half + _WHITE)
-        for other, size in found.values():
+        for other, size in results.values():
             gap = seen - other[looked_at]
             wide, tall = half + size + 2 * _WHITE
             price = price + _ON_LABEL * ((abs(gap.real) < wide) & (abs(gap.imag) < tall))
         chosen = _cheapest(price, seen, closed)
-        found[index] = _along(places, chosen, looked_at, closed), half
-    return [found[index][0] for index in range(len(rows))]
+        results[index] = _along(places, chosen, looked_at, closed), half
+    return [results[index][0] for index in range(len(rows))]
 
 
 def _places(wishes: Sequence[LabelRequest], half: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
@@ -57,8 +57,8 @@ def _places(wishes: Sequence[LabelRequest], half: np.ndarray) -> Iterator[tuple[
     anchor = np.array([wish.anchor for wish in wishes])
     start = np.array([wish.start for wish in wishes])
 
-    def beyond(way: np.ndarray, step: float) -> np.ndarray:
-        return way * (start + step + half[0] * abs(way.real) + half[1] * abs(way.imag))
+    def beyond(direction: np.ndarray, step: float) -> np.ndarray:
+        return direction * (start + step + half[0] * abs(direction.real) + half[1] * abs(direction.imag))
 
     first = wishes[0]
     if first.along:
@@ -87,11 +87,11 @@ def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.nd
     across, up = half[0] + abs(d.real), half[1] + abs(d.imag)
     beside = half[0] * abs(d.imag) + half[1] * abs(d.real)
     met = np.zeros(centres.shape, dtype=bool)
-    for place, row in enumerate(centres):
+    for index, row in enumerate(centres):
         gap = middle - row[:, None]
         hit = (abs(gap.real) < across) & (abs(gap.imag) < up)
         hit &= abs(gap.real * d.imag - gap.imag * d.real) < beside
-        met[place] = hit.any(axis=1)
+        met[index] = hit.any(axis=1)
     return met
 
 
@@ -112,11 +112,11 @@ def _cheapest(price: np.ndarray, centres: np.ndarray, closed: bool) -> np.ndarra
         origin = paths.argmin(axis=1)
         origins.append(origin)
         total = np.round(paths[range(len(price)), origin] + price[:, instant], 6)
-    way = [int(total.argmin())]
+    direction = [int(total.argmin())]
     for origin in reversed(origins):
-        way.append(int(origin[way[-1]]))
-    found = np.array(way[::-1])
-    return found[count : 2 * count] if closed else found
+        direction.append(int(origin[direction[-1]]))
+    result = np.array(direction[::-1])
+    return result[count : 2 * count] if closed else result
 
 
 def _along(places: np.ndarray, chosen: np.ndarray, looked_at: np.ndarray, closed: bool) -> np.ndarray:
@@ -126,8 +126,8 @@ def _along(places: np.ndarray, chosen: np.ndarray, looked_at: np.ndarray, closed
     centres = np.empty(count, dtype=complex)
     stops = [*looked_at, count]
     after = [*chosen[1:], chosen[0] if closed else chosen[-1]]
-    for start, end, one, other in zip(stops, stops[1:], chosen, after, strict=False):
+    for start, end, first, other in zip(stops, stops[1:], chosen, after, strict=False):
         instants = np.arange(start, end)
         share = (instants - start) / (end - start)
-        centres[instants] = (1 - share) * places[one, instants] + share * places[other, instants]
+        centres[instants] = (1 - share) * places[first, instants] + share * places[other, instants]
     return centres

@@ -40,9 +40,9 @@ def _compiler() -> typst.Compiler:
 
 def _compiled(page: bytes, form: Form, inputs: dict[str, str], ppi: float | None = None) -> bytes:
     """Compile a page to one file; several pages of PNG or SVG would give a list."""
-    found = _compiler().compile(input=page, format=form, ppi=ppi, sys_inputs=inputs, timestamp=0)
-    assert isinstance(found, bytes)
-    return found
+    result = _compiler().compile(input=page, format=form, ppi=ppi, sys_inputs=inputs, timestamp=0)
+    assert isinstance(result, bytes)
+    return result
 
 
 def converted(svg: str, width_mm: float, form: Form, ppi: float | None = None) -> bytes:

@@ -107,12 +107,12 @@ def as_outlines(text: LabelText, at: complex) -> str:
     for index, run in enumerate(text.runs):
         at = left + SIZE * complex(text.start(index), -run.rise)
         for letter in run.text:
-            one = LetterRun(letter, run.italic, run.size)
+            item = LetterRun(letter, run.italic, run.size)
             scale = _fine(run.size * SIZE / 100)
             if outline := glyph(letter, run.italic):
                 move = f"translate({pair(at)}) scale({scale} -{scale})"
                 paths.append(f'<path transform="{move}" d="{outline}"/>')
-            at += SIZE * one.width
+            at += SIZE * item.width
     return "".join(paths)
 
 
@@ -148,8 +148,8 @@ def _accent(text: LabelText, accent: LabelAccent, left: complex) -> str:
         (start - 0.04 * SIZE, start + width - 0.04 * SIZE) if raised else (start + lean, start + width + lean)
     )
     a, b = number(start), number(end)
-    way = f"M{a} {number(top)}H{b}"
+    direction = f"M{a} {number(top)}H{b}"
     if accent.kind == "arrow":
         back = number(end - 0.75)
-        way += f"M{back} {number(top - 0.45)}L{b} {number(top)}L{back} {number(top + 0.45)}"
-    return f'<path d="{way}" fill="none" stroke="{BLACK}" stroke-width="0.2"/>'
+        direction += f"M{back} {number(top - 0.45)}L{b} {number(top)}L{back} {number(top + 0.45)}"
+    return f'<path d="{direction}" fill="none" stroke="{BLACK}" stroke-width="0.2"/>'

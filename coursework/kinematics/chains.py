@@ -126,27 +126,27 @@ class ClosedChain:
             rest = flat[len(lengths) :]
             for i, name in enumerate(directions):
                 values[name] = rest[2 * i] + 1j * rest[2 * i + 1]
-            found = self._newton(values, np.stack(rest[2 * len(directions) :], axis=1), exponents)
-            return tuple(x.reshape(shape) for x in found)
+            result = self._newton(values, np.stack(rest[2 * len(directions) :], axis=1), exponents)
+            return tuple(x.reshape(shape) for x in result)
 
-        found: list[Any]
+        result: list[Any]
         residual: Any
         condition: Any
         converged: Any
-        *found, residual, condition, converged = in_blocks(kernel, *inputs)
+        *result, residual, condition, converged = in_blocks(kernel, *inputs)
         for i, name in enumerate(self.unknowns):
             if name in self._lengths:
-                found[i] = scaled(found[i], exponent)
+                result[i] = scaled(result[i], exponent)
         residual, converged = scaled(residual, exponent), converged == 1.0
         if not residual.ndim:
-            found, residual, condition = [x.item() for x in found], residual.item(), condition.item()
+            result, residual, condition = [x.item() for x in result], residual.item(), condition.item()
             converged = bool(converged)
             if not converged:
                 raise CannotAssemble(
                     f"the loops do not close from this start: a gap of {residual:.3g} is left; another start, "
                     "nearer to the pose that is meant, may close, or none exists"
                 )
-        return Pose(dict(zip(self.unknowns, found, strict=True)), residual, condition, converged)
+        return Pose(dict(zip(self.unknowns, result, strict=True)), residual, condition, converged)
 
     def rates(
         self, values: Mapping[str, Any], known_rates: Mapping[str, Sequence[Any]], *, order: int = 1
@@ -187,15 +187,15 @@ class ClosedChain:
                 np.broadcast_to(jacobian, (*shape, shape[-1])), np.broadcast_to(right, shape), np.nan
             )
             rates |= {name: (*rates[name], steps[..., i]) for i, name in enumerate(self.unknowns)}
-        found = {
+        results = {
             name: tuple((scaled(x, exponent) if name in self._lengths else x)[()] for x in rates[name])
             for name in self.unknowns
         }
-        if any(not np.ndim(x) and not np.isfinite(x) for given in found.values() for x in given):
+        if any(not np.ndim(x) and not np.isfinite(x) for given in results.values() for x in given):
             raise Undefined(
                 "the chain is at a dead point: its Jacobian is singular and the rates do not exist"
             )
-        return found
+        return results
 
     def _newton(self, values: dict[str, Any], x: np.ndarray, exponents: np.ndarray) -> tuple:
         """Take damped Newton steps on rows of unknowns, each until its gap is rounding or no longer shrinks."""
@@ -296,8 +296,8 @@ def _unit_of(angle: Any) -> Any:
 
 
 def _norm(gaps: np.ndarray) -> np.ndarray:
-    found = abs(gaps).max(axis=-1)
-    return np.where(np.isnan(found), np.inf, found)
+    result = abs(gaps).max(axis=-1)
+    return np.where(np.isnan(result), np.inf, result)
 
 
 def _wrapped(angles: np.ndarray) -> np.ndarray:
@@ -312,11 +312,11 @@ def _steps(jacobian: np.ndarray, right: np.ndarray, otherwise: float) -> np.ndar
     finite = np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(right).all(axis=-1)
     identity = np.eye(jacobian.shape[-1])
     regular = finite & (abs(np.linalg.det(np.where(finite[..., None, None], jacobian, 0.0))) > 0)
-    found = np.linalg.solve(
+    result = np.linalg.solve(
         np.where(regular[..., None, None], jacobian, identity),
         np.where(regular[..., None], right, 0.0)[..., None],
     )
-    return np.where(regular[..., None], found[..., 0], otherwise)
+    return np.where(regular[..., None], result[..., 0], otherwise)
 
 
 def _condition(jacobian: np.ndarray) -> np.ndarray:

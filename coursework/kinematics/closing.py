@@ -61,21 +61,21 @@ def in_time(by_angle: Sequence[tuple[Any, ...]], rates: Sequence[Any]) -> tuple[
     derivatives of the angle, as many.
     """
     first, rate = by_angle[0], rates[0]
-    found = tuple(g * rate for g in first)
+    results = tuple(g * rate for g in first)
     if len(rates) >= 2:
         squared, acceleration = rate * rate, rates[1]
         second = tuple(g * squared for g in by_angle[1])
         # At constant speed, by far the most common case, the other term is zero.
         constant = np.ndim(acceleration) == 0 and acceleration == 0
-        found += (
+        results += (
             second if constant else tuple(s + g * acceleration for s, g in zip(second, first, strict=True))
         )
     if len(rates) >= 3:
         cubed, both = squared * rate, 3 * rate * acceleration
-        found += tuple(
+        results += tuple(
             g3 * cubed + g2 * both + g1 * rates[2] for g1, g2, g3 in zip(*by_angle[:3], strict=True)
         )
-    return found
+    return results
 
 
 class Closing(NamedTuple):

@@ -45,9 +45,9 @@ def turning_points(slope: Slope, parameters: Sequence[Any], *, samples: int = 24
     count = len(parameters[0])
     rows, angles = [np.empty(0, dtype=np.intp)], [np.empty(0)]
     for start in range(0, count, _ROWS):
-        own, found = _turning_points(slope, [p[start : start + _ROWS] for p in parameters], samples)
+        own, result = _turning_points(slope, [p[start : start + _ROWS] for p in parameters], samples)
         rows.append(own + start)
-        angles.append(found)
+        angles.append(result)
     return _in_rows(np.concatenate(rows), np.concatenate(angles), count)
 
 
@@ -104,10 +104,10 @@ def _lowest(f: Slope, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np
     for _ in range(45):
         lower = at_left < at_right
         low, high = np.where(lower, low, left), np.where(lower, right, high)
-        kept, at_kept = np.where(lower, left, right), np.where(lower, at_left, at_right)
+        stored, at_kept = np.where(lower, left, right), np.where(lower, at_left, at_right)
         new = np.where(lower, high - ratio * (high - low), low + ratio * (high - low))
         at_new = f(new)
-        left, right = np.where(lower, new, kept), np.where(lower, kept, new)
+        left, right = np.where(lower, new, stored), np.where(lower, stored, new)
         at_left, at_right = np.where(lower, at_new, at_kept), np.where(lower, at_kept, at_new)
     return np.where(at_left < at_right, left, right), np.minimum(at_left, at_right)
 

@@ -244,13 +244,13 @@ def out_of_reach(
 def _solved(kernel: Callable, failure: Callable[..., CourseworkError], *given: Any) -> Any:
     """Evaluate a kernel in blocks; scalars come back as plain numbers, or raise the error of ``failure``."""
     given = tuple(np.asarray(x)[()] for x in given)
-    found = in_blocks(kernel, *given)
-    if not np.ndim(found[0]):
-        found = tuple(value.item() for value in found)
-        if any(value != value for value in found):
+    results = in_blocks(kernel, *given)
+    if not np.ndim(results[0]):
+        results = tuple(value.item() for value in results)
+        if any(value != value for value in results):
             with np.errstate(all="ignore"):
                 raise failure(*given)
-    return found if len(found) > 1 else found[0]
+    return results if len(results) > 1 else results[0]
 
 
 def _rates(known: Callable, first: Any, second: Any, count: int) -> tuple[tuple, tuple]:

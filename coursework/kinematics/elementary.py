@@ -63,19 +63,19 @@ arctangent = np.arctan if _numpy_has_one() else quotient_arctangent
 def _plus_cubed(x: Any, above: Sequence[float], below: Sequence[float]) -> Any:
     """Return x + x^3 P / Q, computed in place so that few long arrays are in the cache."""
     squared = x * x
-    found = above[-1] * squared
-    found += above[-2]
-    found = _horner(found, above[:-2], squared)
-    found /= _horner(squared + below[-1], below[:-1], squared)
-    found *= squared
-    found *= x
-    found += x
-    return found
+    result = above[-1] * squared
+    result += above[-2]
+    result = _horner(result, above[:-2], squared)
+    result /= _horner(squared + below[-1], below[:-1], squared)
+    result *= squared
+    result *= x
+    result += x
+    return result
 
 
-def _horner(found: Any, lower: Sequence[float], x: Any) -> Any:
+def _horner(result: Any, lower: Sequence[float], x: Any) -> Any:
     """Evaluate a polynomial by Horner's rule, from the value of its highest terms and the lower coefficients."""
     for coefficient in reversed(lower):
-        found *= x
-        found += coefficient
-    return found
+        result *= x
+        result += coefficient
+    return result

@@ -171,8 +171,8 @@ class FourBar:
         A pair (coupler, rocker) for each order from 1 to ``order`` (at most 3): the first holds the ratios
         omega3/omega2 and omega4/omega2. They need no inverse trigonometry. Errors as in :meth:`motion`.
         """
-        found = self._evaluate(_coefficients, crank_angle, order=order)
-        return tuple(zip(found[::2], found[1::2], strict=True))
+        result = self._evaluate(_coefficients, crank_angle, order=order)
+        return tuple(zip(result[::2], result[1::2], strict=True))
 
     def at(self, crank_angle: Any) -> FourBarPose:
         """Return the linkage at a crank angle; its properties compute angles and derivatives on first use.
@@ -196,8 +196,8 @@ class FourBar:
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def _scaled_lengths(self) -> tuple[Any, Any, Any, Any]:
-        found = (scaled(x, -self._exponent) for x in self.lengths)
-        d, a, b, c = (x if x.ndim else float(x) for x in found)
+        result = (scaled(x, -self._exponent) for x in self.lengths)
+        d, a, b, c = (x if x.ndim else float(x) for x in result)
         return d, a, b, c
 
     def _evaluate(self, formula: Any, crank_angle: Any, *rates: Any, order: int | None = None) -> tuple:
@@ -213,14 +213,14 @@ class FourBar:
             pose = _ScaledFourBar(linkage, sweeping(angle, linkage.reach))
             return formula(pose, angle, *inputs[last + len(parts) :], **extra)
 
-        found = in_blocks(kernel, *self._linkage, *parts, *rates)
-        if np.ndim(found[0]):
-            return found
-        found = tuple(value.item() for value in found)
-        if any(value != value for value in found):
+        results = in_blocks(kernel, *self._linkage, *parts, *rates)
+        if np.ndim(results[0]):
+            return results
+        results = tuple(value.item() for value in results)
+        if any(value != value for value in results):
             with np.errstate(all="ignore"):
                 raise self._failure(crank_angle)
-        return found
+        return results
 
     def _failure(self, crank_angle: Any) -> Exception:
         """Return the error that explains a NaN of scalar arguments."""
@@ -305,8 +305,8 @@ class FourBarPose:
 
     def _said(self, name: str, link: int | None = None) -> Any:
         with np.errstate(all="ignore"):
-            found = getattr(self._pose, name)
-            return self._checked(found if link is None else found[link])
+            result = getattr(self._pose, name)
+            return self._checked(result if link is None else result[link])
 
     def _checked(self, value: Any) -> Any:
         if np.ndim(value):

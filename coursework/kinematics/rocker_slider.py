@@ -77,8 +77,8 @@ class RockerSlider(NamedTuple):
         """
         shape, flat, closes = self._closed_all_turn()
         with np.errstate(all="ignore"):
-            found = np.where(closes, _stroke(*flat), np.nan)
-        return found.reshape(shape) if shape else float(found[0])
+            result = np.where(closes, _stroke(*flat), np.nan)
+        return result.reshape(shape) if shape else float(result[0])
 
     def times_turned(self) -> Any:
         """Count the turning points of the slider in a turn; 0 where the loop does not close all turn.
@@ -90,8 +90,8 @@ class RockerSlider(NamedTuple):
             half = _swing(*flat[:6])[1]
             passed = np.isfinite(_in_line(*flat)).sum(axis=0)
         # A rocker that swings passes each direction in the arc twice, and turns back at its ends.
-        found = np.where(closes, np.where(half == math.pi, passed, 2 + 2 * passed), 0)
-        return found.reshape(shape) if shape else int(found[0])
+        result = np.where(closes, np.where(half == math.pi, passed, 2 + 2 * passed), 0)
+        return result.reshape(shape) if shape else int(result[0])
 
     def _closed_all_turn(self) -> tuple[tuple[int, ...], list[np.ndarray], np.ndarray]:
         """Return the shape, the numbers of each mechanism, and whether it closes at every crank angle."""
@@ -120,9 +120,14 @@ def _margins(
     stretched, folded = grashof_margins(ground, crank, coupler, rocker)
     turns = np.minimum(stretched, folded) / (ground + crank + coupler + rocker)
     middle, half = _swing(ground, ground_angle, crank, coupler, rocker, side)
-    up, down = (np.where(abs(_turn(way - middle)) < half, way, np.nan) for way in (math.pi / 2, -math.pi / 2))
+    up, down = (
+        np.where(abs(_turn(direction - middle)) < half, direction, np.nan)
+        for direction in (math.pi / 2, -math.pi / 2)
+    )
     level = line - ground * np.sin(ground_angle)
-    rises = [abs(level - rocker * np.sin(way)) for way in (middle + half, middle - half, up, down)]
+    rises = [
+        abs(level - rocker * np.sin(direction)) for direction in (middle + half, middle - half, up, down)
+    ]
     return turns, rod - np.fmax.reduce(rises)
 
 

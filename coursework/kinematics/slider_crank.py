@@ -108,9 +108,9 @@ class SliderCrank:
             (but see ``smooth``). NaN in arrays.
         """
         given = (crank_rate, crank_acceleration, crank_jerk)[:order]
-        found = list(self._evaluate(_motion, crank_angle, *given))
-        found[1::2] = [self._restored(value) for value in found[1::2]]
-        return SliderCrankMotion(*found)
+        results = list(self._evaluate(_motion, crank_angle, *given))
+        results[1::2] = [self._restored(value) for value in results[1::2]]
+        return SliderCrankMotion(*results)
 
     def position(self, crank_angle: Any) -> Any:
         """Return the slider's abscissa alone. Errors as in :meth:`motion`."""
@@ -162,8 +162,8 @@ class SliderCrank:
             return _outer(t), np.where(t.rod >= t.crank, inner, np.nan)[()]
 
     def _restored(self, length: Any) -> Any:
-        found = scaled(length, self._exponent)
-        return found if found.ndim else float(found)
+        result = scaled(length, self._exponent)
+        return result if result.ndim else float(result)
 
     def _evaluate(self, formula: Any, crank_angle: Any, *rates: Any) -> tuple:
         heading, parts = taken_apart(crank_angle)
@@ -184,14 +184,14 @@ class SliderCrank:
                 *inputs[last + len(parts) :],
             )
 
-        found = in_blocks(kernel, *self._linkage, *parts, *rates)
-        if np.ndim(found[0]):
-            return found
-        found = tuple(value.item() for value in found)
-        if any(value != value for value in found):
+        results = in_blocks(kernel, *self._linkage, *parts, *rates)
+        if np.ndim(results[0]):
+            return results
+        results = tuple(value.item() for value in results)
+        if any(value != value for value in results):
             with np.errstate(all="ignore"):
                 raise self._failure(crank_angle)
-        return found
+        return results
 
     def _failure(self, crank_angle: Any) -> Exception:
         """Return the error that explains a NaN of scalar arguments."""
@@ -270,10 +270,10 @@ def _motion(t: _SliderCrankLengths, swept: Sweep, cos: Any, sin: Any, _: Any, *r
     close = _closing(t, swept)
     run, r_cos, r_sin = close.determinant, t.crank * cos, t.crank * sin
     rise = t.offset - r_sin
-    found = (direction(rise, run), r_cos + run)
+    result = (direction(rise, run), r_cos + run)
     order = len(rates)
     if order == 0:
-        return found
+        return result
     # Derivatives by the crank angle: the rod's is -rho = -r cos / run, the run's is rho rise.
     opening = Opening(close, swept)
     rho = opening.rho
@@ -285,7 +285,7 @@ def _motion(t: _SliderCrankLengths, swept: Sweep, cos: Any, sin: Any, _: Any, *r
     if order >= 3:
         second = opening.second
         by_angle.append((-second, second * rise + 2 * first * r_cos + (1 + rho) * r_sin))
-    return found + in_time(by_angle, rates)
+    return result + in_time(by_angle, rates)
 
 
 def _opening_rate(t: _SliderCrankLengths, close: Closing, swept: Sweep, r_sin: Any) -> Any:

@@ -79,11 +79,11 @@ def motion(
     def kernel(d: Any, r: Any, *inputs: Any) -> tuple:
         return _motion(_ScaledGuide(d, r, heading(*inputs[: len(parts)])), *inputs[len(parts) :])
 
-    found: list[Any] = list(in_blocks(kernel, d, r, *parts, *rates))
-    found[1::2] = [scaled(value, exponent) for value in found[1::2]]
-    if not np.ndim(found[0]):
-        found = _defined([value.item() for value in found])
-    return SlottedGuideMotion(*found)
+    results: list[Any] = list(in_blocks(kernel, d, r, *parts, *rates))
+    results[1::2] = [scaled(value, exponent) for value in results[1::2]]
+    if not np.ndim(results[0]):
+        results = _defined([value.item() for value in results])
+    return SlottedGuideMotion(*results)
 
 
 def swing(ground: Any, crank: Any) -> Any:

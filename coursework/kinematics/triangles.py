@@ -16,12 +16,12 @@ from coursework.errors import CannotAssemble
 from coursework.kinematics.angles import half_angle
 
 
-def third_side(one: Any, other: Any, angle: Any) -> Any:
+def third_side(first: Any, other: Any, angle: Any) -> Any:
     """Return the side opposite to the angle between two sides.
 
-    Source: the law of cosines as a sum of two squares, ``(other - one)^2 + 4 one other sin^2(angle/2)``.
+    Source: the law of cosines as a sum of two squares, ``(other - first)^2 + 4 first other sin^2(angle/2)``.
     """
-    return np.sqrt(_square_of_third(one, other, half_angle(angle)[1]))
+    return np.sqrt(_square_of_third(first, other, half_angle(angle)[1]))
 
 
 def corner(near: Any, other: Any, opposite: Any) -> Any:
@@ -43,8 +43,8 @@ def corner(near: Any, other: Any, opposite: Any) -> Any:
         return 2 * _direction(np.sqrt(across), np.sqrt(along))
 
 
-def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
-    """Return the angle between ``one`` and the third side, given the angle between ``one`` and ``other`` as
+def corner_beside(first: Any, other: Any, angle: Any, third: Any) -> Any:
+    """Return the angle between ``first`` and the third side, given the angle between ``first`` and ``other`` as
     well.
 
     ``third`` decides: if it differs from what the two sides and their angle give, being rounded or measured,
@@ -61,12 +61,12 @@ def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
     what the third side changes of it.
     """
     half_cos, half_sin = half_angle(angle)
-    square = _square_of_third(one, other, half_sin)
+    square = _square_of_third(first, other, half_sin)
     change = (third - np.sqrt(square)) * (third + np.sqrt(square))
-    longer = 4 * one * other * half_cos**2 - change
-    shorter = 4 * one * other * half_sin**2 + change
-    _refuse_if_negative(longer, shorter, one, other, third)
-    along = 2 * one * ((one - other) + 2 * other * half_sin**2) + change
+    longer = 4 * first * other * half_cos**2 - change
+    shorter = 4 * first * other * half_sin**2 + change
+    _refuse_if_negative(longer, shorter, first, other, third)
+    along = 2 * first * ((first - other) + 2 * other * half_sin**2) + change
     with np.errstate(invalid="ignore"):
         return _direction(np.sqrt(longer * shorter), along)
 
@@ -78,13 +78,13 @@ def _direction(y: Any, x: Any) -> Any:
     return math.atan2(y, x) if mp is None else mp.atan2(y, x)
 
 
-def _square_of_third(one: Any, other: Any, half_sin: Any) -> Any:
-    return (other - one) ** 2 + 4 * one * other * half_sin**2
+def _square_of_third(first: Any, other: Any, half_sin: Any) -> Any:
+    return (other - first) ** 2 + 4 * first * other * half_sin**2
 
 
 def _refuse_if_negative(margin: Any, other_margin: Any, *sides: Any) -> None:
     if np.ndim(margin) == 0 and min(margin, other_margin) < 0:
-        told = ", ".join(f"{side:.6g}" for side in sides[:2])
+        text = ", ".join(f"{side:.6g}" for side in sides[:2])
         raise CannotAssemble(
-            f"the sides {told} and {sides[2]:.6g} make no triangle: the longest exceeds the two others together"
+            f"the sides {text} and {sides[2]:.6g} make no triangle: the longest exceeds the two others together"
         )

@@ -31,12 +31,12 @@ def direction(y: Any, x: Any) -> Any:
     """Return the angle of the vector (x, y), radians in (-pi, pi], for arrays faster than ``arctan2``; NaN
     for the zero vector."""
     quotient = np.divide(y, x)
-    found = np.arctan(quotient)
+    result = np.arctan(quotient)
     # Half a turn where x < 0, towards the side of y.
-    found += np.copysign(np.multiply(np.signbit(x), math.pi), y)
-    if np.min(found, initial=math.inf) > -math.pi:
-        return found
-    return np.where(found == -math.pi, math.pi, found)
+    result += np.copysign(np.multiply(np.signbit(x), math.pi), y)
+    if np.min(result, initial=math.inf) > -math.pi:
+        return result
+    return np.where(result == -math.pi, math.pi, result)
 
 
 def direction_of(y: Any, x: Any, length: Any) -> Any:
@@ -67,9 +67,9 @@ def direction_of(y: Any, x: Any, length: Any) -> Any:
 def _twice_arctangent(y: Any, x: Any) -> Any:
     """Return twice the arctangent of y / x, a quotient between -1 and 1; overwrites ``y``."""
     y /= x
-    found = arctangent(y)
-    found *= 2
-    return found
+    result = arctangent(y)
+    result *= 2
+    return result
 
 
 def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:

@@ -260,9 +260,9 @@ class _FormulaParser:
         return token
 
     def expect(self, token: str, after: str) -> None:
-        found = self.take()
-        if found != token:
-            raise self.refuse(f"{token} expected after {after}, found {found or 'the end'}")
+        result = self.take()
+        if result != token:
+            raise self.refuse(f"{token} expected after {after}, found {result or 'the end'}")
 
     def raw_group(self, macro: str) -> str:
         """Return the characters between the braces after a macro, unchanged."""

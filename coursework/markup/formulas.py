@@ -36,7 +36,7 @@ def after_number(unit: str) -> str:
 
 def quantity_formula(symbol: str, value: str, unit: str, *, is_number: bool = True) -> str:
     """Return LaTeX of ``symbol = value unit``; without a symbol, of the value and its unit."""
-    shown = rf"\num{{{value}}}" if is_number else rf"\text{{{value}}}"
+    displayed = rf"\num{{{value}}}" if is_number else rf"\text{{{value}}}"
     if unit:
-        shown += ("" if unit in _UNITS_THAT_TOUCH else r"\,") + rf"\text{{{unit}}}"
-    return f"{symbol} = {shown}" if symbol else shown
+        displayed += ("" if unit in _UNITS_THAT_TOUCH else r"\,") + rf"\text{{{unit}}}"
+    return f"{symbol} = {displayed}" if symbol else displayed

@@ -196,10 +196,10 @@ def to_notebook(tex: str, lang: str) -> str:
     return "".join(r"\lt " if token == "<" else token for token in tokens(written))
 
 
-def _figures_raised(found: re.Match[str]) -> str:
+def _figures_raised(match: re.Match[str]) -> str:
     r"""Return a text group such as ``\text{rad/s²}`` with its raised digits as exponents, since KaTeX has no
     such glyphs."""
-    text = re.sub("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+", _exponent, found.group())
+    text = re.sub("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+", _exponent, match.group())
     return text.replace(r"\text{}", "")
 
 

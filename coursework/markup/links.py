@@ -31,17 +31,17 @@ class Link:
 def relinked(text: str, write: Callable[[Link], str]) -> str:
     """Replace each link of a text by the result of ``write``; leave code unchanged."""
     pieces = _VERBATIM.split(text)
-    pieces[::2] = [_LINK.sub(lambda found: write(_link(found)), piece) for piece in pieces[::2]]
+    pieces[::2] = [_LINK.sub(lambda result: write(_link(result)), piece) for piece in pieces[::2]]
     return "".join(pieces)
 
 
 def links(text: str) -> tuple[Link, ...]:
     """Return the links of a text, in order."""
-    return tuple(_link(found) for piece in _VERBATIM.split(text)[::2] for found in _LINK.finditer(piece))
+    return tuple(_link(result) for piece in _VERBATIM.split(text)[::2] for result in _LINK.finditer(piece))
 
 
-def _link(found: re.Match[str]) -> Link:
-    said = " ".join(found["said"].split())
-    if found["kind"] is None:
-        return Link(said, TERM, " ".join((found["entry"] or said).split()))
-    return Link(said, found["kind"], found["name"], int(found["section"] or 0))
+def _link(match: re.Match[str]) -> Link:
+    text = " ".join(match["said"].split())
+    if match["kind"] is None:
+        return Link(text, TERM, " ".join((match["entry"] or text).split()))
+    return Link(text, match["kind"], match["name"], int(match["section"] or 0))

@@ -74,7 +74,7 @@ SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand 
 def drawable(text: str, drawn: Callable[[str], bool] = lambda char: False) -> str:
     """Replace each character that a PDF sheet cannot draw by a square; ``drawn`` accepts characters of
     fallback fonts."""
-    return _UNDRAWN.sub(lambda found: found[0] if drawn(found[0]) else SUBSTITUTE, text)
+    return _UNDRAWN.sub(lambda result: result[0] if drawn(result[0]) else SUBSTITUTE, text)
 
 
 def undrawn(text: str, drawn: Callable[[str], bool] = lambda char: False) -> list[str]:
@@ -86,7 +86,7 @@ def typst_text(text: str, lang: str) -> str:
     """Return plain text as Typst markup that prints exactly these characters."""
     pieces = _VECTOR.split(text)
     pieces[::2] = [_typst_plain(piece, lang) for piece in pieces[::2]]
-    pieces[1::2] = [_vector(one) for one in pieces[1::2]]
+    pieces[1::2] = [_vector(item) for item in pieces[1::2]]
     return "".join(pieces)
 
 
@@ -107,9 +107,9 @@ def typst_typed(text: str) -> str:
     """Return typed text as a Typst expression that prints exactly these characters, without automatic
     hyphens, quotation marks or spaces."""
     pieces = _VECTOR.split(text.replace("\r\n", "\n"))
-    shown = [f"#{typst_string(piece)}" for piece in pieces]
-    shown[1::2] = [_vector(piece) for piece in pieces[1::2]]
-    return f"[{''.join(shown)}]" if len(pieces) > 1 else typst_string(pieces[0])
+    displayed = [f"#{typst_string(piece)}" for piece in pieces]
+    displayed[1::2] = [_vector(piece) for piece in pieces[1::2]]
+    return f"[{''.join(displayed)}]" if len(pieces) > 1 else typst_string(pieces[0])
 
 
 def _vector(piece: str) -> str:
@@ -128,8 +128,8 @@ def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
     from coursework.markup.typst import to_typst
 
     call = "display-formula" if display else "formula"
-    whole = ", whole: true" if not display and len(to_line(tex, lang)) <= _WHOLE else ""
-    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${whole});"
+    full = ", whole: true" if not display and len(to_line(tex, lang)) <= _WHOLE else ""
+    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${full});"
 
 
 #: A text that is one formula, as most answers are, is read at a glance.
@@ -163,7 +163,7 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
     def items(mark: str, first: str = "") -> str:
         marks = (first or mark, *[mark] * (len(node.children) - 1))
         lines = (textwrap.indent(_typst(item, lang).strip(), "  ").lstrip() for item in node.children)
-        return "\n".join(f"{one} {line}" for one, line in zip(marks, lines, strict=True)) + "\n\n"
+        return "\n".join(f"{entry} {line}" for entry, line in zip(marks, lines, strict=True)) + "\n\n"
 
     match node.type:
         case "root" | "inline" | "list_item" | "thead" | "tbody":
@@ -220,8 +220,8 @@ INDEX = "#index"
 def _typst_link(href: str, title: str, inside: str) -> str:
     if href == INDEX:
         return f"#term({typst_string(title)}, {typst_string(sort_key(title))})[{inside}];"
-    place = f"label({typst_string(unquote(href[1:]))})" if href.startswith("#") else typst_string(href)
-    return f"#link({place})[{inside}];"
+    position = f"label({typst_string(unquote(href[1:]))})" if href.startswith("#") else typst_string(href)
+    return f"#link({position})[{inside}];"
 
 
 def sort_key(entry: str) -> str:
@@ -268,9 +268,9 @@ def to_html(markdown: str, lang: str) -> str:
 
 def html_inline(markdown: str, lang: str) -> str:
     """Return Markdown of one paragraph as HTML without ``<p>``; several paragraphs keep theirs."""
-    shown = to_html(markdown, lang)
-    one = shown.startswith("<p>") and shown.endswith("</p>") and shown.count("<p>") == 1
-    return shown.removeprefix("<p>").removesuffix("</p>") if one else shown
+    displayed = to_html(markdown, lang)
+    item = displayed.startswith("<p>") and displayed.endswith("</p>") and displayed.count("<p>") == 1
+    return displayed.removeprefix("<p>").removesuffix("</p>") if item else displayed
 
 
 def html_words(markdown: str, lang: str) -> str:
@@ -353,17 +353,17 @@ def to_notebook_markdown(markdown: str, lang: str) -> str:
         set_lines = (line if _TABLE_RULE.fullmatch(line) else typeset(line, lang) for line in lines)
         return "\n".join(set_lines).replace("<", "&lt;")
 
-    shown, end = [], 0
+    displayed, end = [], 0
     for piece in _NOTEBOOK_PIECES.finditer(markdown):
-        shown.append(prose(markdown[end : piece.start()]))
+        displayed.append(prose(markdown[end : piece.start()]))
         if piece["code"]:
-            shown.append(piece["code"])
+            displayed.append(piece["code"])
         elif piece["block"]:
-            shown.append(f"$${to_notebook(piece['block'].strip(), lang)}$$")
+            displayed.append(f"$${to_notebook(piece['block'].strip(), lang)}$$")
         else:
-            shown.append(f"${to_notebook(piece['inline'].strip(), lang)}$")
+            displayed.append(f"${to_notebook(piece['inline'].strip(), lang)}$")
         end = piece.end()
-    return "".join(shown) + prose(markdown[end:])
+    return "".join(displayed) + prose(markdown[end:])
 
 
 # -- plain text -------------------------------------------------------------------------------------

@@ -16,10 +16,10 @@ _DOLLAR = re.compile(r"\\.|(\$)", re.DOTALL)
 _SHOWN = 40  #: characters of a paragraph that a message quotes
 
 
-def pair_dollars(markdown: str, place: Callable[[str], str]) -> None:
+def pair_dollars(markdown: str, position: Callable[[str], str]) -> None:
     r"""Refuse a paragraph with an odd number of dollars; ``\$`` does not count, nor does code.
 
-    ``place`` says where a piece of the text stands: the file, and the line if it is known.
+    ``position`` says where a piece of the text stands: the file, and the line if it is known.
     """
     if markdown.count("$") == 0:
         return
@@ -29,16 +29,16 @@ def pair_dollars(markdown: str, place: Callable[[str], str]) -> None:
             line = paragraph.strip().split("\n")[0]
             quoted = line if len(line) <= _SHOWN else f"{line[:_SHOWN]}…"
             raise BadStatement(
-                f"{place(line)}: the paragraph “{quoted}” has {count} $, and a formula stands between two; "
+                f"{position(line)}: the paragraph “{quoted}” has {count} $, and a formula stands between two; "
                 r"the sign itself is written \$"
             )
 
 
 def _dollars(text: str) -> int:
-    return sum(bool(found[1]) for found in _DOLLAR.finditer(text))
+    return sum(bool(result[1]) for result in _DOLLAR.finditer(text))
 
 
-def read_formulas(markdown: str, place: Callable[[str], str]) -> None:
+def read_formulas(markdown: str, position: Callable[[str], str]) -> None:
     """Refuse a text with an unreadable formula, and report its position."""
     from coursework.markup.formula_tree import parse
 
@@ -46,7 +46,7 @@ def read_formulas(markdown: str, place: Callable[[str], str]) -> None:
         try:
             parse(tex.strip())
         except BadStatement as fault:
-            raise BadStatement(f"{place(tex.strip())}: {fault}") from fault
+            raise BadStatement(f"{position(tex.strip())}: {fault}") from fault
 
 
 def _formulas(markdown: str) -> Iterator[str]:

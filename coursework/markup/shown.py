@@ -50,8 +50,8 @@ class NotebookDisplay:
     def _plain(self, piece: str | SvgPicture) -> str:
         if isinstance(piece, str):
             return to_text(piece, self.lang)
-        said = words(self.lang)["sheet"]
-        return f"[{said['figure']}{said['colon']} {piece.said}]"
+        texts = words(self.lang)["sheet"]
+        return f"[{texts['figure']}{texts['colon']} {piece.said}]"
 
     def bundles(self) -> list[dict[str, str]]:
         """Return each piece by MIME type."""

@@ -32,8 +32,8 @@ from coursework.markup.number_holes import once_for_all_numbers
 @once_for_all_numbers
 def spoken(tex: str, lang: str) -> str:
     """Return the formula in words, to be read aloud: ``θ_4`` is ``theta 4``."""
-    said = _spoken(parse(tex), lang, words(lang)["formula"])
-    return re.sub(r"\s+", " ", said).strip() or words(lang)["formula"]["empty"]
+    texts = _spoken(parse(tex), lang, words(lang)["formula"])
+    return re.sub(r"\s+", " ", texts).strip() or words(lang)["formula"]["empty"]
 
 
 def is_simple(node: Node) -> bool:
@@ -95,18 +95,18 @@ def _spoken(node: Node, lang: str, say: dict) -> str:
 
 
 def _spoken_script(node: Script, of: Callable[[Node], str], phrase: Callable[..., str], say: dict) -> str:
-    said = of(node.base)
+    text = of(node.base)
     if node.below:
-        one = isinstance(node.below, Symbol) and node.below.kind == "digits"
-        said = phrase("simple_subscript" if one else "subscript", said, of(node.below))
-    said += (" " + say["symbols"]["′"]) * node.primes
+        item = isinstance(node.below, Symbol) and node.below.kind == "digits"
+        text = phrase("simple_subscript" if item else "subscript", text, of(node.below))
+    text += (" " + say["symbols"]["′"]) * node.primes
     match node.above:
         case None:
-            return said
+            return text
         case Symbol("2" | "3" as power, "digits"):
-            return phrase("power_" + power, said)
+            return phrase("power_" + power, text)
         case Symbol("∘", _):
-            return phrase("degrees", said)
+            return phrase("degrees", text)
         case Symbol("′", _):
-            return f"{said} {say['symbols']['′']} "
-    return phrase("power", said, of(node.above))
+            return f"{text} {say['symbols']['′']} "
+    return phrase("power", text, of(node.above))

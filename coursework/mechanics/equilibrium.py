@@ -44,10 +44,10 @@ class Equilibrium:
         the origins."""
         size = 3 * self.bodies
         columns = [*self._of_pins(), *self._of_slides(), *self._of_gears(), self._of_drive()]
-        found = np.empty((self.stance.count, size, len(columns)))
+        result = np.empty((self.stance.count, size, len(columns)))
         for number, wrench in enumerate(columns):
-            found[:, :, number] = self._rows(wrench)
-        return found
+            result[:, :, number] = self._rows(wrench)
+        return result
 
     def _rows(self, wrench: BodyWrenches) -> np.ndarray:
         """Return a wrench as rows of the equations, shape ``(n, 3 bodies)``, without the ground."""
@@ -62,26 +62,26 @@ class Equilibrium:
         ]
 
     def _of_slides(self) -> list[BodyWrenches]:
-        found = []
+        results = []
         for slide in self.linkage.slides:
-            found.append(BodyWrenches.none(self.stance).rub(slide, 1j * self.stance.direction(slide)))
-            found.append(BodyWrenches.none(self.stance).turn(slide.of.body, 1.0).turn(slide.on, -1.0))
-        return found
+            results.append(BodyWrenches.none(self.stance).rub(slide, 1j * self.stance.direction(slide)))
+            results.append(BodyWrenches.none(self.stance).turn(slide.of.body, 1.0).turn(slide.on, -1.0))
+        return results
 
     def _of_gears(self) -> list[BodyWrenches]:
-        found = []
+        results = []
         for gear in self.linkage.gears:
-            one, other = (self.stance.place(centre) for centre in gear.centres)
-            line = (other - one) / sum(gear.radii)
-            touching, tangent = one + gear.radii[0] * line, 1j * line
+            first, other = (self.stance.place(centre) for centre in gear.centres)
+            line = (other - first) / sum(gear.radii)
+            touching, tangent = first + gear.radii[0] * line, 1j * line
             wrench = BodyWrenches.none(self.stance).push_at(
                 gear.first, self._arm(gear.first, touching), tangent
             )
-            found.append(wrench.push_at(gear.second, self._arm(gear.second, touching), -tangent))
-        return found
+            results.append(wrench.push_at(gear.second, self._arm(gear.second, touching), -tangent))
+        return results
 
-    def _arm(self, body: int, place: np.ndarray) -> np.ndarray:
-        return place - self.stance.origins[body]
+    def _arm(self, body: int, position: np.ndarray) -> np.ndarray:
+        return position - self.stance.origins[body]
 
     def _of_drive(self) -> BodyWrenches:
         return BodyWrenches.none(self.stance).turn(self.linkage.driven, 1.0)

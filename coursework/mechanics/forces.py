@@ -74,21 +74,23 @@ class Forces:
             return tuple(Strokes() for _ in self.loads)
         step = 2 * np.pi / _STEPS
         stance = self.pose((np.arange(_STEPS) + 0.5) * step)
-        found = []
+        results = []
         for acting in self.loads:
             pace = acting.pace(stance)
-            found.append(strokes(acting, *(share_of_turn(way * pace) for way in (1.0, -1.0))))
-        return tuple(found)
+            results.append(strokes(acting, *(share_of_turn(direction * pace) for direction in (1.0, -1.0))))
+        return tuple(results)
 
-    def load_sizes(self, stance: Stance, driver: np.ndarray, way: np.ndarray | float) -> list[np.ndarray]:
+    def load_sizes(
+        self, stance: Stance, driver: np.ndarray, direction: np.ndarray | float
+    ) -> list[np.ndarray]:
         """Return the size of each load along its line, for the driver's direction: +1, -1, 0 at rest."""
-        found = []
+        results = []
         for acting, when in zip(self.loads, self.strokes, strict=True):
             sizes = acting.sizes(driver)
             if acting.turns_over or when.way:
-                sizes = when.along(sizes, np.sign(acting.pace(stance)), way, against=acting.turns_over)
-            found.append(sizes)
-        return found
+                sizes = when.along(sizes, np.sign(acting.pace(stance)), direction, against=acting.turns_over)
+            results.append(sizes)
+        return results
 
     # -------------------------------------------------------------------- totals
 
@@ -110,14 +112,14 @@ class Forces:
     ) -> ForceResults:
         """Compute the forces at angles (radians), speeds and accelerations of the driver, shape ``(n,)``; NaN
         where the mechanism jams or does not close."""
-        found = [
+        results = [
             self._piece(driver[k], speed[k], acceleration[k], joints)
             for k in _pieces(len(driver), PIECE if joints or self.contacts else 16 * PIECE)
         ]
         return ForceResults(
-            np.concatenate([f.effort for f in found]),
-            {n: np.concatenate([f.joints[n] for f in found]) for n in found[0].joints},
-            {n: np.concatenate([f.rubs[n] for f in found]) for n in found[0].rubs},
+            np.concatenate([f.effort for f in results]),
+            {n: np.concatenate([f.joints[n] for f in results]) for n in results[0].joints},
+            {n: np.concatenate([f.rubs[n] for f in results]) for n in results[0].rubs},
         )
 
     def _piece(
@@ -143,10 +145,10 @@ class Forces:
             return ForceResults(borne.effort, borne.joints, self._by_joint(-rubs))
 
     def _by_joint(self, rubs: np.ndarray) -> dict[str, np.ndarray]:
-        found: dict[str, np.ndarray] = {}
+        results: dict[str, np.ndarray] = {}
         for contact, own in zip(self.contacts, rubs.T, strict=True):
-            found[contact.joint.name] = found.get(contact.joint.name, 0.0) + own
-        return found
+            results[contact.joint.name] = results.get(contact.joint.name, 0.0) + own
+        return results
 
     @staticmethod
     def _borne(equations: Equilibrium, unknowns: np.ndarray, spun: np.ndarray) -> ForceResults:

@@ -66,7 +66,7 @@ def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ..
     """
     slides = {joint.name: joint for joint in linkage.slides}
     pins = {joint.name: joint for joint in linkage.pins}
-    found: list[Contact] = []
+    results: list[Contact] = []
     for name, given in friction.items():
         if isinstance(given, (tuple, list)):
             if several := [n for n in pins if n.startswith(f"{name} ")]:
@@ -81,12 +81,12 @@ def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ..
                     f"the friction of pin {name} is not negative; found {coefficient:g} and {radius:g} mm"
                 )
             size = coefficient * radius * MM
-            found.append(Contact(pins[name], size, ({f"{name}_x": 1.0}, {f"{name}_y": 1.0})))
+            results.append(Contact(pins[name], size, ({f"{name}_x": 1.0}, {f"{name}_y": 1.0})))
         elif f"{name} slide" in slides or name in slides:
             coefficient = float(linkage.number(given))
             if coefficient < 0:
                 raise WrongValue(f"the friction of slide {name} is not negative; found {coefficient:g}")
-            found += _of_slide(slides.get(f"{name} slide") or slides[name], coefficient)
+            results += _of_slide(slides.get(f"{name} slide") or slides[name], coefficient)
         elif name in pins:
             raise WrongValue(
                 f"{name} is a pin: its friction has the radius of its journal, too: "
@@ -94,7 +94,7 @@ def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ..
             )
         else:
             raise unknown("slide", name, [n.removesuffix(" slide") for n in slides], "the mechanism")
-    return tuple(contact for contact in found if contact.size)
+    return tuple(contact for contact in results if contact.size)
 
 
 def _of_slide(slide: SlideJoint, size: float) -> list[Contact]:
@@ -123,11 +123,11 @@ class Rubbing:
 
     def reading(self, equations: Equilibrium) -> np.ndarray:
         """Return the matrix from the unknowns of the equations to the normal forces, shape ``(k, unknowns)``."""
-        found = np.zeros((len(self._rows), len(equations.names)))
+        result = np.zeros((len(self._rows), len(equations.names)))
         for number, row in enumerate(self._rows):
             for name, share in row.items():
-                found[number, equations.column(name)] = share
-        return found
+                result[number, equations.column(name)] = share
+        return result
 
     def magnitudes(self, normals: np.ndarray) -> np.ndarray:
         """Return |s| of each contact, shape ``(n, contacts)``, for normal forces ``(n, k)``."""
@@ -141,9 +141,9 @@ class Rubbing:
         magnitudes = self.magnitudes(normals)[:, self.owner]
         with np.errstate(all="ignore"):
             share = np.where(magnitudes > 0, normals / magnitudes, 0.0)
-        found = np.zeros((len(normals), len(self.contacts), len(self.owner)))
-        found[:, self.owner, np.arange(len(self.owner))] = share
-        return found
+        result = np.zeros((len(normals), len(self.contacts), len(self.owner)))
+        result[:, self.owner, np.arange(len(self.owner))] = share
+        return result
 
     def one(
         self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, near: np.ndarray | None
@@ -202,17 +202,17 @@ class Rubbing:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the result of Newton's method from a solution for a little less friction, and a mask of
         convergence."""
-        normals, one = start, np.eye(free.shape[1])
+        normals, item = start, np.eye(free.shape[1])
         size = np.abs(free).max(axis=1) + np.abs(start).max(axis=1)
         for _ in range(_ROUNDS):
             lacking = normals - free + np.einsum("nkc,nc->nk", spread, strength * self.magnitudes(normals))
-            slope = one + np.einsum("nkc,nc,ncj->nkj", spread, strength, self._slopes(normals))
+            slope = item + np.einsum("nkc,nc,ncj->nkj", spread, strength, self._slopes(normals))
             step = solved(slope, lacking[..., None])[..., 0]
             normals = normals - step
             if not np.any(np.abs(step).max(axis=1) > 1e-14 * size):
                 break
         lacking = normals - free + np.einsum("nkc,nc->nk", spread, strength * self.magnitudes(normals))
-        slope = one + np.einsum("nkc,nc,ncj->nkj", spread, strength, self._slopes(normals))
+        slope = item + np.einsum("nkc,nc,ncj->nkj", spread, strength, self._slopes(normals))
         with np.errstate(all="ignore"):
             good = (np.linalg.det(slope) > 0) & (np.abs(lacking).max(axis=1) <= 1e-9 * size + 1e-300)
         return normals, good

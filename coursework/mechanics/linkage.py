@@ -93,13 +93,13 @@ class Linkage:
     def coordinates(self) -> tuple[int, ...]:
         """Index of the coordinate that turns each body, the ground last."""
         names: dict[Any, int] = {self.driver: 0}
-        found = []
+        results = []
         for body in self.mechanism.bodies:
             if isinstance(body.angle, (int, float)):
-                found.append(NONE)
+                results.append(NONE)
                 continue
-            found.append(names.setdefault(body.angle if body.angle else (body.name,), len(names)))
-        return (*found, NONE)
+            results.append(names.setdefault(body.angle if body.angle else (body.name,), len(names)))
+        return (*results, NONE)
 
     @cached_property
     def unknown_angles(self) -> tuple[str, ...] | None:
@@ -109,8 +109,8 @@ class Linkage:
             return None
         bodies = zip(self.mechanism.bodies, self.coordinates, strict=False)
         names = {own: body.angle for body, own in bodies if own > 0}
-        found = [names[k] for k in range(1, self.unknowns + 1)]
-        return tuple(map(str, found)) if all(isinstance(n, str) for n in found) else None
+        results = [names[k] for k in range(1, self.unknowns + 1)]
+        return tuple(map(str, results)) if all(isinstance(n, str) for n in results) else None
 
     @cached_property
     def free(self) -> dict[int, int]:
@@ -131,8 +131,8 @@ class Linkage:
 
     # -------------------------------------------------------------------- places
 
-    def number(self, place: Any) -> Any:
-        return number(place, self.values)
+    def number(self, position: Any) -> Any:
+        return number(position, self.values)
 
     def held(self, point: str, body: str) -> BodyPoint:
         """Return the position of a point on a body that has it."""
@@ -146,14 +146,14 @@ class Linkage:
     def origins(self) -> tuple[BodyPoint, ...]:
         """Position of each body's frame origin on an earlier body or on the ground; a free body's on the
         ground, from where it is shifted."""
-        found = []
+        results = []
         for k, body in enumerate(self.mechanism.bodies):
             if body.origin is not None:
-                found.append(BodyPoint(-1, 0j))
+                results.append(BodyPoint(-1, 0j))
                 continue
             before = [h for h in self.mechanism.holders(body.at) if self.index[h] < k]
-            found.append(self.held(body.at, before[0]))
-        return tuple(found)
+            results.append(self.held(body.at, before[0]))
+        return tuple(results)
 
     # -------------------------------------------------------------------- joints
 
@@ -183,14 +183,14 @@ class Linkage:
 
     @cached_property
     def gears(self) -> tuple[GearJoint, ...]:
-        found = []
+        results = []
         for gear in self.mechanism.gears:
             first, second = (float(self.number(r)) * MM for r in gear.radii)
-            one, other, carrier = (self.index[n] for n in (gear.first, gear.second, gear.carrier))
+            item, other, carrier = (self.index[n] for n in (gear.first, gear.second, gear.carrier))
             radii = (first, -second if gear.inner else second)
             centres = (self._middle(gear.first, gear.centres[0]), self._middle(gear.second, gear.centres[1]))
-            found.append(GearJoint(f"{gear.first}/{gear.second}", one, other, carrier, radii, centres))
-        return tuple(found)
+            results.append(GearJoint(f"{gear.first}/{gear.second}", item, other, carrier, radii, centres))
+        return tuple(results)
 
     def _middle(self, body: str, point: str) -> BodyPoint:
         return self.held(point, body) if point else BodyPoint(self.index[body], 0j)
@@ -198,11 +198,11 @@ class Linkage:
     @cached_property
     def masses(self) -> tuple[Mass, ...]:
         """The bodies that have a mass or an inertia."""
-        found = []
+        results = []
         for body in self.mechanism.bodies:
             mass, inertia = float(self.number(body.mass)), float(self.number(body.inertia))
             if mass or inertia:
-                found.append(
+                results.append(
                     Mass(
                         self.index[body.name],
                         mass,
@@ -210,7 +210,7 @@ class Linkage:
                         self.held(body.centre or body.at, body.name).place,
                     )
                 )
-        return tuple(found)
+        return tuple(results)
 
     def check(self) -> None:
         """Refuse a mechanism that does not have one degree of freedom.

@@ -45,9 +45,9 @@ class AppliedLoad:
 
     def __post_init__(self) -> None:
         load, mechanism = self.load, self.linkage.mechanism
-        known = (*mechanism.points, *mechanism.names)
-        if load.on not in known:
-            raise unknown("point or body", load.on, known, "the mechanism")
+        known_names = (*mechanism.points, *mechanism.names)
+        if load.on not in known_names:
+            raise unknown("point or body", load.on, known_names, "the mechanism")
         if load.during not in STROKES:
             raise unknown("stroke", load.during, STROKES, f"the load on {load.on}")
         if load.force and load.on not in mechanism.points:

@@ -69,10 +69,10 @@ class Stance:
     @cached_property
     def origins(self) -> np.ndarray:
         """Origins of the frames; the ground's is 0."""
-        found = np.zeros(self.turns.shape, dtype=complex)
+        result = np.zeros(self.turns.shape, dtype=complex)
         for body, held in enumerate(self.linkage.origins):
-            found[body] = found[held.body] + self.arm(held) + self._shifts.get(body, 0.0)
-        return found
+            result[body] = result[held.body] + self.arm(held) + self._shifts.get(body, 0.0)
+        return result
 
     def arm(self, held: BodyPoint) -> np.ndarray:
         """Return the vector from the origin of a body's frame to a position on it."""
@@ -91,18 +91,18 @@ class Stance:
     def _partials(self) -> np.ndarray:
         """Derivatives of the origins by each coordinate, shape ``(bodies + 1, coordinates, n)``."""
         bodies, n = self.turns.shape
-        found = np.zeros((bodies, self.linkage.unknowns + 1, n), dtype=complex)
+        result = np.zeros((bodies, self.linkage.unknowns + 1, n), dtype=complex)
         for body, held in enumerate(self.linkage.origins):
-            found[body] = self._partial(held, found)
+            result[body] = self._partial(held, result)
             if (first := self.linkage.free.get(body)) is not None:
-                found[body, first], found[body, first + 1] = 1.0, 1j
-        return found
+                result[body, first], result[body, first + 1] = 1.0, 1j
+        return result
 
     def _partial(self, held: BodyPoint, origins: np.ndarray) -> np.ndarray:
-        found = origins[held.body].copy()
+        result = origins[held.body].copy()
         if (own := self.linkage.coordinates[held.body]) != NONE:
-            found[own] += 1j * self.arm(held)
-        return found
+            result[own] += 1j * self.arm(held)
+        return result
 
     @cached_property
     def _conditions(self) -> np.ndarray:
@@ -166,11 +166,11 @@ class Stance:
     @cached_property
     def origin_rates(self) -> np.ndarray:
         """Velocities of the frames' origins for unit speed of the driver."""
-        found = np.zeros(self.turns.shape, dtype=complex)
+        result = np.zeros(self.turns.shape, dtype=complex)
         for body, held in enumerate(self.linkage.origins):
-            found[body] = found[held.body] + 1j * self.rates[held.body] * self.arm(held)
-            found[body] += self._shifted(body, self._coordinate_rates)
-        return found
+            result[body] = result[held.body] + 1j * self.rates[held.body] * self.arm(held)
+            result[body] += self._shifted(body, self._coordinate_rates)
+        return result
 
     def rate(self, held: BodyPoint) -> np.ndarray:
         """Return the velocity of a position for unit speed of the driver."""
@@ -226,12 +226,12 @@ class Stance:
         return self._solved(-np.array(rows)) if rows else np.zeros((0, self.count))
 
     def _origin_bends(self, turning: np.ndarray, coordinates: np.ndarray | None = None) -> np.ndarray:
-        found = np.zeros(self.turns.shape, dtype=complex)
+        result = np.zeros(self.turns.shape, dtype=complex)
         for body, held in enumerate(self.linkage.origins):
-            found[body] = self._bend(held, found, turning)
+            result[body] = self._bend(held, result, turning)
             if coordinates is not None:
-                found[body] += self._shifted(body, coordinates)
-        return found
+                result[body] += self._shifted(body, coordinates)
+        return result
 
     def _bend(self, held: BodyPoint, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
         """Return the second derivative of a position, for second derivatives of the origins and of the
@@ -268,10 +268,10 @@ def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     try:
         return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:
-        found = np.full(right.shape, np.nan)
-        for place in range(len(matrix)):
+        result = np.full(right.shape, np.nan)
+        for position in range(len(matrix)):
             try:
-                found[place] = np.linalg.solve(matrix[place], right[place])
+                result[position] = np.linalg.solve(matrix[position], right[position])
             except np.linalg.LinAlgError:
                 continue
-        return found
+        return result

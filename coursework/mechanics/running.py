@@ -65,21 +65,21 @@ class Trajectory:
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the state at increasing instants, shape ``(3, n)``, and the driver's direction."""
-        found, ways = np.empty((3, len(t))), np.empty(len(t))
+        result, ways = np.empty((3, len(t))), np.empty(len(t))
         starts = np.array([phase.start for phase in self.phases])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
         for number in np.unique(which):
             own = which == number
-            found[:, own] = self.phases[number].state(t[own])
+            result[:, own] = self.phases[number].state(t[own])
             ways[own] = self.phases[number].way
-        return found, ways
+        return result, ways
 
     @property
     def dead_centres(self) -> np.ndarray:
         """Instants at which the output reaches a dead centre, each once."""
-        found = sorted(t for phase in self.phases for t in phase.dead)
+        results = sorted(t for phase in self.phases for t in phase.dead)
         apart = _SAME * max(self.phases[-1].end, 1e-300) if self.phases else 0.0
-        return np.array([t for k, t in enumerate(found) if not k or t - found[k - 1] > apart])
+        return np.array([t for k, t in enumerate(results) if not k or t - results[k - 1] > apart])
 
     @property
     def stuck(self) -> tuple[tuple[float, float], ...]:
@@ -163,15 +163,15 @@ class Running:
             rows += [forces.loads[number].followed(angles) for number in self.rows.positions]
             if self.output is not None:
                 rows.append(self.output(angles))
-        found = np.array(rows)
-        sizes += [max(stance.size, 1.0)] * (len(found) - len(sizes))
-        return found, np.array(sizes)
+        result = np.array(rows)
+        sizes += [max(stance.size, 1.0)] * (len(result) - len(sizes))
+        return result, np.array(sizes)
 
     # --------------------------------------------------------------- at an instant
 
-    def _sizes(self, angle: float, values: np.ndarray, signs: np.ndarray, way: int) -> list[float]:
+    def _sizes(self, angle: float, values: np.ndarray, signs: np.ndarray, direction: int) -> list[float]:
         """Return the loads along their lines, for the signs of their paces."""
-        found = []
+        results = []
         together = zip(self.forces.loads, self.forces.strokes, signs.tolist(), strict=False)
         for number, (acting, when, sign) in enumerate(together):
             size = acting.constant
@@ -180,10 +180,12 @@ class Running:
                     values[self.rows.first_position + self.rows.positions[number]] if acting.follows else None
                 )
                 size = float(acting.sizes(np.array(angle), here))
-            found.append(float(when.along(size, sign, way, against=acting.turns_over)))
-        return found
+            results.append(float(when.along(size, sign, direction, against=acting.turns_over)))
+        return results
 
-    def acceleration(self, angle: float, speed: float, way: int, signs: np.ndarray | None = None) -> float:
+    def acceleration(
+        self, angle: float, speed: float, direction: int, signs: np.ndarray | None = None
+    ) -> float:
         """Return the driver's acceleration, rad/s^2, at an angle (radians), a speed and a direction;
         ``signs`` of the paces in a phase.
 
@@ -192,9 +194,11 @@ class Running:
         Undefined
             The mechanism does not close, jams, or has no inertia there.
         """
-        return self._balance(angle, speed, way, signs)[0]
+        return self._balance(angle, speed, direction, signs)[0]
 
-    def _balance(self, angle: float, speed: float, way: int, signs: np.ndarray | None) -> tuple[float, float]:
+    def _balance(
+        self, angle: float, speed: float, direction: int, signs: np.ndarray | None
+    ) -> tuple[float, float]:
         """Return the acceleration, and the part of the drive that becomes kinetic energy, per radian."""
         self._count(angle)
         values = self.table.at(angle)
@@ -211,12 +215,12 @@ class Running:
         if self.rows.wrenches == 3:
             return (lacking - efforts[1] * speed * speed) / inertia, lacking
         if signs is None:
-            signs = self.signs(angle, way)
-        sizes = self._sizes(angle, values, signs, way)
+            signs = self.signs(angle, direction)
+        sizes = self._sizes(angle, values, signs, direction)
         for size, effort in zip(sizes, efforts[3:], strict=False):
             lacking -= size * effort
         if self.rows.contacts:
-            state = _Instant(angle, speed, way, lacking, inertia)
+            state = _Instant(angle, speed, direction, lacking, inertia)
             rubbed = self._rubbed(state, values, sizes, signs)
             if not math.isfinite(rubbed):
                 raise Undefined(
@@ -272,20 +276,20 @@ class Running:
     def holding(self, angle: float) -> tuple[float, float]:
         """Return the range of drive efforts that do not move the mechanism from rest, N m; infinite where it
         is self-locking."""
-        low, high = (self._holding(angle, way) for way in (-1, 1))
+        low, high = (self._holding(angle, direction) for direction in (-1, 1))
         return low, high
 
-    def _holding(self, angle: float, way: int) -> float:
-        values, signs = self.table.at(angle), self.signs(angle, way)
+    def _holding(self, angle: float, direction: int) -> float:
+        values, signs = self.table.at(angle), self.signs(angle, direction)
         efforts, first = values[: self.rows.wrenches], 3 + self.rows.loads
-        sizes = self._sizes(angle, values, signs, way)
+        sizes = self._sizes(angle, values, signs, direction)
         effort = float(efforts[2] + np.dot(sizes, efforts[3:first]))
         if not self.rows.contacts:
             return effort
         self._near = None
         # At rest nothing accelerates, whatever is lacking: as with an inertia without end.
-        rubbed = self._rubbed(_Instant(angle, 0.0, way, 0.0, math.inf), values, sizes, signs)
-        return effort + rubbed if math.isfinite(rubbed) else way * math.inf
+        rubbed = self._rubbed(_Instant(angle, 0.0, direction, 0.0, math.inf), values, sizes, signs)
+        return effort + rubbed if math.isfinite(rubbed) else direction * math.inf
 
     # ---------------------------------------------------------------------- places
 
@@ -317,11 +321,11 @@ class Running:
         from scipy.optimize import brentq
 
         grid, sampled = self._sampled
-        found = [
+        results = [
             brentq(lambda q: float(self.table.at(q)[row]), grid[k], grid[k + 1], xtol=1e-15, rtol=1e-15)
             for k in _changes(sampled[row])
         ]
-        return sorted(float(np.mod(zero, TURN)) for zero in found)
+        return sorted(float(np.mod(zero, TURN)) for zero in results)
 
     @staticmethod
     def _unrolled(places: np.ndarray, low: float, high: float) -> np.ndarray:
@@ -329,22 +333,22 @@ class Running:
         if not len(places):
             return places
         turns = np.arange(math.floor(low / TURN) - 1, math.floor(high / TURN) + 2)
-        found = np.sort((places[None, :] + TURN * turns[:, None]).ravel())
-        return found[(found > low + 1e-9) & (found < high - 1e-9)]
+        result = np.sort((places[None, :] + TURN * turns[:, None]).ravel())
+        return result[(result > low + 1e-9) & (result < high - 1e-9)]
 
-    def next_place(self, angle: float, way: int) -> float:
+    def next_place(self, angle: float, direction: int) -> float:
         """Return the next turning place beyond an angle; infinite where there is none."""
-        ahead = (angle, angle + 1.01 * TURN) if way > 0 else (angle - 1.01 * TURN, angle)
+        ahead = (angle, angle + 1.01 * TURN) if direction > 0 else (angle - 1.01 * TURN, angle)
         beyond = self._unrolled(self.turning_places, *ahead)
-        return float(beyond[0] if way > 0 else beyond[-1]) if len(beyond) else way * math.inf
+        return float(beyond[0] if direction > 0 else beyond[-1]) if len(beyond) else direction * math.inf
 
-    def signs(self, angle: float, way: int) -> np.ndarray:
+    def signs(self, angle: float, direction: int) -> np.ndarray:
         """Return the signs of the paces just beyond an angle in the driver's direction; they hold up to the
         next turning place."""
         if not self.forces.loads and not self.forces.contacts:
             return np.empty(0)
-        room = min(abs(self.next_place(angle, way) - angle) / 2, _BEYOND)
-        return np.sign(self.table.at(angle + way * room)[self.rows.paces])
+        room = min(abs(self.next_place(angle, direction) - angle) / 2, _BEYOND)
+        return np.sign(self.table.at(angle + direction * room)[self.rows.paces])
 
     # ---------------------------------------------------------------------- phases
 
@@ -364,11 +368,13 @@ class Running:
         while t < duration:
             if len(motion.phases) > MOST_PHASES:
                 raise Undefined(f"the motion turns back more than {MOST_PHASES} times, by t = {t:.6g} s")
-            way = self._way(state)
+            direction = self._way(state)
             phase, after = (
-                self._stretch(t, duration, state, way, rtol, scales) if way else _rest(t, duration, state)
+                self._stretch(t, duration, state, direction, rtol, scales)
+                if direction
+                else _rest(t, duration, state)
             )
-            if way and phase.end - t <= 1e-14 * duration and not state[1] and not after[1]:
+            if direction and phase.end - t <= 1e-14 * duration and not state[1] and not after[1]:
                 phase, after = _rest(t, duration, state)  # it would go, and comes to nothing
             motion.phases.append(phase)
             t, state = phase.end, after
@@ -393,21 +399,27 @@ class Running:
         return 1 if drive > high else -1 if drive < low else 0
 
     def _stretch(
-        self, t: float, duration: float, state: np.ndarray, way: int, rtol: float, scales: tuple[float, ...]
+        self,
+        t: float,
+        duration: float,
+        state: np.ndarray,
+        direction: int,
+        rtol: float,
+        scales: tuple[float, ...],
     ) -> tuple[MotionPhase, np.ndarray]:
         """Integrate to the next turning place, to rest, or to the end."""
         from scipy.integrate import solve_ivp
 
         angle = float(state[0])
-        place, signs = self.next_place(angle, way), self.signs(angle, way)
+        position, signs = self.next_place(angle, direction), self.signs(angle, direction)
 
         def derivative(_: float, y: np.ndarray) -> list[float]:
-            acceleration, lacking = self._balance(y[0], y[1], way, signs)
+            acceleration, lacking = self._balance(y[0], y[1], direction, signs)
             return [y[1], acceleration, lacking * y[1]]
 
-        ends = [_ending(lambda _, y: y[1] * way, -1.0)]
-        if math.isfinite(place):
-            ends.append(_ending(lambda _, y: (y[0] - place) * way, 1.0))
+        ends = [_ending(lambda _, y: y[1] * direction, -1.0)]
+        if math.isfinite(position):
+            ends.append(_ending(lambda _, y: (y[0] - position) * direction, 1.0))
         solved = solve_ivp(
             derivative, (t, duration), state, method="DOP853", rtol=rtol, atol=scales, dense_output=True, events=ends
         )  # fmt: skip
@@ -419,9 +431,9 @@ class Running:
         end, last = float(solved.t[-1]), solved.y[:, -1].copy()
         if solved.status == 1:
             at_rest = bool(len(solved.t_events[0]))
-            last[1 if at_rest else 0] = 0.0 if at_rest else place
+            last[1 if at_rest else 0] = 0.0 if at_rest else position
         return MotionPhase(
-            t, end, way, solved.sol, self._dead(solved.sol, t, end, angle, float(last[0]))
+            t, end, direction, solved.sol, self._dead(solved.sol, t, end, angle, float(last[0]))
         ), last
 
     def _dead(
@@ -433,20 +445,23 @@ class Running:
 
         low, high = min(angle, last), max(angle, last)
         places = self._unrolled(self.dead_places, low - 2e-9, high + 2e-9)
-        found = []
-        for place in places:
-            before, after = (float(state(t)[0]) - place for t in (start, end))
+        results = []
+        for position in places:
+            before, after = (float(state(t)[0]) - position for t in (start, end))
             if before * after < 0:
-                found.append(
+                results.append(
                     float(
                         brentq(
-                            lambda t, p=place: float(state(t)[0]) - p, start, end, xtol=1e-15 * max(end, 1e-9)
+                            lambda t, p=position: float(state(t)[0]) - p,
+                            start,
+                            end,
+                            xtol=1e-15 * max(end, 1e-9),
                         )
                     )
                 )
             elif abs(after) <= 1e-9 and abs(before) > 1e-9:
-                found.append(end)
-        return tuple(found)
+                results.append(end)
+        return tuple(results)
 
 
 def _rest(t: float, duration: float, state: np.ndarray) -> tuple[MotionPhase, np.ndarray]:

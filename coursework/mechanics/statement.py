@@ -208,7 +208,7 @@ class Mechanism:
             places += [load.force, load.moment, load.angle]
         for given in self.friction.values():
             places += given if isinstance(given, (tuple, list)) else (given,)
-        return tuple(dict.fromkeys(name for place in places for name in parameters(place)))
+        return tuple(dict.fromkeys(name for position in places for name in parameters(position)))
 
     def unfolded(self) -> Iterator[Place]:
         """Yield every expression that must have a value."""
@@ -225,17 +225,17 @@ class Mechanism:
     def _faults(self) -> Iterator[str]:
         twice = [n for n, count in Counter(self.names).items() if count > 1 or n == GROUND]
         yield from (f"two bodies are called {n!r}" for n in twice)
-        known = set(self.ground)
+        known_names = set(self.ground)
         for body in self.bodies:
             if body.origin is not None:
-                if body.at in known:
+                if body.at in known_names:
                     yield f"body {body.name!r} has an origin of its own, and {body.at!r} is a point of another body: a pin"
-            elif body.at not in known:
+            elif body.at not in known_names:
                 yield (
                     f"body {body.name!r} has its origin at {body.at!r}, which no body before it holds"
-                    f"{nearest(body.at, known)}; a body that slides alone hold says where it is: Body(…, origin=…)"
+                    f"{nearest(body.at, known_names)}; a body that slides alone hold says where it is: Body(…, origin=…)"
                 )
-            known |= set(body.places)
+            known_names |= set(body.places)
             if body.angle is None and body.points:
                 yield f"body {body.name!r} has no angle: nothing says where its points {', '.join(body.points)} are"
             if body.centre and body.centre not in body.places:
@@ -268,15 +268,15 @@ class Mechanism:
             )
 
 
-def parameters(place: Place) -> tuple[str, ...]:
+def parameters(expression: Place) -> tuple[str, ...]:
     """Return the quantities on which an expression depends."""
-    if isinstance(place, str):
-        return (place,)
-    return tuple(inspect.signature(place).parameters) if callable(place) else ()
+    if isinstance(expression, str):
+        return (expression,)
+    return tuple(inspect.signature(expression).parameters) if callable(expression) else ()
 
 
-def number(place: Place, values: Mapping[str, Any]) -> Any:
+def number(expression: Place, values: Mapping[str, Any]) -> Any:
     """Evaluate an expression."""
-    if isinstance(place, str):
-        return values[place]
-    return place(*(values[n] for n in parameters(place))) if callable(place) else place
+    if isinstance(expression, str):
+        return values[expression]
+    return expression(*(values[n] for n in parameters(expression))) if callable(expression) else expression

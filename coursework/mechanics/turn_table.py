@@ -84,19 +84,19 @@ class TurnTable:
 
     def at(self, angle: float) -> np.ndarray:
         """Return the functions at one angle, shape ``(m,)``."""
-        place = angle / self._step
-        whole = math.floor(place)
-        x = place - whole
+        position = angle / self._step
+        full = math.floor(position)
+        x = position - full
         xx = x * x
         powers = (1.0, x, xx, xx * x, xx * xx, xx * xx * x)
-        return self._coefficients[whole % self._count] @ powers
+        return self._coefficients[full % self._count] @ powers
 
     def over(self, angles: np.ndarray) -> np.ndarray:
         """Return the functions at many angles, shape ``(m, n)``."""
-        place = angles / self._step
-        whole = np.floor(place)
-        powers = (place - whole)[:, None] ** np.arange(6)
-        return np.einsum("nmp,np->mn", self._coefficients[whole.astype(int) % self._count], powers)
+        position = angles / self._step
+        full = np.floor(position)
+        powers = (position - full)[:, None] ** np.arange(6)
+        return np.einsum("nmp,np->mn", self._coefficients[full.astype(int) % self._count], powers)
 
 
 class Untabulated:

@@ -86,8 +86,8 @@ class Animation(Reel):
             return {}
         if exercise.solution.motion is None:
             return self._of_mechanism if exercise.solution.mechanism is not None else {}
-        found = self._stated("motion", exercise.solution.motion, self._with_driver_at(self.angles))
-        return {name: point.over(len(self.angles)) for name, point in found.items()}
+        result = self._stated("motion", exercise.solution.motion, self._with_driver_at(self.angles))
+        return {name: point.over(len(self.angles)) for name, point in result.items()}
 
     @property
     def _of_mechanism(self) -> Mapping[str, Moving]:
@@ -123,13 +123,13 @@ class Animation(Reel):
         """
         low, high = extent(self.frames)
         size = max((high - low).real, (high - low).imag)
-        found: dict[str, float] = {}
+        results: dict[str, float] = {}
         for kind in (("velocity",), ("acceleration", "coriolis")):
             lengths = [np.abs(v[self._inside]) for _, effect, v in self._vectors if effect in kind]
-            longest = max((float(np.nanmax(one)) for one in lengths), default=0.0)
+            longest = max((float(np.nanmax(item)) for item in lengths), default=0.0)
             if longest > 0:
-                found |= dict.fromkeys(kind, longest / (_LONGEST * size))
-        return found
+                results |= dict.fromkeys(kind, longest / (_LONGEST * size))
+        return results
 
     @property
     def _inside(self) -> slice:
@@ -152,9 +152,9 @@ class Animation(Reel):
         arrows, spots = [], []
         for name, effect, v in self._vectors:
             if effect in effects and effect in self.scales:
-                shown = np.full(v.shape, complex(np.nan, np.nan))
-                shown[self._inside] = v[self._inside] / self.scales[effect]
-                arrows.append(Arrow(self.points[name].position, shown, effect, name))
+                displayed = np.full(v.shape, complex(np.nan, np.nan))
+                displayed[self._inside] = v[self._inside] / self.scales[effect]
+                arrows.append(Arrow(self.points[name].position, displayed, effect, name))
         if "position" in effects:
             spots = [TracedPoint(point.position, name, self.closed) for name, point in self.points.items()]
         keys = self._keys({a.effect for a in arrows})
@@ -170,14 +170,14 @@ class Animation(Reel):
     def _keys(self, effects: set[str]) -> list[LegendKey]:
         """Return the legend: an arrow of a round value for each effect."""
         low, high = extent(self.frames)
-        said = words(self.variant.lang)["motion"]
+        texts = words(self.variant.lang)["motion"]
         size, keys = max((high - low).real, (high - low).imag), []
         for effect in EFFECTS:
             if effect in effects:
                 value = _round_below(0.25 * size * self.scales[effect])
                 unit = unit_text(UNIT[effect], self.variant.lang)
-                told = f"{said[effect]}{said['colon']} {number(value, self.variant.lang)} {unit}"
-                keys.append(LegendKey(effect, value / self.scales[effect], told))
+                text = f"{texts[effect]}{texts['colon']} {number(value, self.variant.lang)} {unit}"
+                keys.append(LegendKey(effect, value / self.scales[effect], text))
         return keys
 
     @cached_property
@@ -194,8 +194,8 @@ class Animation(Reel):
             if self.film is None
             else self.variant.solution_text.section("motion")
         )
-        said = " ".join(section.text.split())
-        return typeset(said, self.variant.lang) or self.title
+        text = " ".join(section.text.split())
+        return typeset(text, self.variant.lang) or self.title
 
     def svg(self) -> str:
         """Return the moving figure as SVG without scripts; it stands still for readers who prefer reduced
@@ -218,10 +218,10 @@ class Animation(Reel):
         Letters of lengths and angles are left out, since the box has no room for them.
         """
         frames = [_without_sizes(frame) for frame in self.frames]
-        shown, instants = self.drawing(self.effects, paper_mm, frames), len(self.angles)
+        displayed, instants = self.drawing(self.effects, paper_mm, frames), len(self.angles)
         turned = [(self.first + round(k * instants / count)) % instants for k in range(count)]
-        said = {"title": self.title, "words": self.words, "lang": self.variant.lang}
-        return tuple(still_svg(shown, instant, **said) for instant in turned)
+        text = {"title": self.title, "words": self.words, "lang": self.variant.lang}
+        return tuple(still_svg(displayed, instant, **text) for instant in turned)
 
     def _key_times(self) -> str:
         """Return the times as SVG key times; empty when they are evenly spread."""
@@ -236,12 +236,12 @@ class Animation(Reel):
 def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
     """Return a figure without its angles and the letters of its lengths; points keep their names, bodies
     their numbers."""
-    kept = (one for one in frame if not isinstance(one, (angle_mark, dimension)))
+    stored = (item for item in frame if not isinstance(item, (angle_mark, dimension)))
     return tuple(
-        replace(one, label=None)
-        if isinstance(one, (bar, line)) and one.label and not one.label.isdigit()
-        else one
-        for one in kept
+        replace(item, label=None)
+        if isinstance(item, (bar, line)) and item.label and not item.label.isdigit()
+        else item
+        for item in stored
     )
 
 

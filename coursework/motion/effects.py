@@ -51,11 +51,11 @@ def of_exercise(exercise: CourseExercise, driver: Driver) -> Mapping[str, tuple[
     stated = exercise.solution.effects
     usual = _of_loops(exercise) if exercise.solution.loops else _of_parts(exercise, driver)
     given = exercise.spec.given
-    found = {
+    results = {
         effect: tuple(name for name in names if name not in given and name != driver.angle)
         for effect, names in usual.items()
     }
-    return {**found, **stated}
+    return {**results, **stated}
 
 
 def _of_loops(exercise: CourseExercise) -> dict[str, tuple[str, ...]]:
@@ -72,11 +72,11 @@ def _of_loops(exercise: CourseExercise) -> dict[str, tuple[str, ...]]:
 
 def _of_parts(exercise: CourseExercise, driver: Driver) -> dict[str, tuple[str, ...]]:
     graph = exercise.solution.graph
-    asked = [p.quantity for p in exercise.spec.parts if p.sort.is_number]
+    requested = [p.quantity for p in exercise.spec.parts if p.sort.is_number]
     speed, acceleration = driver.speed, driver.acceleration
     moving, fast, faster = (graph.descendants((n,) if n else ()) for n in (driver.angle, speed, acceleration))
     return {
-        "position": tuple(n for n in asked if n in moving and n not in fast | faster),
-        "velocity": tuple(n for n in asked if n in fast and n not in faster),
-        "acceleration": tuple(n for n in asked if n in faster),
+        "position": tuple(n for n in requested if n in moving and n not in fast | faster),
+        "velocity": tuple(n for n in requested if n in fast and n not in faster),
+        "acceleration": tuple(n for n in requested if n in faster),
     }

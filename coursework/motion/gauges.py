@@ -45,12 +45,12 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
     for effect in EFFECTS:
         for name in _measured(reel, effect):
             effects_of.setdefault(name, []).append(effect)
-    found = {}
+    results = {}
     if effects_of:
         posed = {} if reel.film is not None else exercise.posed(reel.variant.given, reel.angles)
         given = {**reel.variant.used, **posed}
-        found = exercise.solve(**given, only=tuple(effects_of), effects=())
-    told = [
+        results = exercise.solve(**given, only=tuple(effects_of), effects=())
+    text = [
         _gauge(
             reel,
             exercise.solution.symbols.get(name) or exercise.symbol(name),
@@ -58,12 +58,12 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
             effects_of[name],
             value,
         )
-        for name, value in found.items()
+        for name, value in results.items()
     ]
-    known = {gauge.symbol for gauge in told}
-    if any("coriolis" in gauge.effects for gauge in told):
-        known |= {_symbol("coriolis", name) for name, _, _ in vectors}
-    return (*told, *(gauge for gauge in _norms(reel, vectors) if gauge.symbol not in known))
+    known_values = {gauge.symbol for gauge in text}
+    if any("coriolis" in gauge.effects for gauge in text):
+        known_values |= {_symbol("coriolis", name) for name, _, _ in vectors}
+    return (*text, *(gauge for gauge in _norms(reel, vectors) if gauge.symbol not in known_values))
 
 
 def _measured(reel: Reel, effect: str) -> Sequence[str]:

@@ -53,13 +53,13 @@ def _of_mechanism(scene: Scene) -> Iterator[tuple[str, str]]:
         yield from _of_forces(scene, shown.REACTION in kinds)
 
 
-def _of_forces(scene: Scene, asked: bool) -> Iterator[tuple[str, str]]:
+def _of_forces(scene: Scene, requested: bool) -> Iterator[tuple[str, str]]:
     bodies = len(scene.linkage.origins)
     for load in scene.mechanism.loads if "load" in scene.effects else ():
         yield f"the load on {load.on}", "the effect load"
     yield "the drive's effort by virtual power", "forces are called"
-    if asked or scene.contacts:
-        why = "reactions are shown" if asked else "friction follows what joints bear"
+    if requested or scene.contacts:
+        why = "reactions are shown" if requested else "friction follows what joints bear"
         yield f"equilibrium of {bodies} bodies, {3 * bodies} equations an instant", why
     if scene.contacts:
         names = dict.fromkeys(c.joint.name.removesuffix(" slide") for c in scene.contacts)

@@ -80,8 +80,8 @@ class Reel:
         """Evaluate a function of the solution's quantities, under a name that none of them has."""
         exercise = self.variant.exercise
         graph = exercise.solution.graph.with_functions({name: function})
-        known = {n: v for n, v in given.items() if n in exercise.quantity_names | graph.leaves}
-        return graph.evaluate((name,), known, self.variant.effects)[name]
+        known_values = {n: v for n, v in given.items() if n in exercise.quantity_names | graph.leaves}
+        return graph.evaluate((name,), known_values, self.variant.effects)[name]
 
     # ------------------------------------------------------------------- instants
 
@@ -117,37 +117,39 @@ class Reel:
             raise BadCourse(
                 f"{self.variant.exercise.name}: what a driver moves is one Figure, and no picture"
             )
-        found = {0: figure.elements}
+        results = {0: figure.elements}
         for k in range(1, self.count):
             if (elements := self._elements(start + k * step)) is None:
                 break
-            found[k] = elements
-        if len(found) == self.count:
+            results[k] = elements
+        if len(results) == self.count:
             turned = math.floor((start % 360.0) / step + 1e-9)
-            shown = [(k - turned) % self.count for k in range(self.count)]
+            displayed = [(k - turned) % self.count for k in range(self.count)]
             angles = (start % 360.0) + (np.arange(self.count) - turned) * step
-            return angles, [found[k] for k in shown], turned, True
-        closing = {start + k * step: elements for k, elements in found.items()}
+            return angles, [results[k] for k in displayed], turned, True
+        closing = {start + k * step: elements for k, elements in results.items()}
         for k in range(-1, -self.count, -1):
             if (elements := self._elements(start + k * step)) is None:
                 break
             closing[start + k * step] = elements
-        for way, last in ((1, max(closing)), (-1, min(closing))):
-            closing |= self._toward_limit(last, way * step, min(len(closing) - 1, 2))
+        for direction, last in ((1, max(closing)), (-1, min(closing))):
+            closing |= self._toward_limit(last, direction * step, min(len(closing) - 1, 2))
         ordered = sorted(closing)
         return np.array(ordered), [closing[a] for a in ordered], ordered.index(start), False
 
     def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
         """Return the cycle of a film: from 0, by equal steps and a last one that may be shorter."""
-        place = f"{self.variant.exercise.solution.source}: FILM"
+        location = f"{self.variant.exercise.solution.source}: FILM"
         if film.speed not in self.variant.given:
             given = ", ".join(self.variant.given)
-            raise BadCourse(f"{place}: speed={film.speed!r} is no given quantity; there are {given}")
+            raise BadCourse(f"{location}: speed={film.speed!r} is no given quantity; there are {given}")
         turns = self._stated("figure", film.turns, self.variant.given)
         if not isinstance(turns, (int, float)) or not 0 < turns <= MOST_TURNS:
-            raise BadCourse(f"{place}: turns gives a number above 0, at most {MOST_TURNS}; found {turns!r}")
+            raise BadCourse(
+                f"{location}: turns gives a number above 0, at most {MOST_TURNS}; found {turns!r}"
+            )
         if not isinstance(figure := self._stated("figure", film.figure, self._with_driver_at(0.0)), Figure):
-            raise BadCourse(f"{place}: figure gives a Figure(…); found {figure!r}")
+            raise BadCourse(f"{location}: figure gives a Figure(…); found {figure!r}")
         steps = math.ceil(self.count * turns - 1e-9)
         angles = self._sign * np.array([*(360.0 / self.count * np.arange(steps)), 360.0 * turns])
         angles = angles[:: self._sign] + 0.0  # no negative zero
@@ -162,8 +164,8 @@ class Reel:
             return {}
         run = limit - (last - back * step)
         more = {limit - run * (j / 10) ** 2: None for j in range(1, 10)}
-        found = {angle: self._elements(angle) for angle in more}
-        return {limit: elements} | {angle: one for angle, one in found.items() if one is not None}
+        results = {angle: self._elements(angle) for angle in more}
+        return {limit: elements} | {angle: item for angle, item in results.items() if item is not None}
 
     def _limit(self, angle: float, step: float) -> tuple[float, tuple[Element, ...]]:
         """Return the last angle at which the mechanism closes, between one that closes and the next, which

@@ -140,10 +140,10 @@ class _SceneReader:
             self._known(("bodies", name), "body", name, mechanism.names)
             if isinstance(centre := self._at(("bodies", name, "centre")), str):
                 self._known(("bodies", name, "centre"), "point", centre, tuple(mechanism.body(name).places))
-        known = (*mechanism.points, *mechanism.names)
+        known_names = (*mechanism.points, *mechanism.names)
         for number, load in enumerate(self._loads_listed):
             on = str(load.get("on", ""))
-            self._known(("loads", number, "on"), "point or body", on, known)
+            self._known(("loads", number, "on"), "point or body", on, known_names)
             if "body" in load:
                 self._known(("loads", number, "body"), "body", str(load["body"]), mechanism.holders(on))
         slides = [slide.at for slide in mechanism.slides]
@@ -174,45 +174,45 @@ class _SceneReader:
 
     def _at(self, at: Path_) -> Any:
         """Return the value at a path; None where there is none."""
-        found: Any = self.table
+        result: Any = self.table
         for part in at:
             try:
-                found = found[part]
+                result = result[part]
             except (KeyError, IndexError, TypeError):
                 return None
-        return found
+        return result
 
     def _table(self, at: Path_) -> Mapping[str, Any]:
-        found = self._at(at)
-        if found is None:
+        result = self._at(at)
+        if result is None:
             return {}
-        if not isinstance(found, Mapping):
+        if not isinstance(result, Mapping):
             example = f": {_EXAMPLES[str(at[-1])]}" if str(at[-1]) in _EXAMPLES else ""
-            raise self.refused(at, f"{at[-1]} is a table{example}; found {found!r}")
-        return found
+            raise self.refused(at, f"{at[-1]} is a table{example}; found {result!r}")
+        return result
 
     def _words(self, key: str) -> tuple[str, ...]:
-        found = self.table.get(key, [])
-        if not isinstance(found, list) or not all(isinstance(word, str) for word in found):
-            raise self.refused((key,), f'{key} is a list of words: ["…", "…"]; found {found!r}')
-        return tuple(found)
+        result = self.table.get(key, [])
+        if not isinstance(result, list) or not all(isinstance(word, str) for word in result):
+            raise self.refused((key,), f'{key} is a list of words: ["…", "…"]; found {result!r}')
+        return tuple(result)
 
     def _amount(self, at: Path_, unit: str, otherwise: Any = None) -> Any:
         """Return a number that stands with its unit, in the unit that is told."""
-        found = self._at(at)
-        return otherwise if found is None else self._number(at, found, unit)
+        result = self._at(at)
+        return otherwise if result is None else self._number(at, result, unit)
 
-    def _number(self, at: Path_, found: Any, unit: str) -> float:
-        is_bare = isinstance(found, (int, float)) and not isinstance(found, bool) and math.isfinite(found)
+    def _number(self, at: Path_, result: Any, unit: str) -> float:
+        is_bare = isinstance(result, (int, float)) and not isinstance(result, bool) and math.isfinite(result)
         if is_bare and unit == "1":
-            return float(found)
-        if is_bare or (isinstance(found, str) and unit != "1" and _BARE.fullmatch(found)):
-            raise self.refused(at, f'{at[-1]} has a unit: {at[-1]} = "{found} {unit}"; found {found!r}')
-        reading = read_number(found, unit) if isinstance(found, str) else None
+            return float(result)
+        if is_bare or (isinstance(result, str) and unit != "1" and _BARE.fullmatch(result)):
+            raise self.refused(at, f'{at[-1]} has a unit: {at[-1]} = "{result} {unit}"; found {result!r}')
+        reading = read_number(result, unit) if isinstance(result, str) else None
         if reading is not None and reading.status == "read" and len(reading.values) == 1:
             return reading.values[0]
         kind = "" if unit == "1" else f" in {unit}"
-        raise self.refused(at, f"{at[-1]} is a number{kind}; found {found!r}")
+        raise self.refused(at, f"{at[-1]} is a number{kind}; found {result!r}")
 
     # -------------------------------------------------------------------- tables
 
@@ -228,7 +228,7 @@ class _SceneReader:
     def _given(self, exercise: CourseExercise) -> dict[str, Any]:
         """Return the values of a variant, overridden by those of the file."""
         seed = self.table.get("seed", 0)
-        found = dict(self._told(("seed",), exercise.variant, seed).given)
+        results = dict(self._told(("seed",), exercise.variant, seed).given)
         for name, value in self._table(("given",)).items():
             if name not in exercise.spec.given:
                 raise self.refused(
@@ -238,8 +238,8 @@ class _SceneReader:
             unit = exercise.units.get(name, "1")
             if isinstance(value, (int, float)) and not isinstance(value, bool) and unit != "1":
                 self._number(("given", name), value, unit)
-            found[name] = self._told(("given", name), exercise.intake.value, name, value)
-        return found
+            results[name] = self._told(("given", name), exercise.intake.value, name, value)
+        return results
 
     def _steps(self) -> int:
         steps = self.table.get("steps", _STEPS)
@@ -293,12 +293,12 @@ class _SceneReader:
 
     @property
     def _loads_listed(self) -> list[Mapping[str, Any]]:
-        found = self.table.get("loads", [])
-        if not isinstance(found, list) or not all(isinstance(load, Mapping) for load in found):
+        result = self.table.get("loads", [])
+        if not isinstance(result, list) or not all(isinstance(load, Mapping) for load in result):
             raise self.refused(
                 ("loads",), "loads are a list of tables, each headed by [[loads]], in double brackets"
             )
-        return found
+        return result
 
     def _load(self, number: int, exercise: CourseExercise) -> Load:
         at: Path_ = ("loads", number)
@@ -348,20 +348,20 @@ class _SceneReader:
 
     def _size(self, at: Path_, kind: str, exercise: CourseExercise) -> Place:
         """Return a number, or a quantity of the exercise by its name."""
-        found, unit = self._at((*at, kind)), {"force": "N", "moment": "N*m"}[kind]
-        if found is None:
+        result, unit = self._at((*at, kind)), {"force": "N", "moment": "N*m"}[kind]
+        if result is None:
             if self._at((*at, "table")) is None:
                 raise self.refused(
                     at, 'a load says how large it is: force = "800 N", moment = "5 N*m", or table = […]'
                 )
             return 0.0
-        if isinstance(found, str) and found in exercise.spec.given:
-            if not same_dimension(exercise.units.get(found, "1"), unit):
+        if isinstance(result, str) and result in exercise.spec.given:
+            if not same_dimension(exercise.units.get(result, "1"), unit):
                 raise self.refused(
-                    (*at, kind), f"{found} is in {exercise.units.get(found, '1')}, a {kind} in {unit}"
+                    (*at, kind), f"{result} is in {exercise.units.get(result, '1')}, a {kind} in {unit}"
                 )
-            return found
-        return self._number((*at, kind), found, unit)
+            return result
+        return self._number((*at, kind), result, unit)
 
     def _pairs(
         self, at: Path_, kind: str, by: str, exercise: CourseExercise
@@ -380,33 +380,34 @@ class _SceneReader:
                 (*at, "table"),
                 f'a table lists pairs: [["0 deg", "0 N"], ["90 deg", "200 N"]]; found {listed!r}',
             )
-        place = exercise.units.get(by, "deg") if by else "deg"
-        found = [
-            (self._number((*at, "table"), x, place), self._number((*at, "table"), y, unit)) for x, y in listed
+        position = exercise.units.get(by, "deg") if by else "deg"
+        results = [
+            (self._number((*at, "table"), x, position), self._number((*at, "table"), y, unit))
+            for x, y in listed
         ]
-        if any(b[0] <= a[0] for a, b in pairwise(found)):
+        if any(b[0] <= a[0] for a, b in pairwise(results)):
             raise self.refused(
                 (*at, "table"), "a table goes upwards: each first value is larger than the one before"
             )
-        if place == "deg" and found[-1][0] - found[0][0] > 360:
-            span = found[-1][0] - found[0][0]
+        if position == "deg" and results[-1][0] - results[0][0] > 360:
+            span = results[-1][0] - results[0][0]
             raise self.refused(
                 (*at, "table"), f"a table by an angle spans a turn at most; found {span:g} deg"
             )
-        return tuple(found)
+        return tuple(results)
 
     def _friction(self, name: str) -> Any:
         at: Path_ = ("friction", name)
-        found = self._at(at)
-        if not isinstance(found, Mapping):
-            return self._coefficient(at, found)
-        self._only(found, ("coefficient", "radius"), at)
-        coefficient = self._coefficient((*at, "coefficient"), found.get("coefficient"))
+        result = self._at(at)
+        if not isinstance(result, Mapping):
+            return self._coefficient(at, result)
+        self._only(result, ("coefficient", "radius"), at)
+        coefficient = self._coefficient((*at, "coefficient"), result.get("coefficient"))
         radius = self._amount((*at, "radius"), "mm")
         return coefficient if radius is None else (coefficient, radius)
 
-    def _coefficient(self, at: Path_, found: Any) -> float:
-        value = self._number(at, found, "1")
+    def _coefficient(self, at: Path_, result: Any) -> float:
+        value = self._number(at, result, "1")
         if value < 0:
             raise self.refused(at, f"a coefficient of friction is not negative; found {value:g}")
         return value

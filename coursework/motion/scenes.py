@@ -246,8 +246,8 @@ class Scene(Showing):
     def _motion_table(self, motion: Trajectory, running: Running, motor: Motor, t: np.ndarray) -> SceneTable:
         (angle, speed, work), ways = motion.at(t)
         acceleration = np.array([
-            running.acceleration(float(q), float(w), int(way)) if way else 0.0
-            for q, w, way in zip(angle, speed, ways, strict=True)
+            running.acceleration(float(q), float(w), int(direction)) if direction else 0.0
+            for q, w, direction in zip(angle, speed, ways, strict=True)
         ])  # fmt: skip
         driver = self.driver
         moved = {driver.angle: np.degrees(angle), driver.speed or "speed": speed}

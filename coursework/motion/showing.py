@@ -90,8 +90,8 @@ class Showing(Staged):
             return {}
         graph = solution.graph.with_functions({"motion": solution.motion})
         given = {**self._accepted, **self._driven(angle), self.driver.angle: angle}
-        known = {n: v for n, v in given.items() if n in self.exercise.quantity_names | graph.leaves}
-        return graph.evaluate(("motion",), known, self._graph_effects)["motion"]
+        known_values = {n: v for n, v in given.items() if n in self.exercise.quantity_names | graph.leaves}
+        return graph.evaluate(("motion",), known_values, self._graph_effects)["motion"]
 
     def _of_what_the_solution_leaves_out(self) -> list[str]:
         """Return the velocities and accelerations of moving points, for a requested effect that no quantity
@@ -143,12 +143,12 @@ class Showing(Staged):
     def _exercise_columns(self, driven: Mapping[str, Any], shape: tuple[int, ...]) -> dict[str, np.ndarray]:
         constants = self.constants
         moving = tuple(n for n in self.quantities if n not in constants)
-        found = self.exercise.solve(**driven, only=moving, effects=self._graph_effects) if moving else {}
+        result = self.exercise.solve(**driven, only=moving, effects=self._graph_effects) if moving else {}
         if constants:
-            found |= self.exercise.solve(**self.given, only=tuple(constants), effects=self._graph_effects)
+            result |= self.exercise.solve(**self.given, only=tuple(constants), effects=self._graph_effects)
         if ADVANTAGE in self.effects and not self._of(ADVANTAGE):
-            found |= self._advantage(driven)
-        return {n: np.broadcast_to(found[n], shape) for n in dict.fromkeys([*self.quantities, *found])}
+            result |= self._advantage(driven)
+        return {n: np.broadcast_to(result[n], shape) for n in dict.fromkeys([*self.quantities, *result])}
 
     def _advantage(self, driven: Mapping[str, Any]) -> dict[str, Any]:
         """Return the mechanical advantage: the driver's speed over that of its output."""
@@ -180,15 +180,15 @@ class Showing(Staged):
         points = [(kind, of) for _, kind, of in kinds if kind in shown.OF_POINTS]
         moving = self._of_points(points, angles, speed, acceleration)
         borne = self.forces.over(angles, speed, acceleration, joints=needs_joints) if needs_forces else None
-        found: shown.Columns = {}
+        results: shown.Columns = {}
         for name, kind, of in kinds:
             if kind == shown.REACTION and borne is not None:
-                found |= shown.of_joint(of, self.linkage, borne)
+                results |= shown.of_joint(of, self.linkage, borne)
             elif kind:
-                found |= moving[kind, of]
+                results |= moving[kind, of]
             elif borne is not None:
-                found |= self._of_drive(name, borne, angles, speed)
-        return found
+                results |= self._of_drive(name, borne, angles, speed)
+        return results
 
     def _of_points(
         self,
@@ -215,10 +215,10 @@ class Showing(Staged):
     def _points_of_solution(self, angle: np.ndarray) -> shown.Columns:
         """Return the points that the solution itself moves, for a spatial mechanism without plane bodies."""
         points = self._motion_of_solution(angle)
-        found: shown.Columns = {}
+        results: shown.Columns = {}
         for kind, of in map(shown.what, self.extra):
-            found |= shown.of_moving(kind, of, points[of])
-        return found
+            results |= shown.of_moving(kind, of, points[of])
+        return results
 
     def _of_drive(
         self, name: str, borne: ForceResults, angles: np.ndarray, speed: np.ndarray
@@ -244,17 +244,17 @@ class Showing(Staged):
 
     def _moving(self, point: str, stance: Stance, slide: SlideJoint | None) -> Moving:
         held = stance.linkage.owner(point)
-        place = stance.place(held) / MM
+        position = stance.place(held) / MM
         if not self.driver.speed:
-            return Moving(place)
+            return Moving(position)
         speed, acceleration = self._speed, self._acceleration
         with np.errstate(all="ignore"):
             velocity = stance.rate(held) * speed / MM
             bent = stance.acceleration(held, speed, acceleration) / MM
             if slide is None:
-                return Moving(place, velocity, bent)
+                return Moving(position, velocity, bent)
             return Moving(
-                place, velocity, bent, 1j * stance.coriolis(slide, speed) / MM * stance.direction(slide)
+                position, velocity, bent, 1j * stance.coriolis(slide, speed) / MM * stance.direction(slide)
             )
 
     # ------------------------------------------------------------------------ told
@@ -275,5 +275,5 @@ class Showing(Staged):
 
     def _units(self, names: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
         advantage = "1/m" if self._output_slides else "1"
-        known = {"t": "s", ADVANTAGE: advantage, self.driver.angle: "deg", **self.exercise.units}
-        return {n: known.get(n, "1") for n in names}
+        known_values = {"t": "s", ADVANTAGE: advantage, self.driver.angle: "deg", **self.exercise.units}
+        return {n: known_values.get(n, "1") for n in names}

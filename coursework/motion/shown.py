@@ -61,7 +61,7 @@ def turning_slides(linkage: Linkage) -> tuple[SlideJoint, ...]:
 
 def joint_points(linkage: Linkage) -> dict[str, list[str]]:
     """Return the joints at each point, by their names in a scene."""
-    found: dict[str, list[str]] = {}
+    results: dict[str, list[str]] = {}
     names = [
         *(p.name for p in linkage.pins),
         *(s.name for s in linkage.slides),
@@ -69,8 +69,8 @@ def joint_points(linkage: Linkage) -> dict[str, list[str]]:
     ]
     for joint in names:
         for name in dict.fromkeys((joint, joint.split(" ")[0])):
-            found.setdefault(name, []).append(joint)
-    return found
+            results.setdefault(name, []).append(joint)
+    return results
 
 
 def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, acceleration: np.ndarray) -> Columns:
@@ -80,8 +80,8 @@ def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, accelerat
         return {f"a_coriolis_{point}": (stance.coriolis(slide, speed) / MM, "mm/s^2")}
     held = stance.linkage.owner(point)
     if kind == "position":
-        place = stance.place(held) / MM
-        return {f"x_{point}": (place.real, "mm"), f"y_{point}": (place.imag, "mm")}
+        position = stance.place(held) / MM
+        return {f"x_{point}": (position.real, "mm"), f"y_{point}": (position.imag, "mm")}
     if kind == "velocity":
         return _vector(f"v_{point}", stance.rate(held) * speed / MM, "mm/s")
     return _vector(f"a_{point}", stance.acceleration(held, speed, acceleration) / MM, "mm/s^2")
@@ -106,21 +106,21 @@ def _vector(name: str, values: np.ndarray, unit: str) -> Columns:
 
 def of_joint(point: str, linkage: Linkage, borne: ForceResults) -> Columns:
     """Return the reactions of the joints at a point, on the body that slides or is pinned on."""
-    found: Columns = {}
+    results: Columns = {}
     for name in joint_points(linkage)[point]:
-        found |= _of_one(name, borne.joints, borne.rubs)
-    return found
+        results |= _of_one(name, borne.joints, borne.rubs)
+    return results
 
 
 def _of_one(name: str, joints: Mapping[str, np.ndarray], rubs: Mapping[str, np.ndarray]) -> Columns:
     """Return the force of a pin; the normal force, moment and friction of a slide; or the force of a gear."""
-    called = name.removesuffix(" slide").replace(" ", "_")
+    label = name.removesuffix(" slide").replace(" ", "_")
     if f"{name}_x" in joints:
         force = joints[f"{name}_x"] + 1j * joints[f"{name}_y"]
-        turned = {f"Mf_{called}": (rubs[name], "N*m")} if name in rubs else {}
-        return {**_vector(f"R_{called}", force, "N"), **turned}
+        turned = {f"Mf_{label}": (rubs[name], "N*m")} if name in rubs else {}
+        return {**_vector(f"R_{label}", force, "N"), **turned}
     if f"{name}_t" in joints:
-        return {f"T_{called}": (joints[f"{name}_t"], "N")}
-    rubbed = {f"T_{called}": (rubs[name], "N")} if name in rubs else {}
-    bearing = {f"N_{called}": (joints[f"{name}_n"], "N"), f"M_{called}": (joints[f"{name}_m"], "N*m")}
+        return {f"T_{label}": (joints[f"{name}_t"], "N")}
+    rubbed = {f"T_{label}": (rubs[name], "N")} if name in rubs else {}
+    bearing = {f"N_{label}": (joints[f"{name}_n"], "N"), f"M_{label}": (joints[f"{name}_m"], "N*m")}
     return {**bearing, **rubbed}

@@ -136,16 +136,16 @@ class Staged:
         """Return the force effects for which there are data: masses, loads, friction, a flywheel."""
         if self.exercise.solution.mechanism is None:
             return self.exercise.solution.graph.effects()
-        mechanism, found = self.mechanism, []
+        mechanism, result = self.mechanism, []
         if mechanism.loads:
-            found.append("load")
+            result.append("load")
         if self.linkage.masses:
-            found += [
+            result += [
                 e for e in ("gravity", INERTIA) if e == INERTIA or any(m.mass for m in self.linkage.masses)
             ]
         if contacts(self.linkage, mechanism.friction):
-            found.append(FRICTION)
-        return (*found, *(("flywheel",) if self.added.flywheel else ()))
+            result.append(FRICTION)
+        return (*result, *(("flywheel",) if self.added.flywheel else ()))
 
     # ------------------------------------------------------------------- mechanism
 
@@ -172,9 +172,9 @@ class Staged:
         wanted = tuple(n for n in mechanism.named if n not in self.exercise.spec.given)
         for name in wanted:
             if name not in self.exercise.quantity_names:
-                known = {*self.exercise.quantity_names, *self.exercise.spec.given}
+                known_values = {*self.exercise.quantity_names, *self.exercise.spec.given}
                 raise BadCourse(
-                    f"{self.exercise.solution.source}: MECHANISM names no quantity by {name!r}{nearest(name, known)}"
+                    f"{self.exercise.solution.source}: MECHANISM names no quantity by {name!r}{nearest(name, known_values)}"
                 )
         values = self.exercise.solve(**self.given, only=wanted, effects=()) if wanted else {}
         values |= {n: self._accepted[n] for n in mechanism.named if n in self._accepted}
@@ -190,8 +190,8 @@ class Staged:
         BadCourse
             It names the quantity that the driver moves.
         """
-        for place in mechanism.unfolded():
-            for name in parameters(place):
+        for position in mechanism.unfolded():
+            for name in parameters(position):
                 if name in self.moved:
                     raise BadCourse(
                         f"{self.exercise.solution.source}: MECHANISM places a point by {name}, which moves with "
@@ -210,8 +210,8 @@ class Staged:
         named = dict.fromkeys((*linkage.mechanism.angles, *shifting))
         wanted = tuple(n for n in named if n != self.driver.angle and n not in self.exercise.spec.given)
         degrees = np.degrees(angles)
-        found = self.exercise.solve(**self._driven(degrees), only=wanted, effects=()) if wanted else {}
-        turned = {**self._accepted, self.driver.angle: degrees, **found}
+        result = self.exercise.solve(**self._driven(degrees), only=wanted, effects=()) if wanted else {}
+        turned = {**self._accepted, self.driver.angle: degrees, **result}
         turns = np.repeat(linkage.constant_turns[:, None], len(angles), axis=1)
         for own, body in enumerate(bodies):
             if isinstance(body.angle, str):
@@ -226,8 +226,8 @@ class Staged:
         names = self._rates_by_name[order - 1]
         if names is None or not self.driver.speed:
             return None
-        found = self.exercise.solve(**self._at_unit_speed(degrees), only=names, effects=()) if names else {}
-        return np.array([np.broadcast_to(found[n], degrees.shape) for n in names]).reshape(
+        result = self.exercise.solve(**self._at_unit_speed(degrees), only=names, effects=()) if names else {}
+        return np.array([np.broadcast_to(result[n], degrees.shape) for n in names]).reshape(
             len(names), len(degrees)
         )
 
@@ -235,13 +235,15 @@ class Staged:
     def _rates_by_name(self) -> tuple[tuple[str, ...] | None, tuple[str, ...] | None]:
         """Names of the rates and of the accelerations of the unknown angles; None where one is missing."""
         angles, solution = self.linkage.unknown_angles, self.exercise.solution
-        known = frozenset(solution.graph.quantities)
+        known_names = frozenset(solution.graph.quantities)
         of_loops = {n: pair for loop in solution.loops.values() for n, pair in loop.rates.items()}
         if angles is None:
             return None, None
-        pairs = [of_loops.get(n) or usual_rates(n, known) for n in angles]
+        pairs = [of_loops.get(n) or usual_rates(n, known_names) for n in angles]
         first, second = (tuple(pair[order] for pair in pairs) for order in (0, 1))
-        return (first if known.issuperset(first) else None), (second if known.issuperset(second) else None)
+        return (first if known_names.issuperset(first) else None), (
+            second if known_names.issuperset(second) else None
+        )
 
     # ---------------------------------------------------------------------- forces
 
@@ -253,14 +255,14 @@ class Staged:
     @cached_property
     def forces(self) -> Forces:
         """Forces of the requested effects."""
-        called, linkage = self.effects, self.linkage
-        loads = linkage.mechanism.loads if "load" in called else ()
+        label, linkage = self.effects, self.linkage
+        loads = linkage.mechanism.loads if "load" in label else ()
         return Forces(
             linkage,
             self.pose,
-            self.added.gravity if "gravity" in called else 0j,
-            INERTIA in called,
-            self.flywheel if FLYWHEEL in called else 0.0,
+            self.added.gravity if "gravity" in label else 0j,
+            INERTIA in label,
+            self.flywheel if FLYWHEEL in label else 0.0,
             tuple(self._acting(load) for load in loads),
             self.contacts,
         )
@@ -273,10 +275,10 @@ class Staged:
         WrongValue
             It goes by what the driver's speed changes, which is no place; or a function hides that it moves.
         """
-        for place in (load.force, load.moment, load.angle):
-            if callable(place) and self.moved.intersection(parameters(place)):
+        for position in (load.force, load.moment, load.angle):
+            if callable(position) and self.moved.intersection(parameters(position)):
                 raise WrongValue(
-                    f"the load on {load.on} goes by a function of {', '.join(parameters(place))}, which the driver moves; make "
+                    f"the load on {load.on} goes by a function of {', '.join(parameters(position))}, which the driver moves; make "
                     "it a quantity of the solution, and name that"
                 )
         for name in (load.by, *(n for p in (load.force, load.moment, load.angle) for n in parameters(p))):

@@ -106,18 +106,18 @@ def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> EffectBudget
         raise WrongValue("a budget is of effects: name some, --effects load,inertia,friction")
     if not tolerance > 0:
         raise WrongValue(f"a tolerance is above 0, 0.01 for 1 %; found {tolerance:g}")
-    whole = run(scene)
+    full = run(scene)
     others, needed = _others(scene, run, scene.effects)
     times = _times({"": scene, **others}, run)
-    worths = [_worth(e, scene, others.get(e), whole, run, times, needed.get(e, "")) for e in scene.effects]
+    worths = [_worth(e, scene, others.get(e), full, run, times, needed.get(e, "")) for e in scene.effects]
     return EffectBudget(
-        statistics.median(times[""]), tuple(worths), tuple(_lacking(scene, run, whole)), tolerance
+        statistics.median(times[""]), tuple(worths), tuple(_lacking(scene, run, full)), tolerance
     )
 
 
 def _others(scene: Scene, run: Run, effects: Sequence[str]) -> tuple[dict[str, Scene], dict[str, str]]:
     """Return the scene without each effect, and the reasons why it does not run without some."""
-    found, needed = {}, {}
+    result, needed = {}, {}
     for effect in effects:
         try:
             other = scene.without(effect)
@@ -125,13 +125,13 @@ def _others(scene: Scene, run: Run, effects: Sequence[str]) -> tuple[dict[str, S
         except CourseworkError as fault:
             needed[effect] = str(fault)
         else:
-            found[effect] = other
-    return found, needed
+            result[effect] = other
+    return result, needed
 
 
 def _times(scenes: Mapping[str, Scene], run: Run) -> dict[str, list[float]]:
     """Return the seconds of each scene, in rounds that run all of them in turn."""
-    found: dict[str, list[float]] = {name: [] for name in scenes}
+    results: dict[str, list[float]] = {name: [] for name in scenes}
     started = time.perf_counter()
     for number in range(_ROUNDS):
         if number >= _FEWEST and time.perf_counter() - started > _PATIENCE * number / _ROUNDS:
@@ -140,8 +140,8 @@ def _times(scenes: Mapping[str, Scene], run: Run) -> dict[str, list[float]]:
             fresh = replace(scene)  # what a scene remembers of its mechanism is part of its time
             start = time.perf_counter()
             run(fresh)
-            found[name].append(time.perf_counter() - start)
-    return found
+            results[name].append(time.perf_counter() - start)
+    return results
 
 
 def _worth(
@@ -157,14 +157,14 @@ def _worth(
 
 def _changes(whole: SceneTable, other: SceneTable) -> Iterator[OutputChange]:
     """Yield the change of every output that both tables contain, at their common instants."""
-    kept, there = (~_dead(table) for table in (whole, other))
+    stored, there = (~_dead(table) for table in (whole, other))
     largest: dict[str, float] = {}
     for name, values in whole.columns.items():
         largest[whole.units[name]] = max(largest.get(whole.units[name], 0.0), _largest(values))
     for name, values in whole.columns.items():
         if name in ("t", "dead_centre") or name not in other.columns or name == next(iter(whole.columns)):
             continue
-        own, changed = values[kept], other.columns[name][there]
+        own, changed = values[stored], other.columns[name][there]
         if own.shape == changed.shape and _largest(own) > _ROUNDING * largest[whole.units[name]]:
             yield _change(name, whole.units[name], own, changed, "t" not in whole.columns)
 

@@ -82,7 +82,7 @@ class Construction:
     @cached_property
     def scale(self) -> float:
         """Scale in mm/s or mm/s^2 for a mm on paper: the exercise's own, or 1, 2 or 5 times a power of ten."""
-        room = (whole - taken for whole, taken in zip(BOX_MM, _SYMBOLS_MM, strict=True))
+        room = (full - used for full, used in zip(BOX_MM, _SYMBOLS_MM, strict=True))
         return self.polygon.scale or self.polygon.scale_in(*room)
 
     @property
@@ -135,8 +135,8 @@ class Construction:
         """
         corner = self.polygon.extent()[0] / self.scale
         value = _BAR_MM * self.scale
-        told = f"{self._number(significant(value))} {self.unit}"
-        bar = scale_bar(corner - 10j, _BAR_MM, told)
+        text = f"{self._number(significant(value))} {self.unit}"
+        bar = scale_bar(corner - 10j, _BAR_MM, text)
         named = len(self.polygon.sides) <= _NAMES
         drawn = _Drawing(self.polygon, self.scale, _BEYOND[1], named=named)
         return Figure(*drawn.elements, bar, paper_mm=BOX_MM, scale=1)
@@ -148,14 +148,14 @@ class Construction:
         size = high - low
         scale = max(size.real / _SMALL_MM[0], size.imag / _SMALL_MM[1])
         drawn = _Drawing(self.polygon, scale, _BEYOND[0], named=False)
-        whole = Figure(*drawn.elements, scale=1)
+        full = Figure(*drawn.elements, scale=1)
         steps: list[ConstructionStep] = []
         for stage, count in zip(self.polygon.stages, drawn.counts, strict=True):
             text = self._told(stage)
             if stage.kind == "result" and steps:
                 # Vectors that join points already found are no step of their own.
                 text = f"{steps.pop().text} {text}"
-            steps.append(ConstructionStep(len(steps) + 1, text, whole.beginning(count)))
+            steps.append(ConstructionStep(len(steps) + 1, text, full.beginning(count)))
         return tuple(steps)
 
     def _told(self, stage: Stage) -> str:
@@ -166,28 +166,28 @@ class Construction:
         return f"{self._said['pole'].format(f'${self.polygon.pole}$')} {text}"
 
     def _sentences(self, stage: Stage) -> Iterator[str]:
-        said = self._said
+        texts = self._said
         if stage.kind == "known":
             # A vector between two points of which its end is found first is laid off backwards.
-            found = list(zip(stage.sides, stage.points, strict=True))
-            for backwards, run in groupby(found, lambda one: one[1] == one[0].start):
+            results = list(zip(stage.sides, stage.points, strict=True))
+            for backwards, run in groupby(results, lambda item: item[1] == item[0].start):
                 sides, points = zip(*run, strict=True)
                 if not backwards:
-                    yield said["known"].format(
+                    yield texts["known"].format(
                         vectors=self._listed(s.name for s in sides), points=self._listed(points)
                     )
                 for side in sides if backwards else ():
-                    yield said["ending"].format(
+                    yield texts["ending"].format(
                         vector=f"${side.name}$", end=f"${side.end}$", point=f"${side.start}$"
                     )
         elif stage.kind == "result":
             for side in stage.sides:
-                yield said["result"].format(
+                yield texts["result"].format(
                     start=f"${side.start}$", end=f"${side.end}$", vector=f"${side.name}$"
                 )
         else:
             first, last = stage.sides[0], stage.sides[-1]
-            yield said[stage.kind].format(
+            yield texts[stage.kind].format(
                 points=self._listed(stage.points) if stage.points else "",
                 through=f"${stage.through}$",
                 direction=f"${last.direction}$",

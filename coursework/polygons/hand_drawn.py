@@ -57,8 +57,8 @@ class DrawingFault:
             fault = fault.plainer
 
     def __str__(self) -> str:
-        told = f" on {self.on}" if self.on else ""
-        return f"{self.side}: {self.kind}{told}" if self.side else self.kind
+        text = f" on {self.on}" if self.on else ""
+        return f"{self.side}: {self.kind}{text}" if self.side else self.kind
 
 
 @dataclass(frozen=True)
@@ -191,16 +191,16 @@ def vector_fault(drawn: complex, right: complex, width: float) -> str:
 
 def ancestors(polygon: Polygon, point: str) -> frozenset[str]:
     """Return the points, except the pole, from which a point is constructed."""
-    found: set[str] = set()
+    results: set[str] = set()
     waiting = [point]
     while waiting:
         here = waiting.pop()
         for side in polygon.hangs.get(here, ()):
             for before in (_anchor(side, here), *(side.image or ())):
-                if before != polygon.pole and before not in found:
-                    found.add(before)
+                if before != polygon.pole and before not in results:
+                    results.add(before)
                     waiting.append(before)
-    return frozenset(found)
+    return frozenset(results)
 
 
 def _anchor(side: Side, point: str) -> str:
@@ -225,17 +225,17 @@ def _known(
     """Return the end of a vector of known length, laid off from the student's point, and the fault of the one
     drawn."""
     anchor = _anchor(side, point)
-    right, way = side.value / scale, 1 if side.end == point else -1
+    right, direction = side.value / scale, 1 if side.end == point else -1
     ratio = polygon.ratio(side)
     own = (
         right if ratio is None or side.image is None else ratio * (here[side.image[1]] - here[side.image[0]])
     )
     if abs(own) <= width < abs(right):  # nothing is in proportion to what is not drawn
         own = right
-    right, ideal = way * right, here[anchor] + way * own
+    right, ideal = direction * right, here[anchor] + direction * own
     if point not in drawn:
         return ideal, DrawingFault(MISSING)
-    kind = vector_fault(drawn[point] - here[anchor], way * own, width)
+    kind = vector_fault(drawn[point] - here[anchor], direction * own, width)
     if not kind or abs(drawn[point] - here[anchor] - right) <= width:
         return ideal, None
     for other in here:

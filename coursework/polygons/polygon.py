@@ -85,8 +85,8 @@ class Side:
     @property
     def along(self) -> complex:
         """Unit vector of the line; 0 for a side that has neither length nor ``way``."""
-        way = self.value if self.way is None else complex(self.way)
-        return way / abs(way) if way else 0j
+        direction = self.value if self.way is None else complex(self.way)
+        return direction / abs(direction) if direction else 0j
 
 
 @dataclass(frozen=True)
@@ -164,10 +164,10 @@ class Polygon:
     @cached_property
     def hangs(self) -> Mapping[str, tuple[Side, ...]]:
         """Sides that determine each point: one known side, or the two lines that cross there."""
-        found = (stage for stage in self.stages if stage.points)
+        result = (stage for stage in self.stages if stage.points)
         return {
             point: stage.sides if stage.kind == "crossing" else (stage.sides[k],)
-            for stage in found
+            for stage in result
             for k, point in enumerate(stage.points)
         }
 
@@ -188,34 +188,34 @@ class Polygon:
 
     @cached_property
     def _drawn(self) -> tuple[dict[str, complex], tuple[Stage, ...]]:
-        found: dict[str, complex] = {self.pole: 0j}
+        results: dict[str, complex] = {self.pole: 0j}
         lines: dict[str, Side] = {}
         stages: list[Stage] = []
         for side in self.sides:
             if side.is_result:
-                self._check(side, found)
+                self._check(side, results)
                 stages.append(Stage("result", (side,), ()))
                 continue
-            anchor, target, way = self._hung(side, found)
-            if not all(name in found for name in side.image or ()):
+            anchor, target, direction = self._hung(side, results)
+            if not all(name in results for name in side.image or ()):
                 raise BadCourse(f"{side}: {side.image} are not both found by the sides before it")
-            there = found[anchor] + way * side.value
+            there = results[anchor] + direction * side.value
             if side.is_known:
-                found[target] = there
+                results[target] = there
                 self._lay_off(stages, side, target)
             elif target not in lines:
                 lines[target] = side
                 stages.append(Stage("line", (side,), (), anchor))
             else:
                 first = lines.pop(target)
-                found[target] = there
+                results[target] = there
                 for crossing in (first, side):
-                    self._check(crossing, found)
+                    self._check(crossing, results)
                 stages.append(Stage("crossing", (first, side), (target,), anchor))
         if lines:
             name, side = next(iter(lines.items()))
             raise BadCourse(f"{side}: {name} lies on one line only; state the second line that finds it")
-        return found, tuple(stages)
+        return results, tuple(stages)
 
     @staticmethod
     def _lay_off(stages: list[Stage], side: Side, point: str) -> None:
@@ -224,19 +224,19 @@ class Polygon:
         stages.append(Stage("known", (*before.sides, side), (*before.points, point)))
 
     @staticmethod
-    def _hung(side: Side, found: Mapping[str, complex]) -> tuple[str, str, int]:
+    def _hung(side: Side, results: Mapping[str, complex]) -> tuple[str, str, int]:
         """Return the known end of a side, the other end, and the sign of the vector between them."""
-        if (side.start in found) == (side.end in found):
-            fault = "both its ends are" if side.start in found else "neither of its ends is"
+        if (side.start in results) == (side.end in results):
+            fault = "both its ends are" if side.start in results else "neither of its ends is"
             raise BadCourse(f"{side}: {fault} found by the sides before it")
-        return (side.start, side.end, 1) if side.start in found else (side.end, side.start, -1)
+        return (side.start, side.end, 1) if side.start in results else (side.end, side.start, -1)
 
-    def _check(self, side: Side, found: Mapping[str, complex]) -> None:
+    def _check(self, side: Side, results: Mapping[str, complex]) -> None:
         """Refuse a side that does not join its points or whose line misses them."""
-        missing = [name for name in (side.start, side.end) if name not in found]
+        missing = [name for name in (side.start, side.end) if name not in results]
         if missing:
             raise BadCourse(f"{side}: {missing[0]} is not found by the sides before it")
-        gap = abs(found[side.end] - found[side.start] - side.value)
+        gap = abs(results[side.end] - results[side.start] - side.value)
         across = abs((side.value * side.along.conjugate()).imag) if side.is_line else 0.0
         if max(gap, across) > _CLOSED * self.size:
             raise BadCourse(

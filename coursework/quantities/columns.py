@@ -20,10 +20,10 @@ def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> 
         return function(*arguments)
     shape = np.broadcast_shapes(*[a.shape for a in arrays])
     columns = [np.broadcast_to(a, shape).ravel() if isinstance(a, np.ndarray) else a for a in arguments]
-    found = np.empty(int(np.prod(shape)), dtype=object)
-    for index in range(found.size):
-        found[index] = function(*[c[index] if isinstance(c, np.ndarray) else c for c in columns])
-    return found.reshape(shape) if dtype is object else found.reshape(shape).astype(dtype)
+    result = np.empty(int(np.prod(shape)), dtype=object)
+    for index in range(result.size):
+        result[index] = function(*[c[index] if isinstance(c, np.ndarray) else c for c in columns])
+    return result.reshape(shape) if dtype is object else result.reshape(shape).astype(dtype)
 
 
 def each_stacked(read: Callable[[Any], Any], whole: Any) -> Any:
@@ -32,8 +32,8 @@ def each_stacked(read: Callable[[Any], Any], whole: Any) -> Any:
         return read(whole)
     if whole.dtype != object or not whole.size:
         raise WrongValue(f"joints is a list of joints, each a mapping; found {str(whole)[:60]!r}")
-    found = np.array([read(one) for one in whole.ravel()])
-    return found.reshape(whole.shape + found.shape[1:])
+    result = np.array([read(item) for item in whole.ravel()])
+    return result.reshape(whole.shape + result.shape[1:])
 
 
 def vector(*entries: Any) -> np.ndarray:

@@ -96,8 +96,8 @@ def put_in(helper: Any, arguments: Sequence[ast.expr]) -> ast.expr:
     if len(parameters) != len(arguments):
         raise NoExpression
     trees = dict(zip(parameters, arguments, strict=True))
-    found: ast.expr = _PutIn(trees).visit(copy.deepcopy(expression(helper)))
-    return found
+    result: ast.expr = _PutIn(trees).visit(copy.deepcopy(expression(helper)))
+    return result
 
 
 class _PutIn(ast.NodeTransformer):
@@ -129,11 +129,11 @@ class Formula:
     @cached_property
     def _function(self) -> Callable[..., Any]:
         parameters = ast.arguments([], [ast.arg(name) for name in self.names], None, [], [], None, [])
-        whole = ast.fix_missing_locations(ast.Expression(ast.Lambda(parameters, self.tree)))
-        made: Callable[..., Any] = eval(
-            compile(whole, "<formula>", "eval"), dict(self.space)
+        full = ast.fix_missing_locations(ast.Expression(ast.Lambda(parameters, self.tree)))
+        created: Callable[..., Any] = eval(
+            compile(full, "<formula>", "eval"), dict(self.space)
         )  # of the course's own code
-        return made
+        return created
 
 
 @lru_cache(maxsize=1024)
@@ -172,8 +172,8 @@ class _Inlined(ast.NodeTransformer):
             return node
         for name, meaning in helper.__globals__.items():
             self.space.setdefault(name, meaning)
-        found: ast.expr = self.visit(tree)
-        return found
+        result: ast.expr = self.visit(tree)
+        return result
 
 
 # --------------------------------------------------------------- printed formulas
@@ -205,10 +205,10 @@ def _of_template(template: str) -> Formula:
         tree = parse(latex)
     except BadStatement as fault:
         raise NotEvaluable(str(fault)) from fault
-    found = _Coding(names).of(tree)
-    if not isinstance(found, _Code):
+    result = _Coding(names).of(tree)
+    if not isinstance(result, _Code):
         raise NotEvaluable("it is no expression of quantities")
-    return Formula(found.tree, names, _SPACE)
+    return Formula(result.tree, names, _SPACE)
 
 
 class _Code:
@@ -218,8 +218,8 @@ class _Code:
         self.tree = tree
 
     def _with(self, op: ast.operator, other: Any, *, first: bool = True) -> _Code:
-        one, two = (self.tree, _code(other)) if first else (_code(other), self.tree)
-        return _Code(ast.BinOp(one, op, two))
+        item, two = (self.tree, _code(other)) if first else (_code(other), self.tree)
+        return _Code(ast.BinOp(item, op, two))
 
     def __add__(self, other: Any) -> _Code:
         return self._with(ast.Add(), other)

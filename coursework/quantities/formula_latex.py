@@ -91,9 +91,9 @@ def why_unprinted(function: Callable[..., Any]) -> str:
     return ""
 
 
-def _of_numbers(called: ast.expr) -> str:
+def _of_numbers(label: ast.expr) -> str:
     """Return the name of a called numpy or math function, such as ``np.log2``; empty for any other."""
-    match called:
+    match label:
         case ast.Attribute(value=ast.Name(id="np" | "numpy" as home), attr=name):
             return f"{home}.{name}" if isinstance(getattr(np, name, None), np.ufunc) else ""
         case ast.Attribute(value=ast.Name(id="math" | "cmath" as home), attr=name):
@@ -330,9 +330,9 @@ class _Printer:
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return _turned(self._components(operand))
             case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
-                one, other = self._components(left), self._components(right)
+                first, other = self._components(left), self._components(right)
                 other = _turned(other) if isinstance(op, ast.Sub) else other
-                return one and other and (one[0] + other[0], one[1] + other[1])
+                return first and other and (first[0] + other[0], first[1] + other[1])
             case ast.BinOp(left=ast.Constant(value=1j), op=ast.Mult(), right=along):
                 return [], [(False, along)]
             case ast.Call(args=[length, theta]) if called(node) == "polar":
@@ -408,22 +408,22 @@ def _is_segment(symbol: str) -> bool:
     return len(re.findall(r"\\[a-zA-Z]+|[a-zA-Z]", re.sub(r"\\d*dot|\\vec", "", base))) > 1
 
 
-def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
+def formula_latex(function: Callable[..., Any], displayed: Shown) -> str:
     """Return LaTeX of a quantity's formula; empty when only words describe it."""
     template = getattr(function, "__formula__", None)
     if template is not None:
-        return re.sub(r"<(\w+)>", lambda m: _in_template(shown, m), template)
+        return re.sub(r"<(\w+)>", lambda m: _in_template(displayed, m), template)
     try:
-        return _Printer(shown, getattr(function, "__globals__", {})).latex(expression(function))
+        return _Printer(displayed, getattr(function, "__globals__", {})).latex(expression(function))
     except (NoExpression, UnprintableFormula):
         return ""
 
 
-def tree_latex(tree: ast.expr, shown: Shown, space: Mapping[str, Any]) -> str:
+def tree_latex(tree: ast.expr, displayed: Shown, space: Mapping[str, Any]) -> str:
     """Return LaTeX of a part of a formula; ``space`` holds the meaning of other names. Empty when only words
     describe it."""
     try:
-        return _Printer(shown, space).latex(tree)
+        return _Printer(displayed, space).latex(tree)
     except (NoExpression, UnprintableFormula):
         return ""
 
@@ -434,9 +434,9 @@ def formula_in_symbols(function: Callable[..., Any], symbols: tuple[tuple[str, s
     return formula_latex(function, {name: PrintedName(symbol, False, kind) for name, symbol, kind in symbols})
 
 
-def _in_template(shown: Shown, name: re.Match[str]) -> str:
+def _in_template(displayed: Shown, name: re.Match[str]) -> str:
     """Return a name of a stated formula; a negative number in brackets unless an opening bracket precedes it."""
-    text, is_number, *_ = shown[name.group(1)]
+    text, is_number, *_ = displayed[name.group(1)]
     if not is_number or not text.startswith((r"\num{-", "-")):
         return text
     before, after = name.string[: name.start()].rstrip(), name.string[name.end() :].lstrip()

@@ -128,8 +128,8 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
         except (ArithmeticError, ValueError) as fault:
             if "truth value of an array" in str(fault):
                 raise BrokenFunction(_branches(function, fault)) from fault
-            told = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
-            raise Undefined(f"{name} does not exist for {told} ({fault})") from fault
+            text = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
+            raise Undefined(f"{name} does not exist for {text} ({fault})") from fault
         except Exception as fault:
             raise BrokenFunction(f"{_place(function)} fails: {type(fault).__name__}: {fault}") from fault
 
@@ -146,28 +146,28 @@ def _branches(function: Callable[..., Value], fault: Exception) -> str:
     )
 
 
-def _missing(found: Mapping[str, str]) -> MissingQuantity:
+def _missing(results: Mapping[str, str]) -> MissingQuantity:
     """Return the error for missing quantities, each with the first one that needs it."""
-    names = tuple(found)
+    names = tuple(results)
     listed = f"{', '.join(names[:-1])} and {names[-1]}" if names[1:] else names[0]
     are = "are" if names[1:] else "is"
-    needing = set(found.values())
-    who = needing.pop() if len(needing) == 1 else "the request"
+    needing = set(results.values())
+    subject = needing.pop() if len(needing) == 1 else "the request"
     return MissingQuantity(
-        f"{who} needs {listed}, which {are} not given" if who else f"{listed} {are} not given", names
+        f"{subject} needs {listed}, which {are} not given" if subject else f"{listed} {are} not given", names
     )
 
 
 def _met(nodes: Mapping[str, QuantityNode], names: Iterable[str]) -> frozenset[str]:
     """Return the names and all their ancestors, by the first of each node's functions."""
-    found: set[str] = set()
+    results: set[str] = set()
     waiting = list(names)
     while waiting:
         name = waiting.pop()
-        if name not in found:
-            found.add(name)
+        if name not in results:
+            results.add(name)
             waiting.extend(nodes[name].arguments if name in nodes else ())
-    return frozenset(found)
+    return frozenset(results)
 
 
 class Graph:
@@ -281,11 +281,11 @@ class Graph:
         wanted: tuple[str, ...],
         given: frozenset[str],
         effects: frozenset[str],
-        found: frozenset[str] = frozenset(),
+        result: frozenset[str] = frozenset(),
     ) -> _Plan:
-        key = (wanted, given, effects, found)
+        key = (wanted, given, effects, result)
         if key not in self._plans:
-            self._plans[key] = self._resolve(wanted, given, effects, found)
+            self._plans[key] = self._resolve(wanted, given, effects, result)
         return self._plans[key]
 
     def _resolve(
@@ -293,7 +293,7 @@ class Graph:
         wanted: tuple[str, ...],
         given: frozenset[str],
         effects: frozenset[str],
-        found: frozenset[str],
+        result: frozenset[str],
     ) -> _Plan:
         for effect in effects:
             if effect not in self._effects:
@@ -305,7 +305,7 @@ class Graph:
         missing: dict[str, str] = {}  # and what needs each first
 
         def visit(name: str) -> None:
-            if name in given or name in order or name in found:
+            if name in given or name in order or name in result:
                 return
             if name not in self._nodes:
                 missing.setdefault(name, next((p for p in reversed(path) if not _is_hidden(p)), ""))
@@ -343,7 +343,7 @@ class Graph:
         wanted: Sequence[str],
         given: Mapping[str, Value],
         effects: Iterable[str] = (),
-        found: Mapping[str, Value] | None = None,
+        results: Mapping[str, Value] | None = None,
     ) -> dict[str, Value]:
         """Compute the requested quantities from the given ones.
 
@@ -351,7 +351,7 @@ class Graph:
         scalars or arrays that broadcast; nothing is copied or checked but names. A function must give at
         each place of an array what it would give for the values there alone.
 
-        ``found`` holds what :meth:`everything` gave for the same given values and effects, from this graph or
+        ``results`` holds what :meth:`everything` gave for the same given values and effects, from this graph or
         from the one that it was made of by :meth:`replacing` or :meth:`with_functions`: what still holds
         of it is not computed again.
 
@@ -363,7 +363,7 @@ class Graph:
             A function divides by zero or leaves its domain on scalars.
         """
         self._refuse_hidden(wanted)
-        values = self._values(tuple(wanted), given, effects, found or {})
+        values = self._values(tuple(wanted), given, effects, results or {})
         return {name: values[name] for name in wanted}
 
     def everything(
@@ -400,7 +400,7 @@ class Graph:
         wanted: tuple[str, ...],
         given: Mapping[str, Value],
         effects: Iterable[str],
-        found: Mapping[str, Value],
+        results: Mapping[str, Value],
     ) -> dict[str, Value]:
         given = self._renamed(given)
         names = frozenset(given)
@@ -409,9 +409,9 @@ class Graph:
             raise unknown("quantity", odd, self._known)
         long = pieces(given)
         # What was found of long arrays is whole, and would not fit their pieces.
-        found = {} if long else {_right(n) if n in self._set_aside else n: v for n, v in found.items()}
-        _, steps, constants = self._plan(wanted, names, frozenset(effects), frozenset(found))
-        values = {**found, **given, **constants}
+        results = {} if long else {_right(n) if n in self._set_aside else n: v for n, v in results.items()}
+        _, steps, constants = self._plan(wanted, names, frozenset(effects), frozenset(results))
+        values = {**results, **given, **constants}
         with np.errstate(all="ignore"):
             if long is None:
                 _run(steps, values)
@@ -420,13 +420,13 @@ class Graph:
             moving = self._moving(steps, cut)
             _run([step for step in steps if step[0] not in moving], values)
             steps = [step for step in steps if step[0] in moving]
-            kept = moving.intersection(wanted)
+            stored = moving.intersection(wanted)
 
-            def compute(place: slice) -> dict[str, Value]:
-                piece = fixed | {name: given[name][place] for name in cut}
+            def compute(position: slice) -> dict[str, Value]:
+                piece = fixed | {name: given[name][position] for name in cut}
                 with np.errstate(all="ignore"):
                     _run(steps, piece)
-                return {name: piece[name] for name in kept}
+                return {name: piece[name] for name in stored}
 
             fixed = dict(values)
             values |= joined(compute, places, len(given[cut[0]]))
@@ -504,13 +504,13 @@ class Graph:
 
     def descendants(self, names: Iterable[str]) -> frozenset[str]:
         """Return the names and every quantity that depends on one of them."""
-        found = set(names)
+        results = set(names)
         grown = True
         while grown:
-            more = {n for n, node in self._nodes.items() if found & node.needs} - found
-            found |= more
+            more = {n for n, node in self._nodes.items() if results & node.needs} - results
+            results |= more
             grown = bool(more)
-        return frozenset(found)
+        return frozenset(results)
 
     def with_functions(self, functions: Mapping[str, Callable[..., Value]]) -> Graph:
         """Return the graph with additional quantities.

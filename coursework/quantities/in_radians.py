@@ -54,11 +54,11 @@ class _Calculator:
         if not isinstance(function, FunctionType):
             return function
         space = self._space(function.__globals__, _package(function.__module__))
-        made = FunctionType(
+        created = FunctionType(
             function.__code__, space, function.__name__, function.__defaults__, function.__closure__
         )
-        made.__kwdefaults__ = function.__kwdefaults__
-        return made
+        created.__kwdefaults__ = function.__kwdefaults__
+        return created
 
     def _space(self, names: dict[str, Any], package: str) -> dict[str, Any]:
         if id(names) not in self._spaces:

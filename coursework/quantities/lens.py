@@ -75,8 +75,8 @@ class _Numpy:
 
 
 def _whole(values: Any, *args: Any, **options: Any) -> Any:
-    found = gathered(values)
-    return found if isinstance(found, UnitValue) else np.array(values, *args, **options)
+    result = gathered(values)
+    return result if isinstance(result, UnitValue) else np.array(values, *args, **options)
 
 
 class _Math:
@@ -86,8 +86,8 @@ class _Math:
         self._module = module
 
     def __getattr__(self, name: str) -> Any:
-        found = getattr(self._module, name)
-        return _following(found) if callable(found) else found
+        result = getattr(self._module, name)
+        return _following(result) if callable(result) else result
 
 
 _SPELLED = {
@@ -124,11 +124,11 @@ class Lens:
         if not isinstance(function, FunctionType):
             return opaque(function)
         space = self._space(function.__globals__, _package(function.__module__))
-        made = FunctionType(
+        created = FunctionType(
             function.__code__, space, function.__name__, function.__defaults__, function.__closure__
         )
-        made.__kwdefaults__ = function.__kwdefaults__
-        return made
+        created.__kwdefaults__ = function.__kwdefaults__
+        return created
 
     def _space(self, names: dict[str, Any], package: str) -> dict[str, Any]:
         if id(names) not in self._spaces:

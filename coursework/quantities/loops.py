@@ -76,9 +76,9 @@ class LoopLink:
             if not self.turned or turn == 0:
                 return angle
             sign = "+" if self.turned > 0 else "-"
-            shown = turn if isinstance(turn, str) else f"{math.degrees(turn):.12g}°"
+            displayed = turn if isinstance(turn, str) else f"{math.degrees(turn):.12g}°"
             first = angle if isinstance(angle, str) else f"{math.degrees(angle):.12g}°"
-            return f"{first} {sign} {shown}"
+            return f"{first} {sign} {displayed}"
         return angle + turn
 
     def _function(self, function: str) -> tuple[int, str]:
@@ -134,8 +134,8 @@ class Loop:
     @property
     def names(self) -> tuple[str, ...]:
         """Lengths, angles and added angles, in order of appearance."""
-        found = (n for link in self.links for n in (*link.vector[:2], link.vector.turn))
-        return tuple(dict.fromkeys(n for n in found if isinstance(n, str)))
+        result = (n for link in self.links for n in (*link.vector[:2], link.vector.turn))
+        return tuple(dict.fromkeys(n for n in result if isinstance(n, str)))
 
     @property
     def lengths(self) -> tuple[str, ...]:
@@ -274,21 +274,21 @@ def stated(
     if not isinstance(loops, Mapping):
         raise BadCourse(f'{source}: LOOPS maps names to vectors: {{"loop_1": (Vector("r2", "theta2"), …)}}')
     names = {*computed, *given}
-    found = {}
+    results = {}
     for name, vectors in loops.items():
         if not vectors or not all(isinstance(v, Vector) for v in vectors):
             raise BadCourse(f"{source}: the loop {name!r} is a sequence of Vector(length, angle, sign, turn)")
         loop = Loop.of(vectors, {})
-        for one in loop.names:
-            if one not in names:
+        for item in loop.names:
+            if item not in names:
                 raise BadCourse(
-                    f"{source}: the loop {name!r} names no quantity by {one!r}{nearest(one, names)}"
+                    f"{source}: the loop {name!r} names no quantity by {item!r}{nearest(item, names)}"
                 )
         own = {n: rates.get(n) or usual_rates(n, names) for n in loop.names}
         first = all(r[0] or n not in computed for n, r in own.items())
         second = first and all(r[1] or r[0] not in computed for r in own.values())
-        found[name] = replace(loop, rates={n: r for n, r in own.items() if r[0]}, known=first + second)
-    return found
+        results[name] = replace(loop, rates={n: r for n, r in own.items() if r[0]}, known=first + second)
+    return results
 
 
 def usual_rates(name: str, names: Collection[str]) -> tuple[str, str]:

@@ -67,10 +67,10 @@ class UnitValue:
     def __len__(self) -> int:
         return len(self.value)
 
-    def __getitem__(self, place: Any) -> UnitValue:
-        if place == () and not isinstance(self.value, np.ndarray):
+    def __getitem__(self, position: Any) -> UnitValue:
+        if position == () and not isinstance(self.value, np.ndarray):
             return self
-        return UnitValue(np.asarray(self.value)[place], self.sizes)
+        return UnitValue(np.asarray(self.value)[position], self.sizes)
 
     def __getattr__(self, name: str) -> Any:
         if name in ("ndim", "shape", "size", "dtype"):
@@ -147,24 +147,24 @@ def alike(*values: Any) -> Sizes:
     if not carrying:
         return (ONE,)
     first, *others = carrying
-    kept = first.sizes
+    stored = first.sizes
     for other in others:
-        shared = tuple(s for s in kept if any(s.is_like(o) for o in other.sizes))
+        shared = tuple(s for s in stored if any(s.is_like(o) for o in other.sizes))
         if not shared:
-            raise UnitFault(f"adds or compares {told(kept[0])} and {told(other.sizes[0])}")
-        kept = _softest(shared, other.sizes)
+            raise UnitFault(f"adds or compares {told(stored[0])} and {told(other.sizes[0])}")
+        stored = _softest(shared, other.sizes)
     if any(not isinstance(v, UnitValue) and not _is_free(v) for v in values):
-        sums = tuple(s for s in kept if any(s.hard) or _takes_numbers(s))
+        sums = tuple(s for s in stored if any(s.hard) or _takes_numbers(s))
         if not sums:
-            raise UnitFault(f"adds or compares {told(kept[0])} and a plain number")
-        kept = sums
-    return kept
+            raise UnitFault(f"adds or compares {told(stored[0])} and a plain number")
+        stored = sums
+    return stored
 
 
 def _softest(shared: Sizes, others: Sizes) -> Sizes:
     """Return for each shared size the candidate with the lower power of plain degrees."""
     return distinct(
-        min((s, *(o for o in others if o.is_like(s))), key=lambda one: one.powers[-1]) for s in shared
+        min((s, *(o for o in others if o.is_like(s))), key=lambda item: item.powers[-1]) for s in shared
     )
 
 
@@ -181,9 +181,9 @@ def needs(value: Any, wanted: Size, what: str) -> None:
         raise UnitFault(f"{what} {told(wanted)}, and gets {told(value.sizes[0])}")
 
 
-def product(one: Any, other: Any, power: float = 1) -> Sizes:
+def product(first: Any, other: Any, power: float = 1) -> Sizes:
     """Return the sizes of ``one * other**power``; a plain number may be a conversion."""
-    a = _sizes(one) if isinstance(one, UnitValue) else _of_number(one)
+    a = _sizes(first) if isinstance(first, UnitValue) else _of_number(first)
     b = _sizes(other) if isinstance(other, UnitValue) else _of_number(other)
     return distinct(x.times(y, power) for x in a for y in b)
 
@@ -287,9 +287,10 @@ def _array_function(function: Any, args: Sequence[Any], options: Mapping[str, An
     if name in _PLAIN_OF:
         return function(*values, **named)
     if name == "broadcast_arrays":
-        found = function(*values, **named)
+        result = function(*values, **named)
         return [
-            UnitValue(v, a.sizes) if isinstance(a, UnitValue) else v for v, a in zip(found, args, strict=True)
+            UnitValue(v, a.sizes) if isinstance(a, UnitValue) else v
+            for v, a in zip(result, args, strict=True)
         ]
     if name == "angle":
         return UnitValue(function(*values, **named), (RADIAN,))
@@ -315,7 +316,7 @@ def stripped(value: Any) -> Any:
 def leaves(value: Any) -> list[Any]:
     """Return the numbers of nested lists."""
     if type(value) in (tuple, list):
-        return [leaf for one in value for leaf in leaves(one)]
+        return [leaf for item in value for leaf in leaves(item)]
     if isinstance(value, np.ndarray) and value.dtype == object:
         return leaves(value.ravel().tolist())
     return [value] if isinstance(value, (UnitValue, float, complex, np.ndarray)) else []
@@ -325,8 +326,8 @@ def gathered(value: Any) -> Any:
     """Return a list, or an array of objects, as one array with the common unit of its numbers."""
     if type(value) not in (tuple, list) and not (isinstance(value, np.ndarray) and value.dtype == object):
         return value
-    found = leaves(value)
-    if not any(isinstance(v, UnitValue) for v in found):
+    result = leaves(value)
+    if not any(isinstance(v, UnitValue) for v in result):
         return value
     inside = value.tolist() if isinstance(value, np.ndarray) else value
-    return UnitValue(np.array(stripped(inside)), alike(*found))
+    return UnitValue(np.array(stripped(inside)), alike(*result))

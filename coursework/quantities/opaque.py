@@ -53,14 +53,14 @@ class Opaque:
         origin = self._origin._replace(name=f"{self._origin.name}.{name}")
         return shown(lambda f: getattr(self._in_bases(f), name), origin)
 
-    def __getitem__(self, place: Any) -> Any:
-        return shown(lambda f: self._in_bases(f)[place], self._origin)
+    def __getitem__(self, position: Any) -> Any:
+        return shown(lambda f: self._in_bases(f)[position], self._origin)
 
     def __len__(self) -> int:
         return len(self._in_bases(_SAME))
 
     def __iter__(self) -> Any:
-        return (self[place] for place in range(len(self)))
+        return (self[position] for position in range(len(self)))
 
     def __call__(self, *args: Any, **options: Any) -> Any:
         origin = self._origin
@@ -72,12 +72,12 @@ class Opaque:
         return shown(lambda f: self._in_bases(f)(*_plain(args, f), **_plain(options, f)), origin)
 
 
-def opaque(thing: Any) -> Opaque:
+def opaque(item: Any) -> Opaque:
     """Return a function, a class or a module as a black box."""
-    name = getattr(thing, "__name__", str(thing))
-    home = getattr(thing, "__module__", None) or name
+    name = getattr(item, "__name__", str(item))
+    home = getattr(item, "__module__", None) or name
     is_core = home.startswith("coursework.kinematics")
-    return Opaque(lambda _: thing, Origin(name.rpartition(".")[2], is_core))
+    return Opaque(lambda _: item, Origin(name.rpartition(".")[2], is_core))
 
 
 def _handed(value: Any) -> list[Any]:
@@ -123,8 +123,8 @@ def unmeasured(value: Any) -> Any:
 
 def shown(make: Callable[[_Factors], Any], origin: Origin) -> Any:
     """Return a result of plain numbers: numbers with their units, texts unchanged, records entry by entry."""
-    made = Opaque(make, origin)
-    value = made._in_bases(_SAME)
+    created = Opaque(make, origin)
+    value = created._in_bases(_SAME)
     if value is None or isinstance(value, (str, bool, np.bool_)):
         return value
     if isinstance(value, np.ndarray) and value.dtype.kind in "USb":
@@ -132,28 +132,28 @@ def shown(make: Callable[[_Factors], Any], origin: Origin) -> Any:
     if isinstance(value, (int, float, complex, np.number)) or (
         isinstance(value, np.ndarray) and value.dtype.kind in "iufc"
     ):
-        return _measured(made, origin)
+        return _measured(created, origin)
     if type(value) in (tuple, list):
-        return type(value)(made)
-    return made
+        return type(value)(created)
+    return created
 
 
-def _measured(made: Opaque, origin: Origin) -> Any:
-    value = np.asarray(made._in_bases(_SAME))
+def _measured(created: Opaque, origin: Origin) -> Any:
+    value = np.asarray(created._in_bases(_SAME))
     counted = value[np.isfinite(value) & (value != 0)]
     if not counted.size:
-        return made._in_bases(_SAME)
+        return created._in_bases(_SAME)
     scales = _system(origin)
-    powers = [_power(made, place, origin) for place in range(BASES)]
+    powers = [_power(created, position, origin) for position in range(BASES)]
     scale = math.prod(s**p for s, p in zip(scales, powers, strict=True))
-    return UnitValue(made._in_bases(_SAME), (of_hard(scale, powers),))
+    return UnitValue(created._in_bases(_SAME), (of_hard(scale, powers),))
 
 
-def _power(made: Opaque, place: int, origin: Origin) -> float:
+def _power(created: Opaque, position: int, origin: Origin) -> float:
     """Return the power of one base unit in a result."""
-    if not any(size.hard[place] for size in origin.handed):
+    if not any(size.hard[position] for size in origin.handed):
         return 0.0
-    powers = {_power_of(made, place, other, origin) for other in _OTHERS}
+    powers = {_power_of(created, position, other, origin) for other in _OTHERS}
     if len(powers) == 1 and None not in powers:
         return powers.pop() or 0.0
     if origin.is_core and len(units := sorted({told(s) for s in origin.handed if any(s.hard)})) > 1:
@@ -161,13 +161,13 @@ def _power(made: Opaque, place: int, origin: Origin) -> float:
     raise Unprovable(f"what {origin.name} gives does not follow the units of what it takes")
 
 
-def _power_of(made: Opaque, place: int, factor: float, origin: Origin) -> float | None:
+def _power_of(created: Opaque, position: int, factor: float, origin: Origin) -> float | None:
     """Return the power of a base unit, measured by one factor; None where the result is not multiplied by a
     power of it."""
-    factors = tuple(factor if k == place else 1.0 for k in range(BASES))
-    value = np.asarray(made._in_bases(_SAME))
+    factors = tuple(factor if k == position else 1.0 for k in range(BASES))
+    value = np.asarray(created._in_bases(_SAME))
     try:
-        other = np.asarray(made._in_bases(factors))
+        other = np.asarray(created._in_bases(factors))
     except (CourseworkError, ArithmeticError, ValueError):
         return None
     is_there = np.isfinite(value) & (abs(value) > 1e-9 * np.max(abs(value[np.isfinite(value)])))
@@ -188,21 +188,21 @@ def _system(origin: Origin) -> list[float]:
         Units such as mm, kg and N together, which only a conversion inside could bring together.
     """
     sizes = [s for s in origin.handed if not s.is_like(ONE)]
-    for one in sizes:
+    for first in sizes:
         for other in sizes:
-            if one.hard == other.hard and not one.is_like(other):
-                raise UnitFault(f"hands {told(one)} and {told(other)} to {origin.name}")
-        if not any(one.hard) and not origin.is_core:
-            raise Unprovable(f"{origin.name} takes {told(one)}, of which it may make what it likes")
-        if not any(one.hard):
-            raise UnitFault(f"hands {told(one)} to {origin.name}, which takes radians or plain numbers")
+            if first.hard == other.hard and not first.is_like(other):
+                raise UnitFault(f"hands {told(first)} and {told(other)} to {origin.name}")
+        if not any(first.hard) and not origin.is_core:
+            raise Unprovable(f"{origin.name} takes {told(first)}, of which it may make what it likes")
+        if not any(first.hard):
+            raise UnitFault(f"hands {told(first)} to {origin.name}, which takes radians or plain numbers")
     if not sizes:
         return [1.0] * BASES
     powers = np.array([s.hard for s in sizes])
     logs = np.log([s.scale for s in sizes])
-    found = np.linalg.lstsq(powers, logs, rcond=None)[0]
-    if not np.allclose(powers @ found, logs, atol=1e-9):
+    result = np.linalg.lstsq(powers, logs, rcond=None)[0]
+    if not np.allclose(powers @ result, logs, atol=1e-9):
         raise Unprovable(
             f"{origin.name} takes units of several systems: {', '.join(sorted({told(s) for s in sizes}))}"
         )
-    return [float(v) for v in np.exp(found)]
+    return [float(v) for v in np.exp(result)]

@@ -93,10 +93,10 @@ def envelope(
         return value
 
     len_all = 1 + sum(len(places) for places in columns.values())
-    found = textbook.observed(moved).evaluate(wanted, spread, effects)
+    result = textbook.observed(moved).evaluate(wanted, spread, effects)
     return {
         name: np.zeros(count) if name in still else _total(value, count, name in directions)
-        for name, value in found.items()
+        for name, value in result.items()
     }
 
 

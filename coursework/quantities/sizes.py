@@ -40,7 +40,7 @@ class Size(NamedTuple):
     @property
     def hard(self) -> tuple[float, ...]:
         """Powers that must agree wherever values meet."""
-        return tuple(self.powers[place] for place in _HARD)
+        return tuple(self.powers[position] for position in _HARD)
 
     @property
     def angle(self) -> float:
@@ -65,7 +65,7 @@ def size(scale: float = 1.0, **powers: float) -> Size:
 
 def of_hard(scale: float, powers: Sequence[float]) -> Size:
     """Return a size by its scale and its powers of base units alone."""
-    return size(scale, **{DIMENSIONS[place]: power for place, power in zip(_HARD, powers, strict=True)})
+    return size(scale, **{DIMENSIONS[position]: power for position, power in zip(_HARD, powers, strict=True)})
 
 
 ONE = size()
@@ -82,22 +82,22 @@ def sizes_of(unit: str) -> Sizes:
     return (first, *_counted(first), *_turning(first))
 
 
-def _counted(one: Size) -> Sizes:
+def _counted(item: Size) -> Sizes:
     """Return the turns of a unit as a count: for ``tr/min`` and ``tr``, not for degrees."""
-    if not one.angle:
+    if not item.angle:
         return ()
-    scale = one.scale / (2 * math.pi) ** one.angle
+    scale = item.scale / (2 * math.pi) ** item.angle
     if not any(_near(scale, 60.0**k) for k in (-2, -1, 0, 1, 2)):
         return ()
-    return (Size(scale, _with(one.powers, **{"angle": 0, "cycle": one.powers[_CYCLE] + one.angle})),)
+    return (Size(scale, _with(item.powers, **{"angle": 0, "cycle": item.powers[_CYCLE] + item.angle})),)
 
 
-def _turning(one: Size) -> Sizes:
+def _turning(item: Size) -> Sizes:
     """Return the cycles of a unit as turns: for ``Hz``."""
-    cycles = one.powers[_CYCLE]
+    cycles = item.powers[_CYCLE]
     if not cycles:
         return ()
-    return (Size(one.scale * (2 * math.pi) ** cycles, _with(one.powers, angle=cycles, cycle=0)),)
+    return (Size(item.scale * (2 * math.pi) ** cycles, _with(item.powers, angle=cycles, cycle=0)),)
 
 
 def _with(powers: Sequence[float], **changed: float) -> tuple[float, ...]:
@@ -105,18 +105,18 @@ def _with(powers: Sequence[float], **changed: float) -> tuple[float, ...]:
     return tuple(float(changed.get(name, power)) for name, power in zip(names, powers, strict=True))
 
 
-def fits(found: Size, declared: Size) -> bool:
+def fits(result: Size, declared: Size) -> bool:
     """Return whether a value of one size may be declared in the other.
 
     Radians, turns and plain numbers need no mention; a plain 180 or a count of turns is no angle, and radians
     a second are no hertz.
     """
-    if not found.is_like(declared):
+    if not result.is_like(declared):
         return False
     if declared.angle:
         is_angle = not any(declared.hard)
-        return not found.powers[_CYCLE] and not (is_angle and found.powers[_BARE])
-    return not (declared.powers[_CYCLE] and found.angle)
+        return not result.powers[_CYCLE] and not (is_angle and result.powers[_BARE])
+    return not (declared.powers[_CYCLE] and result.angle)
 
 
 def _near(a: float, b: float) -> bool:
@@ -129,13 +129,13 @@ def _near_power(a: float, b: float) -> bool:
 
 def distinct(sizes: Iterable[Size]) -> Sizes:
     """Return the sizes without repetition, the plainest first."""
-    kept: list[Size] = []
-    for one in sizes:
-        if not any(one.powers == other.powers and _near(one.scale, other.scale) for other in kept):
-            kept.append(one)
-        if len(kept) > _MOST:
+    retained: list[Size] = []
+    for first in sizes:
+        if not any(first.powers == other.powers and _near(first.scale, other.scale) for other in retained):
+            retained.append(first)
+        if len(retained) > _MOST:
             raise Unprovable("more numbers that may be conversions than can be followed")
-    return tuple(kept)
+    return tuple(retained)
 
 
 # ------------------------------------------------------------- numbers of formulas
@@ -156,15 +156,15 @@ def meanings(number: float) -> tuple[Sizes, bool]:
         return (ONE,), False
     if _near(value, 180 / math.pi) or _near(value, math.pi / 180):
         return (size(1 / value),), True
-    found = [size(bare=1) if value in _DEGREES else ONE]
+    results = [size(bare=1) if value in _DEGREES else ONE]
     if _is_conversion(value):
-        found.append(size(1 / value))
+        results.append(size(1 / value))
     if value in _DEGREES:
-        found.append(DEGREE)
+        results.append(DEGREE)
     for scale in (1.0, 1e-3):
         if any(_near(value * scale, weight) for weight in _WEIGHT):
-            found.append(size(scale, length=1, time=-2))
-    return tuple(found), len(found) > 1
+            results.append(size(scale, length=1, time=-2))
+    return tuple(results), len(results) > 1
 
 
 def _is_conversion(value: float) -> bool:
@@ -190,16 +190,16 @@ _NAMES = (
 ).split()
 
 
-def told(one: Size) -> str:
+def told(item: Size) -> str:
     """Return a size by a unit's name, else by powers of base units."""
     for name in _NAMES:
         known = sizes_of(name)[0]
-        if one.is_like(known) and known.angle == one.angle and known.powers[_CYCLE] == one.powers[_CYCLE]:
+        if item.is_like(known) and known.angle == item.angle and known.powers[_CYCLE] == item.powers[_CYCLE]:
             return "a plain number" if name == "1" else name
     for name in _NAMES:
-        if one.is_like(sizes_of(name)[0]):
+        if item.is_like(sizes_of(name)[0]):
             return "a plain number" if name in ("1", "rad") else name
     bases = {"length": "m", "mass": "kg", "time": "s", "current": "A"}
-    powers = zip(DIMENSIONS, one.powers, strict=False)
+    powers = zip(DIMENSIONS, item.powers, strict=False)
     factors = [f"{bases.get(n, n)}^{p:g}".removesuffix("^1") for n, p in powers if p and n not in _SOFT]
-    return " ".join([f"{one.scale:.6g}", *(["*".join(factors)] if factors else [])])
+    return " ".join([f"{item.scale:.6g}", *(["*".join(factors)] if factors else [])])

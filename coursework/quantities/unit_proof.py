@@ -90,11 +90,11 @@ class _Walk:
             return _Unknown
         self.waiting.add(name)
         node = self.graph.node(name)
-        found = self._judged(name, node)
+        result = self._judged(name, node)
         if node.stable is not None:
             self._judged(name, node.stable)
         if name not in self.given:
-            self.values[name] = found
+            self.values[name] = result
         return self.values[name]
 
     def _judged(self, name: str, node: QuantityNode) -> Any:
@@ -125,7 +125,7 @@ class _Walk:
             return self.values[name]
         return self.value(name)
 
-    def _compared(self, name: str, node: QuantityNode, found: Any) -> Any:
+    def _compared(self, name: str, node: QuantityNode, result: Any) -> Any:
         """Return a function's result in the declared unit.
 
         Raises
@@ -134,20 +134,20 @@ class _Walk:
             It is in another.
         """
         if name not in self.sizes:
-            return found
-        found = gathered(found)
-        if isinstance(found, Opaque):
+            return result
+        result = gathered(result)
+        if isinstance(result, Opaque):
             raise Unprovable("it is no number")
-        for leaf in leaves(found):
+        for leaf in leaves(result):
             if isinstance(leaf, UnitValue):
                 self._refuse_misfit(name, node, leaf)
-        if leaves(found) or isinstance(found, int):
+        if leaves(result) or isinstance(result, int):
             self.findings.proved.add(name)
-        return self._handed_in(name, stripped(found))
+        return self._handed_in(name, stripped(result))
 
-    def _refuse_misfit(self, name: str, node: QuantityNode, found: UnitValue) -> None:
-        if not any(fits(size, declared) for size in found.sizes for declared in self.sizes[name]):
-            given = "a plain number" if _is_bare(found.sizes[0]) else told(found.sizes[0])
+    def _refuse_misfit(self, name: str, node: QuantityNode, result: UnitValue) -> None:
+        if not any(fits(size, declared) for size in result.sizes for declared in self.sizes[name]):
+            given = "a plain number" if _is_bare(result.sizes[0]) else told(result.sizes[0])
             raise UnitFault(f"is declared in {self.units[name]}, and its formula gives {given}")
 
     def _plainly(self, name: str, node: QuantityNode, arguments: Sequence[Any]) -> Any:
@@ -155,10 +155,10 @@ class _Walk:
         if name not in self.sizes or any(a is _Unknown for a in arguments):
             return _Unknown
         try:
-            found = node.function(*[unmeasured(a) for a in arguments])
+            result = node.function(*[unmeasured(a) for a in arguments])
         except Exception:
             return _Unknown
-        return self._handed_in(name, found)
+        return self._handed_in(name, result)
 
 
 def _is_bare(size: Size) -> bool:

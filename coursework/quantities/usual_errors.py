@@ -72,11 +72,11 @@ def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
     formula = replace(formula, space={**_NEIGHBOURS, **formula.space})
     changes = list(_Changes(formula).of(formula.tree))
     changes += _whole(formula)
-    found: dict[str, FormulaError] = {}
+    results: dict[str, FormulaError] = {}
     for kind, about, tree in sorted(changes, key=lambda change: KINDS.index(change[0])):
-        found.setdefault(ast.dump(tree), FormulaError(kind, about, replace(formula, tree=tree)))
-    found.pop(ast.dump(formula.tree), None)
-    return tuple(found.values())
+        results.setdefault(ast.dump(tree), FormulaError(kind, about, replace(formula, tree=tree)))
+    results.pop(ast.dump(formula.tree), None)
+    return tuple(results.values())
 
 
 def _whole(formula: Formula) -> Iterator[_Change]:
@@ -121,18 +121,18 @@ class _Changes:
         self, items: Sequence[ast.expr], whole: Callable[[list[ast.expr]], ast.expr]
     ) -> Iterator[_Change]:
         """Yield the changes of each operand, within the tree that the operands form."""
-        for place, item in enumerate(items):
+        for index, item in enumerate(items):
             for kind, about, tree in self.of(item):
-                yield kind, about, whole([*items[:place], tree, *items[place + 1 :]])
+                yield kind, about, whole([*items[:index], tree, *items[index + 1 :]])
 
     # ------------------------------------------------------------- sums, products
 
     def _of_sum(self, node: ast.BinOp) -> Iterator[_Change]:
         terms = _terms(node)
-        for place, (minus, term) in enumerate(terms):
-            others = terms[:place] + terms[place + 1 :]
+        for index, (minus, term) in enumerate(terms):
+            others = terms[:index] + terms[index + 1 :]
             yield (COUNT if _is_small(term) else TERM), term, _sum(others)
-            yield SIGN, term, _sum([*terms[:place], (not minus, term), *terms[place + 1 :]])
+            yield SIGN, term, _sum([*terms[:index], (not minus, term), *terms[index + 1 :]])
         signs = [minus for minus, _ in terms]
         yield from self._inside(
             [term for _, term in terms], lambda changed: _sum(list(zip(signs, changed, strict=True)))
@@ -140,12 +140,12 @@ class _Changes:
 
     def _of_product(self, node: ast.BinOp) -> Iterator[_Change]:
         above, below = _factors(node)
-        for place, factor in enumerate(above):
+        for index, factor in enumerate(above):
             if (len(above) > 1 or below) and not _is_sum(factor):
-                yield _of_factor(factor), factor, _quotient(above[:place] + above[place + 1 :], below)
-        for place, factor in enumerate(below):
+                yield _of_factor(factor), factor, _quotient(above[:index] + above[index + 1 :], below)
+        for index, factor in enumerate(below):
             if not _is_sum(factor):
-                yield _of_factor(factor), factor, _quotient(above, below[:place] + below[place + 1 :])
+                yield _of_factor(factor), factor, _quotient(above, below[:index] + below[index + 1 :])
         yield from self._inside(
             [*above, *below],
             lambda changed: _quotient(changed[: len(above)], changed[len(above) :]),
@@ -303,7 +303,7 @@ def _quotient(above: Sequence[ast.expr], below: Sequence[ast.expr]) -> ast.expr:
 def _product(factors: Sequence[ast.expr]) -> ast.expr:
     if not factors:
         return ast.Constant(1.0)
-    found, *others = factors
+    result, *others = factors
     for factor in others:
-        found = ast.BinOp(found, ast.Mult(), factor)
-    return found
+        result = ast.BinOp(result, ast.Mult(), factor)
+    return result

@@ -50,34 +50,34 @@ class _Errors(Mapping[str, Iterable[str]]):
 
 def told_standings(course: Course[Any], progress: Progress, on: date, lang: str) -> str:
     """Return a line for each exercise begun, as a Markdown list; empty where there is none."""
-    said = words(lang)["study"]["progress"]
+    texts = words(lang)["study"]["progress"]
     return "\n".join(
-        _line(course, s, on, lang, said) for s in standings(progress) if s.tried and s.exercise in course
+        _line(course, s, on, lang, texts) for s in standings(progress) if s.tried and s.exercise in course
     )
 
 
-def _line(course: Course[Any], one: ExerciseProgress, on: date, lang: str, said: Mapping[str, Any]) -> str:
-    line = said["line"].format(
-        title=title(course[one.exercise], lang),
-        variants=one.variants,
-        right=one.right,
-        of=one.tried,
-        clean=one.clean,
+def _line(course: Course[Any], item: ExerciseProgress, on: date, lang: str, text: Mapping[str, Any]) -> str:
+    line = text["line"].format(
+        title=title(course[item.exercise], lang),
+        variants=item.variants,
+        right=item.right,
+        of=item.tried,
+        clean=item.clean,
     )
-    if one.due is None:
+    if item.due is None:
         return f"- {line}"
-    again = said["due"] if one.due <= on else said["again"].format(day=told_date(one.due, lang))
+    again = text["due"] if item.due <= on else text["again"].format(day=told_date(item.due, lang))
     return f"- {line} {again}"
 
 
-def told_skills(course: Course[Any], progress: Progress, lang: str, called: Called | None = None) -> str:
-    """Return the skills lost since and those recovered, as Markdown lists; ``called`` as for
+def told_skills(course: Course[Any], progress: Progress, lang: str, label: Called | None = None) -> str:
+    """Return the skills lost since and those recovered, as Markdown lists; ``label`` as for
     :func:`told_advice`."""
-    said = words(lang)["study"]["progress"]
+    texts = words(lang)["study"]["progress"]
     lost = sorted(
         (s for s in skills(progress) if s.last_lost), key=lambda s: s.last_lost or date.min, reverse=True
     )
-    named = [(s, told) for s in lost if (told := told_skill(course, s.id, s.exercise, lang))]
+    named = [(s, text) for s in lost if (text := told_skill(course, s.id, s.exercise, lang))]
     pieces = []
     for head, chosen in (
         ("open", [(s, t) for s, t in named if s.is_open]),
@@ -85,28 +85,28 @@ def told_skills(course: Course[Any], progress: Progress, lang: str, called: Call
     ):
         if chosen:
             pieces.append(
-                f"**{said[head]}**\n\n"
-                + "\n".join(_skill(course, s, t, lang, called or title) for s, t in chosen[:_SKILLS])
+                f"**{texts[head]}**\n\n"
+                + "\n".join(_skill(course, s, t, lang, label or title) for s, t in chosen[:_SKILLS])
             )
     return "\n\n".join(pieces)
 
 
-def _skill(course: Course[Any], skill: Skill, told: str, lang: str, called: Called) -> str:
-    said = words(lang)["study"]["progress"]
-    shown = said["shown"].format(count=skill.shown, of=HELD) if skill.shown and skill.is_open else ""
-    place = "" if skill.id.startswith("kind:") else called(course[skill.exercise], lang)
-    beside = said["separator"].join(filter(None, (place, shown)))
-    return f"- {' '.join(told.split())}{f' ({beside})' if beside else ''}"
+def _skill(course: Course[Any], skill: Skill, text: str, lang: str, label: Called) -> str:
+    texts = words(lang)["study"]["progress"]
+    displayed = texts["shown"].format(count=skill.shown, of=HELD) if skill.shown and skill.is_open else ""
+    position = "" if skill.id.startswith("kind:") else label(course[skill.exercise], lang)
+    beside = texts["separator"].join(filter(None, (position, displayed)))
+    return f"- {' '.join(text.split())}{f' ({beside})' if beside else ''}"
 
 
 def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str:
     """Return the words for a skill; empty where it has no name here."""
     family, _, name = skill.partition(":")
-    said = words(lang)["study"]["skills"]
+    texts = words(lang)["study"]["skills"]
     if family == "kind":
-        return said["kinds"].get(name, "")
+        return texts["kinds"].get(name, "")
     if family == "slip":
-        return said["slips"].get(name, "")
+        return texts["slips"].get(name, "")
     if family != "mistake" or exercise not in course:
         return ""
     try:
@@ -115,14 +115,14 @@ def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str
         return ""
 
 
-def told_advice(course: Course[Any], advice: Advice, lang: str, called: Called | None = None) -> str:
-    """Return the reason for the recommended exercise, in a sentence or two; ``called`` names an exercise, by
+def told_advice(course: Course[Any], advice: Advice, lang: str, label: Called | None = None) -> str:
+    """Return the reason for the recommended exercise, in a sentence or two; ``label`` names an exercise, by
     default by title and name."""
-    said = words(lang)["study"]["next"]
+    texts = words(lang)["study"]["next"]
     skill = told_skill(course, advice.skill, advice.exercise, lang) if advice.skill else ""
     why = "new" if advice.why == "skill" and not skill else advice.why
-    return said[why].format(
-        title=(called or title)(course[advice.exercise], lang),
+    return texts[why].format(
+        title=(label or title)(course[advice.exercise], lang),
         day=told_date(advice.day, lang) if advice.day else "",
         skill=" ".join(skill.split()),
         count=len(advice.parts),

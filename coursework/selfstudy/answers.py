@@ -52,7 +52,7 @@ def sentence_of(variant: Variant, mark: Mark, reveal: str) -> str:
 
 
 def same_as_another(
-    variant: Variant, kept: ExerciseStore, given: Mapping[str, Any], marking: Marking
+    variant: Variant, stored: ExerciseStore, given: Mapping[str, Any], marking: Marking
 ) -> tuple[int | None, list[str]]:
     """Return the seed of another variant for which these answers are right, and the parts that are wrong
     here.
@@ -63,8 +63,8 @@ def same_as_another(
     written = {n: a for n, a in given.items() if not is_blank(a)}
     wrong = [p for p in variant.parts if p.id in written and marking[p.id].verdict != "correct"]
     wrong = [p for p in wrong if not p.is_exact]
-    for seed in kept.seeds if len(wrong) > 1 else ():
-        theirs = kept.of(seed, "answers")
+    for seed in stored.seeds if len(wrong) > 1 else ():
+        theirs = stored.of(seed, "answers")
         if seed == variant.seed or any(theirs.get(n) != a for n, a in written.items()):
             continue
         other = variant.exercise.variant(seed, variant.lang).walk
@@ -75,10 +75,10 @@ def same_as_another(
     return None, []
 
 
-def _are_same(one: Any, other: Any) -> bool:
-    if one is None or other is None:
-        return one is other
-    return bool(np.array_equal(np.asarray(one), np.asarray(other)))
+def _are_same(first: Any, other: Any) -> bool:
+    if first is None or other is None:
+        return first is other
+    return bool(np.array_equal(np.asarray(first), np.asarray(other)))
 
 
 def is_open(variant: Variant, mark: Mark) -> bool:
@@ -92,5 +92,5 @@ def judged_out_of(variant: Variant, marking: Marking) -> float:
 
 def quoted(text: Any) -> str:
     """Return an answer, shortened, without characters that Markdown takes for markup."""
-    said = "".join(c for c in str(text) if c.isprintable() and c not in "$`*_\\<>[]#|{}")
-    return said if len(said) <= 60 else f"{said[:59]}…"
+    wording = "".join(c for c in str(text) if c.isprintable() and c not in "$`*_\\<>[]#|{}")
+    return wording if len(wording) <= 60 else f"{wording[:59]}…"

@@ -36,13 +36,13 @@ class CheckedAnswers(NamedTuple):
     @property
     def right(self) -> tuple[str, ...]:
         """Parts that are right."""
-        return tuple(name for name, one in self.marking.items() if one.verdict == "correct")
+        return tuple(name for name, item in self.marking.items() if item.verdict == "correct")
 
     @property
     def first_missed(self) -> str:
         """First part with a wrong answer; empty where there is none."""
         passed = ("correct", "missing", "to_mark")
-        return next((name for name, one in self.marking.items() if one.verdict not in passed), "")
+        return next((name for name, item in self.marking.items() if item.verdict not in passed), "")
 
 
 class StudyAttempt:
@@ -84,7 +84,7 @@ class StudyAttempt:
         mine = {n: a for n, a in now.items() if n not in theirs}
         new = marked_answers(self.variant, mine, marking, self.kept.happened(seed))
         self.kept.note(seed, new)
-        return CheckedAnswers(marking, now, copied, tuple(one["part"] for one in new))
+        return CheckedAnswers(marking, now, copied, tuple(item["part"] for item in new))
 
     # ---------------------------------------------------------------- right answers
 
@@ -92,14 +92,16 @@ class StudyAttempt:
         """Return the right answers as the student wrote them, by quantity."""
         return right_ones(self.variant, checked.answers, checked.right)
 
-    def compared(self, asked: Iterable[Prediction], own: Mapping[str, OwnAnswer]) -> list[PredictionOutcome]:
+    def compared(
+        self, requested: Iterable[Prediction], own_answers: Mapping[str, OwnAnswer]
+    ) -> list[PredictionOutcome]:
         """Return the predictions with their outcomes; predictions that were not made are left out."""
-        said, found = self.predictions, []
-        for one in asked:
-            mine = own.get(one.quantity)
+        text, result = self.predictions, []
+        for item in requested:
+            mine = own_answers.get(item.quantity)
             value = None if mine is None or mine.is_usual else mine.value
-            found.append(predictions.compared(self.variant, one, said.get(one.id), value))
-        return [one for one in found if one is not None]
+            result.append(predictions.compared(self.variant, item, text.get(item.id), value))
+        return [item for item in result if item is not None]
 
     # ------------------------------------------------------------ hints, solutions
 
@@ -107,9 +109,11 @@ class StudyAttempt:
         """Return all hints for a question or an intermediate step, as Markdown; ``call`` gives the call for
         hints on another one."""
         # Of what is right in another way the reference is not the student's: it stays a symbol.
-        own = self.own(self.marked())
-        found = {q: one.value for q, one in own.items() if one.is_usual and one.value is not None}
-        return hints.steps(self.variant, name, found, call)
+        own_answers = self.own(self.marked())
+        results = {
+            q: item.value for q, item in own_answers.items() if item.is_usual and item.value is not None
+        }
+        return hints.steps(self.variant, name, results, call)
 
     def hints_seen(self, name: str) -> int:
         """Return the number of hints shown."""
@@ -136,9 +140,9 @@ class StudyAttempt:
 
     def note(self, what: str, part: str, **more: Any) -> None:
         """Record that something was shown, once."""
-        told = {"part": part, "what": what, **more}
-        if not any(told.items() <= one.items() for one in self.kept.happened(self.variant.seed)):
-            self.kept.note(self.variant.seed, [told])
+        entries = {"part": part, "what": what, **more}
+        if not any(entries.items() <= item.items() for item in self.kept.happened(self.variant.seed)):
+            self.kept.note(self.variant.seed, [entries])
 
     def _happened(self, what: str) -> Collection[Mapping[str, Any]]:
         return [e for e in self.kept.happened(self.variant.seed) if e["what"] == what]

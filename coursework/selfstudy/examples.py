@@ -60,9 +60,9 @@ def blanks(variant: Variant, level: int, *, in_lesson: bool = False) -> tuple[Pa
     """
     places = {step.name: k for k, step in enumerate(_steps(variant))}
     may_be = _may_be_blank_in_lesson if in_lesson else _may_be_blank
-    asked = _together([p for p in variant.parts if p.quantity in places and may_be(variant, p)], places)
-    count = (1, math.ceil(len(asked) / 3), math.ceil(2 * len(asked) / 3), len(asked))[level - 1]
-    return tuple(chain.from_iterable(asked[max(0, len(asked) - count) :]))
+    requested = _together([p for p in variant.parts if p.quantity in places and may_be(variant, p)], places)
+    count = (1, math.ceil(len(requested) / 3), math.ceil(2 * len(requested) / 3), len(requested))[level - 1]
+    return tuple(chain.from_iterable(requested[max(0, len(requested) - count) :]))
 
 
 def _may_be_blank_in_lesson(variant: Variant, part: Part) -> bool:
@@ -88,10 +88,10 @@ def _steps(variant: Variant) -> Sequence[Step]:
     return answer_sheet(variant, polygons=False).steps
 
 
-def _blank(variant: Variant, part: Part, step: Step, keys: Mapping[str, str], said: Any) -> str:
+def _blank(variant: Variant, part: Part, step: Step, keys: Mapping[str, str], text: Any) -> str:
     """Return the room for an answer, after its symbol, or after the number of its question where no symbol
     names it."""
-    form = said["blank" if part.sort.has_symbol else "unnamed"]
+    form = text["blank" if part.sort.has_symbol else "unnamed"]
     question, key = question_called(variant, part), f"`{keys[part.id]}`"
     return str(form.format(symbol=f"${step.symbol}$", question=question, key=key))
 
@@ -101,7 +101,7 @@ def told_steps(
     level: int,
     left: Sequence[Part],
     keys: Mapping[str, str],
-    said: Any,
+    text: Any,
     *,
     in_lesson: bool = False,
 ) -> str:
@@ -126,7 +126,7 @@ def told_steps(
             formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
             if not (part or formula) and _ANNOUNCES.fullmatch(step.words.strip()):
                 continue
-            blank = _blank(variant, part, step, keys, said) if part else ""
+            blank = _blank(variant, part, step, keys, text) if part else ""
             pieces = [hints.words_of(variant, step.name), formula, blank]
         if any(pieces):
             lines.append("\n\n".join(filter(None, pieces)))

@@ -58,27 +58,27 @@ def quantity_of(variant: Variant, name: str) -> str:
 def steps(
     variant: Variant,
     name: str,
-    found: Mapping[str, float] = MappingProxyType({}),
+    results: Mapping[str, float] = MappingProxyType({}),
     call: Callable[[str], str] = '`hint("{}")`'.format,
 ) -> tuple[str, ...]:
     """Return the hints for a part or an intermediate step, the vaguest first, as Markdown.
 
-    ``found`` holds the quantities that the student has right, as the student has them; ``call`` says how to ask
+    ``results`` holds the quantities that the student has right, as the student has them; ``call`` says how to ask
     for the hints of another.
     """
     quantity = quantity_of(variant, name)
-    asked = _asked(variant, quantity)
-    if asked is not None and asked.sort.is_open:
-        return (_look_again(variant, asked),)
+    requested = _asked(variant, quantity)
+    if requested is not None and requested.sort.is_open:
+        return (_look_again(variant, requested),)
     all_steps = (
         _depends(variant, quantity, call),
         words_of(variant, quantity),
         _formula(variant, quantity, {}),
-        _formula(variant, quantity, {n: v for n, v in {**found, **variant.given}.items() if n != quantity}),
+        _formula(variant, quantity, {n: v for n, v in {**results, **variant.given}.items() if n != quantity}),
     )
-    told = tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
-    if told or (part := _asked(variant, quantity)) is None:
-        return told
+    text = tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
+    if text or (part := _asked(variant, quantity)) is None:
+        return text
     return (_against(variant, part) or _look_again(variant, part),)
 
 
@@ -92,26 +92,26 @@ def _symbol(variant: Variant, name: str) -> str:
 
 
 def _depends(variant: Variant, quantity: str, call: Callable[[str], str]) -> str:
-    said = words(variant.lang)["study"]["hint"]
+    texts = words(variant.lang)["study"]["hint"]
     needed = needs(variant, quantity)
-    told = {g.name for g in handout(variant).given}  # what a figure alone shows has no words
-    given = [_given(variant, n) for n in needed if n in told]
-    asked = {p.quantity: (k, p.id) for k, p in enumerate(variant.parts, start=1)}
+    text = {g.name for g in handout(variant).given}  # what a figure alone shows has no words
+    given = [_given(variant, n) for n in needed if n in text]
+    requested = {p.quantity: (k, p.id) for k, p in enumerate(variant.parts, start=1)}
     before = [
-        said["asked"].format(symbol=f"${_symbol(variant, n)}$", number=asked[n][0])
+        texts["asked"].format(symbol=f"${_symbol(variant, n)}$", number=requested[n][0])
         for n in needed
-        if n in asked and n not in variant.given
+        if n in requested and n not in variant.given
     ]
     between = [
-        said["between"].format(symbol=f"${_symbol(variant, n)}$", call=call(n))
+        texts["between"].format(symbol=f"${_symbol(variant, n)}$", call=call(n))
         for n in needed
-        if n not in asked
+        if n not in requested
         and n not in variant.given
         and isinstance(variant.walk.get(n), (int, float, complex))
     ]
     pieces = [*given, *before, *between]
     return (
-        said["depends"].format(list=f"{words(variant.lang)['sheet']['separator']} ".join(pieces))
+        texts["depends"].format(list=f"{words(variant.lang)['sheet']['separator']} ".join(pieces))
         if pieces
         else ""
     )
@@ -128,8 +128,8 @@ def words_of(variant: Variant, quantity: str) -> str:
     if section is None or not section.text:
         return ""
     is_free, start = _is_free(variant, quantity), _before_numbers(variant, quantity)
-    asked = _asked(variant, quantity)
-    if asked is None or not asked.choices:
+    requested = _asked(variant, quantity)
+    if requested is None or not requested.choices:
         return start or (section.text if is_free else "")
     text = section.text if is_free else start
     if not text:
@@ -145,9 +145,9 @@ def _before_numbers(variant: Variant, section: str) -> str:
     """Return the sentences of a section before its first computed number."""
     path = variant.exercise.texts.file("solutions", variant.lang)
     start = _COMPUTED.split(sections(path, path.stat().st_mtime_ns).get(section, ""), maxsplit=1)[0]
-    ends = [found.end() for found in _SENTENCE_END.finditer(start)]
-    told = _HERE.sub("", start[: ends[-1]].strip()) if ends else ""
-    return re.sub(r"\s*:$", ".", told)
+    ends = [result.end() for result in _SENTENCE_END.finditer(start)]
+    text = _HERE.sub("", start[: ends[-1]].strip()) if ends else ""
+    return re.sub(r"\s*:$", ".", text)
 
 
 def _against(variant: Variant, part: Part) -> str:
@@ -155,14 +155,14 @@ def _against(variant: Variant, part: Part) -> str:
     if len(part.choices) < 3:
         return ""
     step = next(s for s in answer_sheet(variant, polygons=False).steps if s.name == part.quantity)
-    said = words(variant.lang)["study"]["hint"]["against"]
-    return next((said.format(wrong=r.wrong, why=r.words) for r in step.remarks if r.wrong), "")
+    texts = words(variant.lang)["study"]["hint"]["against"]
+    return next((texts.format(wrong=r.wrong, why=r.words) for r in step.remarks if r.wrong), "")
 
 
 def _look_again(variant: Variant, part: Part) -> str:
     """Return the hint of last resort: to look at the cases, or at the statement."""
-    said = words(variant.lang)["study"]["hint"]
-    return said["cases"] if part.choices else said["statement"]
+    texts = words(variant.lang)["study"]["hint"]
+    return texts["cases"] if part.choices else texts["statement"]
 
 
 def _is_free(variant: Variant, section: str) -> bool:
@@ -188,13 +188,13 @@ def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
     from jinja2 import meta
 
     env = jinja2.Environment()
-    found = {}
+    results = {}
     for name, text in sections(path, changed).items():
         try:
-            found[name] = frozenset(meta.find_undeclared_variables(env.parse(text)))
+            results[name] = frozenset(meta.find_undeclared_variables(env.parse(text)))
         except jinja2.TemplateSyntaxError:
             continue
-    return found
+    return results
 
 
 def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
@@ -203,14 +203,14 @@ def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
     values, units = variant.walk, variant.exercise.units
     kinds = {n: kind_of(value, units.get(n, "1")) for n, value in values.items()}
     symbols = {n: PrintedName(_symbol(variant, n), False, kinds[n]) for n in values}
-    shown = symbols | {
+    displayed = symbols | {
         n: PrintedName(number_latex(value, units.get(n, "1"), _DIGITS), True, kinds[n])
         for n, value in known.items()
         if isinstance(values.get(n), (int, float, complex))
     }
     function = variant.exercise.solution.graph.node(quantity).function
     try:
-        formula = formula_latex(function, shown)
+        formula = formula_latex(function, displayed)
         plain = formula_latex(function, symbols)
     except KeyError:
         return ""
@@ -247,9 +247,9 @@ def revealed(variant: Variant, name: str) -> Step:
 def revealed_text(variant: Variant, name: str) -> str:
     """Return the complete step as Markdown; for a question marked by a person, its model answer or a note
     that it has none."""
-    asked = next((p for p in variant.parts if p.id == name and p.sort.is_open), None)
-    if asked is not None:
-        models = (s.words for s in answer_sheet(variant).steps if s.name == asked.id)
+    requested = next((p for p in variant.parts if p.id == name and p.sort.is_open), None)
+    if requested is not None:
+        models = (s.words for s in answer_sheet(variant).steps if s.name == requested.id)
         return next(models, words(variant.lang)["solution"]["by_hand"])
     step = revealed(variant, name)
     formula = f"$${chain_on_lines(step)}$$" if step.value else ""

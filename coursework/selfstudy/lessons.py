@@ -28,7 +28,7 @@ class PredictionTable(NotebookDisplay):
 
 def compare(
     predicted: Mapping[str, Any],
-    found: Mapping[str, Any],
+    results: Mapping[str, Any],
     lang: str = "fr",
     angles: Collection[str] = (),
 ) -> PredictionTable:
@@ -51,23 +51,23 @@ def compare(
     - ✓ a: predicted 2, found 2.1
     - · b: no prediction, found 5
     """
-    said = words(lang)["study"]
+    texts = words(lang)["study"]
     lines = []
-    for name, value in found.items():
+    for name, value in results.items():
         guess = unwrapped(predicted.get(name))
         agrees = not is_blank(guess) and _agree(guess, unwrapped(value), name in angles)
         mark = "·" if is_blank(guess) else "✓" if agrees else "✗"
-        line = said["not_predicted"] if is_blank(guess) else said["predicted"]
+        line = texts["not_predicted"] if is_blank(guess) else texts["predicted"]
         lines.append(f"- {mark} {line.format(name=name, said=_told(guess, lang), found=_told(value, lang))}")
     for name, guess in predicted.items():
-        if name not in found and not is_blank(guess):
-            line = said["refused"]["lesson_name"].format(name=name, said=_told(guess, lang))
-            lines.append(f"- ? {line} {would_do(lang, str(name), list(found))}")
-    shown = PredictionTable(lang, "\n".join(lines))
-    shown.outcome = "\n".join(
-        f"- {name}{words(lang)['sheet']['colon']} {_told(value, lang)}" for name, value in found.items()
+        if name not in results and not is_blank(guess):
+            line = texts["refused"]["lesson_name"].format(name=name, said=_told(guess, lang))
+            lines.append(f"- ? {line} {would_do(lang, str(name), list(results))}")
+    displayed = PredictionTable(lang, "\n".join(lines))
+    displayed.outcome = "\n".join(
+        f"- {name}{words(lang)['sheet']['colon']} {_told(value, lang)}" for name, value in results.items()
     )
-    return shown
+    return displayed
 
 
 def _agree(guess: Any, value: Any, is_angle: bool) -> bool:
@@ -84,9 +84,9 @@ def _agree(guess: Any, value: Any, is_angle: bool) -> bool:
 
 
 def _told(value: Any, lang: str) -> str:
-    said = words(lang)["study"]
+    texts = words(lang)["study"]
     if isinstance(value, (bool, np.bool_)):
-        return said["yes"] if value else said["no"]
+        return texts["yes"] if value else texts["no"]
     if isinstance(value, (int, float, np.number)):
         return localise(significant(float(value)), lang)
     return str(value)

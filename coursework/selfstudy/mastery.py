@@ -82,29 +82,29 @@ class Skill:
 def outings(progress: Progress) -> tuple[Outing, ...]:
     """Return the outings that carry information, the earliest first; none of a variant shown as an example
     before."""
-    found: dict[tuple[str, int, str], Outing] = {}
+    results: dict[tuple[str, int, str], Outing] = {}
     examples = set()
-    for one in progress:
-        variant, day = (one["exercise"], one["seed"]), date_of(one).date()
-        if one["what"] == EXAMPLE:
+    for item in progress:
+        variant, day = (item["exercise"], item["seed"]), date_of(item).date()
+        if item["what"] == EXAMPLE:
             examples.add(variant)
-        if one["what"] not in (ANSWER, HINT, REVEAL) or variant in examples:
+        if item["what"] not in (ANSWER, HINT, REVEAL) or variant in examples:
             continue
-        key = (*variant, one["part"])
-        outing = found.setdefault(key, Outing(*key, first=day, last=day))
-        _follow(outing, one, day)
-    return tuple(o for o in found.values() if o.counts)
+        key = (*variant, item["part"])
+        outing = results.setdefault(key, Outing(*key, first=day, last=day))
+        _follow(outing, item, day)
+    return tuple(o for o in results.values() if o.counts)
 
 
-def _follow(outing: Outing, one: Entry, day: date) -> None:
+def _follow(outing: Outing, item: Entry, day: date) -> None:
     if outing.is_right:
         return
     outing.last = day
-    if one["what"] == HINT:
-        outing.hints = max(outing.hints, int(one.get("step", 1)))
-    elif one["what"] == REVEAL:
+    if item["what"] == HINT:
+        outing.hints = max(outing.hints, int(item.get("step", 1)))
+    elif item["what"] == REVEAL:
         outing.was_revealed = True
-    elif (verdict := str(one.get("verdict", ""))) and verdict not in _NO_ATTEMPT:
+    elif (verdict := str(item.get("verdict", ""))) and verdict not in _NO_ATTEMPT:
         outing.verdicts.append(verdict)
 
 
@@ -132,40 +132,40 @@ def _question(exercise: str, part: str, met: tuple[Outing, ...]) -> RepeatedQues
 def skills(progress: Progress) -> tuple[Skill, ...]:
     """Return the tested skills, those of errors and those of kinds, in order of their first test."""
     lost: dict[str, list[tuple[str, date]]] = {}
-    shown: dict[str, dict[tuple[str, int], str]] = {}
+    displayed: dict[str, dict[tuple[str, int], str]] = {}
     lost_in: dict[str, tuple[str, int]] = {}  # where a skill was lost, other answers show nothing of it
     clean = {(o.exercise, o.seed, o.part): o.is_clean for o in outings(progress)}
-    for one in progress:
-        place, verdict = (one["exercise"], one["seed"]), str(one.get("verdict", ""))
+    for item in progress:
+        position, verdict = (item["exercise"], item["seed"]), str(item.get("verdict", ""))
         if (
-            one["what"] != ANSWER
+            item["what"] != ANSWER
             or not verdict
             or verdict in _NO_ATTEMPT
-            or (*place, one["part"]) not in clean
+            or (*position, item["part"]) not in clean
         ):
             continue
-        kind = f"kind:{one['kind']}" if one.get("kind") else ""
-        day = date_of(one).date()
-        if verdict in RIGHT and clean[*place, one["part"]]:
-            for name in (*_texts(one.get("shown")), *filter(None, (kind,))):
-                if lost_in.get(name) != place:
-                    shown.setdefault(name, {})[place] = one["exercise"]
+        kind = f"kind:{item['kind']}" if item.get("kind") else ""
+        day = date_of(item).date()
+        if verdict in RIGHT and clean[*position, item["part"]]:
+            for name in (*_texts(item.get("shown")), *filter(None, (kind,))):
+                if lost_in.get(name) != position:
+                    displayed.setdefault(name, {})[position] = item["exercise"]
         elif verdict not in RIGHT:
             for name in filter(None, (kind, verdict if ":" in verdict else "")):
-                lost.setdefault(name, []).append((one["exercise"], day))
-                lost_in[name] = place
-                shown.pop(name, None)
-    names = dict.fromkeys((*lost, *shown))
-    return tuple(_skill(name, lost.get(name, []), shown.get(name, {})) for name in names)
+                lost.setdefault(name, []).append((item["exercise"], day))
+                lost_in[name] = position
+                displayed.pop(name, None)
+    names = dict.fromkeys((*lost, *displayed))
+    return tuple(_skill(name, lost.get(name, []), displayed.get(name, {})) for name in names)
 
 
-def _skill(name: str, lost: list[tuple[str, date]], shown: Mapping[tuple[str, int], str]) -> Skill:
-    exercise, day = lost[-1] if lost else (next(iter(shown.values())), None)
-    return Skill(name, exercise, len(lost), day, len(shown))
+def _skill(name: str, lost: list[tuple[str, date]], displayed: Mapping[tuple[str, int], str]) -> Skill:
+    exercise, day = lost[-1] if lost else (next(iter(displayed.values())), None)
+    return Skill(name, exercise, len(lost), day, len(displayed))
 
 
-def _texts(told: Any) -> Iterable[str]:
-    return [str(name) for name in told] if isinstance(told, (list, tuple)) else ()
+def _texts(text: Any) -> Iterable[str]:
+    return [str(name) for name in text] if isinstance(text, (list, tuple)) else ()
 
 
 @dataclass(frozen=True)
@@ -182,15 +182,15 @@ class ExerciseProgress:
 
 def standings(progress: Progress) -> tuple[ExerciseProgress, ...]:
     """Return the progress of a student by exercise, the earliest begun first."""
-    found = []
-    met, asked = outings(progress), questions(progress)
+    results = []
+    met, requested = outings(progress), questions(progress)
     for exercise in progress.exercises:
         mine = [o for o in met if o.exercise == exercise]
-        dates = [q.due for q in asked if q.exercise == exercise and q.due is not None]
+        dates = [q.due for q in requested if q.exercise == exercise and q.due is not None]
         seeds = {e["seed"] for e in progress if e["exercise"] == exercise and e["what"] != EXAMPLE}
         counts = (len(mine), sum(o.is_right for o in mine), sum(o.is_clean for o in mine))
-        found.append(ExerciseProgress(exercise, len(seeds), *counts, min(dates, default=None)))
-    return tuple(found)
+        results.append(ExerciseProgress(exercise, len(seeds), *counts, min(dates, default=None)))
+    return tuple(results)
 
 
 @dataclass(frozen=True)
@@ -213,10 +213,10 @@ def advised(
     held since; the next new exercise; the question that returns first. ``errors`` are the skills that each
     exercise tests, by exercise.
     """
-    known = tuple(exercises)
+    known_names = tuple(exercises)
     waiting: dict[str, list[RepeatedQuestion]] = {}
     for question in questions(progress):
-        if question.due is not None and question.exercise in known:
+        if question.due is not None and question.exercise in known_names:
             waiting.setdefault(question.exercise, []).append(question)
     due = {e: [q for q in met if q.due is not None and q.due <= on] for e, met in waiting.items()}
     if any(due.values()):
@@ -226,7 +226,7 @@ def advised(
         missed = [q.missed for q in due[exercise] if q.missed]
         return Advice(exercise, "due", tuple(q.part for q in due[exercise]), max(missed, default=None))
     begun = progress.exercises
-    new = [e for e in known if e not in begun]
+    new = [e for e in known_names if e not in begun]
     for skill in sorted((s for s in skills(progress) if s.is_open), key=lambda s: -s.lost):
         tries = next((e for e in new if skill.id in errors.get(e, ())), None)
         if tries:
@@ -236,4 +236,4 @@ def advised(
     if waiting:
         first = min((q for met in waiting.values() for q in met), key=lambda q: (q.due or on, q.exercise))
         return Advice(first.exercise, "later", (first.part,), first.due)
-    return Advice(known[0], "again") if known else None
+    return Advice(known_names[0], "again") if known_names else None

@@ -42,9 +42,9 @@ def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
 
 
 def curves(
-    variant: Variant, parts: Sequence[Part], answers: Mapping[str, Any], own: Mapping[str, OwnAnswer]
+    variant: Variant, parts: Sequence[Part], answers: Mapping[str, Any], own_answers: Mapping[str, OwnAnswer]
 ) -> Curves:
-    """Plot the parts over a turn of the driver; ``answers`` by part, ``own`` the student's right answers by
+    """Plot the parts over a turn of the driver; ``answers`` by part, ``own_answers`` the student's right answers by
     quantity."""
     exercise, lang = variant.exercise, variant.lang
     assert exercise.spec.driver is not None  # without one no part moves
@@ -54,9 +54,9 @@ def curves(
     for part in parts:
         angles, values = predictions.curve(variant, part.quantity)
         axes.append(Axis(exercise.symbol(part.quantity), unit_text(part.unit, lang), values))
-        spots.append(_spots(variant, part, answers.get(part.id), own.get(part.quantity), at, values))
+        spots.append(_spots(variant, part, answers.get(part.id), own_answers.get(part.quantity), at, values))
     plot = Plot(Axis(exercise.symbol(driver), "°", angles), axes, lang, at, spots)
-    beside = tuple(p for p in parts if p.quantity in own and not own[p.quantity].is_usual)
+    beside = tuple(p for p in parts if p.quantity in own_answers and not own_answers[p.quantity].is_usual)
     outside = tuple(p for p, far in zip(parts, plot.has_outside, strict=True) if far)
     return Curves(plot, driver, tuple(parts), beside, outside)
 

@@ -78,13 +78,13 @@ def before_answers(variant: Variant) -> tuple[Prediction, ...]:
     They concern quantities of a body or a point (:func:`is_of_the_mechanism`). A choice that differs among
     variants is a prediction itself: only the last one, which says most about the whole.
     """
-    found = [p for part in variant.parts if (p := _of_part(variant.exercise, part)) is not None]
-    guesses = [p for p in found if p.kind == "guess"]
-    found = [p for p in found if p not in guesses[:-1]]
-    if len(found) <= MOST:
-        return tuple(found)
-    step = (len(found) - 1) / (MOST - 1)
-    return tuple(found[round(k * step)] for k in range(MOST))
+    results = [p for part in variant.parts if (p := _of_part(variant.exercise, part)) is not None]
+    guesses = [p for p in results if p.kind == "guess"]
+    results = [p for p in results if p not in guesses[:-1]]
+    if len(results) <= MOST:
+        return tuple(results)
+    step = (len(results) - 1) / (MOST - 1)
+    return tuple(results[round(k * step)] for k in range(MOST))
 
 
 def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
@@ -140,10 +140,10 @@ def is_seen(exercise: CourseExercise, part: Part) -> bool:
 def _hangs_on(exercise: CourseExercise, part: Part, units: Collection[str], name: str = "") -> bool:
     """Return whether a quantity is computed from a given one of this name, or of these units."""
     graph, given = exercise.solution.graph.textbook, exercise.spec.given
-    known = [
+    known_names = [
         n for n, spec in given.items() if (spec.unit in units or n == name) and n in exercise.quantity_names
     ]
-    return part.quantity in known or part.quantity in graph.descendants(tuple(known))
+    return part.quantity in known_names or part.quantity in graph.descendants(tuple(known_names))
 
 
 @lru_cache(maxsize=256)
@@ -166,9 +166,9 @@ def _differ(holds: np.ndarray, values: np.ndarray) -> bool:
 @lru_cache(maxsize=64)
 def _sample(exercise: CourseExercise) -> Mapping[str, np.ndarray]:
     """Return the given and requested numbers over some variants; NaN where a variant lacks one."""
-    asked = [p.quantity for p in exercise.spec.parts if p.sort.prediction == "size"]
+    requested = [p.quantity for p in exercise.spec.parts if p.sort.prediction == "size"]
     given = [n for n, spec in exercise.spec.given.items() if not spec.is_choice]
-    columns: dict[str, list[float]] = {name: [] for name in dict.fromkeys([*given, *asked])}
+    columns: dict[str, list[float]] = {name: [] for name in dict.fromkeys([*given, *requested])}
     for variant in exercise.variants(_SAMPLE):
         values = dict(variant.given)
         wanted = [p.quantity for p in variant.parts if p.sort.prediction == "size"]
@@ -240,10 +240,10 @@ def _is_bounded(exercise: CourseExercise, quantity: str) -> bool:
 
 def asked(variant: Variant, prediction: Prediction) -> str:
     """Return the question of a prediction, in one line of Markdown."""
-    said = words(variant.lang)["study"]["predict"]
+    texts = words(variant.lang)["study"]["predict"]
     exercise = variant.exercise
     driver = exercise.spec.driver
-    return said[prediction.kind].format(
+    return texts[prediction.kind].format(
         symbol=f"${exercise.symbol(prediction.quantity)}$",
         other=f"${exercise.symbol(prediction.other)}$" if prediction.other else "",
         driver=f"${exercise.symbol(driver.angle)}$" if driver else "",
@@ -295,8 +295,8 @@ def compared(
         return None
     said = _READ[prediction.kind](variant, prediction, text)
     value = variant.walk[prediction.quantity] if own is None else own
-    found, right = _FOUND[prediction.kind](variant, prediction, value, said)
-    return PredictionOutcome(prediction, str(text).strip(), found, None if said is None else right)
+    result, right = _FOUND[prediction.kind](variant, prediction, value, said)
+    return PredictionOutcome(prediction, str(text).strip(), result, None if said is None else right)
 
 
 def _read_guess(variant: Variant, prediction: Prediction, text: Any) -> tuple[Any, ...] | None:
@@ -322,38 +322,38 @@ _READ: Mapping[str, Callable[[Variant, Prediction, Any], Any]] = {
 Outcome = tuple[str, bool]
 
 
-def _sign(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
-    return ("+" if value > 0 else "−"), said == ("+" if value > 0 else "-")
+def _sign(variant: Variant, prediction: Prediction, value: Any, text: Any) -> Outcome:
+    return ("+" if value > 0 else "−"), text == ("+" if value > 0 else "-")
 
 
-def _quadrant(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
-    found = 1 + int(value % 360 // 90)
-    return str(found), said == found
+def _quadrant(variant: Variant, prediction: Prediction, value: Any, text: Any) -> Outcome:
+    result = 1 + int(value % 360 // 90)
+    return str(result), text == result
 
 
-def _compare(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+def _compare(variant: Variant, prediction: Prediction, value: Any, text: Any) -> Outcome:
     other = variant.given[prediction.other]
-    found = ">" if value > other else "<" if value < other else "="
-    return found, said == found
+    result = ">" if value > other else "<" if value < other else "="
+    return result, text == result
 
 
-def _guess(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+def _guess(variant: Variant, prediction: Prediction, value: Any, text: Any) -> Outcome:
     part = next(p for p in variant.parts if p.id == prediction.id)
-    return variant.called(part, str(value)), value in (said or ())
+    return variant.called(part, str(value)), value in (text or ())
 
 
-def _zeros(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+def _zeros(variant: Variant, prediction: Prediction, value: Any, text: Any) -> Outcome:
     _, values = curve(variant, prediction.quantity)
-    found = zeros(values)
-    return str(found), said == found
+    result = zeros(values)
+    return str(result), text == result
 
 
-def _highest(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+def _highest(variant: Variant, prediction: Prediction, value: Any, text: Any) -> Outcome:
     angles, values = curve(variant, prediction.quantity)
     best = float(angles[np.nanargmax(values)])
     top, low = np.nanmax(values), np.nanmin(values)
     near = angles[values >= top - 0.01 * (top - low)]
-    right = any((np.abs((near - angle + 180) % 360 - 180) <= NEAR).any() for angle in said or ())
+    right = any((np.abs((near - angle + 180) % 360 - 180) <= NEAR).any() for angle in text or ())
     return with_unit(plain(round(best)), "deg", variant.lang), right
 
 
@@ -382,5 +382,5 @@ def curve(variant: Variant, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     driver = exercise.spec.driver
     assert driver is not None  # only what moves has a curve
     given = {**variant.used, driver.angle: angles}
-    found = exercise.solve(**given, only=quantity, effects=variant.effects)[quantity]
-    return angles, np.broadcast_to(np.asarray(found, dtype=float), angles.shape)
+    result = exercise.solve(**given, only=quantity, effects=variant.effects)[quantity]
+    return angles, np.broadcast_to(np.asarray(result, dtype=float), angles.shape)

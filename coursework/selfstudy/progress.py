@@ -81,7 +81,7 @@ class Progress:
     def text(self) -> str:
         """Return the JSON text, one entry a line."""
         head = f'{{"format": {json.dumps(FORMAT)}, "version": {VERSION}, "entries": ['
-        text = head + ",".join(f"\n{_identity(one)}" for one in self) + "\n]}\n"
+        text = head + ",".join(f"\n{_identity(item)}" for item in self) + "\n]}\n"
         return text.encode("utf-8", "replace").decode("utf-8")  # halves of characters stand in no file
 
     @classmethod
@@ -119,27 +119,27 @@ def read_brought(data: bytes, most: int) -> tuple[type[ValueError] | None, tuple
     An entry with a number that no JSON database accepts is dropped.
     """
     try:
-        found = Progress.read(data.decode("utf-8-sig"))
-        json.dumps([dict(one) for one in found], allow_nan=False)
+        result = Progress.read(data.decode("utf-8-sig"))
+        json.dumps([dict(item) for item in result], allow_nan=False)
     except LaterVersion:
         return LaterVersion, ()
     except ValueError:
         return NotProgress, ()
-    return (TooLong, ()) if len(found) > most else (None, tuple(found))
+    return (TooLong, ()) if len(result) > most else (None, tuple(result))
 
 
 def entry(at: datetime, exercise: str, seed: int, part: str, what: str, **more: Any) -> dict[str, Any]:
     """Return an entry for an event, as it is stored."""
-    told = at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
-    return {"at": told, "exercise": exercise, "seed": seed, "part": part, "what": what, **more}
+    text = at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
+    return {"at": text, "exercise": exercise, "seed": seed, "part": part, "what": what, **more}
 
 
-def date_of(one: Entry) -> datetime:
+def date_of(item: Entry) -> datetime:
     """Return the date of an entry."""
-    return datetime.fromisoformat(str(one["at"]).replace("Z", "+00:00"))
+    return datetime.fromisoformat(str(item["at"]).replace("Z", "+00:00"))
 
 
-def _checked(one: Any) -> Entry:
+def _checked(item: Any) -> Entry:
     """Return an entry if it is valid.
 
     Raises
@@ -147,17 +147,17 @@ def _checked(one: Any) -> Entry:
     ValueError, TypeError, KeyError
         It lacks what every entry has.
     """
-    if date_of(one).tzinfo is None:
-        raise ValueError(one["at"])
-    for number in (one["seed"], one.get("step", 1)):
+    if date_of(item).tzinfo is None:
+        raise ValueError(item["at"])
+    for number in (item["seed"], item.get("step", 1)):
         if isinstance(number, bool) or not isinstance(number, int) or number < 0:
             raise ValueError(number)
-    if not all(isinstance(one[name], str) for name in ("exercise", "part", "what")):
+    if not all(isinstance(item[name], str) for name in ("exercise", "part", "what")):
         raise ValueError("an entry names its exercise, its part and what it is")
-    if not all(isinstance(one.get(name, ""), str) for name in ("verdict", "kind")):
+    if not all(isinstance(item.get(name, ""), str) for name in ("verdict", "kind")):
         raise ValueError("a verdict and a kind are texts")
-    return one
+    return item
 
 
-def _identity(one: Entry) -> str:
-    return json.dumps(one, ensure_ascii=False, sort_keys=True, default=str)
+def _identity(item: Entry) -> str:
+    return json.dumps(item, ensure_ascii=False, sort_keys=True, default=str)

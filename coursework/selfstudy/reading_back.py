@@ -25,13 +25,13 @@ def read_back(variant: Variant, part: Part, text: str) -> tuple[bool, tuple[str,
     if reading.status == "missing" or part.sort.is_open:
         return True, ()
     if reading.status == "read":
-        shown = (shown_as(variant, part, reading, k)[1] for k in range(len(reading.values)))
+        displayed = (shown_as(variant, part, reading, k)[1] for k in range(len(reading.values)))
         bare = part.sort.is_scalar and part.unit != "1" and not (reading.unit_given or part.asks_unit)
         unit = unit_text(part.unit, variant.lang) if bare else ""
-        return True, tuple(dict.fromkeys(_with(unit, one) for one in shown))
+        return True, tuple(dict.fromkeys(_with(unit, item) for item in displayed))
     mark = made_mark(variant, part, reading, reading.status, 0.0, "", say_not_read(variant, part, reading))
     return False, (sentence_of(variant, mark, ""),)
 
 
-def _with(unit: str, said: str) -> str:
-    return f"{said}{'' if unit == '°' or not unit else chr(0xA0)}{unit}"
+def _with(unit: str, text: str) -> str:
+    return f"{text}{'' if unit == '°' or not unit else chr(0xA0)}{unit}"

@@ -24,17 +24,17 @@ def marked_answers(
 ) -> list[dict[str, Any]]:
     """Return the records of a marking, for answers that are new or marked differently from ``before``."""
     last = {e["part"]: (e.get("answer"), e.get("verdict")) for e in before if e["what"] == ANSWER}
-    found = []
+    results = []
     for part in variant.parts:
         answer, mark = answers.get(part.id), marking[part.id]
         if is_blank(answer) or last.get(part.id) == (answer, mark.verdict):
             continue
-        told: dict[str, Any] = {"part": part.id, "what": ANSWER, "answer": answer, "verdict": mark.verdict}
-        told["kind"] = skill_of_kind(part)
+        entries: dict[str, Any] = {"part": part.id, "what": ANSWER, "answer": answer, "verdict": mark.verdict}
+        entries["kind"] = skill_of_kind(part)
         if mark.verdict in RIGHT:
-            told["shown"] = sorted(set(errors_shown(variant, part)))
-        found.append(told)
-    return found
+            entries["shown"] = sorted(set(errors_shown(variant, part)))
+        results.append(entries)
+    return results
 
 
 def mark_what_came_unmarked(course: Course[Any], file: ProgressStore) -> None:
@@ -44,21 +44,21 @@ def mark_what_came_unmarked(course: Course[Any], file: ProgressStore) -> None:
     """
     last = {(e["exercise"], e["seed"], e["part"]): e for e in file.progress if e["what"] == ANSWER}
     unmarked: dict[tuple[str, int], list[Entry]] = {}
-    for (exercise, seed, _), one in last.items():
-        if "verdict" not in one and exercise in course:
-            unmarked.setdefault((exercise, seed), []).append(one)
-    for (exercise, seed), found in unmarked.items():
+    for (exercise, seed, _), item in last.items():
+        if "verdict" not in item and exercise in course:
+            unmarked.setdefault((exercise, seed), []).append(item)
+    for (exercise, seed), result in unmarked.items():
         if not course.folder.has_solutions:
             continue
         variant = course[exercise].variant(seed)
-        answers = {e["part"]: e.get("answer") for e in found if e["part"] in variant.part_ids}
+        answers = {e["part"]: e.get("answer") for e in result if e["part"] in variant.part_ids}
         try:
             marking = mark(variant, answers)
         except CourseworkError:
             continue
-        at = max(map(date_of, found)) + timedelta(microseconds=1)
-        told = marked_answers(variant, answers, marking, ())
-        file.add([entry(at, exercise, seed, **each) for each in told])
+        at = max(map(date_of, result)) + timedelta(microseconds=1)
+        text = marked_answers(variant, answers, marking, ())
+        file.add([entry(at, exercise, seed, **each) for each in text])
 
 
 def skill_of_kind(part: Part) -> str:

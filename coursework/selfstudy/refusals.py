@@ -26,17 +26,17 @@ def expect(lang: str, kind: str, name: object, known: Collection[str]) -> None:
 
 def stranger(lang: str, kind: str, name: object, known: Collection[str]) -> UnknownName:
     """Return the error for a name that is none of the known ones."""
-    said = words(lang)["study"]["refused"]
-    return UnknownName(f"{said[kind].format(name=name)} {would_do(lang, str(name), known)}")
+    texts = words(lang)["study"]["refused"]
+    return UnknownName(f"{texts[kind].format(name=name)} {would_do(lang, str(name), known)}")
 
 
 def would_do(lang: str, name: str, known: Collection[str]) -> str:
     """Return the nearest known name, or all."""
-    said = words(lang)["study"]["refused"]
+    texts = words(lang)["study"]["refused"]
     near = closest(name, known)
     if near is not None:
-        return said["near"].format(name=near)
-    return said["known"].format(names=", ".join(known)) if known else said["none"]
+        return texts["near"].format(name=near)
+    return texts["known"].format(names=", ".join(known)) if known else texts["none"]
 
 
 class UnknownMethod(UnknownName, AttributeError):
@@ -45,11 +45,11 @@ class UnknownMethod(UnknownName, AttributeError):
 
 def no_method(lang: str, name: str, known: Collection[str]) -> UnknownMethod:
     """Return the error for an unknown method."""
-    said = words(lang)["study"]["refused"]["method"].format(name=name)
-    return UnknownMethod(f"{said} {would_do(lang, name, known)}")
+    texts = words(lang)["study"]["refused"]["method"].format(name=name)
+    return UnknownMethod(f"{texts} {would_do(lang, name, known)}")
 
 
-def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
+def by_name(lang: str, call: str, text: object) -> Mapping[str, Any]:
     """Return the argument of a call as a dictionary by name.
 
     Raises
@@ -57,12 +57,12 @@ def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
     BadInput
         It is no dictionary.
     """
-    if not isinstance(told, Mapping):
-        raise refused(lang, "mapping", call=call, found=f"{told!r:.60}")
-    return told
+    if not isinstance(text, Mapping):
+        raise refused(lang, "mapping", call=call, found=f"{text!r:.60}")
+    return text
 
 
-def counted(lang: str, why: str, told: object, most: int | None = None) -> int:
+def counted(lang: str, why: str, text: object, most: int | None = None) -> int:
     """Return a whole number from 1 to ``most``.
 
     Raises
@@ -70,11 +70,11 @@ def counted(lang: str, why: str, told: object, most: int | None = None) -> int:
     BadInput
         Anything else.
     """
-    if isinstance(told, bool) or not isinstance(told, Integral) or told < 1 or (most and int(told) > most):
-        raise refused(lang, why, found=repr(told), most=most)
-    return int(told)
+    if isinstance(text, bool) or not isinstance(text, Integral) or text < 1 or (most and int(text) > most):
+        raise refused(lang, why, found=repr(text), most=most)
+    return int(text)
 
 
-def refused(lang: str, why: str, **told: object) -> BadInput:
+def refused(lang: str, why: str, **text: object) -> BadInput:
     """Return the error for another invalid argument."""
-    return BadInput(words(lang)["study"]["refused"][why].format(**told))
+    return BadInput(words(lang)["study"]["refused"][why].format(**text))

@@ -62,13 +62,13 @@ def open_session(
     """
     words(lang)  # an unknown language is told before anything is said in it
     refusals.expect(lang, "exercise", exercise, course.names)
-    one = course[exercise]
-    if version is not None and version != one.version:
+    item = course[exercise]
+    if version is not None and version != item.version:
         own = f"--course {named} " if named is not None else ""
         again = f"coursework {own}notebook {exercise} --seed {seed} --lang {lang} --out DIR"
-        told = {"exercise": exercise, "version": version, "installed": one.version, "command": again}
-        raise refusals.refused(lang, "version", **told)
-    return StudySession(one.variant(seed, lang), ExerciseStore(ProgressFile(Path(folder), clock), exercise))
+        entries = {"exercise": exercise, "version": version, "installed": item.version, "command": again}
+        raise refusals.refused(lang, "version", **entries)
+    return StudySession(item.variant(seed, lang), ExerciseStore(ProgressFile(Path(folder), clock), exercise))
 
 
 def course_folder(course: str | Path | None, lang: str) -> Path | None:
@@ -85,8 +85,8 @@ def course_folder(course: str | Path | None, lang: str) -> Path | None:
     if (Path(course) / "exercises").is_dir():
         return Path(course)
     here = Path.cwd()
-    for place in (here, *here.parents):
-        for folder in (place / course, place):
+    for position in (here, *here.parents):
+        for folder in (position / course, position):
             if folder.name == Path(course).name and (folder / "exercises").is_dir():
                 return folder
     raise BadCourse(words(lang)["study"]["refused"]["course"].format(name=course, here=here))
@@ -114,8 +114,8 @@ class StudySession:
 
     def statement(self) -> NotebookDisplay:
         """Return the statement, the figure, the data and the questions."""
-        sheet, said = handout(self.variant), words(self.variant.lang)["sheet"]
-        colon = said["colon"]
+        sheet, text = handout(self.variant), words(self.variant.lang)["sheet"]
+        colon = text["colon"]
         head = self._said["variant"].format(title=f"**{sheet.title}**", seed=sheet.seed)
         pieces: list[str | SvgPicture] = [f"{head}\n\n{sheet.statement}"]
         if sheet.figure is not None:
@@ -123,10 +123,10 @@ class StudySession:
         pieces += [SvgPicture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
         given = [f"- {hints._given(self.variant, g.name)}" for g in sheet.given]
         if given:
-            pieces.append(f"**{said['data']}**\n\n" + "\n".join(given))
+            pieces.append(f"**{text['data']}**\n\n" + "\n".join(given))
         questions = []
         for q in sheet.questions:
-            unit = said["with_unit"] if q.asks_unit else q.unit
+            unit = text["with_unit"] if q.asks_unit else q.unit
             prompt = " ".join(q.prompt.split())
             cases = "".join(f"\n   - `{letter}`{colon} {label}" for letter, label in offered(q))
             questions.append(f"{q.number}. `{q.key}`{colon} {prompt}{f' ({unit})' if unit else ''}{cases}")
@@ -173,8 +173,8 @@ class StudySession:
         except WrongValue:
             if missing := self._missing():
                 return self._shown(missing)
-            shown = ", ".join(dict.fromkeys(("position", *DisplayedAnimation(self.variant).available)))
-            raise refusals.refused(self.variant.lang, "no_effect", names=shown) from None
+            displayed = ", ".join(dict.fromkeys(("position", *DisplayedAnimation(self.variant).available)))
+            raise refusals.refused(self.variant.lang, "no_effect", names=displayed) from None
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
             moving = DisplayedAnimation(self.variant, usual)
@@ -209,31 +209,31 @@ class StudySession:
         BadInput
             No dictionary.
         """
-        asked = self._asked
-        predicted, strange = self._told("predict", "prediction", predicted, named, asked)
+        requested = self._asked
+        predicted, strange = self._told("predict", "prediction", predicted, named, requested)
         if not predicted:
             under = tuple(self._asked_under.values())
             example = f'`{self._name}.predict({{"{under[0]}": "…"}})`' if under else ""
             return self._shown(self._said["which_predictions"].format(names=_names(under), call=example))
         self._kept.add(self.variant.seed, "predictions", predicted)
         now = self.predictions
-        made = [n for n in predicted if not is_blank(now.get(n))]
+        created = [n for n in predicted if not is_blank(now.get(n))]
         left = [n for n in predicted if is_blank(now.get(n))]
-        lines = [self._said["kept_predictions"].format(made=len(made), of=len(predicted))]
+        lines = [self._said["kept_predictions"].format(made=len(created), of=len(predicted))]
         lines += [self._left(self._asked_under[n] for n in left)] if left else []
-        unread = [n for n in made if not predictions.is_understood(self.variant, asked[n], now[n])]
+        unread = [n for n in created if not predictions.is_understood(self.variant, requested[n], now[n])]
         lines += [
             self._said["not_understood"].format(
                 name=self._asked_under[n],
                 said=quoted(now[n]),
-                options=predictions.options(self.variant, asked[n]),
+                options=predictions.options(self.variant, requested[n]),
             )
             for n in unread
         ]
         return self._shown(*strange, *lines, self._trouble)
 
     def _told(
-        self, method: str, kind: str, told: Any, named: Mapping[str, Any], known: Collection[str]
+        self, method: str, kind: str, text: Any, named: Mapping[str, Any], known: Collection[str]
     ) -> tuple[dict[str, Any], list[str]]:
         """Return what a method is told, by the names that it knows, and what is said of names that it does not know.
 
@@ -242,11 +242,11 @@ class StudySession:
         UnknownName
             It knows none of the names.
         """
-        found: dict[str, Any] = {}
+        results: dict[str, Any] = {}
         strange: list[UnknownName] = []
         under = self._asked_under if kind == "prediction" else self._keys
         by_key = {key: name for name, key in under.items()}
-        given = refusals.by_name(self.variant.lang, f"{self._name}.{method}", {} if told is None else told)
+        given = refusals.by_name(self.variant.lang, f"{self._name}.{method}", {} if text is None else text)
         for name, value in (*given.items(), *named.items()):
             if name == "student" and kind == "question":
                 continue
@@ -256,11 +256,11 @@ class StudySession:
                 continue
             if not isinstance(name, str) or name not in known:
                 strange.append(refusals.stranger(self.variant.lang, kind, name, tuple(by_key)))
-            elif is_blank(found.get(name)):
-                found[name] = wording.unwrapped(value)
-        if strange and not found:
+            elif is_blank(results.get(name)):
+                results[name] = wording.unwrapped(value)
+        if strange and not results:
             raise strange[0]
-        return found, [str(one) for one in strange]
+        return results, [str(item) for item in strange]
 
     def _is_passed_over(self, kind: str, name: Any) -> bool:
         """Return whether a name belongs to this exercise but is not asked here: theory in another variant, or
@@ -279,10 +279,10 @@ class StudySession:
         ids = self._numbered
         number = question if isinstance(question, int) and not isinstance(question, bool) else None
         if isinstance(question, str) and question not in ids:
-            said = re.fullmatch(
+            text = re.fullmatch(
                 r"\s*(?:question|q)?\.?\s*(?:n°|no\.?|#)?\s*(\d{1,3})\.?\s*", question, re.IGNORECASE
             )
-            number = int(said[1]) if said else None
+            number = int(text[1]) if text else None
         return ids[number - 1] if number is not None and 1 <= number <= len(ids) else question
 
     @property
@@ -298,15 +298,15 @@ class StudySession:
     def _left(self, names: Iterable[str]) -> str:
         return self._said["left"].format(names=_names(names))
 
-    def _compared(self, names: Iterable[str], own: Mapping[str, OwnAnswer]) -> str:
+    def _compared(self, names: Iterable[str], own_answers: Mapping[str, OwnAnswer]) -> str:
         """Return the predictions with their outcomes, as a list."""
         lines = []
-        for found in self._attempt.compared([self._asked[name] for name in names], own):
-            mark = {True: "✓", False: "✗", None: "?"}[found.right]
-            question = predictions.asked(self.variant, found.prediction)
-            line = self._said["compared"].format(said=f"`{found.said.replace('`', '')}`", found=found.found)
-            if found.right is None:
-                line += f" — {predictions.options(self.variant, found.prediction)}"
+        for result in self._attempt.compared([self._asked[name] for name in names], own_answers):
+            mark = {True: "✓", False: "✗", None: "?"}[result.right]
+            question = predictions.asked(self.variant, result.prediction)
+            line = self._said["compared"].format(said=f"`{result.said.replace('`', '')}`", found=result.found)
+            if result.right is None:
+                line += f" — {predictions.options(self.variant, result.prediction)}"
             lines.append(f"- {mark} {question} {line}")
         return "\n".join([f"**{self._said['predictions']}**", "", *lines]) if lines else ""
 
@@ -346,8 +346,8 @@ class StudySession:
             if mark.verdict == "missing" or (mark.verdict == "to_mark" and is_blank(mark.answer)):
                 unanswered.append(mark.part)
             else:
-                said = sentence_of(self.variant, mark, self._call("reveal", mark.part))
-                lines.append(f"- {sign_of(mark)} **{number}.** `{self._keys[mark.part]}` — {said}")
+                text = sentence_of(self.variant, mark, self._call("reveal", mark.part))
+                lines.append(f"- {sign_of(mark)} **{number}.** `{self._keys[mark.part]}` — {text}")
         if checked.copied is not None:
             lines.insert(0, self._said["copied"].format(seed=checked.copied) + "\n")
         total = self._said["total"].format(
@@ -408,14 +408,16 @@ class StudySession:
         last = min(max(last, 1), len(texts))
         self._hints[name] = last
         self._note(HINT, name, step=last)
-        said = self._said["hint"]
+        labels = self._said["hint"]
         pieces = [
-            f"**{said['step'].format(number=k, of=len(texts))}** {text}"
+            f"**{labels['step'].format(number=k, of=len(texts))}** {text}"
             if not text.startswith("$$")
-            else f"**{said['step'].format(number=k, of=len(texts))}**\n\n{text}"
+            else f"**{labels['step'].format(number=k, of=len(texts))}**\n\n{text}"
             for k, text in enumerate(texts[:last], start=1)
         ]
-        closing = said["more"] if last < len(texts) else said["last"].format(call=self._call("reveal", name))
+        closing = (
+            labels["more"] if last < len(texts) else labels["last"].format(call=self._call("reveal", name))
+        )
         return self._shown(*pieces, f"*{closing}*")
 
     def reveal(self, question: str | int = "") -> NotebookDisplay:
@@ -431,9 +433,9 @@ class StudySession:
         if question == "":
             return self._shown(self._which("reveal", self._said["which_reveal"]))
         name = self._named(question)
-        told = hints.revealed_text(self.variant, name)
+        text = hints.revealed_text(self.variant, name)
         self._note(REVEAL, name)
-        return self._shown(told, self._trouble)
+        return self._shown(text, self._trouble)
 
     def _note(self, what: str, part: Any, **more: Any) -> None:
         """Record that something was shown, once."""
@@ -458,27 +460,27 @@ class StudySession:
         parts = {p.id: p for p in predictions.moving(self.variant)}
         if not parts:
             return self._shown(self._said["no_plot"])
-        called = [self._named(name) for name in names]
-        for name in called:
+        label = [self._named(name) for name in names]
+        for name in label:
             if not isinstance(name, str) or name not in parts:
                 refusals.expect(self.variant.lang, "curve", name, [self._keys[n] for n in parts])
         own = self._own
-        wanted = [parts[name] for name in called] or list(parts.values())
+        wanted = [parts[name] for name in label] or list(parts.values())
         free = [p for p in wanted if p.quantity in own or self._attempt.is_revealed(p)]
         held = [self._keys[p.id] for p in wanted if p not in free]
         not_yet = self._said["not_yet"].format(names=_names(held)) if held else ""
         if not free:
             return self._shown(not_yet, self._trouble)
-        chosen = free if called else list(usual_parts(self.variant, free))
+        chosen = free if label else list(usual_parts(self.variant, free))
         symbol = self.variant.exercise.symbol
         drawn = curves(self.variant, chosen, self.answers, own)
-        said = self._said["plot"].format(list=_symbols(chosen, symbol), driver=f"${symbol(drawn.driver)}$")
+        texts = self._said["plot"].format(list=_symbols(chosen, symbol), driver=f"${symbol(drawn.driver)}$")
         notes = [
-            self._said[note].format(list=_symbols(found, symbol))
-            for note, found in (("beside_curve", drawn.beside), ("outside", drawn.outside))
-            if found
+            self._said[note].format(list=_symbols(result, symbol))
+            for note, result in (("beside_curve", drawn.beside), ("outside", drawn.outside))
+            if result
         ]
-        others = [] if called else [p.id for p in free if p not in chosen]
+        others = [] if label else [p.id for p in free if p not in chosen]
         more = (
             self._said["more_plots"].format(
                 names=_names(self._keys[n] for n in others), call=self._call("plot", others[0])
@@ -487,9 +489,9 @@ class StudySession:
             else ""
         )
         seen = {p.quantity for p in chosen}
-        asked = [p.id for p in predictions.over_the_cycle(self.variant) if p.quantity in seen]
+        requested = [p.id for p in predictions.over_the_cycle(self.variant) if p.quantity in seen]
         picture = SvgPicture(drawn.plot.svg(), drawn.plain)
-        return self._shown(said, picture, *notes, more, not_yet, self._compared(asked, own))
+        return self._shown(texts, picture, *notes, more, not_yet, self._compared(requested, own))
 
     # ----------------------------------------------------------- other variants
 
@@ -568,14 +570,14 @@ class StudySession:
         mark_what_came_unmarked(self._course, self._kept.file)
         advice = next_step(course, self._kept.progress, self._today)
         assert advice is not None  # the course has this exercise
-        kept = self._kept.beside(advice.exercise)
-        one = StudySession(course[advice.exercise].variant(self._base, self.variant.lang), kept)
-        begun = any(e["what"] != EXAMPLE for e in kept.progress.of(advice.exercise))
-        found = one.fresh() if begun else one
-        found._called = "following"
-        begin = self._said["next"]["begin"].format(call=f"`{found._called}.statement()`")
-        found._opening = f"{told_advice(course, advice, self.variant.lang)} {begin}"
-        return found
+        stored = self._kept.beside(advice.exercise)
+        item = StudySession(course[advice.exercise].variant(self._base, self.variant.lang), stored)
+        begun = any(e["what"] != EXAMPLE for e in stored.progress.of(advice.exercise))
+        result = item.fresh() if begun else item
+        result._called = "following"
+        begin = self._said["next"]["begin"].format(call=f"`{result._called}.statement()`")
+        result._opening = f"{told_advice(course, advice, self.variant.lang)} {begin}"
+        return result
 
     @property
     def _course(self) -> Course[Any]:
@@ -667,17 +669,17 @@ class ExampleSession(StudySession):
 
     def statement(self) -> NotebookDisplay:
         """Return the data, then the solution with its blanks."""
-        said = self._said["example"]
-        head = said["head"].format(title=f"**{self._whole.text.title}**", level=self.level, of=LEVELS)
+        texts = self._said["example"]
+        head = texts["head"].format(title=f"**{self._whole.text.title}**", level=self.level, of=LEVELS)
         sheet = handout(self._whole)
         given = [f"- {hints._given(self._whole, g.name)}" for g in sheet.given]
         pieces: list[str | SvgPicture] = [head]
         if sheet.figure is not None:
             pieces.append(SvgPicture(sheet.figure.outlined_svg(), sheet.figure_alt))
         pieces.append("\n".join(given))
-        pieces.append(told_steps(self._whole, self.level, self.variant.parts, self._keys, said))
+        pieces.append(told_steps(self._whole, self.level, self.variant.parts, self._keys, texts))
         fill = ", ".join(f'"{key}": ""' for key in self._keys.values())
-        pieces.append(said["fill"].format(call=f"`{self._name}.check({{{fill}}})`"))
+        pieces.append(texts["fill"].format(call=f"`{self._name}.check({{{fill}}})`"))
         return self._shown(*pieces, self._trouble)
 
 

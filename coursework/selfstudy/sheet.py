@@ -54,9 +54,9 @@ def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -
     Starved
         So many do not exist.
     """
-    found = distinct_variants(exercise, seed + 1, count + 1, lang)
+    result = distinct_variants(exercise, seed + 1, count + 1, lang)
     base = exercise.variant(seed, lang)
-    return [without_theory(v) for v in found if v.given != base.given][:count]
+    return [without_theory(v) for v in result if v.given != base.given][:count]
 
 
 def _fresh_questions(variant: Variant) -> tuple[Question, ...]:

@@ -129,8 +129,8 @@ class ProgressFile:
         if not path.exists():
             return
         known = {(e["seed"], e["part"], e["what"]) for e in self.progress.of(exercise)}
-        found = self._of_earlier(path, exercise)
-        self.add(e for e in found if (e["seed"], e["part"], e["what"]) not in known)
+        result = self._of_earlier(path, exercise)
+        self.add(e for e in result if (e["seed"], e["part"], e["what"]) not in known)
 
     def _of_earlier(self, path: Path, exercise: str) -> list[dict[str, Any]]:
         try:

@@ -25,10 +25,10 @@ def theory(exercise: CourseExercise[Any]) -> frozenset[str]:
     """
     if not exercise.folder.has_solutions:
         return frozenset()
-    asked = exercise.variants(_SAMPLE)
-    always = [p for p in asked[0].parts if all(p.id in v.part_ids for v in asked)]
+    requested = exercise.variants(_SAMPLE)
+    always = [p for p in requested[0].parts if all(p.id in v.part_ids for v in requested)]
     same = frozenset(p.id for p in always if p.id in unchanging(exercise) and not p.judge)
-    return frozenset() if len(same) == len(asked[0].parts) else same
+    return frozenset() if len(same) == len(requested[0].parts) else same
 
 
 @lru_cache(maxsize=64)
@@ -51,14 +51,14 @@ def _is_same(variants: list[Variant], quantity: str) -> bool:
     return all(_agree(value, values[0]) for value in values)
 
 
-def _agree(one: Any, other: Any) -> bool:
+def _agree(first: Any, other: Any) -> bool:
     """Return whether two references are equal up to the last digits."""
-    if isinstance(one, (int, float, complex, np.ndarray, list, tuple)):
+    if isinstance(first, (int, float, complex, np.ndarray, list, tuple)):
         try:
-            return bool(np.allclose(one, other, rtol=1e-9, atol=1e-9))
+            return bool(np.allclose(first, other, rtol=1e-9, atol=1e-9))
         except (TypeError, ValueError):
             return False
-    return bool(one == other)
+    return bool(first == other)
 
 
 def without_theory(variant: Variant) -> Variant:

@@ -42,55 +42,56 @@ def _one_of(text: str, kinds: tuple[str, ...]) -> str:
 
 def sign(text: Any) -> str:
     """Return ``+`` or ``-``; empty where neither or both are stated."""
-    said = folded(text)
-    if found := re.fullmatch(r"([+-])\s*(?:[\d.,]*|\([^()]*\))|([<>])\s*0", said):
-        return found[1] or {">": "+", "<": "-"}[found[2]]
-    return {"positive": "+", "negative": "-"}.get(_one_of(said, ("positive", "negative")), "")
+    wording = folded(text)
+    if match := re.fullmatch(r"([+-])\s*(?:[\d.,]*|\([^()]*\))|([<>])\s*0", wording):
+        return match[1] or {">": "+", "<": "-"}[match[2]]
+    return {"positive": "+", "negative": "-"}.get(_one_of(wording, ("positive", "negative")), "")
 
 
 def comparison(text: Any) -> str:
     """Return ``>``, ``<`` or ``=``; empty where none is stated."""
-    said = folded(text)
-    if found := re.fullmatch(r"([<>=])[^<>=]*", said):
-        return found[1]
-    said = re.split(r" (?:que|qu'|than|to|a) ?", said, maxsplit=1)[0]
+    wording = folded(text)
+    if match := re.fullmatch(r"([<>=])[^<>=]*", wording):
+        return match[1]
+    wording = re.split(r" (?:que|qu'|than|to|a) ?", wording, maxsplit=1)[0]
     return {"larger": ">", "smaller": "<", "equal": "="}.get(
-        _one_of(said, ("larger", "smaller", "equal")), ""
+        _one_of(wording, ("larger", "smaller", "equal")), ""
     )
 
 
 def quadrant(text: Any) -> int | None:
     """Return 1 to 4 from a digit, a Roman numeral or an ordinal, in figures or words."""
-    said = re.sub(
+    wording = re.sub(
         r"\b(?:quadrant|le|la|l'|dans|in|the|q|n°)(?![a-z])|(?<=\bq)(?=[1-4]$)|^q(?=[1-4]$)",
         " ",
         folded(text),
     )
-    said = said.strip()
-    if found := _ORDINAL.fullmatch(said):
-        return int(found[1])
-    if said in _ROMAN:
-        return _ROMAN[said]
+    wording = wording.strip()
+    if match := _ORDINAL.fullmatch(wording):
+        return int(match[1])
+    if wording in _ROMAN:
+        return _ROMAN[wording]
     number = next(
-        (n for n, kind in enumerate(("first", "second", "third", "fourth"), 1) if said in _called(kind)), None
+        (n for n, kind in enumerate(("first", "second", "third", "fourth"), 1) if wording in _called(kind)),
+        None,
     )
-    number = count(said) if number is None else number
+    number = count(wording) if number is None else number
     return number if number in (1, 2, 3, 4) else None
 
 
 def count(text: Any) -> int | None:
     """Return a whole number from 0 on, in figures or words, with or without ``times``."""
-    said = folded(text)
+    wording = folded(text)
     for times in sorted(_called("times"), key=len, reverse=True):
-        said = said.removesuffix(f" {times}")
-    if re.fullmatch(r"\+?\d{1,6}(?:[.,]0*)?", said):
-        return int(float(said.replace(",", ".")))
+        wording = wording.removesuffix(f" {times}")
+    if re.fullmatch(r"\+?\d{1,6}(?:[.,]0*)?", wording):
+        return int(float(wording.replace(",", ".")))
     for lang in languages():
         table = words(lang)["study"]["reads"]
         for names in (table["numbers"], table["often"]):
             groups = [[folded(w) for w in group.split("|")] for group in names]
-            if found := [n for n, group in enumerate(groups) if said in group]:
-                return found[0]
+            if results := [n for n, group in enumerate(groups) if wording in group]:
+                return results[0]
     return None
 
 
@@ -105,8 +106,8 @@ def numbers(text: Any) -> tuple[tuple[float, ...], bool]:
     """Return the possible readings of a number, with or without a unit, in the course's unit; and whether it
     is in degrees."""
     if isinstance(text, str):
-        if (whole := count(text)) is not None:
-            return (float(whole),), False
+        if (full := count(text)) is not None:
+            return (float(full),), False
         text = without_about(text)
     for unit in _UNITS:
         reading = read_number(text, unit)

@@ -52,19 +52,19 @@ class WorkedExample(NotebookDisplay):
 
     def _posed(self) -> list[str | SvgPicture]:
         """Return the statement, the figure, the data, and the questions."""
-        sheet, said = handout(self._asking), words(self.lang)["sheet"]
-        told = words(self.lang)["lesson"]["levels"]
-        head = told["whole" if not self.level else "bare" if self.level == BARE else "part"]
-        pieces: list[str | SvgPicture] = [f"**{head}{said['colon']} {sheet.title}.** {sheet.statement}"]
+        sheet, text = handout(self._asking), words(self.lang)["sheet"]
+        texts = words(self.lang)["lesson"]["levels"]
+        head = texts["whole" if not self.level else "bare" if self.level == BARE else "part"]
+        pieces: list[str | SvgPicture] = [f"**{head}{text['colon']} {sheet.title}.** {sheet.statement}"]
         if sheet.figure is not None:
             pieces.append(SvgPicture(sheet.figure.fitted(*_ROOM).outlined_svg(), sheet.figure_alt))
         pieces += [SvgPicture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
         given = ", ".join(hints._given(self.variant, g.name) for g in sheet.given)
         if given:
-            pieces.append(f"**{said['data']}{said['colon']}** {given}.")
+            pieces.append(f"**{text['data']}{text['colon']}** {given}.")
         wanted = {part.id for part in self.parts}
-        asked = [self._asked(q) for q in sheet.questions if q.id in wanted]
-        numbered = [f"{k}. {one}" for k, one in enumerate(asked, 1)]
+        requested = [self._asked(q) for q in sheet.questions if q.id in wanted]
+        numbered = [f"{k}. {item}" for k, item in enumerate(requested, 1)]
         return [*pieces, "\n".join(numbered)]
 
     def _asked(self, question: Question) -> str:
@@ -81,9 +81,9 @@ class WorkedExample(NotebookDisplay):
         wanted = {part.quantity for part in self.parts}
         if not self.level:
             return "\n\n".join([title, *map(_step, _leading_to(self._asking, wanted))])
-        said = words(self.lang)["lesson"]
-        told = told_steps(self._asking, self.level, self.left, self._keys, said, in_lesson=True)
-        return f"{title}\n\n{told}"
+        texts = words(self.lang)["lesson"]
+        text = told_steps(self._asking, self.level, self.left, self._keys, texts, in_lesson=True)
+        return f"{title}\n\n{text}"
 
     @property
     def _asking(self) -> Variant:
@@ -116,10 +116,10 @@ class WorkedExample(NotebookDisplay):
         for name in given:
             if name not in by_key and name not in by_key.values():
                 raise unknown("question", name, tuple(by_key), self.variant.exercise.name)
-        asked = self._asking
-        marking = grade(asked, {by_key.get(name, name): answer for name, answer in given.items()})
+        requested = self._asking
+        marking = grade(requested, {by_key.get(name, name): answer for name, answer in given.items()})
         lines = (
-            f"- {sign_of(mark)} `{self._keys[mark.part]}` — {sentence_of(asked, mark, '')}"
+            f"- {sign_of(mark)} `{self._keys[mark.part]}` — {sentence_of(requested, mark, '')}"
             for mark in marking.values()
             if mark.verdict != "missing"
         )
@@ -175,8 +175,8 @@ def worked(
     for part in parts:
         if part not in {*by_id, USUAL, ALL}:
             raise unknown("part", part, tuple(by_id), f"{exercise}, variant {seed}")
-    asked = variant.parts if chosen is None else [part for part in chosen if part.id in by_id]
-    return WorkedExample(variant, level, asked)
+    requested = variant.parts if chosen is None else [part for part in chosen if part.id in by_id]
+    return WorkedExample(variant, level, requested)
 
 
 @lru_cache(maxsize=64)

@@ -55,8 +55,8 @@ def directions_of(along: str, tilt: str = "") -> tuple[Whole, Whole]:
         axis, after = _WHOLE[along], _WHOLE[_NEXT[along]]
     else:
         axis = _three(along)
-        place = axis.index(0) if 0 in axis else -1
-        about: Whole = tuple(int(k == place) for k in range(3))  # type: ignore[assignment]
+        position = axis.index(0) if 0 in axis else -1
+        about: Whole = tuple(int(k == position) for k in range(3))  # type: ignore[assignment]
         after = _crossed(about, axis)
     return _turned(axis, tilt), _turned(after, tilt)
 
@@ -153,8 +153,8 @@ def each_distinct(function: Callable[..., Any], *columns: Any) -> Any:
     _, first, rows = np.unique(code, return_index=True, return_inverse=True)
     flat = [array.ravel() for array in arrays]
     answers = [function(*[column[index].item() for column in flat]) for index in first]
-    found = np.empty(len(answers), dtype=object)
-    found[:] = answers
+    result = np.empty(len(answers), dtype=object)
+    result[:] = answers
     if answers and all(isinstance(answer, (bool, int, float)) for answer in answers):
-        found = np.array(answers)
-    return found[rows.ravel()].reshape(arrays[0].shape)
+        result = np.array(answers)
+    return result[rows.ravel()].reshape(arrays[0].shape)

@@ -35,9 +35,9 @@ class _Loops:
         self.inputs, self.outputs = inputs, outputs
         self._ends = [joint.between for joint in self.joints]
         self.n = max(max(ends) for ends in self._ends)  #: moving bodies
-        for one, other in self._ends:
-            if one == other:
-                raise WrongValue(f"a joint lies between two different bodies; found {[one, other]}")
+        for first, other in self._ends:
+            if first == other:
+                raise WrongValue(f"a joint lies between two different bodies; found {[first, other]}")
         self._paths = self._walk()
         for name, body in (("input", inputs), ("output", outputs)):
             if body is not None and not 0 < body <= self.n:
@@ -50,8 +50,8 @@ class _Loops:
         waiting = [0]
         while waiting:
             body = waiting.pop(0)
-            for index, (one, other) in enumerate(self._ends):
-                for here, there, sense in ((one, other, 1), (other, one, -1)):
+            for index, (first, other) in enumerate(self._ends):
+                for here, there, sense in ((first, other, 1), (other, first, -1)):
                     if here == body and there not in paths:
                         paths[there] = {**paths[body], index: sense}
                         waiting.append(there)
@@ -66,16 +66,16 @@ class _Loops:
     def loops(self) -> list[dict[int, int]]:
         """Independent loops as joints with their senses; each joint outside the spanning tree closes one."""
         in_tree = {index for path in self._paths for index in path}
-        found = []
-        for index, (one, other) in enumerate(self._ends):
+        results = []
+        for index, (first, other) in enumerate(self._ends):
             if index in in_tree:
                 continue
-            loop = dict(self._paths[one])
+            loop = dict(self._paths[first])
             loop[index] = 1
             for joint, sense in self._paths[other].items():
                 loop[joint] = loop.get(joint, 0) - sense
-            found.append({joint: sense for joint, sense in loop.items() if sense})
-        return found
+            results.append({joint: sense for joint, sense in loop.items() if sense})
+        return results
 
     @cached_property
     def measure(self) -> TwistReference:
@@ -219,13 +219,13 @@ def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) ->
     rows = np.array(Joint(name, frame, here, pitch).twists(here, 1.0)).reshape(-1, 6)[:, _IN_PLANE]
     turns = bool(np.any(np.abs(rows[:, 0]) > _IN_PLANE_OR_SQUARE))
     slides = [row[1:] for row in rows if np.hypot(*row[1:]) > _IN_PLANE_OR_SQUARE * max(1.0, abs(pitch))]
-    found = [[1.0, 0.0, 0.0]] if turns else []
+    result = [[1.0, 0.0, 0.0]] if turns else []
     if len(slides) == 1:
         vx, vy = slides[0] / np.hypot(*slides[0])
-        found.append([0.0, vx, vy])
+        result.append([0.0, vx, vy])
     elif slides:
-        found += [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-    return np.array(found).reshape(-1, 3)
+        result += [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    return np.array(result).reshape(-1, 3)
 
 
 def planar_kind(joint: Joint) -> str:
@@ -254,12 +254,12 @@ class PlanarChain(_Loops):
     @cached_property
     def columns(self) -> list[np.ndarray]:
         at = self.measure
-        found = []
+        results = []
         for joint in self.joints:
             rows = _projected(joint.name, joint.frame, joint.pitch).copy()
             x, y, _ = joint.arm(at.origin, at.length)
             # The velocity at the origin of a rotation about z at (x, y).
             rows[:, 1] += y * rows[:, 0]
             rows[:, 2] -= x * rows[:, 0]
-            found.append(rows)
-        return found
+            results.append(rows)
+        return results

@@ -187,7 +187,7 @@ def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
     """Return the joints of a list of mappings, in order; refuse an empty list."""
     if isinstance(given, (Mapping, str)) or not isinstance(given, Iterable):
         raise WrongValue(f"a list of joints is a list of mappings; found {str(given)[:60]!r}")
-    joints = tuple(joint_of(one) for one in given)
+    joints = tuple(joint_of(item) for item in given)
     if not joints:
         raise WrongValue("a list of joints must hold at least one")
     return joints
@@ -196,9 +196,9 @@ def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
 def read_joints(given: Iterable[Joint | Mapping[str, Any]]) -> tuple[Joint, ...]:
     """Return a list of joints unchanged, or read it from mappings; a mixture is refused."""
     every: tuple[Any, ...] = tuple(given)
-    known = tuple(joint for joint in every if isinstance(joint, Joint))
-    if known and len(known) == len(every):
-        return known
+    known_names = tuple(joint for joint in every if isinstance(joint, Joint))
+    if known_names and len(known_names) == len(every):
+        return known_names
     return joints_of(every)
 
 

@@ -33,7 +33,7 @@ def all_free_at_every_pose(joints: Sequence[Joint]) -> bool:
     blocks = _blocks(joints)
     if any(len(block.span) == 3 for block in blocks):
         return True
-    return any(_span_together(blocks, one, other) for one, other in combinations(range(len(blocks)), 2))
+    return any(_span_together(blocks, first, other) for first, other in combinations(range(len(blocks)), 2))
 
 
 @dataclass(frozen=True)
@@ -51,22 +51,22 @@ class _SlideBlock:
 
 
 def _blocks(joints: Sequence[Joint]) -> list[_SlideBlock]:
-    found: list[_SlideBlock] = []
+    results: list[_SlideBlock] = []
     slides: list[Vector] = []
     turns: tuple[Vector, ...] | None = ()
     for joint in joints:
         own = _turns_of(joint)
         if turns != () and (joint.kind.translations or own is None):
-            found.append(_SlideBlock(_spanned(slides), turns))
+            results.append(_SlideBlock(_spanned(slides), turns))
             slides, turns = [], ()
         if own is None and joint.kind.translations:
             # It turns its own slide, or not: that is counted on for nothing.
-            found.append(_SlideBlock(_spanned(slides), None))
+            results.append(_SlideBlock(_spanned(slides), None))
             slides = []
             continue
         slides += joint.slides
         turns = None if own is None or turns is None else (*turns, *own)
-    return [*found, _SlideBlock(_spanned(slides), ())]
+    return [*results, _SlideBlock(_spanned(slides), ())]
 
 
 def _turns_of(joint: Joint) -> tuple[Vector, ...] | None:
@@ -80,17 +80,17 @@ def _spanned(slides: Sequence[Vector]) -> np.ndarray:
     return decompose(np.array(slides).reshape(-1, 3), "the directions of the slides", 1.0)[1]
 
 
-def _span_together(blocks: Sequence[_SlideBlock], one: int, other: int) -> bool:
+def _span_together(blocks: Sequence[_SlideBlock], item: int, other: int) -> bool:
     """Return whether two blocks span space at every position of the rotations between them."""
-    first, last = blocks[one].span, blocks[other].span
+    first, last = blocks[item].span, blocks[other].span
     axes: list[Vector] = []
-    for block in blocks[one:other]:
+    for block in blocks[item:other]:
         if block.turns is None:
             return False
         axes += block.turns
     if len(first) + len(last) < 3 or 0 in (len(first), len(last)):
         return False
-    a = blocks[one].normal if len(first) == 2 else first[0]
+    a = blocks[item].normal if len(first) == 2 else first[0]
     b = blocks[other].normal if len(last) == 2 else last[0]
     low, high = _angles(a, axes, b)
     if len(first) == len(last):  # two planes, which must not coincide

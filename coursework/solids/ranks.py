@@ -60,8 +60,8 @@ def decompose(rows: np.ndarray, what: str, scale: float | None = None) -> tuple[
     if not count or not width:
         return Rank(0, 1.0, 0.0), np.zeros((0, width)), np.eye(width)
     _, sizes, directions = np.linalg.svd(rows)
-    whole = (float(sizes[0]) or 1.0) if scale is None else scale
-    relative = sizes / whole
+    full = (float(sizes[0]) or 1.0) if scale is None else scale
+    relative = sizes / full
     doubtful = relative[(relative > ZERO) & (relative < DISTINCT)]
     if len(doubtful):
         raise CannotTell(
@@ -70,9 +70,9 @@ def decompose(rows: np.ndarray, what: str, scale: float | None = None) -> tuple[
             "or two points to coincide?"
         )
     rank = int((relative > ZERO).sum())
-    kept = float(relative[rank - 1]) if rank else 1.0
+    stored = float(relative[rank - 1]) if rank else 1.0
     dropped = float(relative[rank]) if rank < len(relative) else 0.0
-    return Rank(rank, kept, dropped), directions[:rank], directions[rank:]
+    return Rank(rank, stored, dropped), directions[:rank], directions[rank:]
 
 
 def rank_of(matrix: np.ndarray, what: str = "the system") -> Rank:

@@ -83,8 +83,8 @@ class _Space:
 
     def place(self, arm: np.ndarray) -> tuple[float, float, float]:
         """Return a point, given as a vector from the origin in lengths, in the unit of the data."""
-        found = np.asarray(self.measure.origin) + arm * self.measure.length
-        return _tidy(found, max(self.measure.length, *map(abs, self.measure.origin)))
+        result = np.asarray(self.measure.origin) + arm * self.measure.length
+        return _tidy(result, max(self.measure.length, *map(abs, self.measure.origin)))
 
 
 def _tidy(vector: np.ndarray, size: float) -> tuple[float, float, float]:

@@ -41,8 +41,8 @@ def wrench_components(of: Joint | Parallel | Series, point: Vector) -> str:
         return _named(np.roll(rows, 3, axis=1), WRENCH)
     if isinstance(of, Parallel):
         every = [wrench_components(joint, point).split() for joint in of.joints]
-        found = {name for names in every for name in names}
-        return " ".join(name for name in WRENCH if name in found) or "0"
+        results = {name for names in every for name in names}
+        return " ".join(name for name in WRENCH if name in results) or "0"
     return _named(np.roll(_perpendicular(_twists(of, point)), 3, axis=1), WRENCH)
 
 

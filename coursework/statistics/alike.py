@@ -37,11 +37,11 @@ class AlikeSheet(NamedTuple):
     def row(self) -> dict[str, Any]:
         """Return a line of ``alike.csv``."""
         more = ", …" if len(self.owners) > _NAMES else ""
-        told = ", ".join(self.owners[:_NAMES]) + more
+        text = ", ".join(self.owners[:_NAMES]) + more
         return dict(
             zip(
                 COLUMNS,
-                (self.student, self.exercise, self.seed, self.other, told, self.answers, self.of),
+                (self.student, self.exercise, self.seed, self.other, text, self.answers, self.of),
                 strict=True,
             )
         )
@@ -67,7 +67,7 @@ def alike(folder: Path) -> list[AlikeSheet]:
             right[exercise, part].setdefault(seed, value)
         elif verdict not in ("unreadable", "missing"):
             wrong[student, exercise, seed].append((part, value))
-    sorted_right = {place: _sorted(by_seed) for place, by_seed in right.items()}
+    sorted_right = {position: _sorted(by_seed) for position, by_seed in right.items()}
     return [
         AlikeSheet(student, exercise, seed, other, tuple(owners[exercise, other]), count, len(answers))
         for (student, exercise, seed), answers in wrong.items()
@@ -79,10 +79,10 @@ def alike(folder: Path) -> list[AlikeSheet]:
 
 def _measured(read_as: str) -> float | None:
     """Return a number with at least three digits; None for fewer, which agree by chance."""
-    found = _NUMBER.match(read_as)
-    if found is None or len(re.sub(r"e.*|\D", "", found[0]).lstrip("0")) < 3:
+    match = _NUMBER.match(read_as)
+    if match is None or len(re.sub(r"e.*|\D", "", match[0]).lstrip("0")) < 3:
         return None
-    return float(found[0])
+    return float(match[0])
 
 
 def _sorted(by_seed: dict[str, float]) -> tuple[np.ndarray, list[str]]:

@@ -52,13 +52,13 @@ class Names:
     def number(self, part: PartStatistics) -> int | None:
         """Return the number of the question; None where it differs between sheets or is unknown."""
         exercise = self.exercise(part.exercise)
-        asked = [p for p in exercise.spec.parts if not p.by_request] if exercise else []
-        ids = [p.id for p in asked]
-        always = {p.id for p in asked if p.when is None}
+        requested = [p for p in exercise.spec.parts if not p.by_request] if exercise else []
+        ids = [p.id for p in requested]
+        always = {p.id for p in requested if p.when is None}
         if part.part not in ids or not always <= self._marked[part.exercise] <= set(ids):
             return None
-        place = ids.index(part.part)
-        return place + 1 if always.issuperset(ids[:place]) else None
+        position = ids.index(part.part)
+        return position + 1 if always.issuperset(ids[:position]) else None
 
     def _known(self, part: ReportedQuestion) -> tuple[CourseExercise | None, Part | None]:
         """Return the exercise and the part; None for one that the course does not have."""
@@ -67,58 +67,58 @@ class Names:
 
     def symbol(self, part: PartStatistics) -> str:
         """Return LaTeX of the requested quantity; empty where no symbol names it, or the part is unknown."""
-        exercise, asked = self._known(part)
-        if exercise is None or asked is None or not asked.sort.is_scalar:
+        exercise, requested = self._known(part)
+        if exercise is None or requested is None or not requested.sort.is_scalar:
             return ""
-        return exercise.symbol(asked.quantity)
+        return exercise.symbol(requested.quantity)
 
     def question(self, part: ReportedQuestion) -> str:
         """Return the words of the question, shortened, as plain text; the part's id where there are none."""
-        exercise, asked = self._known(part)
-        if exercise is None or asked is None or self._lang not in exercise.languages:
+        exercise, requested = self._known(part)
+        if exercise is None or requested is None or self._lang not in exercise.languages:
             return part.part
         try:
-            said = prompt(exercise.variant(0, self._lang, (ALL,)), asked)
+            texts = prompt(exercise.variant(0, self._lang, (ALL,)), requested)
         except CourseworkError:
             return part.part
-        return shortened(plain_line(said, self._lang)) or part.part
+        return shortened(plain_line(texts, self._lang)) or part.part
 
     # ---------------------------------------------------------------- mistakes
 
-    def says(self, one: MistakeStatistics) -> str:
+    def says(self, item: MistakeStatistics) -> str:
         """Return the message for a mistake or a slip, as plain text; words that vary become an ellipsis, and
         an unknown message is empty."""
-        if one.kind == "slip":
-            return self._slip(one.name)
-        told = [plain_line(text, self._lang) for text in self._told(one)]
-        return _common(told) if told else ""
+        if item.kind == "slip":
+            return self._slip(item.name)
+        wording = [plain_line(text, self._lang) for text in self._told(item)]
+        return _common(wording) if wording else ""
 
-    def says_markdown(self, one: MistakeStatistics) -> str:
+    def says_markdown(self, item: MistakeStatistics) -> str:
         """Return the message with its formulas, if it is the same for all; otherwise an empty text."""
-        told = set(self._told(one))
-        return " ".join(told.pop().split()) if len(told) == 1 else ""
+        text = set(self._told(item))
+        return " ".join(text.pop().split()) if len(text) == 1 else ""
 
-    def mistake(self, one: MistakeStatistics, most: int = SHORT) -> str:
+    def mistake(self, item: MistakeStatistics, most: int = SHORT) -> str:
         """Return the first sentence of the message for a mistake, shortened; its own name where there is no
         message."""
-        first = re.split(r"(?<=[.?!])\s", self.says(one), maxsplit=1)[0]
-        return shortened(first.removesuffix("."), most) or one.name
+        first = re.split(r"(?<=[.?!])\s", self.says(item), maxsplit=1)[0]
+        return shortened(first.removesuffix("."), most) or item.name
 
-    def _told(self, one: MistakeStatistics) -> list[str]:
+    def _told(self, item: MistakeStatistics) -> list[str]:
         """Return the message for a mistake on two variants, Markdown."""
-        if one.kind == "slip":
+        if item.kind == "slip":
             return []
-        if one.exercise not in self._texts:
-            self._texts[one.exercise] = self._of_two_variants(one.exercise)
-        section = f"mistake {one.name}"
-        return [texts[section].text for texts in self._texts[one.exercise] if section in texts]
+        if item.exercise not in self._texts:
+            self._texts[item.exercise] = self._of_two_variants(item.exercise)
+        section = f"mistake {item.name}"
+        return [texts[section].text for texts in self._texts[item.exercise] if section in texts]
 
     def _slip(self, kind: str) -> str:
         table = words(self._lang)["marking"]
         sentence = table.get(f"slip_{kind}") or table["usual"].get("taken" if kind in TAKEN else kind, "")
-        told = sentence.removeprefix("{name}").lstrip(" :\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}")
-        said = plain_line(_OPEN.sub("…", told), self._lang)
-        return said[:1].upper() + said[1:]
+        text = sentence.removeprefix("{name}").lstrip(" :\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}")
+        texts = plain_line(_OPEN.sub("…", text), self._lang)
+        return texts[:1].upper() + texts[1:]
 
     def _of_two_variants(self, name: str) -> list[Mapping[str, Any]]:
         exercise = self.exercise(name)
@@ -133,14 +133,14 @@ def shortened(text: str, most: int = SHORT) -> str:
     """Shorten a text at the end of a word, with an ellipsis."""
     if len(text) <= most:
         return text
-    whole = text[:most].rpartition(" ")[0] or text[: most - 1]
-    return whole.rstrip(" ,;:.") + "…"
+    full = text[:most].rpartition(" ")[0] or text[: most - 1]
+    return full.rstrip(" ,;:.") + "…"
 
 
 def _common(texts: list[str]) -> str:
     """Return the words that the texts share, with an ellipsis for each that differs; empty where they differ
     in length."""
     split = [text.split() for text in texts]
-    if len({len(one) for one in split}) > 1:
+    if len({len(item) for item in split}) > 1:
         return ""
-    return " ".join(one[0] if len(set(one)) == 1 else "…" for one in zip(*split, strict=True))
+    return " ".join(item[0] if len(set(item)) == 1 else "…" for item in zip(*split, strict=True))

@@ -107,9 +107,9 @@ class StudentSummary(NamedTuple):
     unreadable: bool  #: something of theirs could not be read
 
 
-def marks_of(lines: Iterable[Line], told: Mapping[str, StudentSummary], rejected: int = 0) -> Marks:
+def marks_of(lines: Iterable[Line], entries: Mapping[str, StudentSummary], rejected: int = 0) -> Marks:
     """Return the columns of a class's marks, with the summary of each student."""
-    return _Columns(lines).marks(told, rejected)
+    return _Columns(lines).marks(entries, rejected)
 
 
 class _Columns:
@@ -119,27 +119,27 @@ class _Columns:
         self.students, self.parts, self.verdicts = _Numbered(), _Numbered(), _Numbered()
         self.student, self.part, self.verdict = (array("i") for _ in range(3))
         self.points, self.out_of = array("d"), array("d")
-        for who, exercise, asked, judged, got, of in lines:
-            self.student.append(self.students[who])
-            self.part.append(self.parts[exercise, asked])
+        for subject, exercise, requested, judged, got, of in lines:
+            self.student.append(self.students[subject])
+            self.part.append(self.parts[exercise, requested])
             self.verdict.append(self.verdicts[judged])
             self.points.append(got)
             self.out_of.append(of)
 
-    def marks(self, told: Mapping[str, StudentSummary], rejected: int) -> Marks:
+    def marks(self, entries: Mapping[str, StudentSummary], rejected: int) -> Marks:
         """Return the marks, with the summaries."""
         students, marked = self.students, len(self.students)
-        unread = [name for name, own in told.items() if own.unreadable]
-        for name in told:
+        unread = [name for name, own in entries.items() if own.unreadable]
+        for name in entries:
             students[name]
         student, part, verdict = (
             np.array(c, dtype=np.int64) for c in (self.student, self.part, self.verdict)
         )
         out_of = np.array(self.out_of, dtype=float)
         issued = np.bincount(student, out_of, minlength=len(students))
-        issued = np.maximum(issued, [told[s].out_of if s in told else 0.0 for s in students])
+        issued = np.maximum(issued, [entries[s].out_of if s in entries else 0.0 for s in students])
         blank = np.array([family_of(v) == "missing" for v in self.verdicts], dtype=bool)
-        asked_blank = sum(own.missing for own in told.values())
+        asked_blank = sum(own.missing for own in entries.values())
         without_line = max(0, asked_blank - int(np.count_nonzero(blank[verdict])))
         return Marks(
             tuple(students),
@@ -151,7 +151,7 @@ class _Columns:
             np.array(self.points, dtype=float),
             out_of,
             issued,
-            without_line if told else 0,
+            without_line if entries else 0,
             rejected,
             sum(1 for name in unread if students[name] >= marked),
         )
@@ -164,9 +164,9 @@ def unlike_summary(folder: Path, marks: Marks) -> list[str]:
     if not path.is_file() or "points" not in _header(path):
         return []
     sums = np.bincount(marks.student, marks.points, minlength=len(marks.students))
-    found = dict(zip(marks.students, sums.tolist(), strict=True))
-    told = _lines(path, ("student", "points", "out_of"), _Decimals())
-    return [name for name, points, _ in told if abs(found[name] - points) > 1e-5 * max(1.0, points)]
+    results = dict(zip(marks.students, sums.tolist(), strict=True))
+    text = _lines(path, ("student", "points", "out_of"), _Decimals())
+    return [name for name, points, _ in text if abs(results[name] - points) > 1e-5 * max(1.0, points)]
 
 
 def _counting(folder: Path, decimals: _Decimals) -> Iterator[tuple[Any, ...]]:
@@ -176,9 +176,9 @@ def _counting(folder: Path, decimals: _Decimals) -> Iterator[tuple[Any, ...]]:
         yield from _lines(path, _MARKS, decimals)
         return
     counts = dict(_lines(summary, ("student", SITTING)))
-    for sitting, who, *mark in _lines(path, (SITTING, *_MARKS), decimals):
-        if counts.get(who, sitting) == sitting:
-            yield who, *mark
+    for sitting, subject, *mark in _lines(path, (SITTING, *_MARKS), decimals):
+        if counts.get(subject, sitting) == sitting:
+            yield subject, *mark
 
 
 def _header(path: Path) -> list[str]:
@@ -205,11 +205,11 @@ def _no_marks(folder: Path) -> str:
         return f"{folder} is a file; give the folder that 'coursework grade' wrote, with marks.csv in it"
     if not folder.is_dir():
         return f"there is no folder {folder}; give the one that 'coursework grade' wrote"
-    found = sorted(p.name for p in folder.iterdir())
-    told = f"found {', '.join(found[:6])}{', …' if len(found) > 6 else ''}" if found else "it is empty"
+    results = sorted(p.name for p in folder.iterdir())
+    text = f"found {', '.join(results[:6])}{', …' if len(results) > 6 else ''}" if results else "it is empty"
     below = sorted(p.parent for p in folder.glob("*/marks.csv"))
     would = f"did you mean {below[0]}?" if below else "give the folder that 'coursework grade' wrote"
-    return f"{folder} holds no marks.csv ({told}); {would}"
+    return f"{folder} holds no marks.csv ({text}); {would}"
 
 
 def _check_verdicts(path: Path, verdicts: Mapping[str, int]) -> None:
@@ -262,9 +262,9 @@ def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[i
     names = [h.strip().casefold() for h in header]
     missing = [c for c in columns if c not in names]
     if missing:
-        found = ", ".join(n[:30] for n in names if n) or "nothing"
+        result = ", ".join(n[:30] for n in names if n) or "nothing"
         raise BadInput(
-            f"{path} needs the columns {', '.join(columns)}; {', '.join(missing)} missing, found {found}; "
+            f"{path} needs the columns {', '.join(columns)}; {', '.join(missing)} missing, found {result}; "
             "'coursework grade' writes them"
         )
     if twice := said_twice(header, columns):

@@ -129,14 +129,14 @@ class Statistics:
         """Return the number of students in each tenth of the points, shape (BINS,); a full score is in the
         last."""
         # A hair above its edge, so that rounding puts no 70 % below 70 %.
-        place = np.floor(self.percents * BINS / 100 + 1e-9)
-        return np.bincount(np.clip(place, 0, BINS - 1).astype(int), minlength=BINS)
+        position = np.floor(self.percents * BINS / 100 + 1e-9)
+        return np.bincount(np.clip(position, 0, BINS - 1).astype(int), minlength=BINS)
 
     def mistakes_of_exercises(self) -> list[MistakeStatistics]:
         """Return the mistakes summed over an exercise's parts by name, the most frequent first."""
         groups: dict[tuple[str, str, str], list[MistakeStatistics]] = {}
-        for one in self.mistakes:
-            groups.setdefault((one.exercise, one.kind, one.name), []).append(one)
+        for item in self.mistakes:
+            groups.setdefault((item.exercise, item.kind, item.name), []).append(item)
         answers = {(p.exercise, p.part): p.answers for p in self.parts}
         summed = [
             MistakeStatistics(
@@ -188,7 +188,7 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
     mean = np.bincount(marks.part, share, minlength=n) / np.maximum(marked, 1)
     lost = np.bincount(marks.part, marks.out_of - marks.points, minlength=n)
     askers = _askers(every)
-    told = _discriminations(marks, share, askers)
+    text = _discriminations(marks, share, askers)
 
     def place(index: int) -> tuple[int, int]:
         exercise, part = marks.parts[index]
@@ -203,7 +203,7 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
             students=askers[i],
             counts=dict(zip(VERDICTS, counts[i].tolist(), strict=True)),
             mean=float(mean[i]),
-            discrimination=told[i],
+            discrimination=text[i],
             lost=float(lost[i]),
         )
         for i in order
@@ -262,12 +262,12 @@ def _discriminations(marks: Marks, share: np.ndarray, askers: Sequence[int]) -> 
     lines = np.flatnonzero(compared)
     lines = lines[np.argsort(marks.part[lines], kind="stable")]
     ends = np.searchsorted(marks.part[lines], np.arange(len(marks.parts) + 1))
-    found: list[float | None] = []
+    results: list[float | None] = []
     for (start, end), students in zip(pairwise(ends), askers, strict=True):
         own = lines[start:end]
         enough = students >= ENOUGH and own.size > 0
-        found.append(correlation(share[own], rest[own]) if enough else None)
-    return found
+        results.append(correlation(share[own], rest[own]) if enough else None)
+    return results
 
 
 def correlation(x: np.ndarray, y: np.ndarray) -> float | None:
@@ -287,10 +287,10 @@ def _mistakes(
     code, which = np.unique(marks.part[lines] * kinds + marks.verdict[lines], return_inverse=True)
     counts = np.bincount(which, minlength=len(code))
     lost = np.bincount(which, (marks.out_of - marks.points)[lines], minlength=len(code))
-    rank = {index: place for place, index in enumerate(order)}
-    found = []
-    for one, count, points in zip(code.tolist(), counts.tolist(), lost.tolist(), strict=True):
-        part, verdict = divmod(one, kinds)
+    rank = {index: position for position, index in enumerate(order)}
+    results = []
+    for item, count, points in zip(code.tolist(), counts.tolist(), lost.tolist(), strict=True):
+        part, verdict = divmod(item, kinds)
         kind, _, name = marks.verdicts[verdict].partition(":")
         own = MistakeStatistics(
             marks.parts[part][0],
@@ -302,6 +302,6 @@ def _mistakes(
             lost=points,
             share_of_lost=points / all_lost if all_lost > 0 else 0.0,
         )
-        found.append((rank[part], own))
-    found.sort(key=lambda f: (-f[1].count, f[0], f[1].kind, f[1].name))
-    return tuple(own for _, own in found)
+        results.append((rank[part], own))
+    results.sort(key=lambda f: (-f[1].count, f[0], f[1].kind, f[1].name))
+    return tuple(own for _, own in results)

@@ -11,8 +11,8 @@ from coursework.statistics.marks import Line, Marks, StudentSummary, marks_of
 
 def marks_of_class(graded: Iterable[Graded], results: Mapping[str, Result], rejected: int = 0) -> Marks:
     """Return the columns of a class; for a student with several sittings only those of the one that counts."""
-    told = {student: _told(own) for student, own in results.items()}
-    return marks_of(_lines(graded, results), told, rejected)
+    text = {student: _told(own) for student, own in results.items()}
+    return marks_of(_lines(graded, results), text, rejected)
 
 
 def _told(own: Result) -> StudentSummary:
@@ -20,9 +20,9 @@ def _told(own: Result) -> StudentSummary:
 
 
 def _lines(graded: Iterable[Graded], results: Mapping[str, Result]) -> Iterator[Line]:
-    for one in graded:
-        if one.sitting != results[one.student].sitting:
+    for item in graded:
+        if item.sitting != results[item.student].sitting:
             continue
-        for part in (*one.answered, *one.unanswered):
-            line = one.lines[part]
-            yield one.student, one.exercise, part, line.verdict, line.points, line.out_of
+        for part in (*item.answered, *item.unanswered):
+            line = item.lines[part]
+            yield item.student, item.exercise, part, line.verdict, line.points, line.out_of

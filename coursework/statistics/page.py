@@ -69,8 +69,8 @@ def report(course: Course, statistics: Statistics, lang: str) -> Report:
 def mistake_rows(course: Course, statistics: Statistics, lang: str) -> Iterator[dict[str, Any]]:
     """Yield the lines of ``mistakes.csv``."""
     names = Names(course, statistics, lang)
-    for one in statistics.mistakes:
-        yield {c: {**one.row(), "says": names.says(one)}[c] for c in MISTAKE_COLUMNS}
+    for item in statistics.mistakes:
+        yield {c: {**item.row(), "says": names.says(item)}[c] for c in MISTAKE_COLUMNS}
 
 
 class _StatisticsPage:
@@ -88,20 +88,20 @@ class _StatisticsPage:
     # ---------------------------------------------------------------- sections
 
     def short(self) -> Section:
-        told = self.statistics
-        percents = told.percents
+        wording = self.statistics
+        percents = wording.percents
         rows = [
-            (self.said["students"], self._number(told.students)),
-            (self.said["silent"], self._number(told.silent)),
-            (self.said["unread"], self._number(told.unread)),
-            (self.said["answers"], self._number(told.answers)),
-            (self.said["without_line"], self._number(told.without_line)),
-            (self.verdicts["missing"], self._number(told.counts["missing"])),
-            (self.verdicts["unreadable"], self._number(told.counts["unreadable"])),
-            (self.said["rejected"], self._number(told.rejected)),
+            (self.said["students"], self._number(wording.students)),
+            (self.said["silent"], self._number(wording.silent)),
+            (self.said["unread"], self._number(wording.unread)),
+            (self.said["answers"], self._number(wording.answers)),
+            (self.said["without_line"], self._number(wording.without_line)),
+            (self.verdicts["missing"], self._number(wording.counts["missing"])),
+            (self.verdicts["unreadable"], self._number(wording.counts["unreadable"])),
+            (self.said["rejected"], self._number(wording.rejected)),
         ]
-        if told.counts[WAITING]:
-            rows.append((self.said["to_mark"], self._number(told.counts[WAITING])))
+        if wording.counts[WAITING]:
+            rows.append((self.said["to_mark"], self._number(wording.counts[WAITING])))
         if percents.size:
             rows.append((self.said["mean_percent"], self._percent(percents.mean() / 100)))
             rows.append((self.said["median_percent"], self._percent(np.median(percents) / 100)))
@@ -136,20 +136,21 @@ class _StatisticsPage:
         return bars(rows, self._chart_text(heading), self.said["axis_right"], full=100)
 
     def mistakes(self) -> Section:
-        told = self.statistics
+        wording = self.statistics
         rows = [
-            (self._mistake_label(m), m.count, str(m.count)) for m in told.mistakes_of_exercises()[:_CHARTED]
+            (self._mistake_label(m), m.count, str(m.count))
+            for m in wording.mistakes_of_exercises()[:_CHARTED]
         ]
         heading = self.said["chart_mistakes"]
         charts = self._charts(
             lambda: bars(rows, self._chart_text(heading), self.said["axis_answers"]), heading
         )
         tables, left_out = [], 0
-        for name in told.exercises:
-            own = [m for m in told.mistakes if m.exercise == name]
-            left_out += len(own[_LISTED:])
-            if own:
-                tables.append(self._mistake_table(name, own[:_LISTED]))
+        for name in wording.exercises:
+            selected = [m for m in wording.mistakes if m.exercise == name]
+            left_out += len(selected[_LISTED:])
+            if selected:
+                tables.append(self._mistake_table(name, selected[:_LISTED]))
         text = [self.said["mistakes_text"]]
         if left_out:
             text.append(self.said["mistakes_more"].format(left_out))
@@ -190,13 +191,13 @@ class _StatisticsPage:
         parts = {p.part: p for p in self.statistics.parts if p.exercise == exercise}
         rows = tuple(
             (
-                self._name(parts[one.part]),
-                self.names.says_markdown(one) or _as_it_is(self.names.says(one) or one.name),
-                self._number(one.count),
-                self._percent(one.share),
-                self._decimal(one.lost, 1),
+                self._name(parts[item.part]),
+                self.names.says_markdown(item) or _as_it_is(self.names.says(item) or item.name),
+                self._number(item.count),
+                self._percent(item.share),
+                self._decimal(item.lost, 1),
             )
-            for one in mistakes
+            for item in mistakes
         )
         heads = tuple(self.said[h] for h in ("part", "says", "part_answers", "share", "lost"))
         return Table(heads, rows, (False, False, True, True, True), self._heading(exercise))
@@ -205,18 +206,18 @@ class _StatisticsPage:
 
     def _reading(self) -> list[str]:
         if not self.statistics.answers:
-            found = [self.said["reading"]["nothing"]]
+            results = [self.said["reading"]["nothing"]]
         else:
-            found = [self._hardest(), self._discrimination(), self._costly()]
-        return [*found, self._to_look_at()]
+            results = [self._hardest(), self._discrimination(), self._costly()]
+        return [*results, self._to_look_at()]
 
     def _hardest(self) -> str:
         lost = [p for p in self.statistics.parts if p.marked and p.mean < 1]
         if not lost:
             return self.said["reading"]["all_full"]
         hardest = sorted(lost, key=lambda p: p.mean)[:3]
-        shown = [self._with(p, self._percent(p.mean)) for p in hardest]
-        return self.said["reading"]["hardest"].format(parts=listed(shown, self.lang))
+        displayed = [self._with(p, self._percent(p.mean)) for p in hardest]
+        return self.said["reading"]["hardest"].format(parts=listed(displayed, self.lang))
 
     def _discrimination(self) -> str:
         reading = self.said["reading"]
@@ -230,13 +231,13 @@ class _StatisticsPage:
             students=active, error=self._decimal(1 / math.sqrt(active - 1))
         )
         limit = self._decimal(WEAK)
-        weak = sorted(((p, d) for p, d in measured if d < WEAK), key=lambda one: one[1])
+        weak = sorted(((p, d) for p, d in measured if d < WEAK), key=lambda item: item[1])
         if not weak:
             return f"{reading['none_weak'].format(limit=limit)} {uncertain}"
-        shown = [self._with(p, self._decimal(d)) for p, d in weak[:_NAMED]]
-        parts = listed(shown, self.lang)
+        displayed = [self._with(p, self._decimal(d)) for p, d in weak[:_NAMED]]
+        parts = listed(displayed, self.lang)
         if len(weak) > _NAMED:
-            parts = ", ".join([*shown, reading["more"].format(len(weak) - _NAMED)])
+            parts = ", ".join([*displayed, reading["more"].format(len(weak) - _NAMED)])
         return f"{reading['weak'].format(limit=limit, parts=parts)} {uncertain}"
 
     def _costly(self) -> str:
@@ -253,14 +254,14 @@ class _StatisticsPage:
         )
 
     def _to_look_at(self) -> str:
-        told, reading = self.statistics, self.said["reading"]
-        waiting, rest = told.counts[WAITING], told.needs_a_look - told.counts[WAITING]
+        text, reading = self.statistics, self.said["reading"]
+        waiting, rest = text.counts[WAITING], text.needs_a_look - text.counts[WAITING]
         look = reading["look"].format(
-            total=rest, unreadable=told.counts["unreadable"], rejected=told.rejected
+            total=rest, unreadable=text.counts["unreadable"], rejected=text.rejected
         )
-        found = [look] if rest else []
-        found += [reading["to_mark"].format(self._number(waiting))] if waiting else []
-        return " ".join(found) or reading["no_look"]
+        result = [look] if rest else []
+        result += [reading["to_mark"].format(self._number(waiting))] if waiting else []
+        return " ".join(result) or reading["no_look"]
 
     # ------------------------------------------------------------------- names
 
@@ -298,10 +299,10 @@ class _StatisticsPage:
             part, formula_label(symbol, drawable_label(_short(part.part))) if symbol else name
         )
 
-    def _mistake_label(self, one: MistakeStatistics) -> str:
+    def _mistake_label(self, item: MistakeStatistics) -> str:
         several = len(self.statistics.exercises) > 1
-        name = _short(self.names.mistake(one), SHORT)
-        return _charted(f"{name} ({_short(self._heading(one.exercise), 24)})" if several else name)
+        name = _short(self.names.mistake(item), SHORT)
+        return _charted(f"{name} ({_short(self._heading(item.exercise), 24)})" if several else name)
 
     # ------------------------------------------------------------------ pieces
 

@@ -114,13 +114,13 @@ def _conditions(graph: JointGraph) -> list[tuple[Node, Node]]:
     A pivot of several bodies joins each of them to a pin, a point with two unknowns of its own, so that no
     body is preferred.
     """
-    found: list[tuple[Node, Node]] = []
+    results: list[tuple[Node, Node]] = []
     for index, joint in enumerate(graph.joints):
         if len(joint.bodies) == 2:
-            found.append((("body", joint.bodies[0]), ("body", joint.bodies[1])))
+            results.append((("body", joint.bodies[0]), ("body", joint.bodies[1])))
         else:
-            found += [(("pin", index), ("body", body)) for body in joint.bodies]
-    return found
+            results += [(("pin", index), ("body", body)) for body in joint.bodies]
+    return results
 
 
 def _rings(graph: JointGraph, driver: int) -> list[tuple[int, ...]]:
@@ -134,11 +134,11 @@ def _rings(graph: JointGraph, driver: int) -> list[tuple[int, ...]]:
     conditions = [ends for ends in conditions if ends != own]
     settled = _given_out(conditions, placed)
     arrows: dict[Node, set[Node]] = {node: set() for ends in conditions for node in ends}
-    for (one, other), (to_one, to_other) in zip(conditions, settled, strict=True):
+    for (first, other), (to_one, to_other) in zip(conditions, settled, strict=True):
         if to_one:
-            arrows[other].add(one)
+            arrows[other].add(first)
         if to_other:
-            arrows[one].add(other)
+            arrows[first].add(other)
     components = _components({node: after for node, after in arrows.items() if node not in placed}, placed)
     bodies = (tuple(sorted(n for kind, n in part if kind == "body")) for part in components)
     return [ring for ring in bodies if ring]
@@ -173,10 +173,10 @@ def _given_out(conditions: Sequence[tuple[Node, Node]], placed: set[Node]) -> li
                 held[node].append((number, end))
                 shares[number][end] += 1
                 return True
-            for place, (other, its_end) in enumerate(held[node]):
+            for index, (other, its_end) in enumerate(held[node]):
                 if other != number and settle(other, tried):
                     shares[other][its_end] -= 1
-                    held[node][place] = (number, end)
+                    held[node][index] = (number, end)
                     shares[number][end] += 1
                     return True
         return False
@@ -241,16 +241,16 @@ def _ordered(graph: JointGraph, driver: int, rings: Sequence[tuple[int, ...]]) -
     placed = {FRAME, driver}
     ready: list[tuple[int, tuple[int, ...]]] = []
     waiting = set(rings)
-    found: list[AssourGroup] = []
+    results: list[AssourGroup] = []
     while waiting or ready:
         able = [ring for ring in waiting if 2 * _pairs_of(graph, ring, placed) == 3 * len(ring)]
         for ring in able:
             heapq.heappush(ready, (len(ring), ring))
         waiting.difference_update(able)
         _, ring = heapq.heappop(ready)
-        found.append(AssourGroup(ring, class_of(graph, ring, placed)))
+        results.append(AssourGroup(ring, class_of(graph, ring, placed)))
         placed.update(ring)
-    return tuple(found)
+    return tuple(results)
 
 
 def _pairs_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:

@@ -61,11 +61,11 @@ def _exact(terms: Callable[..., tuple[Any, ...]], *lengths: Any) -> Any:
     excess = np.asarray(exact_sum(*terms(*ordered)))
     # Of up to six decimals, the usual case, the millionths are whole numbers, and so are their sums.
     millionths = np.rint(ordered * 1e6)
-    whole = ((millionths / 1e6 == ordered) & (millionths < 2.0**50)).all(axis=0)
-    excess = np.where(whole, sum(terms(*millionths)) / 1e6, excess)
-    open_ = ~whole & np.isfinite(excess) & (abs(excess) <= 2.0**-53 * ordered.sum(axis=0))
-    for place in map(tuple, np.argwhere(open_)):
-        excess[place] = sum(terms(*(Fraction(repr(r)) for r in ordered[:, *place].tolist())))
+    full = ((millionths / 1e6 == ordered) & (millionths < 2.0**50)).all(axis=0)
+    excess = np.where(full, sum(terms(*millionths)) / 1e6, excess)
+    open_ = ~full & np.isfinite(excess) & (abs(excess) <= 2.0**-53 * ordered.sum(axis=0))
+    for position in map(tuple, np.argwhere(open_)):
+        excess[position] = sum(terms(*(Fraction(repr(r)) for r in ordered[:, *position].tolist())))
     return excess[()]
 
 

@@ -76,15 +76,15 @@ def relabelled(number: int, joints: Sequence[PlaneJoint], drivers: Sequence[int]
     moving = sorted({body for joint in joints for body in joint.bodies} - {FRAME})
     new = {FRAME: FRAME, **dict(zip(moving, choices.shuffled(moving), strict=True))}
     records = tuple(
-        {"between": sorted(new[body] for body in joint.bodies), "kind": joint.kind, "at": _letter(place)}
-        for place, joint in enumerate(choices.shuffled(list(joints)))
+        {"between": sorted(new[body] for body in joint.bodies), "kind": joint.kind, "at": _letter(index)}
+        for index, joint in enumerate(choices.shuffled(list(joints)))
     )
     return GeneratedMechanism(records, tuple(new[body] for body in drivers))
 
 
-def _letter(place: int) -> str:
+def _letter(position: int) -> str:
     """Return the label of a joint: A to Z, then A1, B1, …"""
-    round_, letter = divmod(place, 26)
+    round_, letter = divmod(position, 26)
     return chr(ord("A") + letter) + (str(round_) if round_ else "")
 
 
@@ -107,8 +107,8 @@ class _Plant:
     def _kind(self, one_in: int) -> str:
         return "prismatic" if self.choices.below(one_in) == 0 else "revolute"
 
-    def _join(self, one: int, other: int, kind: str) -> None:
-        self.joints.append(PlaneJoint(tuple(sorted((one, other))), kind))
+    def _join(self, first: int, other: int, kind: str) -> None:
+        self.joints.append(PlaneJoint(tuple(sorted((first, other))), kind))
 
     def attach(self, group: str) -> None:
         hosts = self._hosts(_HANGS_ON[group])
@@ -121,15 +121,15 @@ class _Plant:
         No body occurs twice, save for the third joint of a group, which may share a body: its loop still
         moves.
         """
-        found = [self._first_host()]
-        found.append(self._second_host(found[0]))
-        taken = found[0] | found[1]
+        results = [self._first_host()]
+        results.append(self._second_host(results[0]))
+        occupied = results[0] | results[1]
         if count == 3:
-            alone = [host for host in found if len(host) == 1]
-            full = len(taken) == len(self.bodies)
+            alone = [host for host in results if len(host) == 1]
+            full = len(occupied) == len(self.bodies)
             again = alone and (full or self.choices.below(2) == 0)
-            found.append(self.choices.one_of(alone) if again else self._place(taken))
-        return found
+            results.append(self.choices.one_of(alone) if again else self._place(occupied))
+        return results
 
     def _first_host(self) -> frozenset[int]:
         return frozenset([self._idle.pop()]) if self._idle else self._place(frozenset())
@@ -141,18 +141,18 @@ class _Plant:
             return frozenset(self.bodies) - first
         return self._place(first)
 
-    def _place(self, taken: frozenset[int]) -> frozenset[int]:
+    def _place(self, occupied: frozenset[int]) -> frozenset[int]:
         """Return a body, or the bodies of a pivot, that are not taken; at least one other body stays free."""
         pivots = [
             frozenset(joint.bodies)
             for joint in self.joints
             if joint.kind == "revolute"
-            and not taken & set(joint.bodies)
-            and len(taken) + len(joint.bodies) < len(self.bodies)
+            and not occupied & set(joint.bodies)
+            and len(occupied) + len(joint.bodies) < len(self.bodies)
         ]
         if pivots and self.choices.below(4) == 0:
             return self.choices.one_of(pivots)
-        return frozenset([self.choices.one_of([body for body in self.bodies if body not in taken])])
+        return frozenset([self.choices.one_of([body for body in self.bodies if body not in occupied])])
 
     def _hang(self, body: int, host: frozenset[int], kind: str) -> None:
         """Join a new body to its host; a host that is a pivot becomes a multiple pivot."""
@@ -160,15 +160,15 @@ class _Plant:
             self._join(body, min(host), kind)
             return
         bodies = tuple(sorted(host))
-        place = self.joints.index(PlaneJoint(bodies, "revolute"))
-        self.joints[place] = PlaneJoint((*bodies, body), "revolute")
+        position = self.joints.index(PlaneJoint(bodies, "revolute"))
+        self.joints[position] = PlaneJoint((*bodies, body), "revolute")
 
     def _dyad(self, hosts: list[frozenset[int]]) -> None:
-        one, other = self._new_body(), self._new_body()
+        first, other = self._new_body(), self._new_body()
         # At most one of the three joints is a slide.
         slide = self.choices.below(5)
-        self._hang(one, hosts[0], "prismatic" if slide == 0 else "revolute")
-        self._join(one, other, "prismatic" if slide == 1 else "revolute")
+        self._hang(first, hosts[0], "prismatic" if slide == 0 else "revolute")
+        self._join(first, other, "prismatic" if slide == 1 else "revolute")
         self._hang(other, hosts[1], "revolute")
 
     def _triad(self, hosts: list[frozenset[int]]) -> None:
@@ -181,8 +181,8 @@ class _Plant:
 
     def _tetrad(self, hosts: list[frozenset[int]]) -> None:
         loop = [self._new_body() for _ in range(4)]
-        for one, other in zip(loop, [*loop[1:], loop[0]], strict=True):
-            self._join(one, other, "revolute")
+        for first, other in zip(loop, [*loop[1:], loop[0]], strict=True):
+            self._join(first, other, "revolute")
         self._hang(loop[0], hosts[0], "revolute")
         self._hang(loop[2], hosts[1], "revolute")
 

@@ -123,9 +123,9 @@ class JointGraph:
     def _parents(self) -> dict[int, int]:
         """Neighbour of each body on a shortest path to the frame; 0 for the frame."""
         neighbours: dict[int, set[int]] = {body: set() for body in self.bodies}
-        for one, other in self.pairs():
-            neighbours[one].add(other)
-            neighbours[other].add(one)
+        for first, other in self.pairs():
+            neighbours[first].add(other)
+            neighbours[other].add(first)
         parents, waiting = {FRAME: 0}, deque([FRAME])
         while waiting:
             body = waiting.popleft()
@@ -140,9 +140,9 @@ def copied(records: Iterable[Record]) -> tuple[dict[str, Any], ...]:
     return tuple({**record, "between": list(record["between"])} for record in records)
 
 
-def _cycle(parents: Mapping[int, int], one: int, other: int) -> tuple[int, ...]:
+def _cycle(parents: Mapping[int, int], first: int, other: int) -> tuple[int, ...]:
     """Return the cycle that a pair closes with the paths of its two bodies towards the frame."""
-    left, right = _way(parents, one), _way(parents, other)
+    left, right = _way(parents, first), _way(parents, other)
     while len(left) > 1 and len(right) > 1 and left[-2] == right[-2]:
         left.pop()
         right.pop()
@@ -150,10 +150,10 @@ def _cycle(parents: Mapping[int, int], one: int, other: int) -> tuple[int, ...]:
 
 
 def _way(parents: Mapping[int, int], body: int) -> list[int]:
-    way = [body]
-    while parents[way[-1]]:
-        way.append(parents[way[-1]])
-    return way
+    direction = [body]
+    while parents[direction[-1]]:
+        direction.append(parents[direction[-1]])
+    return direction
 
 
 def _joint(record: Any, number: int) -> PlaneJoint:
@@ -192,12 +192,12 @@ def _bodies(between: Any, where: str) -> tuple[int, ...]:
 
 def _merged(joints: Sequence[PlaneJoint]) -> list[PlaneJoint]:
     """Return the joints with pivots of one label merged."""
-    found = [joint for joint in joints if joint.kind != "revolute" or not joint.at]
+    results = [joint for joint in joints if joint.kind != "revolute" or not joint.at]
     labelled: dict[str, list[PlaneJoint]] = {}
     for joint in joints:
         if joint.kind == "revolute" and joint.at:
             labelled.setdefault(joint.at, []).append(joint)
-    return found + [_one_pivot(label, several) for label, several in labelled.items()]
+    return results + [_one_pivot(label, several) for label, several in labelled.items()]
 
 
 def _one_pivot(label: str, joints: list[PlaneJoint]) -> PlaneJoint:

@@ -53,26 +53,26 @@ def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, SlidingPa
         )
         return body == FRAME, not pivoted, len(graph.joints_of(body)), body
 
-    found = {}
+    results = {}
     for index, joint in enumerate(graph.joints):
         if joint.kind == "prismatic":
             block, guide = sorted(joint.bodies, key=partial(rank, index=index))
-            found[index] = SlidingPair(guide, block)
-    return found
+            results[index] = SlidingPair(guide, block)
+    return results
 
 
 def sites(graph: JointGraph) -> list[int]:
     """Return the site of each joint. A block with one other pivot sits on that pivot; a pivot takes one
     block."""
     number = list(range(len(graph.joints)))
-    taken: set[int] = set()
+    occupied: set[int] = set()
     for index, slide in slides(graph).items():
         others = [k for k, j in enumerate(graph.joints) if slide.block in j.bodies and k != index]
-        if len(others) != 1 or others[0] in taken or graph.joints[others[0]].kind != "revolute":
+        if len(others) != 1 or others[0] in occupied or graph.joints[others[0]].kind != "revolute":
             continue
         if slide.guide not in graph.joints[others[0]].bodies:
             number[index] = others[0]
-            taken.add(others[0])
+            occupied.add(others[0])
     order = sorted(set(number))
     return [order.index(site) for site in number]
 
@@ -82,8 +82,8 @@ def places(graph: JointGraph) -> tuple[complex, ...]:
     """Return the position of each joint of the graph, mm on paper, y up."""
     picture = _Picture(graph)
     pictures = picture.settled(picture.starts())
-    found = pictures[int(np.argmin(picture.cost(pictures)))]
-    return tuple(complex(found[site]) for site in picture.site)
+    result = pictures[int(np.argmin(picture.cost(pictures)))]
+    return tuple(complex(result[site]) for site in picture.site)
 
 
 class _Terms(NamedTuple):
@@ -149,8 +149,8 @@ class _Picture:
         """Add each contact with its two bodies, which must approach it from opposite sides."""
         for index, joint in enumerate(self.graph.joints):
             if joint.kind == "higher" and FRAME not in joint.bodies:
-                one, other = (set(self._sites_of(b)) - {self.site[index]} for b in joint.bodies)
-                self._contacts += [(self.site[index], p, q) for p in one for q in other if p != q]
+                first, other = (set(self._sites_of(b)) - {self.site[index]} for b in joint.bodies)
+                self._contacts += [(self.site[index], p, q) for p in first for q in other if p != q]
 
     def _pair_up(self) -> None:
         """Collect the pairs of lines and sites whose distance or angle counts, as index arrays."""
@@ -235,8 +235,8 @@ class _Picture:
 
     def _ends(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         p, q = z[:, self._p], z[:, self._q]
-        way = (q - p) / np.maximum(abs(q - p), 1e-9)
-        return p + self._a, q + self._b + self._beyond * way
+        direction = (q - p) / np.maximum(abs(q - p), 1e-9)
+        return p + self._a, q + self._b + self._beyond * direction
 
     def _angle(
         self, start: np.ndarray, end: np.ndarray, e: np.ndarray, f: np.ndarray, s: np.ndarray
@@ -247,8 +247,8 @@ class _Picture:
         return sharp + 6.0 * _short(-cosine, 0.95, below=False)
 
     def _leaving(self, start: np.ndarray, end: np.ndarray, line: np.ndarray, site: np.ndarray) -> np.ndarray:
-        way = end[:, line] - start[:, line]
-        return np.where(self._p[line] == site, way, -way)
+        direction = end[:, line] - start[:, line]
+        return np.where(self._p[line] == site, direction, -direction)
 
     # ---------------------------------------------------------------- search
 
@@ -256,7 +256,7 @@ class _Picture:
         """Return starting pictures: grounded sites in a row below, the others higher the farther they are
         from the frame."""
         depth = self._depths()
-        found = []
+        results = []
         for variant in range(_STARTS):
             z = np.zeros(self.count, complex)
             for level in range(max(depth) + 1):
@@ -267,8 +267,8 @@ class _Picture:
                 for k, s in enumerate(row):
                     across = self.box[0] * (k + 0.5 + 0.11 * level) / (len(row) + 0.3 * level)
                     z[s] = complex(round(across), round(min(self.box[1], 18.0 * level)))
-            found.append(z)
-        return np.array(found)
+            results.append(z)
+        return np.array(results)
 
     def _depths(self) -> list[int]:
         depth = [0 if self._grounded[s] else -1 for s in range(self.count)]
@@ -321,10 +321,10 @@ def _columns(rows: Sequence[Sequence[int]], width: int) -> np.ndarray:
 def _those(rows: np.ndarray, *touched: np.ndarray, also: Sequence[np.ndarray] = ()) -> _Once:
     """Return the columns of the rows with a touched entry, and the arrays ``also`` for them; nothing if there
     is none."""
-    keep = np.zeros(len(rows), bool)
+    selection = np.zeros(len(rows), bool)
     for column, mask in enumerate(touched):
-        keep |= mask[rows[:, column]]
-    return [(*rows[keep].T, *(values[keep] for values in also))] if keep.any() else []
+        selection |= mask[rows[:, column]]
+    return [(*rows[selection].T, *(values[selection] for values in also))] if selection.any() else []
 
 
 def _short(value: np.ndarray, least: np.ndarray | float, *, below: bool = True) -> np.ndarray:
@@ -332,8 +332,8 @@ def _short(value: np.ndarray, least: np.ndarray | float, *, below: bool = True) 
     return np.maximum(0.0, least - value if below else value - least)
 
 
-def _cosine(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    return (one * other.conj()).real / np.maximum(abs(one) * abs(other), 1e-9)
+def _cosine(first: np.ndarray, other: np.ndarray) -> np.ndarray:
+    return (first * other.conj()).real / np.maximum(abs(first) * abs(other), 1e-9)
 
 
 def _side(a: np.ndarray, b: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -346,9 +346,9 @@ def _cross(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.nda
 
 def _distance(z: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the distances from points to segments."""
-    way = b - a
-    along = ((z - a) * way.conj()).real / np.maximum(abs(way) ** 2, 1e-9)
-    return abs(z - a - np.clip(along, 0.0, 1.0) * way)
+    direction = b - a
+    along = ((z - a) * direction.conj()).real / np.maximum(abs(direction) ** 2, 1e-9)
+    return abs(z - a - np.clip(along, 0.0, 1.0) * direction)
 
 
 def _within(z: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:

@@ -47,13 +47,13 @@ def _kinds(graph: JointGraph) -> list[tuple[str, int]]:
     return sorted((joint.kind, len(joint.bodies)) for joint in graph.joints)
 
 
-def _matched(graph: JointGraph, known: JointGraph, found: dict[int, int]) -> Iterator[dict[int, int]]:
-    body = next((b for b in graph.bodies if b not in found), None)
+def _matched(graph: JointGraph, known: JointGraph, results: dict[int, int]) -> Iterator[dict[int, int]]:
+    body = next((b for b in graph.bodies if b not in results), None)
     if body is None:
-        yield found
+        yield results
         return
-    for other in sorted(set(known.bodies) - set(found.values()), key=lambda b: (b != body, b)):
-        more = {**found, body: other}
+    for other in sorted(set(known.bodies) - set(results.values()), key=lambda b: (b != body, b)):
+        more = {**results, body: other}
         if _seen(graph, body, more) == _seen(known, other, {b: b for b in more.values()}):
             yield from _matched(graph, known, more)
 

@@ -27,8 +27,8 @@ def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
     graph = JointGraph.of(joints)
     places = _places(graph)
     elements = []
-    for body, place in places.items():
-        elements += [circle(place, _RADIUS), note(place, str(body))]
+    for body, position in places.items():
+        elements += [circle(position, _RADIUS), note(position, str(body))]
     elements.append(circle(places[FRAME], _RADIUS * 1.2))
     for joint in graph.joints:
         if len(joint.bodies) > 2:
@@ -40,15 +40,15 @@ def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
         p, q = (places[body] for body in bodies)
         for index, joint in enumerate(several):
             aside = 1j * (q - p) / abs(q - p) * 2.5 * (2 * index + 1 - len(several))
-            one, other = _between(p, q)
-            elements.append(line(one + aside, other + aside, thin=False, label=_LETTERS[joint.kind]))
+            first, other = _between(p, q)
+            elements.append(line(first + aside, other + aside, thin=False, label=_LETTERS[joint.kind]))
     return Figure(*elements)
 
 
 def _between(p: complex, q: complex, *, ends: bool = True) -> Line:
     """Return the line from rim to rim, or from the rim of p to the point q."""
-    way = (q - p) / abs(q - p) * _RADIUS * 1.2
-    return p + way, q - way if ends else q
+    direction = (q - p) / abs(q - p) * _RADIUS * 1.2
+    return p + direction, q - direction if ends else q
 
 
 def _hub(joint: PlaneJoint, places: dict[int, complex]) -> complex:
@@ -92,24 +92,24 @@ def _tangle(graph: JointGraph, order: Sequence[int]) -> int:
             lines += [(places[body], _hub(joint, places)) for body in joint.bodies]
         else:
             lines.append((places[joint.bodies[0]], places[joint.bodies[1]]))
-    crossings = sum(_cross(one, other) for one, other in combinations(lines, 2))
+    crossings = sum(_cross(first, other) for first, other in combinations(lines, 2))
     dots = [*places.values(), *(_hub(joint, places) for joint in graph.joints if len(joint.bodies) > 2)]
     return crossings + 3 * sum(_passes(a, b, z) for a, b in lines for z in dots)
 
 
-def _cross(one: Line, other: Line) -> bool:
-    if set(one) & set(other):
+def _cross(first: Line, other: Line) -> bool:
+    if set(first) & set(other):
         return False
 
     def side(a: complex, b: complex, c: complex) -> bool:
         return ((b - a).conjugate() * (c - a)).imag > 0
 
-    (a, b), (c, d) = one, other
+    (a, b), (c, d) = first, other
     return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
 
 
-def _passes(a: complex, b: complex, place: complex) -> bool:
-    if place in (a, b):
+def _passes(a: complex, b: complex, position: complex) -> bool:
+    if position in (a, b):
         return False
-    along = ((place - a) * (b - a).conjugate()).real / abs(b - a) ** 2
-    return 0 < along < 1 and abs(a + along * (b - a) - place) < 1.3 * _RADIUS
+    along = ((position - a) * (b - a).conjugate()).real / abs(b - a) ** 2
+    return 0 < along < 1 and abs(a + along * (b - a) - position) < 1.3 * _RADIUS

@@ -96,9 +96,9 @@ class _Scheme:
         """Return the bar or plate of a body, its wheel, its guides, and its number once: at the block of a
         body without others."""
         rigid, number = self._rigid(body), str(body)
-        own = [k for k in self._own(body) if k in self.slides and self.slides[k].guide == body]
-        guides = [self._guide(k, self._base(k, rigid, own)) for k in own]
-        slots = [self._way_of(k, *guide) for k, guide in zip(own, guides, strict=True)]
+        selected = [k for k in self._own(body) if k in self.slides and self.slides[k].guide == body]
+        guides = [self._guide(k, self._base(k, rigid, selected)) for k in selected]
+        slots = [self._way_of(k, *guide) for k, guide in zip(selected, guides, strict=True)]
         if len(guides) == 1 and (lever := _straight(rigid, *guides[0])):
             return [*slots, link(*lever[0], label=number), link(*lever[1])]
         corners = [*rigid, *(foot for foot, _ in guides)]
@@ -109,18 +109,18 @@ class _Scheme:
 
     def _rigid(self, body: int) -> list[complex]:
         """Return the points that a bar or plate of the body connects: pins, blocks, contact noses."""
-        found: list[complex] = []
+        results: list[complex] = []
         for k in self._own(body):
             if k in self.slides and self.slides[k].guide == body:
                 continue
-            place = self.at[k]
+            position = self.at[k]
             if self.graph.joints[k].kind == "higher":
                 if self._wheel(body):
                     continue
-                place = self._nose(k, body)
-            if all(abs(place - z) > 1e-6 for z in found):
-                found.append(place)
-        return found
+                position = self._nose(k, body)
+            if all(abs(position - z) > 1e-6 for z in results):
+                results.append(position)
+        return results
 
     def _base(self, index: int, rigid: Sequence[complex], guides: Sequence[int]) -> complex:
         """Return the nearest point of the body from which a guide leads to its block."""
@@ -139,24 +139,24 @@ class _Scheme:
     def _guide(self, index: int, base: complex) -> tuple[complex, complex]:
         """Return the foot and tip of the slot in which a block slides."""
         here = self.at[index]
-        way = (here - base) / abs(here - base)
-        return here - way * min(BEYOND, 0.5 * abs(here - base)), here + way * BEYOND
+        direction = (here - base) / abs(here - base)
+        return here - direction * min(BEYOND, 0.5 * abs(here - base)), here + direction * BEYOND
 
     # ---------------------------------------------------------------- joints
 
     def _pins(self) -> list[Element]:
         """Return pivots, each with its letter and that of a block on it."""
-        found: list[Element] = []
+        results: list[Element] = []
         for k, joint in enumerate(self.graph.joints):
             if joint.kind == "revolute":
                 here = [j.at for i, j in enumerate(self.graph.joints) if self._together(i, k)]
                 letters = ",".join(dict.fromkeys([joint.at, *here])) if self.letters else ""
                 kind = ground_pivot if FRAME in joint.bodies else pin
-                found.append(kind(self.at[k], letters.strip(",")))
-        return found
+                results.append(kind(self.at[k], letters.strip(",")))
+        return results
 
-    def _together(self, one: int, other: int) -> bool:
-        return abs(self.at[one] - self.at[other]) < 1e-6
+    def _together(self, first: int, other: int) -> bool:
+        return abs(self.at[first] - self.at[other]) < 1e-6
 
     def _direction(self, index: int) -> float:
         """Return the direction of a slide in degrees: along its guide; a fixed guide is level, or along the
@@ -164,10 +164,10 @@ class _Scheme:
         slide = self.slides[index]
         here = self.at[index]
         if slide.guide != FRAME:
-            own = [
+            selected = [
                 k for k in self._own(slide.guide) if k in self.slides and self.slides[k].guide == slide.guide
             ]
-            return _degrees(here - self._base(index, self._rigid(slide.guide), own))
+            return _degrees(here - self._base(index, self._rigid(slide.guide), selected))
         if index in self.rails:
             return self.rails[index]
         others = [k for k in self._own(slide.block) if k != index]
@@ -187,7 +187,7 @@ class _Scheme:
             b for k, j in enumerate(self.graph.joints) if abs(self.at[k] - here) < 1e-6 for b in j.bodies
         }
         ways = [z - here for b in bodies - {FRAME} for z in self._rigid(b) if abs(z - here) > 1]
-        crowd = added((way / abs(way) / side).real for way in ways)
+        crowd = added((direction / abs(direction) / side).real for direction in ways)
         return -side if crowd > 0.3 else side
 
     def _slide(self, index: int) -> list[Element]:
@@ -196,17 +196,17 @@ class _Scheme:
         here, block = self.at[index], self.slides[index].block
         alone = len(self._rigid(block)) == 1
         label = str(block) if alone else self._letter(self.graph.joints[index])
-        found: list[Element] = [slider(here, self._direction(index), label or None)]
+        results: list[Element] = [slider(here, self._direction(index), label or None)]
         if self.slides[index].guide == FRAME:
             along = 1j * self._below(index) * _RAIL
-            found.append(rail(here - along, here + along))
-        return found
+            results.append(rail(here - along, here + along))
+        return results
 
     def _normal(self, joint: PlaneJoint) -> complex:
         """Return the unit normal from the first body of a contact towards the second."""
-        one, other = (self._comes_from(body, joint) for body in joint.bodies)
-        way = one - other
-        return way / abs(way) if abs(way) > 1e-6 else (one or -other) * 1j
+        first, other = (self._comes_from(body, joint) for body in joint.bodies)
+        direction = first - other
+        return direction / abs(direction) if abs(direction) > 1e-6 else (first or -other) * 1j
 
     def _comes_from(self, body: int, joint: PlaneJoint) -> complex:
         """Return a unit vector from a body's other joints to a contact; none for the frame."""
@@ -214,8 +214,8 @@ class _Scheme:
         others = [self.at[k] for k in self._own(body) if self.graph.joints[k] != joint]
         if body == FRAME or not others:
             return 0j
-        way = here - added(others) / len(others)
-        return way / (abs(way) or 1.0)
+        direction = here - added(others) / len(others)
+        return direction / (abs(direction) or 1.0)
 
     def _inward(self, index: int, body: int) -> complex:
         """Return the normal from a contact into one of its bodies."""
@@ -244,16 +244,16 @@ class _Scheme:
 
     def _contact(self, index: int) -> list[Element]:
         joint, here = self.graph.joints[index], self.at[index]
-        found: list[Element] = []
+        results: list[Element] = []
         for body in joint.bodies:
             if body != FRAME and not self._wheel(body):
-                found.append(ball(self._nose(index, body), _NOSE))
+                results.append(ball(self._nose(index, body), _NOSE))
             elif body == FRAME:
                 inward = self._inward(index, body)
                 shift = -inward * (BLOCK.imag + 0.175)
                 along = 1j * inward * _FLAT
-                found.append(rail(here + shift - along, here + shift + along))
-        return [*found, contact(here, self._letter(joint) or None)]
+                results.append(rail(here + shift - along, here + shift + along))
+        return [*results, contact(here, self._letter(joint) or None)]
 
     # ---------------------------------------------------------------- driver
 
@@ -277,14 +277,14 @@ class _Scheme:
         """Return the middle of the widest angle between bars at a pivot, and half the opening of an arrow in
         it."""
         around = [z for b in self.graph.moving for z in self._rigid(b) if here in self._rigid(b)]
-        taken = sorted({_degrees(z - here) for z in around if abs(z - here) > 1} | {-120.0, -60.0})
-        gaps = [(b - a, a) for a, b in zip(taken, [*taken[1:], taken[0] + 360], strict=True)]
+        occupied = sorted({_degrees(z - here) for z in around if abs(z - here) > 1} | {-120.0, -60.0})
+        gaps = [(b - a, a) for a, b in zip(occupied, [*occupied[1:], occupied[0] + 360], strict=True)]
         width, start = max(gaps, key=lambda gap: round(gap[0], 6))
         return start + width / 2, min(40.0, 0.35 * width)
 
 
-def _degrees(way: complex) -> float:
-    return math.degrees(cmath.phase(way))
+def _degrees(direction: complex) -> float:
+    return math.degrees(cmath.phase(direction))
 
 
 def _around(points: Sequence[complex]) -> list[complex]:
@@ -299,8 +299,8 @@ def _straight(rigid: Sequence[complex], foot: complex, tip: complex) -> tuple[tu
     if len(rigid) != 2:
         return ()
     base, other = sorted(rigid, key=lambda z: abs(z - foot))
-    way = (tip - foot) / abs(tip - foot)
-    ahead = (other - tip) / way
+    direction = (tip - foot) / abs(tip - foot)
+    ahead = (other - tip) / direction
     if abs(ahead.imag) > 1 or ahead.real <= 0:
         return ()
     return ((base, foot), (tip, other))

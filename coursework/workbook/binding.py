@@ -61,14 +61,14 @@ def bound(
         raise BadCourse(
             f"the exercise {name} has a name that is a page of every book as well; rename its files"
         )
-    found = tuple(chapters_of(course, lang))
-    numbers = [chapter.number for chapter in found]
+    results = tuple(chapters_of(course, lang))
+    numbers = [chapter.number for chapter in results]
     for number in chapters:
         if number not in numbers:
             raise BadInput(f"no chapter {number}; there is {', '.join(map(str, numbers)) or 'none'}")
-    wanted = [chapter for chapter in found if not chapters or chapter.number in chapters]
-    made = tuple(_chapter(course, chapter, lang, seed, advance) for chapter in wanted)
-    return Book(lang, course.folder.title(lang), seed, made, solved)
+    wanted = [chapter for chapter in results if not chapters or chapter.number in chapters]
+    created = tuple(_chapter(course, chapter, lang, seed, advance) for chapter in wanted)
+    return Book(lang, course.folder.title(lang), seed, created, solved)
 
 
 def pieces_of(course: Course[Any]) -> int:
@@ -118,6 +118,6 @@ def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant
 def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str) -> Practised:
     exercise = course[name]
     variant = _variant(exercise, lang, seed)
-    taught = tuple((one.name, one.title) for one in taught_by(course.folder, name, lang))
+    taught = tuple((item.name, item.title) for item in taught_by(course.folder, name, lang))
     solution = answer_sheet(variant) if course.folder.has_solutions else None
     return Practised(number, handout(variant), solution, taught)

@@ -76,18 +76,18 @@ def blocks(text: str, file: str) -> tuple[Block, ...]:
         A fence, a tag or a picture that is none.
     """
     _check_fences(text, file)
-    found: list[Block] = []
+    results: list[Block] = []
     end = 0
     for fence in _FENCE.finditer(text):
         if fence[2] not in _WORDS:
             continue
-        found += _prose(text, end, fence.start(), file)
+        results += _prose(text, end, fence.start(), file)
         if fence[2] == "answer":
-            found.append(LessonAnswer(fence[4].strip(), _line(text, fence.start(4), fence[4])))
+            results.append(LessonAnswer(fence[4].strip(), _line(text, fence.start(4), fence[4])))
         else:
-            found.append(_cell(fence, text, file))
+            results.append(_cell(fence, text, file))
         end = fence.end()
-    return (*found, *_prose(text, end, len(text), file))
+    return (*results, *_prose(text, end, len(text), file))
 
 
 def _cell(fence: re.Match[str], text: str, file: str) -> CodeCell:
@@ -137,16 +137,16 @@ def _check_fences(text: str, file: str) -> None:
         raise BadCourse(f"{file}, line {at}: the fence that opens here is never closed")
 
 
-def _check_opening(said: str, place: str) -> None:
+def _check_opening(text: str, position: str) -> None:
     """Refuse a malformed opening of a fence."""
-    known = _OPENED.fullmatch(said)
+    known = _OPENED.fullmatch(text)
     if known is None:
         raise BadCourse(
-            f"{place}: a fence opens with a word, and tags if wanted: python {{tags=shown}}; found {said!r}"
+            f"{position}: a fence opens with a word, and tags if wanted: python {{tags=shown}}; found {text!r}"
         )
     word = known[1]
     if word not in _WORDS and (near := closest(word.lower(), _WORDS)):
-        raise BadCourse(f"{place}: no fence {word!r}; did you mean {near!r}?")
+        raise BadCourse(f"{position}: no fence {word!r}; did you mean {near!r}?")
 
 
 def _image(image: re.Match[str], file: str, line: int) -> LessonImage:
@@ -155,7 +155,7 @@ def _image(image: re.Match[str], file: str, line: int) -> LessonImage:
         raise BadCourse(
             f"{file}, line {line}: the picture {image['target']!r}: write figure:NAME, or exercise:NAME?seed=3"
         )
-    pairs = (one.partition("=") for one in filter(None, (target[3] or "").split("&")))
+    pairs = (item.partition("=") for item in filter(None, (target[3] or "").split("&")))
     return LessonImage(
         image["caption"], target[1], target[2], {name: value for name, _, value in pairs}, line
     )

@@ -56,8 +56,8 @@ def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
     for words, line in lines_of_words(blocks):
         for link in links(words):
             if link.kind != TERM:
-                place = place_of(words, line, file, f"{link.kind}:{link.name}")
-                _check_link(course.folder, link, lang, place)
+                location = place_of(words, line, file, f"{link.kind}:{link.name}")
+                _check_link(course.folder, link, lang, location)
     return LessonFile(file, text, blocks)
 
 
@@ -76,12 +76,12 @@ def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
 
 def _told(course: Course[Any], name: str, lang: str, lesson: LessonFile) -> LessonText:
     with CellSession(lesson.file, course.folder.root) as session:
-        made = _Lesson(course, name, lang, session)
+        created = _Lesson(course, name, lang, session)
         for block in _untitled(lesson.blocks):
-            made.add(block)
+            created.add(block)
     number = 1 + course.folder.lessons.index(name)
     title = lesson_title(course.folder, name, lang)
-    return LessonText(name, number, lang, title, tuple(made.pieces), tuple(made.answers), lesson.terms)
+    return LessonText(name, number, lang, title, tuple(created.pieces), tuple(created.answers), lesson.terms)
 
 
 def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
@@ -116,10 +116,10 @@ class _Lesson:
             return
         if source.SHOWN in cell.tags or source.STILL in cell.tags:
             self.pieces.append(Code(cell.code))
-        shown = CellOutput() if source.STILL in cell.tags else self._session.run(cell)
-        self.pieces += shown.now
-        if shown.later:
-            self._later(shown.later)
+        displayed = CellOutput() if source.STILL in cell.tags else self._session.run(cell)
+        self.pieces += displayed.now
+        if displayed.later:
+            self._later(displayed.later)
 
     def _later(self, pieces: tuple[Piece, ...]) -> None:
         number = 1 + len(self.answers)
@@ -139,16 +139,16 @@ def _parted(text: str) -> Iterator[Piece]:
         yield Prose(after)
 
 
-def _check_link(folder: Folder, link: Link, lang: str, place: str) -> None:
-    known = folder.names if link.kind == "exercise" else folder.lessons
-    if link.name not in known:
+def _check_link(folder: Folder, link: Link, lang: str, position: str) -> None:
+    known_names = folder.names if link.kind == "exercise" else folder.lessons
+    if link.name not in known_names:
         raise BadCourse(
-            f"{place}: a link to the {link.kind} {link.name!r}, which there is not{nearest(link.name, known)}"
+            f"{position}: a link to the {link.kind} {link.name!r}, which there is not{nearest(link.name, known_names)}"
         )
     if link.section and link.section not in (there := lesson_sections(folder, link.name, lang)):
         numbers = ", ".join(map(str, there)) or "none"
         raise BadCourse(
-            f"{place}: a link to section {link.section} of {link.name}, which it has not; there is {numbers}"
+            f"{position}: a link to section {link.section} of {link.name}, which it has not; there is {numbers}"
         )
 
 
@@ -157,27 +157,27 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
 
     A language may fail to be read, drawn or run, or have other cells, pictures or answers than another.
     """
-    found, shapes = [], {}
+    result, shapes = [], {}
     for lang in course.folder.languages:
         try:
             lesson = opened(course, name, lang)
             _told(course, name, lang, lesson)
         except CourseworkError as fault:
-            found.append(f"{name}, {lang}: {fault}")
+            result.append(f"{name}, {lang}: {fault}")
             continue
-        found += _cut_formulas(lesson.text, name, lang)
+        result += _cut_formulas(lesson.text, name, lang)
         shapes[lang] = [type(b).__name__ for b in lesson.blocks if not isinstance(b, source.LessonProse)]
     if len({tuple(shape) for shape in shapes.values()}) > 1:
-        told = "; ".join(f"{lang}: {_counted(shape)}" for lang, shape in shapes.items())
-        found.append(f"{name} is not the same in every language: {told}")
-    return tuple(found)
+        text = "; ".join(f"{lang}: {_counted(shape)}" for lang, shape in shapes.items())
+        result.append(f"{name} is not the same in every language: {text}")
+    return tuple(result)
 
 
 def order_faults(course: Course[Any]) -> tuple[str, ...]:
     """Return the faults in the order of a course, a sentence each: missing titles, and unknown names in
     ``[lessons]``."""
     folder = course.folder
-    found = [
+    results = [
         f"exercises/course.toml: chapter {chapter.number}{where} has no title in {lang!r}"
         for chapter in folder.chapters
         for where, titles in _titles(chapter)
@@ -189,8 +189,8 @@ def order_faults(course: Course[Any]) -> tuple[str, ...]:
             for name in folder.names:
                 taught_by(folder, name, lang)
         except CourseworkError as fault:
-            return (*found, str(fault))
-    return tuple(found)
+            return (*results, str(fault))
+    return tuple(results)
 
 
 def _titles(chapter: Chapter) -> Iterator[tuple[str, Mapping[str, str]]]:

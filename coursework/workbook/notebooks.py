@@ -49,10 +49,10 @@ def lesson_notebook(course: Course[Any], name: str, lang: str, beside: Collectio
     pictures: dict[str, Mapping[str, str]] = {}
     for block in opened(course, name, lang).blocks:
         if isinstance(block, source.LessonImage):
-            shown = drawn(course, name, block, lang)
-            file = f"picture-{len(pictures) + 1}.{'svg' if shown.svg else 'png'}"
-            pictures[file] = _attached(shown)
-            pieces.append(_picture(file, shown, lang))
+            displayed = drawn(course, name, block, lang)
+            file = f"picture-{len(pictures) + 1}.{'svg' if displayed.svg else 'png'}"
+            pictures[file] = _attached(displayed)
+            pieces.append(_picture(file, displayed, lang))
         else:
             pieces.append(_written(course, block, lang, there))
     text = "\n\n".join([*pieces, *_practise(course, name, lang, there)]) + "\n"
@@ -81,35 +81,35 @@ def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -
             return f"*{link.said}*"
         if link.name not in there:
             return link.said
-        place = ""
+        position = ""
         if link.section:
-            place = "#" + quote(
+            position = "#" + quote(
                 lesson_sections(course.folder, link.name, lang)[link.section].replace(" ", "-")
             )
-        return f"[{link.said}]({notebook_name(link.name, lang)}{place})"
+        return f"[{link.said}]({notebook_name(link.name, lang)}{position})"
 
     return relinked(text, write)
 
 
-def _attached(shown: Drawn) -> Mapping[str, str]:
+def _attached(displayed: Drawn) -> Mapping[str, str]:
     """Return a picture by MIME type; a moving one is SVG, which moves in a notebook too."""
-    if shown.svg:
-        return {"image/svg+xml": base64.b64encode(shown.svg.encode()).decode()}
-    assert shown.figure is not None  # a picture is one or the other
-    return {"image/png": base64.b64encode(shown.figure.png(ppi=_PPI)).decode()}
+    if displayed.svg:
+        return {"image/svg+xml": base64.b64encode(displayed.svg.encode()).decode()}
+    assert displayed.figure is not None  # a picture is one or the other
+    return {"image/png": base64.b64encode(displayed.figure.png(ppi=_PPI)).decode()}
 
 
-def _picture(file: str, shown: Drawn, lang: str) -> str:
-    said = shown.said.replace("[", "(").replace("]", ")").replace("\n", " ")
-    caption = to_notebook_markdown(shown.caption, lang)
-    return f"![{said}](attachment:{file})" + (f"\n\n*{caption}*" if caption else "")
+def _picture(file: str, displayed: Drawn, lang: str) -> str:
+    text = displayed.said.replace("[", "(").replace("]", ")").replace("\n", " ")
+    caption = to_notebook_markdown(displayed.caption, lang)
+    return f"![{text}](attachment:{file})" + (f"\n\n*{caption}*" if caption else "")
 
 
 def _practise(course: Course[Any], name: str, lang: str, there: Collection[str]) -> list[str]:
     """Return the exercises of the lesson, each as a link to its notebook."""
-    exercises = [one for one in practised(course.folder, name, lang) if one in there]
+    exercises = [item for item in practised(course.folder, name, lang) if item in there]
     if not exercises:
         return []
-    lines = [f"- [{course[one].title(lang)}]({notebook_name(one, lang)})" for one in exercises]
+    lines = [f"- [{course[item].title(lang)}]({notebook_name(item, lang)})" for item in exercises]
     command = f"coursework notebook {' '.join(exercises)} --lang {lang}"
     return [f"## {words(lang)['lesson']['practise']}", "\n".join(lines), f"`{command}`"]

@@ -34,8 +34,8 @@ def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Dr
         There is no such figure, or none of that exercise, or nothing of it moves; says file and line.
     """
     try:
-        made = _of_lesson if image.kind == "figure" else _of_exercise
-        return made(course, lesson, image, lang)
+        created = _of_lesson if image.kind == "figure" else _of_exercise
+        return created(course, lesson, image, lang)
     except CourseworkError as fault:
         file = course.folder.relative(lesson_file(course.folder, lesson, lang))
         raise BadCourse(f"{file}, line {image.line}: {fault}") from fault
@@ -46,16 +46,16 @@ def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) 
         raise BadInput(
             f"the figure {image.name} has no caption, which tells what it shows to who does not see it"
         )
-    made = _call(course.folder, lesson, image.name)
-    if isinstance(made, Picture):
-        made = made.beside(course.folder.lesson_place)
-    said = plain_line(image.caption, lang)
-    if isinstance(made, (Figure, Picture)):
-        return Drawn(said, image.caption, figure=made)
-    if isinstance(made, Sequence) and made and all(isinstance(one, Figure) for one in made):
-        return _moving(made, said, image.caption, lang)
+    created = _call(course.folder, lesson, image.name)
+    if isinstance(created, Picture):
+        created = created.beside(course.folder.lesson_place)
+    text = plain_line(image.caption, lang)
+    if isinstance(created, (Figure, Picture)):
+        return Drawn(text, image.caption, figure=created)
+    if isinstance(created, Sequence) and created and all(isinstance(item, Figure) for item in created):
+        return _moving(created, text, image.caption, lang)
     raise BadCourse(
-        f"{image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; found {short(made)}"
+        f"{image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; found {short(created)}"
     )
 
 
@@ -63,7 +63,7 @@ def _call(folder: Folder, lesson: str, name: str) -> Any:
     module = folder.lesson_module(lesson)
     make = getattr(module, name, None)
     if not callable(make):
-        known = [n for n, one in vars(module).items() if callable(one) and not n.startswith("_")]
+        known = [n for n, item in vars(module).items() if callable(item) and not n.startswith("_")]
         raise BadCourse(f"no figure {name!r}{nearest(name, known)}")
     try:
         return make()
@@ -75,16 +75,16 @@ def _call(folder: Folder, lesson: str, name: str) -> Any:
         raise BadCourse(f"the figure {name} fails{where}: {type(fault).__name__}: {fault}") from fault
 
 
-def _moving(frames: Sequence[Figure], said: str, caption: str, lang: str) -> Drawn:
+def _moving(frames: Sequence[Figure], text: str, caption: str, lang: str) -> Drawn:
     """Return figures in a cycle, the first after the last."""
     elements, count = [frame.elements for frame in frames], len(frames)
-    shown, small = drawing(elements), drawing(elements, paper_mm=_CELL)
-    told = {"title": said, "words": said, "lang": lang}
+    displayed, small = drawing(elements), drawing(elements, paper_mm=_CELL)
+    entries = {"title": text, "words": text, "lang": lang}
     return Drawn(
-        said,
+        text,
         caption,
-        svg=moving_svg(shown, order=[*range(count), 0], first=0, seconds=SECONDS, **told),
-        stills=tuple(still_svg(small, round(k * count / STILLS) % count, **told) for k in range(STILLS)),
+        svg=moving_svg(displayed, order=[*range(count), 0], first=0, seconds=SECONDS, **entries),
+        stills=tuple(still_svg(small, round(k * count / STILLS) % count, **entries) for k in range(STILLS)),
     )
 
 

@@ -19,7 +19,7 @@ _CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
 _SECTION = re.compile(r"^## +(\d+)\.", re.MULTILINE)
 
 
-def proofread(found: Sequence[source.Block], file: str) -> None:
+def proofread(results: Sequence[source.Block], file: str) -> None:
     """Refuse words of a lesson that cannot be printed as intended.
 
     Parameters
@@ -34,20 +34,20 @@ def proofread(found: Sequence[source.Block], file: str) -> None:
     BadCourse
         It does not begin with its title, or has two; a section stands twice; a formula, a fence, a picture or a link is none.
     """
-    _check_title(found, file)
+    _check_title(results, file)
     sections: set[str] = set()
-    for words, line in lines_of_words(found):
-        place = partial(place_of, words, line, file)
-        pair_dollars(words, place)
-        read_formulas(words, place)
-        _check_pictures(words, place)
-        _check_leads(words, place)
-        sections |= _sections(words, sections, place)
+    for words, line in lines_of_words(results):
+        location = partial(place_of, words, line, file)
+        pair_dollars(words, location)
+        read_formulas(words, location)
+        _check_pictures(words, location)
+        _check_leads(words, location)
+        sections |= _sections(words, sections, location)
 
 
-def lines_of_words(found: Sequence[source.Block]) -> Iterator[tuple[str, int]]:
+def lines_of_words(results: Sequence[source.Block]) -> Iterator[tuple[str, int]]:
     """Yield the texts of a lesson, each with its first line number."""
-    for block in found:
+    for block in results:
         if isinstance(block, source.LessonImage):
             yield block.caption, block.line
         elif not isinstance(block, source.CodeCell):
@@ -57,18 +57,18 @@ def lines_of_words(found: Sequence[source.Block]) -> Iterator[tuple[str, int]]:
 def place_of(words: str, line: int, file: str, piece: str) -> str:
     """Return the file and the line of a piece of some words."""
     first = piece.split("\n")[0]
-    further = next((k for k, one in enumerate(words.split("\n")) if first in one), 0)
+    further = next((k for k, item in enumerate(words.split("\n")) if first in item), 0)
     return f"{file}, line {line + further}"
 
 
-def _check_title(found: Sequence[source.Block], file: str) -> None:
+def _check_title(results: Sequence[source.Block], file: str) -> None:
     """Refuse a lesson without exactly one title at its beginning."""
-    first = found[0] if found else None
+    first = results[0] if results else None
     if not isinstance(first, source.LessonProse) or not first.text.startswith("# "):
         raise BadCourse(f"{file}, line 1: a lesson begins with its title, # TITLE")
     titles = [
         (line + node.map[0], node.children[0].content)
-        for words, line in lines_of_words(found)
+        for words, line in lines_of_words(results)
         for node in tree(words).walk()
         if node.type == "heading" and node.tag == "h1" and node.map
     ]
@@ -76,27 +76,27 @@ def _check_title(found: Sequence[source.Block], file: str) -> None:
         raise BadCourse(f"{file}, line {line}: a lesson has one title; write ## before {title!r}")
 
 
-def _check_pictures(words: str, place: Callable[[str], str]) -> None:
+def _check_pictures(words: str, position: Callable[[str], str]) -> None:
     if picture := _PICTURE.search(_CODE.sub("", words)):
         raise BadCourse(
-            f"{place(picture[0])}: a picture stands on a line of its own: ![caption](figure:NAME)"
+            f"{position(picture[0])}: a picture stands on a line of its own: ![caption](figure:NAME)"
         )
 
 
-def _check_leads(words: str, place: Callable[[str], str]) -> None:
+def _check_leads(words: str, position: Callable[[str], str]) -> None:
     for node in tree(words).walk():
         href = unquote(str(node.attrs["href"])) if node.type == "link" else INDEX
         if href != INDEX and not _LEADS.fullmatch(href):
-            raise BadCourse(f"{place(f']({href}')}: the link {href!r} leads nowhere: write {_FORMS}")
+            raise BadCourse(f"{position(f']({href}')}: the link {href!r} leads nowhere: write {_FORMS}")
 
 
-def _sections(words: str, before: Set[str], place: Callable[[str], str]) -> set[str]:
+def _sections(words: str, before: Set[str], position: Callable[[str], str]) -> set[str]:
     """Return the section numbers that begin in some words; refuse a repeated one."""
-    found: set[str] = set()
+    results: set[str] = set()
     for number in _SECTION.findall(words):
-        if number in before | found:
+        if number in before | results:
             raise BadCourse(
-                f"{place(f'## {number}.')}: section {number} stands twice; number one of them anew"
+                f"{position(f'## {number}.')}: section {number} stands twice; number one of them anew"
             )
-        found.add(number)
-    return found
+        results.add(number)
+    return results

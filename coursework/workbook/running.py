@@ -77,11 +77,13 @@ class CellSession:
                 value = self._value(cell)
         except (Exception, SystemExit) as fault:
             raise BadCourse(self._said(fault, cell)) from fault
-        shown, told = shows(value), tuple(self._clean(Printed(printed.getvalue()), cell))
+        displayed, text = shows(value), tuple(self._clean(Printed(printed.getvalue()), cell))
         if isinstance(value, PredictionTable):
-            return CellOutput((), (*told, *shown.later))  # what it prints would tell what is to be predicted
-        now = (piece for one in shown.now for piece in self._clean(one, cell))
-        return CellOutput((*told, *now), shown.later)
+            return CellOutput(
+                (), (*text, *displayed.later)
+            )  # what it prints would tell what is to be predicted
+        now = (piece for item in displayed.now for piece in self._clean(item, cell))
+        return CellOutput((*text, *now), displayed.later)
 
     def _value(self, cell: CodeCell) -> Any:
         """Run the cell and return the value of its last line."""
@@ -97,20 +99,18 @@ class CellSession:
         """Return a fault as one line."""
         if isinstance(fault, SyntaxError) and fault.filename == self._file:
             return f"{self._file}, line {fault.lineno}: the cell is no Python: {fault.msg}"
-        place = f"{self._file}, line {self._line(fault, cell)}"
+        location = f"{self._file}, line {self._line(fault, cell)}"
         if isinstance(fault, SystemExit):
-            return f"{place}: the cell ends Python; a lesson's cells run to their last line"
-        return (
-            f"{place}: {fault if isinstance(fault, CourseworkError) else f'{type(fault).__name__}: {fault}'}"
-        )
+            return f"{location}: the cell ends Python; a lesson's cells run to their last line"
+        return f"{location}: {fault if isinstance(fault, CourseworkError) else f'{type(fault).__name__}: {fault}'}"
 
     def _line(self, fault: BaseException, cell: CodeCell) -> int:
-        own = [
+        selected = [
             frame.lineno
             for frame in traceback.extract_tb(fault.__traceback__)
             if frame.filename == self._file
         ]
-        return own[-1] or cell.line if own else cell.line
+        return selected[-1] or cell.line if selected else cell.line
 
     def _clean(self, piece: Piece, cell: CodeCell) -> Iterator[Piece]:
         """Yield the output of a cell, refused if it differs between runs or is too long."""
@@ -134,18 +134,18 @@ class CellSession:
         """Return a part of a text that holds for this machine or this moment alone: a memory address, a
         folder."""
         here = [self._kept.name, str(Path(self._kept.name).resolve()), str(self._root)]
-        places = [line for line in text.splitlines() if any(one in line for one in here)]
+        places = [line for line in text.splitlines() if any(item in line for item in here)]
         objects = _IN_MEMORY.findall(text)
         return (*places, *objects, "")[0]
 
 
-def _beside(root: Path, place: Path) -> Path:
+def _beside(root: Path, position: Path) -> Path:
     """Return a folder beside which the course appears under its name."""
     try:
-        (place / root.name).symlink_to(root, target_is_directory=True)
+        (position / root.name).symlink_to(root, target_is_directory=True)
     except OSError:  # a system, or a user, without links
         return root.parent
-    return place
+    return position
 
 
 def shows(value: Any) -> CellOutput:
@@ -166,6 +166,6 @@ def shows(value: Any) -> CellOutput:
     return CellOutput((Printed(str(value)),))
 
 
-def _pieces(shown: NotebookDisplay) -> Iterator[Piece]:
-    for piece in shown.pieces:
+def _pieces(displayed: NotebookDisplay) -> Iterator[Piece]:
+    for piece in displayed.pieces:
         yield Drawn(piece.said, svg=piece.svg) if isinstance(piece, ShownPicture) else Prose(piece)

@@ -69,13 +69,13 @@ def _notebooks(course: Course[Any], book: Book) -> Iterator[File]:
     folder = Path("notebooks")
     # Who studies alone asks the solutions.
     exercises = book.exercises if course.folder.has_solutions else ()
-    there = {*(one.name for one in book.lessons), *(one.handout.exercise for one in exercises)}
+    there = {*(item.name for item in book.lessons), *(item.handout.exercise for item in exercises)}
     for lesson in book.lessons:
         make = partial(lesson_notebook, course, lesson.name, book.lang, there)
         yield File(folder / notebook_name(lesson.name, book.lang), partial(_encoded, make))
-    for one in exercises:
-        make = partial(_study, course, one.handout.exercise, one.handout.seed, book.lang, there)
-        yield File(folder / notebook_name(one.handout.exercise, book.lang), partial(_encoded, make))
+    for item in exercises:
+        make = partial(_study, course, item.handout.exercise, item.handout.seed, book.lang, there)
+        yield File(folder / notebook_name(item.handout.exercise, book.lang), partial(_encoded, make))
     wheel = course.folder.wheel
     if wheel is not None:
         yield File(folder / wheel.name, wheel.read_bytes)
