@@ -14,6 +14,7 @@ from coursework.marking.attempts import Sheet, is_attempt
 from coursework.marking.calculator import fitting as fitting_in_radians
 from coursework.marking.calculator import values_in_radians
 from coursework.marking.usual import (
+    NEAR,
     Fit,
     last_digit,
     nearness,
@@ -220,7 +221,8 @@ def _explanations(
             along = key.wrong[name].get(judged_by.along, along)
         if part.sort.is_number and any(map(part.sort.is_trivial, reading.values)) and value:
             continue  # a nought is near to whatever is small, and shows nothing
-        if (fit := _fitting(part, reading.values, value, along, width)) is not None:
+        fit = _fitting(part, reading.values, value, along, width)
+        if fit is not None and _is_near(key, part, judged_by, reading.values[fit[0]], fit[1]):
             traces = () if part.sort.has_few_values else (f"mistake:{name}",)
             is_here = quantity in key.solution.mistakes[name].targets
             is_likely = _is_likely(name, key, judged_by, before)
@@ -230,16 +232,27 @@ def _explanations(
     seen = set()
     for slip in key.slips(judged_by):
         mended = [slip.mended(value) for value in reading.values]
-        if slip.kind not in seen and (fit := _fitting(part, mended, reference, None, width)) is not None:
+        fit = None if slip.kind in seen else _fitting(part, mended, reference, None, width)
+        if fit is None:
+            continue
+        if _is_near(key, part, judged_by, mended[fit[0]], fit[1]):
             seen.add(slip.kind)
             yield Explanation(f"slip:{slip.kind}", *fit, traces=_of_unit(slip, part.unit))
     for value in key.other_cases(judged_by):
         if (
             "other_case" not in seen
             and (fit := _fitting(part, reading.values, value, None, width)) is not None
+            and _is_near(key, part, judged_by, reading.values[fit[0]], fit[1])
         ):
             seen.add("other_case")
             yield Explanation("slip:other_case", *fit)
+
+
+def _is_near(key: Key, part: Part, judged_by: Part, answer: Any, gap: float) -> bool:
+    """Whether an answer is as near to a mistake's value as rounding brings it; whole margins hold too many numbers."""
+    if not part.sort.is_number or not part.has_margin:
+        return True
+    return gap <= nearness(part, key, judged_by, answer, NEAR)
 
 
 def fits_followed(

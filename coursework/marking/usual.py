@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 NAMED = 3  #: errors that fit one answer; of more than these none is named
 NEAR = 0.35  #: half-widths from the value that a usual error gives: among so many errors some are near to anything
 NEAR_DEGREES = 0.1  #: the same of a direction, of which fewer are far apart
+_LEAST = 0.04  #: half-widths within which rounding on the way brings whoever makes an error
+_BY_CHANCE = 1.2  #: half-widths of a number that all the errors in play may take together: the more there are, the nearer each must be
 _FEW = 3  #: digits of an answer that was rounded
 _SAME = 1e-9  #: of a value: what two ways to compute it may differ by
 
@@ -74,7 +76,7 @@ def own_errors_that_fit(
     if not part.sort.is_scalar or part.judge:
         return []
     errors, values = key.usual_ways_from(judged_by.quantity, own)
-    return _near(key, part, reading, judged_by, errors, values, lambda _: True)
+    return _near(key, part, reading, judged_by, errors, values, lambda _: True, is_own=True)
 
 
 def _near(
@@ -85,15 +87,23 @@ def _near(
     errors: tuple[UsualError, ...],
     values: np.ndarray,
     may_be: Callable[[UsualError], bool],
+    *,
+    is_own: bool = False,
 ) -> list[Fit]:
-    """The errors near whose values an answer is, of those that may be; of several that give one value the first."""
+    """The errors near whose values an answer is, of those that may be; of several that give one value the first.
+
+    What is computed from a student's own written answers is moved by their rounding.
+    """
     found: dict[tuple[int, float], Fit] = {}
     for place, answer in enumerate(reading.values):
         if part.sort.is_trivial(answer):
             continue  # whatever is left out of a product leads there
         away = _gaps(part, key, judged_by, values, answer)
-        near = nearness(part, key, judged_by, answer, NEAR_DEGREES if part.sort.turn else NEAR)
-        for index in np.flatnonzero(away <= near):
+        usual = NEAR_DEGREES if part.sort.turn else NEAR
+        apart = max(_LEAST, _BY_CHANCE / max(len(errors), 1))
+        near = nearness(part, key, judged_by, answer, usual if is_own else min(usual, apart))
+        is_written_so = not part.sort.turn and np.abs(values - answer) <= half_step(values, key.rules.digits)
+        for index in np.flatnonzero((away <= near) | (is_written_so & np.isfinite(away))):
             error, same = errors[index], (place, _rounded(float(values[index])))
             if may_be(error):
                 is_here = error.source == judged_by.quantity or error.kind in TAKEN

@@ -1,0 +1,34 @@
+"""Random wrong numbers get a cause by accident in fewer than one case of a hundred, over all exercises."""
+
+import random
+
+import pytest
+
+import coursework
+from coursework.language.numbers import significant
+from coursework.making.issuing import distinct_variants
+
+COURSE = coursework.open_course()
+MOST = 0.01
+
+
+@pytest.mark.slow
+def test_random_wrong_numbers_are_told_no_cause():
+    """To run it alone: python -m pytest -m slow tests/marking/test_causes_by_accident.py"""
+    told, tried = [], 0
+    for name in COURSE.names:
+        for variant in distinct_variants(COURSE[name], 0, 3, "en"):
+            numbers = [p for p in variant.parts if p.sort.is_number and not p.judge]
+            right = {p.id: significant(float(variant.key.reference[p.quantity]), 5) for p in numbers}
+            for part in (p for p in numbers if p.kind in ("number", "angle")):
+                rng = random.Random(f"{name}{variant.seed}{part.id}")
+                size = abs(float(variant.key.reference[part.quantity])) or 100.0
+                for others in ({}, right, {}, right):
+                    value = size * 10 ** rng.uniform(-1, 1) * rng.choice((-1, 1))
+                    value = rng.uniform(-180, 180) if part.sort.turn else value
+                    verdict = variant.grade({**others, part.id: significant(value, 4)})[part.id].verdict
+                    if verdict != "correct":
+                        tried += 1
+                        told += [(name, part.id, value, verdict)] * (verdict != "wrong")
+    assert tried > 2000
+    assert len(told) < MOST * tried, told
