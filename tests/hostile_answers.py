@@ -250,9 +250,21 @@ class Both(NamedTuple):
     other: str
 
 
+_IN_DIGITS = re.compile(r"-?[0-9]+(?:[.,][0-9]+)?")
+
+
 def holds_two(part: Part, both: Both, reading: Reading) -> bool:
     """Whether a text that was read says two values: a formula that does something with its numbers says one, and so do a ratio
-    to 1 and whole numbers with a comma between them."""
+    to 1, whole numbers with a comma between them, and a measured number with its margin or with 0 added."""
+    if part.sort.is_number and re.search(r"±|\+/-", both.text):
+        numbers = [
+            abs(float(said.replace(",", ".")))
+            for said in (both.one, both.other)
+            if _IN_DIGITS.fullmatch(said)
+        ]
+        return len(numbers) < 2 or not 0 < min(numbers) <= 0.05 * max(numbers)
+    if part.sort.is_number and re.search(r"\+ *0+$|^0+ *\+", both.text):
+        return False
     if re.fullmatch(r"-?[0-9]+,[0-9]+", both.text):
         return False
     if both.form not in FORMULAS or not part.sort.is_scalar:

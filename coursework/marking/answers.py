@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from coursework.model import Part
 from coursework.reading.plain_values import plain_answer
 from coursework.reading.reading import Reading
+from coursework.reading.spoken import refers_elsewhere, says_nothing
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -14,5 +16,10 @@ if TYPE_CHECKING:
 
 def read(variant: Variant, part: Part, answer: Any) -> Reading:
     """Read an answer as the part's kind asks; a vector has as many coordinates as its reference. Whatever
-    it is, it is read or unreadable."""
-    return part.sort.read(plain_answer(answer), part, variant)
+    it is, it is read, unreadable or missing: words that say that there is no answer are none."""
+    reading = part.sort.read(plain_answer(answer), part, variant)
+    if reading.status == "unreadable" and says_nothing(reading.text):
+        return replace(reading, status="missing", code="", found="")
+    if reading.status == "unreadable" and refers_elsewhere(reading.text):
+        return replace(reading, code="elsewhere", found="")
+    return reading

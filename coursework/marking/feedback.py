@@ -184,18 +184,15 @@ def questions(variant: Variant, parts: Sequence[str], joint: str) -> str:
     return f"{said} {listed(numbers, variant.lang, joint)}"
 
 
-_LOOSE_UNDERSCORE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")
-
-
 _HARMLESS = re.compile(r"[A-Za-z0-9 .,;:()=/°%²³−…+^-]*")  #: nearly all that is read
+_MARKUP = re.compile(r"([\\`*_$\[\]|#~<>&])")
 
 
 def _harmless(text: str) -> str:
-    """A quotation that no Markdown reader takes for markup; an underscore within a name is none, a star is a factor's."""
+    """A quotation as it was typed, which no Markdown reader takes for markup."""
     if _HARMLESS.fullmatch(text):
         return text
-    text = _LOOSE_UNDERSCORE.sub("", text)
-    return "".join(c for c in text if c.isprintable() and c not in "$`\\<>[]#|").replace("*", r"\*")
+    return _MARKUP.sub(r"\\\1", "".join(filter(str.isprintable, text)))
 
 
 def amount(variant: Variant, name: str, value: float) -> str:

@@ -19,6 +19,7 @@ from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.marking.attempts import sheet_of
 from coursework.marking.calculator import is_in_radians
+from coursework.marking.doubtful import settled
 from coursework.marking.exchanged import Exchange, exchanged
 from coursework.marking.explaining import Before, fits_followed, nearest_reading
 from coursework.marking.feedback import Said, echo, part_name, questions, say, say_not_read
@@ -62,6 +63,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
     key, known = variant.key, known or {}
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
+    readings = settled(variant, readings, answers)
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
     before = Before(sheet=sheet_of(asked, readings, known, key))

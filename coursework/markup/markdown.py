@@ -351,7 +351,7 @@ def to_notebook_markdown(markdown: str, lang: str) -> str:
     def prose(text: str) -> str:
         lines = text.split("\n")
         set_lines = (line if _TABLE_RULE.fullmatch(line) else typeset(line, lang) for line in lines)
-        return "\n".join(set_lines).replace("<", "&lt;")
+        return "\n".join(set_lines).replace(r"\<", "<").replace("<", "&lt;")
 
     displayed, end = [], 0
     for piece in _NOTEBOOK_PIECES.finditer(markdown):

@@ -22,10 +22,12 @@ class Amount:
 
 def written_amount(value: float, digits: str, unit: str = "", *, assumed: str = "") -> Amount:
     """``assumed``: a unit that the echo names although nobody wrote it."""
-    unit = _POWER.sub(lambda m: m[1].translate(_RAISED), unit.lstrip("*").strip()).replace("*", "·")
+    unit = _POWER.sub(lambda m: m[1].translate(_RAISED), unit.lstrip("*").strip())
+    unit = _STAR.sub("·", unit)
     return Amount(value, f"{digits} {unit or assumed}".strip(), unit)
 
 
+_STAR = re.compile(r"(?<!\*)\*(?!\*)")  #: a factor's, where two are a power
 _POWER = re.compile(r"\^\(([+-]?[0-9]+)\)")
 _RAISED = str.maketrans("0123456789+-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻")
 
@@ -59,10 +61,10 @@ _LOST_POWER = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*(?:\.10\s*\^|[x*]\s
 _FLAT_POWER = re.compile(r"([+-]?\s*[1-9](?:[.,][0-9]+)?)\s*[x*]\s*10(?=[1-9][0-9]?(?![0-9.,^]|\s*[*/^(]))")
 _TWO_WAYS = re.compile(r"[1-9][0-9]{0,2},[0-9]{3}")
 _SEXAGESIMAL = re.compile(
-    r"""(?P<sign>[+-]?)\s*(?P<degrees>[0-9]+)\s*°\s*
-        (?P<minutes>[0-9]+(?:[.,][0-9]+)?)\s*(?:'(?!')|(?=$))\s*
-        (?:(?P<seconds>[0-9]+(?:[.,][0-9]+)?)\s*(?:"|''|$))?""",
-    re.VERBOSE,
+    r"""(?P<sign>[+-]?)\s*(?P<degrees>[0-9]+)\s*(?:°|deg(?:r[ée]s?|rees?)?\.?(?![^\W\d_]))\s*
+        (?P<minutes>[0-9]+(?:[.,][0-9]+)?)\s*(?:'(?!')|min(?:utes?)?\.?(?![^\W\d_])|(?=$))\s*
+        (?:(?P<seconds>[0-9]+(?:[.,][0-9]+)?)\s*(?:"|''|s(?:ec(?:ondes?|onds?)?)?\.?$|$))?""",
+    re.VERBOSE | re.IGNORECASE,
 )
 _MIXED = re.compile(
     r"(?P<sign>[+-]?)\s*(?P<whole>[0-9]{1,3}) +(?P<above>[0-9]{1,2})\s*/\s*(?P<below>[0-9]{1,3})(?![0-9.,])"

@@ -15,7 +15,7 @@ import numpy as np
 from coursework.reading.expressions import plain_expression
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.reading.spelling import plain_spelling, shorten
-from coursework.reading.trees import Expression, Operation
+from coursework.reading.trees import Expression, Operation, numbers_in_degrees
 from coursework.reading.vocabulary import INVERSE, MAX_LENGTH, Unreadable, Value
 
 
@@ -55,7 +55,7 @@ class Equation:
 
         None where no such number is.
         """
-        sides = [_in_degrees(side.root) for side in (self.left, self.right)]
+        sides = [numbers_in_degrees(side.root) for side in (self.left, self.right)]
         if sides == [self.left.root, self.right.root]:
             return None
         return Equation(self.text, *(Expression(self.text, root) for root in sides))
@@ -76,43 +76,6 @@ class Equation:
 
 
 _UNDOES = {"asin": "sin", "acos": "cos", "atan": "tan", "atan2": "tan"}
-
-
-def _in_degrees(node: Operation) -> Operation:
-    """A tree in which plain numbers under a sine, a cosine, a tangent or ``e^(i …)`` are degrees, alone or added."""
-    args = tuple(map(_in_degrees, node.args))
-    if node.kind == "call" and node.name in ("sin", "cos", "tan"):
-        args = (_angle_in_degrees(args[0]),)
-    elif node.kind == "call" and node.name == "exp":
-        args = (_exponent_in_degrees(args[0]),)
-    elif node.kind == "power" and args[0] == Operation("constant", "e"):
-        args = (args[0], _exponent_in_degrees(args[1]))
-    return replace(node, args=args) if args != node.args else node
-
-
-def _angle_in_degrees(node: Operation) -> Operation:
-    """An angle whose plain numbers are degrees; what is said in terms of pi is in radians."""
-    if node.kind in ("sum", "neg"):
-        return replace(node, args=tuple(map(_angle_in_degrees, node.args)))
-    is_plain = node.constant and not (node.angle or node.speaks_of_pi or node.has_inverse)
-    return Operation("degree", args=(node,), angle=True) if is_plain else node
-
-
-def _exponent_in_degrees(node: Operation) -> Operation:
-    """An exponent of e in which plain numbers beside the imaginary unit are degrees: ``i*90``, ``i(theta2 + 90)``."""
-    if node.kind in ("sum", "neg"):
-        return replace(node, args=tuple(map(_exponent_in_degrees, node.args)))
-    if node.kind != "product" or sum(arg == _IMAGINARY for arg in node.args) != 1:
-        return node
-    others = [arg for arg in node.args if arg != _IMAGINARY]
-    if node.constant and not any(arg.angle or arg.speaks_of_pi or arg.has_inverse for arg in others):
-        return Operation("degree", args=(node,))
-    if len(others) == 1:
-        return replace(node, args=tuple(a if a == _IMAGINARY else _angle_in_degrees(a) for a in node.args))
-    return node
-
-
-_IMAGINARY = Operation("constant", "i")
 
 
 def _with_numbers(node: Operation, values: Mapping[str, float]) -> Operation:

@@ -15,6 +15,7 @@ import numpy as np
 
 from coursework.errors import nearest
 from coursework.reading.spelling import plain_spelling, primes_as_dots, shorten, spelled_out
+from coursework.reading.spoken import with_roots
 from coursework.reading.trees import MAX_EXPONENT, Expression, Operation, compute
 from coursework.reading.vocabulary import (
     FUNCTIONS,
@@ -37,6 +38,7 @@ _NUMBER = re.compile(
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*")
 _TIMES = re.compile(r"(?<=[0-9)])\s*[xX]\s*(?=[0-9(])|(?<=[0-9A-Za-z)])\s+[xX]\s+(?=[0-9A-Za-z(\\])")
 _FRACTION = re.compile(r"\\[dt]?frac\s*")
+_MINUS_ONE = re.compile(r"-\s*1(?![0-9.,])|\(\s*-\s*1\s*\)|\{\s*-\s*1\s*\}")
 _GROUPS = {"(": ")", "[": "]", "{": "}"}
 _PI = Operation("constant", "pi")
 
@@ -241,7 +243,12 @@ class _Parser:
 
     def call(self, name: str) -> Operation:
         self.deeper()
-        exponent = self.exponent_of_function() if self.take("^") else None
+        exponent = None
+        if self.take("^"):
+            if inverse := self.inverse_of(name):
+                name = inverse
+            else:
+                exponent = self.exponent_of_function()
         args = self.arguments(name) if self.peek() in ("(", "{") else (self.bare_argument(name),)
         if len(args) != (2 if name == "atan2" else 1):
             raise self.fail(f"{name} does not take {len(args)} arguments", "not_a_number", self.text)
@@ -249,8 +256,17 @@ class _Parser:
         node = _cotangent(args) if name == "cot" else Operation("call", name, args)
         return self.raised(node, exponent) if exponent else node
 
+    def inverse_of(self, name: str) -> str:
+        """The inverse of a function of an angle, as calculators print it: ``sin^-1``, ``cos^(-1)``; nothing where none is written."""
+        self.peek()
+        found = _MINUS_ONE.match(self.text, self.at)
+        if found is None or name not in ("sin", "cos", "tan"):
+            return ""
+        self.at = found.end()
+        return f"a{name}"
+
     def exponent_of_function(self) -> Operation:
-        """``cos^2(x)``; a negative one is refused, since ``cos^-1`` means two things."""
+        """``cos^2(x)``; a negative one but -1 is refused: it means two things."""
         exponent = self.group() if self.peek() in ("(", "{") else self.number()
         if exponent.kind != "number":
             raise self.fail("this power of a function has two meanings", "not_a_number", self.text)
@@ -319,7 +335,7 @@ def plain_expression(plain: str, variables: Iterable[str] = (), text: str = "") 
     """:func:`parse_expression` of a text whose spelling is plain; ``text`` is how it was written."""
     text = text or plain
     vocabulary = vocabulary_of(tuple(variables))
-    plain = spelled_out(plain)
+    plain = spelled_out(with_roots(plain))
     if vocabulary.variables and ("'" in plain or '"' in plain):
         plain = primes_as_dots(plain)
     if "x" not in vocabulary.variables:

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from decimal import Decimal
+from fractions import Fraction
 from functools import lru_cache
 from numbers import Real
 from typing import Any
@@ -20,7 +21,6 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongUnit
-from coursework.language.words import languages, words
 from coursework.reading.digits import (
     LITERAL,
     WORD,
@@ -39,15 +39,14 @@ from coursework.reading.expressions import plain_expression
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.reading.scales import is_of_paper, restated
 from coursework.reading.spelling import shorten
-from coursework.reading.trees import Expression, Operation, without_idle
+from coursework.reading.spoken import number_words, with_signs
+from coursework.reading.trees import Expression, Operation, bare_angles, numbers_in_degrees, without_idle
 from coursework.reading.units import Unit, parse_unit, plain_unit
 from coursework.reading.vocabulary import FUNCTIONS, MAX_LENGTH, Unreadable
 
 _MAX_INTEGER = 10**15
 NAME = re.compile(r"(?:[^\W\d_]|[\\|‖])[^=≈≃:]{0,39}?\s*(?:=|≈|≃|:)\s*(?=\S)")
-_ABOUT = re.compile(
-    r"(?:≈|≃|~|=|(?:environ|env\.|env|about|approximately|approx\.?|circa|ca\.|soit)(?![^\W\d_]))\s*", re.I
-)
+_ABOUT = re.compile(r"(?:≈|≃|~|=|(?:env|circa|ca\.|soit)(?![^\W\d_]))\s*", re.I)
 _NOT_FINITE = re.compile(r"[+-]?\s*(?:nan|inf(?:inity|ini)?|∞)(?![^\W\d_])", re.I)
 _TWO_VALUES = re.compile(
     r"±|\+/-|\+-|\.\.|…|;|<|>|≤|≥|(?<![^\W\d_])(?:à|to|ou|or|et|and|entre|between)(?![^\W\d_])", re.I
@@ -116,14 +115,7 @@ def _is_equation(name: str) -> bool:
 def says_value(name: str) -> bool:
     """Whether what stands before an equals sign or a colon says a value itself: ``not 3 :``, ``x or 2 =``, ``two =``."""
     said = name.rstrip(" =≈≃:").casefold()
-    return bool(_NO_NAME.search(said)) or said in _number_words()
-
-
-@lru_cache(maxsize=1)
-def _number_words() -> frozenset[str]:
-    """Numbers in words, of every language."""
-    names = (name for lang in languages() for name in words(lang)["study"]["reads"]["numbers"])
-    return frozenset(word.casefold() for name in names for word in name.split("|"))
+    return bool(_NO_NAME.search(said)) or said in number_words()
 
 
 def _formula(text: str, target: Unit) -> list[Amount]:
@@ -148,6 +140,8 @@ def _formula(text: str, target: Unit) -> list[Amount]:
 
 def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target: Unit) -> list[Amount]:
     """The values of a formula: one, but for ``1/2π``, which is (1/2)π or 1/(2π)."""
+    if expression.other is None and not (unit or target).is_angle:
+        expression = _meant(expression)
     if not expression.is_angle and (unit or target).is_angle:
         if expression.other and not expression.is_plain_quotient:
             raise Stop("two_values", expression.text)
@@ -182,6 +176,34 @@ _FEW_TURNS = 2 * math.tau  #: rad, beyond which a number in a formula of an angl
 _PART_OF_PI = math.pi / 12
 
 
+def _meant(expression: Expression) -> Expression:
+    """A formula with the plain numbers in its sines, cosines and tangents as they are meant: in degrees, where they can be nothing
+    else; in radians, where each is a part of pi.
+
+    Raises
+    ------
+    Stop
+        Nothing tells which, and it matters: ``degrees_or_radians``.
+    """
+    root = numbers_in_degrees(expression.root)
+    if root == expression.root:
+        return expression
+    shown = Expression(expression.text, root)
+    angles = [abs(angle) for angle in bare_angles(expression.root)]
+    if any(angle > math.tau for angle in angles):
+        return shown
+    if _are_parts_of_pi(angles):
+        return expression
+    if math.isclose(shown.evaluate(), expression.evaluate(), rel_tol=1e-9, abs_tol=1e-12):
+        return expression
+    raise Stop("degrees_or_radians", expression.text)
+
+
+def _are_parts_of_pi(angles: Sequence[float]) -> bool:
+    """Whether angles are parts of pi in decimals, 1.571."""
+    return bool(angles) and all(abs(n - _PART_OF_PI * round(n / _PART_OF_PI)) <= 1e-3 * n for n in angles)
+
+
 def _of_angle(expression: Expression, unit: Unit | None, unit_text: str, target: Unit) -> Amount:
     """The one value of a formula of an angle, in the unit that the student chose: by writing it, or by what the formula holds.
 
@@ -201,9 +223,9 @@ def _of_angle(expression: Expression, unit: Unit | None, unit_text: str, target:
         return written_amount(in_unit(value, unit, target), short_number(value), unit_text)
     own = _unit_of(expression, in_degrees)
     if own == "":
-        value = expression.evaluate()
+        value = _meant(expression).evaluate()
         return written_amount(value, short_number(value), assumed=target.text if root.speaks_of_pi else "")
-    value = (in_degrees if in_degrees and own == "deg" else expression).evaluate()
+    value = (in_degrees if in_degrees and own == "deg" else _meant(expression)).evaluate()
     return written_amount(in_unit(value, parse_unit(own), target), short_number(value), assumed=own)
 
 
@@ -231,7 +253,7 @@ def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
     told = [abs(number) for number in _told_of_angles(root)]
     if abs(radians) > _FEW_TURNS or any(number > _FEW_TURNS for number in told):
         return "deg"
-    if told and all(abs(n - _PART_OF_PI * round(n / _PART_OF_PI)) <= 1e-3 * n for n in told):
+    if _are_parts_of_pi(told):
         return "rad"
     raise Stop("two_values", expression.text)
 
@@ -248,6 +270,24 @@ def _told_of_angles(node: Operation) -> Iterator[float]:
 
 def _value_of(node: Operation) -> float:
     return float(Expression("", node).evaluate())
+
+
+_PLUS_MINUS = re.compile(
+    r"\(?\s*(?P<number>[+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*(?P<unit>[^\W\d_][^±()]*?|[°%])?\s*(?:±|\+/-|\+-)\s*"
+    r"(?P<margin>[0-9]+(?:[.,][0-9]+)?)\s*\)?\s*(?P<rest>[^±()]*)"
+)
+_MARGIN = 0.05  #: the share of a number that what is written behind ± may be, for it to be no other value
+
+
+def _without_margin(text: str) -> str:
+    """A number without the margin that is written with it: ``-414,6 ± 0,5 mm``."""
+    found = _PLUS_MINUS.fullmatch(text)
+    if found is None:
+        return text
+    number, margin = (float(found[name].replace(",", ".").replace(" ", "")) for name in ("number", "margin"))
+    return (
+        f"{found['number']} {found['unit'] or found['rest']}" if 0 < margin <= _MARGIN * abs(number) else text
+    )
 
 
 def _refuse_two_values(text: str) -> None:
@@ -282,7 +322,13 @@ def _named_unit_unknown(text: str) -> Stop | None:
 def read_amounts(text: str, target: Unit, thousands: bool = True, proportions: bool = True) -> list[Amount]:
     """All honest readings of one number, the likelier first."""
     text = without_name(text)
-    text = _PRINTED.sub(r"\1", text) if "(" in text else text
+    text = (
+        _PRINTED.sub(r"\1", text)
+        if "(" in text
+        else _without_margin(text)
+        if "±" in text or "+" in text
+        else text
+    )
     if _PAIR.fullmatch(text):
         raise Stop("two_values", text)
     text = _inside(text) or text
@@ -338,6 +384,8 @@ def _worked_out(text: str, target: Unit, *, per_one: bool = False) -> list[Amoun
 def _calculated(text: str, target: Unit) -> list[Amount]:
     """The readings of a formula."""
     _refuse_two_values(text)
+    if (total := _sum_of_amounts(text, target)) is not None:
+        return [total]
     amounts = scientific(text, target)
     try:
         return [*amounts, *_formula(text, target), *flattened(text, target)]
@@ -348,6 +396,26 @@ def _calculated(text: str, target: Unit) -> list[Amount]:
         raise (words and _named_unit_unknown(text)) or error from None
 
 
+_TERM = re.compile(r"\s*([+-]?)\s*([0-9]+(?:[.,][0-9]+)?)\s*([^\W\d_][^+()=]*?|[°%])\s*(?=[+-]\s*[0-9]|$)")
+
+
+def _sum_of_amounts(text: str, target: Unit) -> Amount | None:
+    """Numbers with a unit each that are added or taken off: ``200 mm + 70 mm``; nothing where a term is none."""
+    terms = list(_TERM.finditer(text))
+    if len(terms) < _SEVERAL or "".join(term[0] for term in terms) != text or re.search(r"\s[+-][0-9]", text):
+        return None  # 0 mm -70 mm is two values
+    units = [plain_unit(term[3]) for term in terms]
+    if None in units or not all(term[1] for term in terms[1:]):
+        return None
+    values = [
+        in_unit((-1 if term[1] == "-" else 1) * Fraction(term[2].replace(",", ".")), unit, target)
+        for term, unit in zip(terms, units, strict=True)
+        if unit is not None
+    ]
+    return written_amount(sum(values), short_number(sum(values)), target.text)
+
+
+_SEVERAL = 2
 _LITERAL = r"[+-]?\s*[0-9]+(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?"
 _IN_BRACKETS = rf"[(\[{{]\s*{_LITERAL}\s*[)\]}}]"
 _SIDE_BY_SIDE = re.compile(
@@ -357,6 +425,7 @@ _PER_ONE = re.compile(r"[^*/]+/\s*1")  #: ``3/1`` is a ratio as ``3:1`` is
 
 
 _IDLE = re.compile(r"(?<![0-9.,])0*[01](?:[.,]0*)?(?![0-9])")  #: a number that may do nothing
+_MEASURED = 3  #: digits of a number that nobody takes for a count, so that 0 beside it is no other answer
 _FEW_NUMBERS = 3  #: of a formula; one of more, 3(0) - 2(1), is worked out by a rule
 
 
@@ -374,7 +443,10 @@ def _refuse_several(text: str) -> None:
         with suppress(Unreadable):
             root = plain_expression(formula).root
             numbers = sum(node.kind == "number" for node in root.walk())
-            if 1 < numbers <= _FEW_NUMBERS and without_idle(root).kind == "number":
+            value = without_idle(root)
+            is_measured = (root.kind, root.name) == ("sum", "++") and numbers == 2  # 270 + 0
+            is_measured = is_measured and len(value.name.replace(".", "")) >= _MEASURED
+            if 1 < numbers <= _FEW_NUMBERS and value.kind == "number" and not is_measured:
                 raise Stop("two_values", text)
 
 
@@ -546,6 +618,7 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bo
         return Reading(text, "unreadable", code="two_values", found=shorten(" ".join(text.split())))
 
     def read(plain: str) -> Reading:
+        plain = with_signs(plain)
         refuse_no_number(plain, target)
         texts = restated(plain, unit) if is_of_paper(unit) else (plain,)
         amounts = [a for one in texts for a in read_amounts(one, target, thousands, proportions)]

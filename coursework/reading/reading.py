@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.reading.spelling import plain_spelling, shorten, unwrapped
+from coursework.reading.spelling import as_typed, plain_spelling, shorten, unwrapped
 from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
 
 
@@ -97,6 +97,7 @@ def reading_of(answer: object, read: Callable[[str], Reading]) -> Reading:
         plain = plain_spelling(unwrapped(text))
         return read(plain) if plain else Reading(text, "missing")
     except Stop as stop:
-        return Reading(text, stop.status, code=stop.code, found=shorten(stop.found or plain))
+        found = as_typed(stop.found or plain, text)
+        return Reading(text, stop.status, code=stop.code, found=shorten(found))
     except Unreadable as error:
-        return Reading(text, "unreadable", code=error.code, found=error.found)
+        return Reading(text, "unreadable", code=error.code, found=shorten(as_typed(error.found, text)))

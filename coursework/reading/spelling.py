@@ -47,6 +47,9 @@ def unwrapped(text: str) -> str:
 
 
 _SUPERSCRIPTS = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-", strict=True))
+_BROKEN_POWER = re.compile(
+    "(?<=[A-Za-z])[-−–‐](?=[²³¹⁰⁴-⁹])"
+)  #: ``s-²``, the sign of an exponent that is not raised
 _SUPERSCRIPT_RUN = re.compile(f"[{''.join(_SUPERSCRIPTS)}]+")
 
 
@@ -72,7 +75,7 @@ def tidy(text: str) -> str:
     """The text with one spelling for each kind of space, sign, digit, dot and quote; ``²`` is ``^(2)``."""
     if text.isascii() and text.isprintable():
         return text.strip()
-    text = unicodedata.normalize("NFC", text)
+    text = _BROKEN_POWER.sub("⁻", unicodedata.normalize("NFC", text))
     text = _SUPERSCRIPT_RUN.sub(lambda run: f"^({''.join(_SUPERSCRIPTS[c] for c in run[0])})", text)
     return text.translate(_TABLE).strip()
 
@@ -108,6 +111,20 @@ def plain_spelling(text: str) -> str:
     return without_latex(tidy(text))
 
 
+def as_typed(piece: str, text: str) -> str:
+    """The piece of a text that is spelled so when it is plain, as it was typed: ``s²`` for ``s^(2)``; else the piece itself."""
+    if not piece or piece in text or len(text) > _MAX_SEARCHED:
+        return piece
+    for start in range(len(text)):
+        if text[start].isspace():
+            continue
+        for end in range(len(text), start, -1):
+            if plain_spelling(text[start:end]) == piece:
+                return text[start:end].strip()
+    return piece
+
+
+_MAX_SEARCHED = 80  #: characters of a text of which each piece is tried
 _DOTS = re.compile(r"\\(d?dot)\s*(?:\{([^{}]*)\}|(\\[A-Za-z]+|[^\W\d_]))")
 _PRIMES = re.compile(r"([A-Za-z][A-Za-z0-9_]*)('{1,2}|\")(?!')")
 _SUBSCRIPT = re.compile(r"\s*_\s*\{\s*([A-Za-z0-9_]*)\s*\}")

@@ -149,6 +149,60 @@ def _is_number(node: Operation, value: float) -> bool:
     return node.kind == "number" and float(node.name) == value
 
 
+def numbers_in_degrees(node: Operation) -> Operation:
+    """A tree in which plain numbers under a sine, a cosine, a tangent or ``e^(i …)`` are degrees, alone or added."""
+    args = tuple(map(numbers_in_degrees, node.args))
+    if node.kind == "call" and node.name in ("sin", "cos", "tan"):
+        args = (_angle_in_degrees(args[0]),)
+    elif node.kind == "call" and node.name == "exp":
+        args = (_exponent_in_degrees(args[0]),)
+    elif node.kind == "power" and args[0] == Operation("constant", "e"):
+        args = (args[0], _exponent_in_degrees(args[1]))
+    return replace(node, args=args) if args != node.args else node
+
+
+def _angle_in_degrees(node: Operation) -> Operation:
+    """An angle whose plain numbers are degrees; what is said in terms of pi is in radians."""
+    if node.kind in ("sum", "neg"):
+        return replace(node, args=tuple(map(_angle_in_degrees, node.args)))
+    is_plain = node.constant and not (node.angle or node.speaks_of_pi or node.has_inverse)
+    return Operation("degree", args=(node,), angle=True) if is_plain else node
+
+
+def _exponent_in_degrees(node: Operation) -> Operation:
+    """An exponent of e in which plain numbers beside the imaginary unit are degrees: ``i*90``, ``i(theta2 + 90)``."""
+    if node.kind in ("sum", "neg"):
+        return replace(node, args=tuple(map(_exponent_in_degrees, node.args)))
+    if node.kind != "product" or sum(arg == _IMAGINARY for arg in node.args) != 1:
+        return node
+    others = [arg for arg in node.args if arg != _IMAGINARY]
+    if node.constant and not any(arg.angle or arg.speaks_of_pi or arg.has_inverse for arg in others):
+        return Operation("degree", args=(node,))
+    if len(others) == 1:
+        return replace(node, args=tuple(a if a == _IMAGINARY else _angle_in_degrees(a) for a in node.args))
+    return node
+
+
+_IMAGINARY = Operation("constant", "i")
+
+
+def bare_angles(node: Operation) -> Iterable[float]:
+    """The plain numbers that :func:`numbers_in_degrees` takes for degrees."""
+    if node.kind == "call" and node.name in ("sin", "cos", "tan"):
+        yield from _bare_terms(node.args[0])
+    for arg in node.args:
+        yield from bare_angles(arg)
+
+
+def _bare_terms(node: Operation) -> Iterable[float]:
+    if node.kind in ("sum", "neg"):
+        for arg in node.args:
+            yield from _bare_terms(arg)
+    elif _angle_in_degrees(node) != node:
+        with np.errstate(all="ignore"):
+            yield float(compute(node, {}))
+
+
 _A_RADIAN = math.degrees(1.0)
 
 

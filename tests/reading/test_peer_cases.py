@@ -51,7 +51,6 @@ DIFFERENCES = {
     "An answer equal to the reference is right, whatever unit the tolerance is written in": {
         "correct": (180,)
     },
-    "Angles inside functions are in radians unless a degree sign is written": {"wrong": (227,)},
 }  # fmt: skip
 
 _MEASURE = re.compile(r"(?P<number>[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?(?:/[0-9]+)?)\s*\*?\s*(?P<unit>[^(].*)?")
