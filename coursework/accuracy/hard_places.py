@@ -139,14 +139,14 @@ class Terrain:
     def bases(self) -> list[dict[str, Any]]:
         """Complete sets of given values from which the search starts: variants, and one with zeros where they
         are allowed."""
-        results = [self._whole(v.given) for v in self.exercise.variants(range(_BASES))]
+        results = [self._complete(v.given) for v in self.exercise.variants(range(_BASES))]
         first = results[0]
         noughts = {n: 0.0 for n in self.names if self._may_be_nought(n) and first[n]}
         if noughts:
             results.append({**first, **noughts})
         return results
 
-    def _whole(self, given: Mapping[str, Any]) -> dict[str, Any]:
+    def _complete(self, given: Mapping[str, Any]) -> dict[str, Any]:
         known_values = {**self.exercise.intake.defaults, **given}
         return {n: v for n, v in known_values.items() if n in self.exercise.quantity_names}
 

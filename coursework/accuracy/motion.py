@@ -172,8 +172,8 @@ class _Tightest(_Right):
     def _angle(self) -> float:
         if not hasattr(self, "_kept"):
             table = self.scene.in_time(self.effort, self.duration, rtol=self.rtol, count=1)
-            self._kept = float(table.columns[self.scene.driver.angle][-1])
-        return self._kept
+            self._cached = float(table.columns[self.scene.driver.angle][-1])
+        return self._cached
 
 
 class EnergyIntegral:

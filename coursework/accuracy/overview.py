@@ -120,7 +120,7 @@ class _Survey:
             if own is None:
                 continue
             if own["beyond"] > results.get("beyond", -1.0):
-                results["place"] = _told(point)
+                results["place"] = _place_text(point)
             for name, value in own.items():
                 if value is not None:
                     results[name] = max(results.get(name, 0), value)
@@ -204,7 +204,7 @@ def _entry(values: Any, i: int) -> Any:
     return np.asarray(values)[i : i + 1] if np.ndim(values) else np.array([values])
 
 
-def _told(point: HardPlace) -> dict[str, Any]:
+def _place_text(point: HardPlace) -> dict[str, Any]:
     return {
         "moved": point.moved,
         "tuned": point.tuned,

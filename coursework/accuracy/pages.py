@@ -76,10 +76,10 @@ def _digits_table(course: Course, lines: Sequence[OverviewLine], texts: Words, l
     rows = [
         (
             _titled(course, line, lang),
-            _shown(line.generic),
-            _shown(line.generic_textbook),
-            _shown(line.hard),
-            _shown(line.hard_textbook, line.hard_textbook_failed),
+            _displayed(line.generic),
+            _displayed(line.generic_textbook),
+            _displayed(line.hard),
+            _displayed(line.hard_textbook, line.hard_textbook_failed),
             _allowed(line, texts),
             _nanoseconds(line.stable_ns),
             _nanoseconds(line.textbook_ns),
@@ -96,7 +96,7 @@ def _digits(error: float | None) -> int:
     return max(0, min(_MOST_DIGITS, math.floor(-math.log10(error)))) if error > 0 else _MOST_DIGITS
 
 
-def _shown(error: float | None, failed: int = 0) -> str:
+def _displayed(error: float | None, failed: int = 0) -> str:
     return "–" if error is None or failed else str(_digits(error))
 
 
@@ -209,11 +209,11 @@ def _paper_charts(rows: Sequence[PaperRow], texts: Words) -> tuple[Chart, ...]:
 def _paper_table(rows: Sequence[PaperRow], texts: Words) -> Table:
     heads = tuple(texts[key] for key in ("digits", "wronged", "wronged_ours", "mistakes", "neighbours"))
     return Table(
-        heads, tuple(_paper_line(_kept(row, texts), row, texts) for row in rows), (False, *[True] * 4)
+        heads, tuple(_paper_line(_digits_kept(row, texts), row, texts) for row in rows), (False, *[True] * 4)
     )
 
 
-def _kept(row: PaperRow, texts: Words) -> str:
+def _digits_kept(row: PaperRow, texts: Words) -> str:
     return str(texts["plain"]) if row.digits == PLAIN else str(row.digits)
 
 

@@ -85,9 +85,9 @@ class _Room:
         self.wrong = self._mistaken()
 
     def _answers(self, graph: Any) -> dict[str, np.ndarray]:
-        return self._whole(graph.evaluate(self.wanted, self.given, self.effects))
+        return self._filled(graph.evaluate(self.wanted, self.given, self.effects))
 
-    def _whole(self, results: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    def _filled(self, results: Mapping[str, Any]) -> dict[str, np.ndarray]:
         return {n: np.broadcast_to(np.asarray(v, dtype=float), (self.count,)) for n, v in results.items()}
 
     def _mistaken(self) -> list[dict[str, np.ndarray]]:
@@ -104,7 +104,7 @@ class _Room:
         ours = self.exercise.folder.rules.digits
         wronged = wronged_ours = Share()
         if stored != PLAIN:
-            rounded = self._whole(
+            rounded = self._filled(
                 student_who_rounds(
                     self.exercise.solution.graph, self.wanted, self.given, self.effects, stored
                 )
@@ -149,7 +149,7 @@ class _Room:
         """Return the possible effect of rounding to ``digits`` digits at each step."""
         if digits not in self._kept_widths:
             result = envelopes(self.exercise, self.wanted, self.given, self.effects, digits)
-            finite = {n: np.where(np.isfinite(v), v, 0.0) for n, v in self._whole(result).items()}
+            finite = {n: np.where(np.isfinite(v), v, 0.0) for n, v in self._filled(result).items()}
             self._kept_widths[digits] = finite
         return self._kept_widths[digits]
 

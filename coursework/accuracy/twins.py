@@ -98,19 +98,19 @@ class Twinned:
 
     def __init__(self) -> None:
         self._spaces: dict[int, dict[str, Any]] = {}
-        self._made: dict[int, Any] = {}
+        self._cached: dict[int, Any] = {}
 
     def __call__(self, function: Any) -> Callable[..., Any]:
         if not isinstance(function, FunctionType):
             return function
-        if id(function) not in self._made:
+        if id(function) not in self._cached:
             space = self._space(function)
             created = FunctionType(
                 function.__code__, space, function.__name__, function.__defaults__, function.__closure__
             )
             created.__kwdefaults__ = function.__kwdefaults__
-            self._made[id(function)] = created
-        return self._made[id(function)]
+            self._cached[id(function)] = created
+        return self._cached[id(function)]
 
     def _space(self, function: FunctionType) -> dict[str, Any]:
         names = function.__globals__

@@ -191,7 +191,7 @@ class _Turning:
         nodes = _FIRST_NODE + np.arange(NODES) * (360 / NODES)
         return nodes, self._in_radians(self._solve(self.subject.unknowns, nodes))
 
-    def _known(self, angle: Any) -> dict[str, Any]:
+    def _known_values(self, angle: Any) -> dict[str, Any]:
         """Return the known values of the loops, computed constants of the mechanism included."""
         names = {n for loop in self.subject.exercise.solution.loops.values() for n in loop.names}
         computed = names - set(self.subject.unknowns) - set(self.fixed) - {self.angle}
@@ -213,7 +213,7 @@ class _Turning:
         def compute(places: Places) -> Values:
             angle = places[self.angle]
             with np.errstate(all="ignore"):
-                return self._in_degrees(closure.newton(self._known(angle), self._start(angle), steps))
+                return self._in_degrees(closure.newton(self._known_values(angle), self._start(angle), steps))
 
         return compute
 
@@ -225,7 +225,7 @@ class _Turning:
             angle = places[self.angle]
             starts = np.stack(self._start(angle), axis=-1)
             result = np.full(starts.shape, np.nan)
-            constants = self._known(0.0)
+            constants = self._known_values(0.0)
             turned = np.radians(angle)
             for i in range(len(angle)):
                 known = {**constants, self.angle: float(turned[i])}
@@ -288,7 +288,7 @@ class _Turning:
         def compute(places: Places) -> Values:
             angle = places[self.angle]
             closed = self._in_radians(self._solve(self.subject.unknowns, angle))
-            known = self._known(angle)
+            known = self._known_values(angle)
             known[self.angle] = known[self.angle] + 1j * step
             with np.errstate(all="ignore"):
                 start = [closed[n] + 0j for n in self.subject.unknowns]

@@ -39,7 +39,7 @@ class Element:
         dataclass(init=False, repr=False, eq=False)(cls)
 
     def __init__(self, *values: object, **named: object) -> None:
-        text = self._told()
+        text = self._fields()
         given = dict(zip((name for name, _, _ in text), values, strict=False)) | named
         unknown = given.keys() - {name for name, _, _ in text}
         if unknown or len(given) < len(values) + len(named):
@@ -54,7 +54,7 @@ class Element:
             self.__dict__[name] = self._checked(name, kind, value)
 
     def _values(self) -> tuple[object, ...]:
-        return tuple(self.__dict__[name] for name, _, _ in self._told())
+        return tuple(self.__dict__[name] for name, _, _ in self._fields())
 
     def __eq__(self, other: object) -> bool:
         return self._values() == other._values() if type(other) is type(self) else NotImplemented
@@ -63,7 +63,9 @@ class Element:
         return hash(self._values())
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{n}={self.__dict__[n]!r}' for n, _, _ in self._told())})"
+        return (
+            f"{type(self).__name__}({', '.join(f'{n}={self.__dict__[n]!r}' for n, _, _ in self._fields())})"
+        )
 
     def __setattr__(self, name: str, value: object) -> None:
         raise FrozenInstanceError(f"cannot assign to field {name!r}")
@@ -73,7 +75,7 @@ class Element:
 
     @classmethod
     @lru_cache(maxsize=128)
-    def _told(cls) -> tuple[tuple[str, str, object], ...]:
+    def _fields(cls) -> tuple[tuple[str, str, object], ...]:
         """Return the name of each field, its type as written, and its default."""
         return tuple((item.name, str(item.type), item.default) for item in fields(cls))
 
@@ -91,7 +93,7 @@ class Element:
 
     def settled(self, decimals: int) -> Element:
         """Return the element with its points and numbers rounded to ``decimals`` decimals."""
-        entries = {name: self.__dict__[name] for name, _, _ in self._told()}
+        entries = {name: self.__dict__[name] for name, _, _ in self._fields()}
         changed = {
             name: new for name, old in entries.items() if repr(new := _rounded(old, decimals)) != repr(old)
         }

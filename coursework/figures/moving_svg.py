@@ -48,15 +48,15 @@ def moving_svg(
         "<style>.coursework-still{display:none}@media (prefers-reduced-motion:reduce)"
         "{.coursework-still{display:inline}.coursework-moving{display:none}}</style>"
     )
-    return _whole(displayed, lines, title, words, lang, style)
+    return _document(displayed, lines, title, words, lang, style)
 
 
 def still_svg(displayed: MovingDrawing, instant: int, *, title: str, words: str, lang: str) -> str:
     """Return the drawing at one instant as SVG."""
-    return _whole(displayed, (track.svg(instant) for track in displayed.tracks), title, words, lang)
+    return _document(displayed, (track.svg(instant) for track in displayed.tracks), title, words, lang)
 
 
-def _whole(
+def _document(
     displayed: MovingDrawing, lines: Iterable[str], title: str, words: str, lang: str, style: str = ""
 ) -> str:
     width, height = (f"{x:.6g}" for x in displayed.size)

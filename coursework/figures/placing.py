@@ -148,7 +148,7 @@ Line = tuple[float, float, float, float, float, float, float, float, float]
 Thing = tuple[float, float, float, float, list[Line]]
 
 
-def _thing(lines: list[Line]) -> Thing:
+def _shape(lines: list[Line]) -> Thing:
     left, low, right, high, *_ = zip(*lines, strict=True)
     return min(left), min(low), max(right), max(high), lines
 
@@ -210,13 +210,13 @@ class Obstacles:
     """Lines already drawn, with areas that labels avoid, and the labels already placed."""
 
     def __init__(self, ink: Sequence[Ink]) -> None:
-        self._things: list[Thing] = []
+        self._shapes: list[Thing] = []
         self.areas: list[tuple[complex, ...]] = []
         self.bars: list[tuple[complex, complex]] = []
         for item in ink:
             outline = item.outline()
             sides = list(pairwise(outline))
-            self._things.append(_thing([_line(a, b, item.width / 2) for a, b in sides]))
+            self._shapes.append(_shape([_line(a, b, item.width / 2) for a, b in sides]))
             self.areas += [outline] if item.solid else []
             self.bars += sides if item.width >= BAR else []
         self.labels: list[Label] = []
@@ -235,7 +235,7 @@ class Obstacles:
         reach = complex(label.width, label.height) / 2 + complex(_APART, _APART)
         self._boxes.append((label.center.real, label.center.imag, reach.real, reach.imag))
         if label.leader:
-            self._things.append(_thing([_line(*label.leader, THIN / 2)]))
+            self._shapes.append(_shape([_line(*label.leader, THIN / 2)]))
         self._start()
 
     def _look(self, left: float, low: float, right: float, high: float) -> None:
@@ -250,7 +250,7 @@ class Obstacles:
             )
             self._window = a, b, c, d
             self._near = [
-                it for it in self._things if it[0] <= c and it[2] >= a and it[1] <= d and it[3] >= b
+                it for it in self._shapes if it[0] <= c and it[2] >= a and it[1] <= d and it[3] >= b
             ]
 
     def white(self, center: complex, half: complex, direction: complex, inside: bool = False) -> float:
@@ -296,7 +296,7 @@ class Obstacles:
     @property
     def right(self) -> float:
         """Abscissa of the rightmost line."""
-        return max((it[2] for it in self._things), default=0.0)
+        return max((it[2] for it in self._shapes), default=0.0)
 
     def hides(self, anchor: complex, center: complex) -> bool:
         """Return whether a bar passes between an anchor and its label."""

@@ -266,29 +266,29 @@ class FourBarPose:
 
     @property
     def coupler_angle(self) -> Any:
-        return self._said("coupler_angle")
+        return self._value_of("coupler_angle")
 
     @property
     def rocker_angle(self) -> Any:
-        return self._said("rocker_angle")
+        return self._value_of("rocker_angle")
 
     @property
     def coupler_ratio(self) -> Any:
         """First derivative: the coupler's rate over the crank's."""
-        return self._said("first", 0)
+        return self._value_of("first", 0)
 
     @property
     def rocker_ratio(self) -> Any:
-        return self._said("first", 1)
+        return self._value_of("first", 1)
 
     @property
     def coupler_gain(self) -> Any:
         """Second derivative of the coupler's angle."""
-        return self._said("second", 0)
+        return self._value_of("second", 0)
 
     @property
     def rocker_gain(self) -> Any:
-        return self._said("second", 1)
+        return self._value_of("second", 1)
 
     @property
     def corner(self) -> Any:
@@ -303,7 +303,7 @@ class FourBarPose:
         with np.errstate(all="ignore"):
             return self._checked(_transmission_angle(self._pose, None)[0])
 
-    def _said(self, name: str, link: int | None = None) -> Any:
+    def _value_of(self, name: str, link: int | None = None) -> Any:
         with np.errstate(all="ignore"):
             result = getattr(self._pose, name)
             return self._checked(result if link is None else result[link])

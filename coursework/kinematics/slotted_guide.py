@@ -111,32 +111,32 @@ class SlottedGuidePose:
 
     @property
     def guide_angle(self) -> Any:
-        return self._said(0, 0)
+        return self._value_of(0, 0)
 
     @property
     def arm(self) -> Any:
-        return self._said(0, 1)
+        return self._value_of(0, 1)
 
     @property
     def guide_ratio(self) -> Any:
         """First derivative: the guide's rate over the crank's."""
-        return self._said(1, 0)
+        return self._value_of(1, 0)
 
     @property
     def sliding_ratio(self) -> Any:
         """First derivative of the arm's length."""
-        return self._said(1, 1)
+        return self._value_of(1, 1)
 
     @property
     def guide_gain(self) -> Any:
         """Second derivative of the guide's angle."""
-        return self._said(2, 0)
+        return self._value_of(2, 0)
 
     @property
     def sliding_gain(self) -> Any:
-        return self._said(2, 1)
+        return self._value_of(2, 1)
 
-    def _said(self, order: int, which: int) -> Any:
+    def _value_of(self, order: int, which: int) -> Any:
         with np.errstate(all="ignore"):
             value = getattr(self._pose, _ScaledGuide.ORDERS[order])[which]
         if which:

@@ -368,7 +368,7 @@ class Running:
         while t < duration:
             if len(motion.phases) > MOST_PHASES:
                 raise Undefined(f"the motion turns back more than {MOST_PHASES} times, by t = {t:.6g} s")
-            direction = self._way(state)
+            direction = self._direction(state)
             phase, after = (
                 self._stretch(t, duration, state, direction, rtol, scales)
                 if direction
@@ -387,7 +387,7 @@ class Running:
         inertia = abs(float(self.table.at(angle)[0])) + self.forces.flywheel
         return 0.5 * inertia * speed**2 + abs(self.drive(speed) * speed) * duration + 1e-12
 
-    def _way(self, state: np.ndarray) -> int:
+    def _direction(self, state: np.ndarray) -> int:
         """Return the direction in which a state moves on: 0 where it stays."""
         if state[1]:
             return 1 if state[1] > 0 else -1

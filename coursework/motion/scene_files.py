@@ -117,18 +117,18 @@ class _SceneReader:
     def _scene(self, exercise: CourseExercise) -> Scene:
         effects, show = (self._words(key) for key in ("effects", "show"))
         for number, effect in enumerate(effects):
-            self._told(("effects",), check_effect, effect, exercise)
+            self._with_line(("effects",), check_effect, effect, exercise)
             if effect in effects[:number]:
                 raise self.refused(("effects",), f"the effect {effect!r} is named twice")
         given = self._given(exercise)
         added = self._added(exercise)
         self._check_names(exercise)
-        self._told(("exercise",), Scene, exercise, given, effects, (), added)
+        self._with_line(("exercise",), Scene, exercise, given, effects, (), added)
         for name in show:
-            self._told(("show",), Scene, exercise, given, effects, (name,), added)
+            self._with_line(("show",), Scene, exercise, given, effects, (name,), added)
         for name, value in added.friction.items():
             own = Scene(exercise, given, ("friction",), (), SceneData(friction={name: value}))
-            self._told(("friction", name), getattr, own, "contacts")
+            self._with_line(("friction", name), getattr, own, "contacts")
         return Scene(exercise, given, effects, show, added)
 
     def _check_names(self, exercise: CourseExercise) -> None:
@@ -137,20 +137,24 @@ class _SceneReader:
         if mechanism is None:
             return
         for name in self._table(("bodies",)):
-            self._known(("bodies", name), "body", name, mechanism.names)
+            self._checked_name(("bodies", name), "body", name, mechanism.names)
             if isinstance(centre := self._at(("bodies", name, "centre")), str):
-                self._known(("bodies", name, "centre"), "point", centre, tuple(mechanism.body(name).places))
+                self._checked_name(
+                    ("bodies", name, "centre"), "point", centre, tuple(mechanism.body(name).places)
+                )
         known_names = (*mechanism.points, *mechanism.names)
         for number, load in enumerate(self._loads_listed):
             on = str(load.get("on", ""))
-            self._known(("loads", number, "on"), "point or body", on, known_names)
+            self._checked_name(("loads", number, "on"), "point or body", on, known_names)
             if "body" in load:
-                self._known(("loads", number, "body"), "body", str(load["body"]), mechanism.holders(on))
+                self._checked_name(
+                    ("loads", number, "body"), "body", str(load["body"]), mechanism.holders(on)
+                )
         slides = [slide.at for slide in mechanism.slides]
         for name in self._table(("slides",)):
-            self._known(("slides", name), "slide", name, slides)
+            self._checked_name(("slides", name), "slide", name, slides)
 
-    def _told(self, at: Path_, function: Any, *arguments: Any) -> Any:
+    def _with_line(self, at: Path_, function: Any, *arguments: Any) -> Any:
         """Call a function, and add the line to its errors."""
         try:
             return function(*arguments)
@@ -159,7 +163,7 @@ class _SceneReader:
         except CourseworkError as fault:
             raise self.refused(at, str(fault)) from fault
 
-    def _known(self, at: Path_, kind: str, name: str, known: Sequence[str]) -> None:
+    def _checked_name(self, at: Path_, kind: str, name: str, known: Sequence[str]) -> None:
         if name not in known:
             raise self.refused(at, f"no {kind} {name!r}{nearest(name, known)}")
 
@@ -222,13 +226,13 @@ class _SceneReader:
             raise BadInput(
                 f'{self.path} names no exercise; write exercise = "…": {", ".join(self.course.names[:4])}, …'
             )
-        self._known(("exercise",), "exercise", name, self.course.names)
+        self._checked_name(("exercise",), "exercise", name, self.course.names)
         return self.course[name]
 
     def _given(self, exercise: CourseExercise) -> dict[str, Any]:
         """Return the values of a variant, overridden by those of the file."""
         seed = self.table.get("seed", 0)
-        results = dict(self._told(("seed",), exercise.variant, seed).given)
+        results = dict(self._with_line(("seed",), exercise.variant, seed).given)
         for name, value in self._table(("given",)).items():
             if name not in exercise.spec.given:
                 raise self.refused(
@@ -238,7 +242,7 @@ class _SceneReader:
             unit = exercise.units.get(name, "1")
             if isinstance(value, (int, float)) and not isinstance(value, bool) and unit != "1":
                 self._number(("given", name), value, unit)
-            results[name] = self._told(("given", name), exercise.intake.value, name, value)
+            results[name] = self._with_line(("given", name), exercise.intake.value, name, value)
         return results
 
     def _steps(self) -> int:
@@ -262,7 +266,7 @@ class _SceneReader:
         if torque is None:
             raise self.refused(("drive",), 'a drive has a torque: drive = { torque = "5 N*m" }')
         speed = self._amount(("drive", "no_load_speed"), "rad/s")
-        return self._told(("drive", "no_load_speed"), Motor, torque, speed)
+        return self._with_line(("drive", "no_load_speed"), Motor, torque, speed)
 
     def _added(self, exercise: CourseExercise) -> SceneData:
         bodies = {name: self._body(name) for name in self._table(("bodies",))}
@@ -420,7 +424,7 @@ class _SceneReader:
         inertia, unevenness = self._amount((*at, "inertia"), "kg*m^2"), self._amount((*at, "unevenness"), "1")
         if (inertia is None) == (unevenness is None):
             raise self.refused(at, 'a flywheel has inertia = "2 kg*m^2", or unevenness = 0.02')
-        return self._told(
+        return self._with_line(
             (*at, "inertia" if unevenness is None else "unevenness"), Flywheel, inertia, unevenness
         )
 

@@ -71,13 +71,13 @@ class Construction:
         return f"<{self.polygon.kind} polygon, {self.scale:g} {self.polygon.unit} for 1 mm>"
 
     @property
-    def _said(self) -> dict[str, str]:
+    def _texts(self) -> dict[str, str]:
         return words(self.lang)["polygons"]
 
     @property
     def title(self) -> str:
         """Title of the polygon: ``Velocity polygon``."""
-        return self._said[self.polygon.kind]
+        return self._texts[self.polygon.kind]
 
     @cached_property
     def scale(self) -> float:
@@ -88,7 +88,7 @@ class Construction:
     @property
     def opening(self) -> str:
         """Introduction of the table, Markdown."""
-        return self._said["opening"]
+        return self._texts["opening"]
 
     @property
     def equations(self) -> tuple[str, ...]:
@@ -99,7 +99,7 @@ class Construction:
     def scale_text(self) -> str:
         r"""Markdown of the scale: ``$k_v = 20$ mm/s for 1 mm``."""
         value = rf"${SCALES[self.polygon.kind]} = \num{{{significant(self.scale)}}}$"
-        return self._said["scale"].format(value, self.unit)
+        return self._texts["scale"].format(value, self.unit)
 
     @property
     def unit(self) -> str:
@@ -151,22 +151,22 @@ class Construction:
         full = Figure(*drawn.elements, scale=1)
         steps: list[ConstructionStep] = []
         for stage, count in zip(self.polygon.stages, drawn.counts, strict=True):
-            text = self._told(stage)
+            text = self._stage_text(stage)
             if stage.kind == "result" and steps:
                 # Vectors that join points already found are no step of their own.
                 text = f"{steps.pop().text} {text}"
             steps.append(ConstructionStep(len(steps) + 1, text, full.beginning(count)))
         return tuple(steps)
 
-    def _told(self, stage: Stage) -> str:
+    def _stage_text(self, stage: Stage) -> str:
         """Return the text of a stage."""
         text = " ".join(self._sentences(stage))
         if stage is not self.polygon.stages[0]:
             return text
-        return f"{self._said['pole'].format(f'${self.polygon.pole}$')} {text}"
+        return f"{self._texts['pole'].format(f'${self.polygon.pole}$')} {text}"
 
     def _sentences(self, stage: Stage) -> Iterator[str]:
-        texts = self._said
+        texts = self._texts
         if stage.kind == "known":
             # A vector between two points of which its end is found first is laid off backwards.
             results = list(zip(stage.sides, stage.points, strict=True))

@@ -158,7 +158,7 @@ def judge_drawing(
         # The points before it, as drawn; one that is missing stands where it follows from those before it.
         here = {q: points.get(q, z) for q, z in ideal.items()}
         if len(sides) == 1:
-            ideal[point], fault = _known(point, sides[0], here, points, polygon, used, width)
+            ideal[point], fault = _known_vector(point, sides[0], here, points, polygon, used, width)
         else:
             on_drawn = not any(_anchor(side, point) in faults for side in sides) and _is_spread(
                 here, points, width
@@ -213,7 +213,7 @@ def _split(vector: complex, along: complex) -> tuple[float, float]:
     return turned.real, turned.imag
 
 
-def _known(
+def _known_vector(
     point: str,
     side: Side,
     here: Mapping[str, complex],

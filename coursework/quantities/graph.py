@@ -41,7 +41,7 @@ _Step: TypeAlias = tuple[str, Callable[..., Value], tuple[str, ...]]  #: name, f
 _Plan: TypeAlias = tuple[tuple[str, ...], list[_Step], dict[str, Value]]  #: names, steps, constants
 
 
-def _place(function: Callable[..., Value]) -> str:
+def _location(function: Callable[..., Value]) -> str:
     """Return the location of a course function, for messages."""
     code = getattr(function, "__code__", None)
     name = getattr(function, "__name__", "a function")
@@ -131,7 +131,7 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
             text = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
             raise Undefined(f"{name} does not exist for {text} ({fault})") from fault
         except Exception as fault:
-            raise BrokenFunction(f"{_place(function)} fails: {type(fault).__name__}: {fault}") from fault
+            raise BrokenFunction(f"{_location(function)} fails: {type(fault).__name__}: {fault}") from fault
 
 
 def _branches(function: Callable[..., Value], fault: Exception) -> str:
@@ -141,7 +141,7 @@ def _branches(function: Callable[..., Value], fault: Exception) -> str:
     home = Path(code.co_filename).parent if code else Path()
     line = next((f for f in reversed(frames) if Path(f.filename).parent == home), frames[-1])
     return (
-        f"{_place(function)} branches on an array, at line {line.lineno} of {Path(line.filename).name}: {line.line}; "
+        f"{_location(function)} branches on an array, at line {line.lineno} of {Path(line.filename).name}: {line.line}; "
         "use np.where(condition, value where it holds, value elsewhere), and & | ~ for and, or, not"
     )
 
@@ -190,7 +190,7 @@ class Graph:
         self._plans: dict[object, _Plan] = {}
         leaves = {a for node in nodes.values() for a in node.needs} - set(nodes)
         self._leaves = frozenset(leaves)
-        self._known = frozenset(n for n in nodes if not _is_hidden(n)) | leaves
+        self._all_names = frozenset(n for n in nodes if not _is_hidden(n)) | leaves
         self._passed_over = {
             name: self._ancestors(node.arguments) - self._ancestors(node.stable.arguments)
             for name, node in nodes.items()
@@ -330,7 +330,7 @@ class Graph:
             order[name] = (node.function, tuple(arguments))
 
         for name in wanted:
-            if name not in self._nodes and name not in self._known and name not in given:
+            if name not in self._nodes and name not in self._all_names and name not in given:
                 raise unknown("quantity", name, self.quantities)
             visit(name)
         if missing:
@@ -404,9 +404,9 @@ class Graph:
     ) -> dict[str, Value]:
         given = self._renamed(given)
         names = frozenset(given)
-        if not names <= self._known:
-            odd = min(names - self._known)
-            raise unknown("quantity", odd, self._known)
+        if not names <= self._all_names:
+            odd = min(names - self._all_names)
+            raise unknown("quantity", odd, self._all_names)
         long = pieces(given)
         # What was found of long arrays is whole, and would not fit their pieces.
         results = {} if long else {_right(n) if n in self._set_aside else n: v for n, v in results.items()}
@@ -451,8 +451,8 @@ class Graph:
         """
         targets = replacement.targets
         for target in targets:
-            if target not in self._known:
-                raise unknown("quantity", target, self._known)
+            if target not in self._all_names:
+                raise unknown("quantity", target, self._all_names)
         # A way that passes over a target would not see the mistake.
         nodes = {
             name: replace(node, stable=None) if self._passed_over.get(name, set()) & set(targets) else node

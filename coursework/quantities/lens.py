@@ -71,10 +71,10 @@ class _Numpy:
     """Replacement of numpy whose arrays may hold numbers with units."""
 
     def __getattr__(self, name: str) -> Any:
-        return _whole if name in ("array", "asarray", "asanyarray") else getattr(np, name)
+        return _wrapped if name in ("array", "asarray", "asanyarray") else getattr(np, name)
 
 
-def _whole(values: Any, *args: Any, **options: Any) -> Any:
+def _wrapped(values: Any, *args: Any, **options: Any) -> Any:
     result = gathered(values)
     return result if isinstance(result, UnitValue) else np.array(values, *args, **options)
 
@@ -117,7 +117,7 @@ class Lens:
     def __init__(self, constants: Mapping[str, Sizes]):
         self._constants = constants
         self._spaces: dict[int, dict[str, Any]] = {}
-        self._kept: list[Any] = []  # so that no identity is used twice
+        self._cached: list[Any] = []  # so that no identity is used twice
 
     def function(self, function: Any) -> Callable[..., Any]:
         """Return the function for numbers with units."""
@@ -132,7 +132,7 @@ class Lens:
 
     def _space(self, names: dict[str, Any], package: str) -> dict[str, Any]:
         if id(names) not in self._spaces:
-            self._kept.append(names)
+            self._cached.append(names)
             space: dict[str, Any] = {PLAIN: names}
             self._spaces[id(names)] = space
             space |= {name: self._seen(name, value, package) for name, value in names.items()}

@@ -39,13 +39,13 @@ class Opaque:
 
     def __init__(self, make: Callable[[_Factors], Any], origin: Origin):
         self._make = make
-        self._made: dict[_Factors, Any] = {}
+        self._cached: dict[_Factors, Any] = {}
         self._origin = origin
 
     def _in_bases(self, factors: _Factors) -> Any:
-        if factors not in self._made:
-            self._made[factors] = self._make(factors)
-        return self._made[factors]
+        if factors not in self._cached:
+            self._cached[factors] = self._make(factors)
+        return self._cached[factors]
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):

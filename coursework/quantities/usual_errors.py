@@ -71,7 +71,7 @@ def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
         return ()
     formula = replace(formula, space={**_NEIGHBOURS, **formula.space})
     changes = list(_Changes(formula).of(formula.tree))
-    changes += _whole(formula)
+    changes += _whole_formula_errors(formula)
     results: dict[str, FormulaError] = {}
     for kind, about, tree in sorted(changes, key=lambda change: KINDS.index(change[0])):
         results.setdefault(ast.dump(tree), FormulaError(kind, about, replace(formula, tree=tree)))
@@ -79,7 +79,7 @@ def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
     return tuple(results.values())
 
 
-def _whole(formula: Formula) -> Iterator[_Change]:
+def _whole_formula_errors(formula: Formula) -> Iterator[_Change]:
     """Yield the errors that change the whole formula at once."""
     match formula.tree:
         case ast.BinOp(left=left, op=ast.Div(), right=right):

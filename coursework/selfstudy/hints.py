@@ -67,7 +67,7 @@ def steps(
     for the hints of another.
     """
     quantity = quantity_of(variant, name)
-    requested = _asked(variant, quantity)
+    requested = _asking_part(variant, quantity)
     if requested is not None and requested.sort.is_open:
         return (_look_again(variant, requested),)
     all_steps = (
@@ -77,12 +77,12 @@ def steps(
         _formula(variant, quantity, {n: v for n, v in {**results, **variant.given}.items() if n != quantity}),
     )
     text = tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
-    if text or (part := _asked(variant, quantity)) is None:
+    if text or (part := _asking_part(variant, quantity)) is None:
         return text
     return (_against(variant, part) or _look_again(variant, part),)
 
 
-def _asked(variant: Variant, quantity: str) -> Part | None:
+def _asking_part(variant: Variant, quantity: str) -> Part | None:
     """Return the part that asks for a quantity; None where there is none."""
     return next((p for p in variant.parts if p.quantity == quantity), None)
 
@@ -128,7 +128,7 @@ def words_of(variant: Variant, quantity: str) -> str:
     if section is None or not section.text:
         return ""
     is_free, start = _is_free(variant, quantity), _before_numbers(variant, quantity)
-    requested = _asked(variant, quantity)
+    requested = _asking_part(variant, quantity)
     if requested is None or not requested.choices:
         return start or (section.text if is_free else "")
     text = section.text if is_free else start

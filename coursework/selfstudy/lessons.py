@@ -58,14 +58,17 @@ def compare(
         agrees = not is_blank(guess) and _agree(guess, unwrapped(value), name in angles)
         mark = "·" if is_blank(guess) else "✓" if agrees else "✗"
         line = texts["not_predicted"] if is_blank(guess) else texts["predicted"]
-        lines.append(f"- {mark} {line.format(name=name, said=_told(guess, lang), found=_told(value, lang))}")
+        lines.append(
+            f"- {mark} {line.format(name=name, said=_outcome_text(guess, lang), found=_outcome_text(value, lang))}"
+        )
     for name, guess in predicted.items():
         if name not in results and not is_blank(guess):
-            line = texts["refused"]["lesson_name"].format(name=name, said=_told(guess, lang))
+            line = texts["refused"]["lesson_name"].format(name=name, said=_outcome_text(guess, lang))
             lines.append(f"- ? {line} {would_do(lang, str(name), list(results))}")
     displayed = PredictionTable(lang, "\n".join(lines))
     displayed.outcome = "\n".join(
-        f"- {name}{words(lang)['sheet']['colon']} {_told(value, lang)}" for name, value in results.items()
+        f"- {name}{words(lang)['sheet']['colon']} {_outcome_text(value, lang)}"
+        for name, value in results.items()
     )
     return displayed
 
@@ -83,7 +86,7 @@ def _agree(guess: Any, value: Any, is_angle: bool) -> bool:
     return any(abs(g - value) <= max(_NEAR * abs(value), _NEAR_ZERO) for g in guesses)
 
 
-def _told(value: Any, lang: str) -> str:
+def _outcome_text(value: Any, lang: str) -> str:
     texts = words(lang)["study"]
     if isinstance(value, (bool, np.bool_)):
         return texts["yes"] if value else texts["no"]

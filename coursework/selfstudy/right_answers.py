@@ -30,10 +30,10 @@ class OwnAnswer:
 
 def right_ones(variant: Variant, answers: Mapping[str, Any], right: Collection[str]) -> dict[str, OwnAnswer]:
     """Return the student's own answers to the right parts, by quantity."""
-    return {p.quantity: _own(variant, p, answers.get(p.id)) for p in variant.parts if p.id in right}
+    return {p.quantity: _own_answer(variant, p, answers.get(p.id)) for p in variant.parts if p.id in right}
 
 
-def _own(variant: Variant, part: Part, answer: Any) -> OwnAnswer:
+def _own_answer(variant: Variant, part: Part, answer: Any) -> OwnAnswer:
     walk = variant.walk
     reading = read(variant, part, answer)
     if not part.sort.is_scalar or reading.status != "read":

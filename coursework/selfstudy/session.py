@@ -99,16 +99,16 @@ class StudySession:
     returns an object for display in a notebook cell; ``print`` gives it as plain text.
     """
 
-    _called = ""  #: what the notebook calls this session, where it is neither the first nor another variant
+    _variable = ""  #: what the notebook calls this session, where it is neither the first nor another variant
     _opening = ""  #: why it is proposed
 
     def __init__(self, variant: Variant, kept: ExerciseStore, base: int | None = None):
         self.variant = variant
-        self._kept = kept
+        self._store = kept
         self._attempt = StudyAttempt(variant, kept)
         self._base = variant.seed if base is None else base
         self._hints: dict[str, int] = {}
-        self._said = words(variant.lang)["study"]
+        self._texts = words(variant.lang)["study"]
 
     # ---------------------------------------------------------------- statement
 
@@ -116,7 +116,7 @@ class StudySession:
         """Return the statement, the figure, the data and the questions."""
         sheet, text = handout(self.variant), words(self.variant.lang)["sheet"]
         colon = text["colon"]
-        head = self._said["variant"].format(title=f"**{sheet.title}**", seed=sheet.seed)
+        head = self._texts["variant"].format(title=f"**{sheet.title}**", seed=sheet.seed)
         pieces: list[str | SvgPicture] = [f"{head}\n\n{sheet.statement}"]
         if sheet.figure is not None:
             pieces.append(SvgPicture(sheet.figure.outlined_svg(), sheet.figure_alt))
@@ -131,12 +131,12 @@ class StudySession:
             cases = "".join(f"\n   - `{letter}`{colon} {label}" for letter, label in offered(q))
             questions.append(f"{q.number}. `{q.key}`{colon} {prompt}{f' ({unit})' if unit else ''}{cases}")
         pieces.append("\n".join(questions))
-        return self._shown(*pieces)
+        return self._display(*pieces)
 
     def _cover(self) -> NotebookDisplay:
         """Return the display of the session itself: the reason for which it is proposed, if any, else its
         statement."""
-        return self._shown(self._opening) if self._opening else self.statement()
+        return self._display(self._opening) if self._opening else self.statement()
 
     def _ipython_display_(self) -> None:
         self._cover()._ipython_display_()
@@ -169,16 +169,16 @@ class StudySession:
         try:
             moving = DisplayedAnimation(self.variant, effects)
         except BadCourse:
-            return self._shown(self._missing() or self._said["no_motion"])
+            return self._display(self._missing() or self._texts["no_motion"])
         except WrongValue:
             if missing := self._missing():
-                return self._shown(missing)
+                return self._display(missing)
             displayed = ", ".join(dict.fromkeys(("position", *DisplayedAnimation(self.variant).available)))
             raise refusals.refused(self.variant.lang, "no_effect", names=displayed) from None
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
             moving = DisplayedAnimation(self.variant, usual)
-        return self._shown(SvgPicture(moving.svg(), moving.title))
+        return self._display(SvgPicture(moving.svg(), moving.title))
 
     # -------------------------------------------------------------- predictions
 
@@ -195,7 +195,7 @@ class StudySession:
     @property
     def predictions(self) -> dict[str, Any]:
         """Stored predictions for this variant."""
-        return self._kept.of(self.variant.seed, "predictions")
+        return self._store.of(self.variant.seed, "predictions")
 
     def predict(self, predicted: Mapping[str, Any] | None = None, /, **named: Any) -> NotebookDisplay:
         """Store predictions, to be compared once the answers are right or the curves are shown.
@@ -210,29 +210,29 @@ class StudySession:
             No dictionary.
         """
         requested = self._asked
-        predicted, strange = self._told("predict", "prediction", predicted, named, requested)
+        predicted, strange = self._arguments_of("predict", "prediction", predicted, named, requested)
         if not predicted:
             under = tuple(self._asked_under.values())
             example = f'`{self._name}.predict({{"{under[0]}": "…"}})`' if under else ""
-            return self._shown(self._said["which_predictions"].format(names=_names(under), call=example))
-        self._kept.add(self.variant.seed, "predictions", predicted)
+            return self._display(self._texts["which_predictions"].format(names=_names(under), call=example))
+        self._store.add(self.variant.seed, "predictions", predicted)
         now = self.predictions
         created = [n for n in predicted if not is_blank(now.get(n))]
         left = [n for n in predicted if is_blank(now.get(n))]
-        lines = [self._said["kept_predictions"].format(made=len(created), of=len(predicted))]
+        lines = [self._texts["kept_predictions"].format(made=len(created), of=len(predicted))]
         lines += [self._left(self._asked_under[n] for n in left)] if left else []
         unread = [n for n in created if not predictions.is_understood(self.variant, requested[n], now[n])]
         lines += [
-            self._said["not_understood"].format(
+            self._texts["not_understood"].format(
                 name=self._asked_under[n],
                 said=quoted(now[n]),
                 options=predictions.options(self.variant, requested[n]),
             )
             for n in unread
         ]
-        return self._shown(*strange, *lines, self._trouble)
+        return self._display(*strange, *lines, self._trouble)
 
-    def _told(
+    def _arguments_of(
         self, method: str, kind: str, text: Any, named: Mapping[str, Any], known: Collection[str]
     ) -> tuple[dict[str, Any], list[str]]:
         """Return what a method is told, by the names that it knows, and what is said of names that it does not know.
@@ -296,7 +296,7 @@ class StudySession:
         return self.variant.part_ids
 
     def _left(self, names: Iterable[str]) -> str:
-        return self._said["left"].format(names=_names(names))
+        return self._texts["left"].format(names=_names(names))
 
     def _compared(self, names: Iterable[str], own_answers: Mapping[str, OwnAnswer]) -> str:
         """Return the predictions with their outcomes, as a list."""
@@ -304,11 +304,13 @@ class StudySession:
         for result in self._attempt.compared([self._asked[name] for name in names], own_answers):
             mark = {True: "✓", False: "✗", None: "?"}[result.right]
             question = predictions.asked(self.variant, result.prediction)
-            line = self._said["compared"].format(said=f"`{result.said.replace('`', '')}`", found=result.found)
+            line = self._texts["compared"].format(
+                said=f"`{result.said.replace('`', '')}`", found=result.found
+            )
             if result.right is None:
                 line += f" — {predictions.options(self.variant, result.prediction)}"
             lines.append(f"- {mark} {question} {line}")
-        return "\n".join([f"**{self._said['predictions']}**", "", *lines]) if lines else ""
+        return "\n".join([f"**{self._texts['predictions']}**", "", *lines]) if lines else ""
 
     # ------------------------------------------------------------------ answers
 
@@ -319,7 +321,7 @@ class StudySession:
 
     def _asked_of(self, variant: Variant) -> dict[str, Any]:
         """Return the stored answers to a variant that it asks for: a file may hold others."""
-        return {n: a for n, a in self._kept.of(variant.seed, "answers").items() if n in variant.part_ids}
+        return {n: a for n, a in self._store.of(variant.seed, "answers").items() if n in variant.part_ids}
 
     def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> NotebookDisplay:
         """Mark answers, by the name or number of the question, and give feedback; stored answers fill in for
@@ -334,10 +336,10 @@ class StudySession:
         BadInput
             No dictionary.
         """
-        given, strange = self._told("check", "question", answers, named, self.variant.part_ids)
+        given, strange = self._arguments_of("check", "question", answers, named, self.variant.part_ids)
         if missing := self._missing():
-            self._kept.add(self.variant.seed, "answers", given)
-            return self._shown(*strange, missing, self._trouble)
+            self._store.add(self.variant.seed, "answers", given)
+            return self._display(*strange, missing, self._trouble)
         checked = self._attempt.check(given)
         marking, now = checked.marking, checked.answers
         lines, unanswered = [], []
@@ -349,20 +351,20 @@ class StudySession:
                 text = sentence_of(self.variant, mark, self._call("reveal", mark.part))
                 lines.append(f"- {sign_of(mark)} **{number}.** `{self._keys[mark.part]}` — {text}")
         if checked.copied is not None:
-            lines.insert(0, self._said["copied"].format(seed=checked.copied) + "\n")
-        total = self._said["total"].format(
+            lines.insert(0, self._texts["copied"].format(seed=checked.copied) + "\n")
+        total = self._texts["total"].format(
             points=points_number(marking.points, self.variant.lang),
             out_of=points_number(judged_out_of(self.variant, marking), self.variant.lang),
         )
         before = [n for n in now if (named or answers is not None) and is_blank(given.get(n))]
         after = [self._left(self._keys[n] for n in unanswered)] if unanswered else []
         after += (
-            [self._said["from_before"].format(names=_names(self._keys[n] for n in before))] if before else []
+            [self._texts["from_before"].format(names=_names(self._keys[n] for n in before))] if before else []
         )
         first = checked.first_missed
-        after += [self._said["try_hint"].format(call=self._call("hint", first))] if first else []
+        after += [self._texts["try_hint"].format(call=self._call("hint", first))] if first else []
         asked_before = [p.id for p in predictions.before_answers(self.variant) if p.id in checked.right]
-        return self._shown(
+        return self._display(
             *strange,
             "\n".join(lines),
             f"**{total}**",
@@ -372,7 +374,7 @@ class StudySession:
         )
 
     @property
-    def _own(self) -> dict[str, OwnAnswer]:
+    def _right_answers(self) -> dict[str, OwnAnswer]:
         """Right answers of the student, by quantity."""
         return self._attempt.own(self._attempt.marked())
 
@@ -395,20 +397,20 @@ class StudySession:
             A step that is no whole number.
         """
         if missing := self._missing():
-            return self._shown(missing)
+            return self._display(missing)
         if question == "":
-            return self._shown(self._which("hint", self._said["hint"]["which"]))
+            return self._display(self._which("hint", self._texts["hint"]["which"]))
         name = self._named(question)
         if step is not None:
             step = refusals.counted(self.variant.lang, "step", step)
         texts = self._attempt.hints(name, lambda n: self._call("hint", n))
         if not texts:
-            return self._shown(self._said["hint"]["none"].format(call=self._call("reveal", name)))
+            return self._display(self._texts["hint"]["none"].format(call=self._call("reveal", name)))
         last = step if step is not None else self._hints.get(name, 0) + 1
         last = min(max(last, 1), len(texts))
         self._hints[name] = last
         self._note(HINT, name, step=last)
-        labels = self._said["hint"]
+        labels = self._texts["hint"]
         pieces = [
             f"**{labels['step'].format(number=k, of=len(texts))}** {text}"
             if not text.startswith("$$")
@@ -418,7 +420,7 @@ class StudySession:
         closing = (
             labels["more"] if last < len(texts) else labels["last"].format(call=self._call("reveal", name))
         )
-        return self._shown(*pieces, f"*{closing}*")
+        return self._display(*pieces, f"*{closing}*")
 
     def reveal(self, question: str | int = "") -> NotebookDisplay:
         """Return the complete step of the worked solution with its value, for a question by name or number.
@@ -429,13 +431,13 @@ class StudySession:
             No such question, and no such quantity on the way to one.
         """
         if missing := self._missing():
-            return self._shown(missing)
+            return self._display(missing)
         if question == "":
-            return self._shown(self._which("reveal", self._said["which_reveal"]))
+            return self._display(self._which("reveal", self._texts["which_reveal"]))
         name = self._named(question)
         text = hints.revealed_text(self.variant, name)
         self._note(REVEAL, name)
-        return self._shown(text, self._trouble)
+        return self._display(text, self._trouble)
 
     def _note(self, what: str, part: Any, **more: Any) -> None:
         """Record that something was shown, once."""
@@ -456,33 +458,33 @@ class StudySession:
             A question that does not move with the driver.
         """
         if missing := self._missing():
-            return self._shown(missing)
+            return self._display(missing)
         parts = {p.id: p for p in predictions.moving(self.variant)}
         if not parts:
-            return self._shown(self._said["no_plot"])
+            return self._display(self._texts["no_plot"])
         label = [self._named(name) for name in names]
         for name in label:
             if not isinstance(name, str) or name not in parts:
                 refusals.expect(self.variant.lang, "curve", name, [self._keys[n] for n in parts])
-        own = self._own
+        own = self._right_answers
         wanted = [parts[name] for name in label] or list(parts.values())
         free = [p for p in wanted if p.quantity in own or self._attempt.is_revealed(p)]
         held = [self._keys[p.id] for p in wanted if p not in free]
-        not_yet = self._said["not_yet"].format(names=_names(held)) if held else ""
+        not_yet = self._texts["not_yet"].format(names=_names(held)) if held else ""
         if not free:
-            return self._shown(not_yet, self._trouble)
+            return self._display(not_yet, self._trouble)
         chosen = free if label else list(usual_parts(self.variant, free))
         symbol = self.variant.exercise.symbol
         drawn = curves(self.variant, chosen, self.answers, own)
-        texts = self._said["plot"].format(list=_symbols(chosen, symbol), driver=f"${symbol(drawn.driver)}$")
+        texts = self._texts["plot"].format(list=_symbols(chosen, symbol), driver=f"${symbol(drawn.driver)}$")
         notes = [
-            self._said[note].format(list=_symbols(result, symbol))
+            self._texts[note].format(list=_symbols(result, symbol))
             for note, result in (("beside_curve", drawn.beside), ("outside", drawn.outside))
             if result
         ]
         others = [] if label else [p.id for p in free if p not in chosen]
         more = (
-            self._said["more_plots"].format(
+            self._texts["more_plots"].format(
                 names=_names(self._keys[n] for n in others), call=self._call("plot", others[0])
             )
             if others
@@ -491,7 +493,7 @@ class StudySession:
         seen = {p.quantity for p in chosen}
         requested = [p.id for p in predictions.over_the_cycle(self.variant) if p.quantity in seen]
         picture = SvgPicture(drawn.plot.svg(), drawn.plain)
-        return self._shown(texts, picture, *notes, more, not_yet, self._compared(requested, own))
+        return self._display(texts, picture, *notes, more, not_yet, self._compared(requested, own))
 
     # ----------------------------------------------------------- other variants
 
@@ -512,20 +514,20 @@ class StudySession:
         """
         if number is not None:
             number = refusals.counted(self.variant.lang, "fresh", number)
-        begun = {s for s in self._kept.seeds if self._kept.of(s, "answers") and not self._is_example(s)}
+        begun = {s for s in self._store.seeds if self._store.of(s, "answers") and not self._is_example(s)}
         # One of so many is not begun.
         count = number or len((begun | {self.variant.seed}) - {self._base}) + 1
         try:
             variants = fresh_variants(self.variant.exercise, self._base, count, self.variant.lang)
         except Starved as fault:
             why = "starved" if number is not None else "all_begun"
-            raise Starved(self._said["refused"][why].format(number=count)) from fault
+            raise Starved(self._texts["refused"][why].format(number=count)) from fault
         left = [v for v in variants if v.seed not in begun and v.seed != self.variant.seed]
         variant = left[0] if number is None else variants[-1]
-        return StudySession(variant, self._kept, self._base)
+        return StudySession(variant, self._store, self._base)
 
     def _is_example(self, seed: int) -> bool:
-        return any(e["what"] == EXAMPLE for e in self._kept.happened(seed))
+        return any(e["what"] == EXAMPLE for e in self._store.happened(seed))
 
     def example(self, level: int | None = None) -> ExampleSession | NotebookDisplay:
         """Return the worked solution of another variant, with blanks to fill: the last question at level 1,
@@ -542,22 +544,22 @@ class StudySession:
         """
         seen = [
             int(e.get("step", 0))
-            for e in self._kept.progress.of(self.variant.exercise.name)
+            for e in self._store.progress.of(self.variant.exercise.name)
             if e["what"] == EXAMPLE
         ]
         last = min(max(seen, default=0) + 1, LEVELS)
         level = last if level is None else refusals.counted(self.variant.lang, "level", level, LEVELS)
         if missing := self._missing():
-            return self._shown(missing)
+            return self._display(missing)
         if not has_example(self.variant.exercise.variant(self._base, self.variant.lang)):
-            return self._shown(self._said["example"]["none"])
+            return self._display(self._texts["example"]["none"])
         try:
             variant = example_variant(
                 self.variant.exercise.variant(self._base, self.variant.lang), self._base, level
             )
         except Starved as fault:
-            raise Starved(self._said["refused"]["starved"].format(number=1)) from fault
-        return ExampleSession(variant, self._kept, self._base, level)
+            raise Starved(self._texts["refused"]["starved"].format(number=1)) from fault
+        return ExampleSession(variant, self._store, self._base, level)
 
     def next(self) -> StudySession:
         """Return a session for the recommended next exercise of the course, on a variant not begun.
@@ -566,16 +568,16 @@ class StudySession:
         states the reason.
         """
         course = self._course
-        self._kept.file.refresh()
-        mark_what_came_unmarked(self._course, self._kept.file)
-        advice = next_step(course, self._kept.progress, self._today)
+        self._store.file.refresh()
+        mark_what_came_unmarked(self._course, self._store.file)
+        advice = next_step(course, self._store.progress, self._today)
         assert advice is not None  # the course has this exercise
-        stored = self._kept.beside(advice.exercise)
+        stored = self._store.beside(advice.exercise)
         item = StudySession(course[advice.exercise].variant(self._base, self.variant.lang), stored)
         begun = any(e["what"] != EXAMPLE for e in stored.progress.of(advice.exercise))
         result = item.fresh() if begun else item
-        result._called = "following"
-        begin = self._said["next"]["begin"].format(call=f"`{result._called}.statement()`")
+        result._variable = "following"
+        begin = self._texts["next"]["begin"].format(call=f"`{result._variable}.statement()`")
         result._opening = f"{told_advice(course, advice, self.variant.lang)} {begin}"
         return result
 
@@ -585,17 +587,17 @@ class StudySession:
 
     @property
     def _today(self) -> date:
-        return self._kept.file.clock().date()
+        return self._store.file.clock().date()
 
     def progress(self) -> NotebookDisplay:
         """Return the variants begun with their results; then the other exercises, the skills lost, and those
         recovered since."""
         if missing := self._missing():
-            return self._shown(missing)
-        self._kept.file.refresh()
-        mark_what_came_unmarked(self._course, self._kept.file)
+            return self._display(missing)
+        self._store.file.refresh()
+        mark_what_came_unmarked(self._course, self._store.file)
         lines, lang = [], self.variant.lang
-        for seed in dict.fromkeys((self._base, *self._kept.seeds)):
+        for seed in dict.fromkeys((self._base, *self._store.seeds)):
             if self._is_example(seed):
                 continue
             variant = self.variant.exercise.variant(seed, lang)
@@ -603,9 +605,9 @@ class StudySession:
             marking = grade(variant, self._asked_of(variant))
             right = sum(m.verdict == "correct" for m in marking.values())
             judged = sum(not is_open(variant, m) for m in marking.values())
-            lines.append("- " + self._said["variant_line"].format(seed=seed, right=right, of=judged))
-        course, done = self._course, self._kept.progress
-        return self._shown(
+            lines.append("- " + self._texts["variant_line"].format(seed=seed, right=right, of=judged))
+        course, done = self._course, self._store.progress
+        return self._display(
             "\n".join(lines),
             told_standings(course, done, self._today, lang),
             told_skills(course, done, lang),
@@ -628,59 +630,61 @@ class StudySession:
     @property
     def _name(self) -> str:
         """Variable that holds this session in the notebook."""
-        return self._called or ("study" if self.variant.seed == self._base else "again")
+        return self._variable or ("study" if self.variant.seed == self._base else "again")
 
     def _missing(self) -> str:
         """Return the message for a course folder without a solution of this exercise; empty when it has one."""
         try:
             self.variant.exercise.solution  # noqa: B018
         except NoSolution:
-            return self._said["no_solutions"]
+            return self._texts["no_solutions"]
         return ""
 
     @property
     def _trouble(self) -> str:
         """Message about a problem with the file of answers; empty without one."""
-        texts = self._said["trouble"]
-        return texts[self._kept.trouble].format(file=self._kept.file.troubled) if self._kept.trouble else ""
+        texts = self._texts["trouble"]
+        return (
+            texts[self._store.trouble].format(file=self._store.file.troubled) if self._store.trouble else ""
+        )
 
-    def _shown(self, *pieces: str | SvgPicture) -> NotebookDisplay:
+    def _display(self, *pieces: str | SvgPicture) -> NotebookDisplay:
         return NotebookDisplay(self.variant.lang, *pieces)
 
 
 class ExampleSession(StudySession):
     """Worked solution with blanks; each is answered, hinted and revealed like a question."""
 
-    _called = "example"
+    _variable = "example"
 
     def __init__(self, variant: Variant, kept: ExerciseStore, base: int, level: int):
-        self._whole, self.level = variant, level
+        self._full_sheet, self.level = variant, level
         super().__init__(variant.asking(blanks(variant, level)), kept, base)
         self._note(EXAMPLE, "", step=level)
 
     @property
     def _keys(self) -> Mapping[str, str]:
-        keys = answer_keys(self._whole.parts)
+        keys = answer_keys(self._full_sheet.parts)
         return {name: keys[name] for name in self.variant.part_ids}
 
     @property
     def _numbered(self) -> tuple[str, ...]:
-        return self._whole.part_ids
+        return self._full_sheet.part_ids
 
     def statement(self) -> NotebookDisplay:
         """Return the data, then the solution with its blanks."""
-        texts = self._said["example"]
-        head = texts["head"].format(title=f"**{self._whole.text.title}**", level=self.level, of=LEVELS)
-        sheet = handout(self._whole)
-        given = [f"- {hints._given(self._whole, g.name)}" for g in sheet.given]
+        texts = self._texts["example"]
+        head = texts["head"].format(title=f"**{self._full_sheet.text.title}**", level=self.level, of=LEVELS)
+        sheet = handout(self._full_sheet)
+        given = [f"- {hints._given(self._full_sheet, g.name)}" for g in sheet.given]
         pieces: list[str | SvgPicture] = [head]
         if sheet.figure is not None:
             pieces.append(SvgPicture(sheet.figure.outlined_svg(), sheet.figure_alt))
         pieces.append("\n".join(given))
-        pieces.append(told_steps(self._whole, self.level, self.variant.parts, self._keys, texts))
+        pieces.append(told_steps(self._full_sheet, self.level, self.variant.parts, self._keys, texts))
         fill = ", ".join(f'"{key}": ""' for key in self._keys.values())
         pieces.append(texts["fill"].format(call=f"`{self._name}.check({{{fill}}})`"))
-        return self._shown(*pieces, self._trouble)
+        return self._display(*pieces, self._trouble)
 
 
 def _symbols(parts: Iterable[Part], symbol: Callable[[str], str]) -> str:

@@ -78,7 +78,7 @@ class ProgressFile:
             return Progress()
         except LaterVersion:
             self._is_kept = False
-            self._tell("later", self.path)
+            self._report("later", self.path)
         except (OSError, NotProgress, UnicodeDecodeError):
             self.set_aside("damaged", self.path)
         return Progress()
@@ -91,14 +91,14 @@ class ProgressFile:
     def set_aside(self, why: str, path: Path) -> None:
         """Rename a damaged file to an unused name."""
         names = (path.with_suffix(f".damaged{n or ''}.json") for n in itertools.count())
-        self._tell(why, path)
+        self._report(why, path)
         try:
             path.replace(next(name for name in names if not name.exists()))
         except OSError:
             self._is_kept = path != self.path
-            self._tell("unwritable", path)
+            self._report("unwritable", path)
 
-    def _tell(self, why: str, path: Path) -> None:
+    def _report(self, why: str, path: Path) -> None:
         self.trouble, self.troubled = why, path.name
 
     def add(self, entries: Iterable[Entry]) -> None:
@@ -117,7 +117,7 @@ class ProgressFile:
                 part.replace(self.path)
         except OSError:
             self.progress |= new
-            self._tell("unwritable", self.path)
+            self._report("unwritable", self.path)
 
     def take_over(self, exercise: str) -> None:
         """Import ``EXERCISE.study.json``, the file of an earlier version beside this one, unless entries of

@@ -32,12 +32,12 @@ def folded(text: Any) -> str:
 
 
 @cache
-def _called(what: str) -> frozenset[str]:
+def _spellings(what: str) -> frozenset[str]:
     return frozenset(folded(w) for lang in languages() for w in words(lang)["study"]["reads"][what])
 
 
 def _one_of(text: str, kinds: tuple[str, ...]) -> str:
-    return next((kind for kind in kinds if text in _called(kind)), "")
+    return next((kind for kind in kinds if text in _spellings(kind)), "")
 
 
 def sign(text: Any) -> str:
@@ -72,7 +72,11 @@ def quadrant(text: Any) -> int | None:
     if wording in _ROMAN:
         return _ROMAN[wording]
     number = next(
-        (n for n, kind in enumerate(("first", "second", "third", "fourth"), 1) if wording in _called(kind)),
+        (
+            n
+            for n, kind in enumerate(("first", "second", "third", "fourth"), 1)
+            if wording in _spellings(kind)
+        ),
         None,
     )
     number = count(wording) if number is None else number
@@ -82,7 +86,7 @@ def quadrant(text: Any) -> int | None:
 def count(text: Any) -> int | None:
     """Return a whole number from 0 on, in figures or words, with or without ``times``."""
     wording = folded(text)
-    for times in sorted(_called("times"), key=len, reverse=True):
+    for times in sorted(_spellings("times"), key=len, reverse=True):
         wording = wording.removesuffix(f" {times}")
     if re.fullmatch(r"\+?\d{1,6}(?:[.,]0*)?", wording):
         return int(float(wording.replace(",", ".")))

@@ -37,7 +37,7 @@ class WorkedExample(NotebookDisplay):
     def __init__(self, variant: Variant, level: int, parts: Sequence[Part]):
         self.variant, self.level, self.parts, self.lang = variant, level, tuple(parts), variant.lang
         self.left = self._left
-        super().__init__(variant.lang, *self._posed(), self._told())
+        super().__init__(variant.lang, *self._posed(), self._solution_text())
 
     @property
     def _left(self) -> tuple[Part, ...]:
@@ -73,7 +73,7 @@ class WorkedExample(NotebookDisplay):
         )
         return f"{_named(question)}{cases}"
 
-    def _told(self) -> str:
+    def _solution_text(self) -> str:
         """Return the part of the solution that is shown."""
         if self.level == BARE:
             return ""

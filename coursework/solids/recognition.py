@@ -124,7 +124,7 @@ def _rigid(twists: _Space, wrenches: _Space) -> Equivalent:
     return Equivalent("rigid")
 
 
-def _one(twists: _Space, wrenches: _Space) -> Equivalent:
+def _one_freedom(twists: _Space, wrenches: _Space) -> Equivalent:
     turning, sliding = twists.split()
     if len(sliding):
         return Equivalent("prismatic", axis=_along(sliding[0]))
@@ -203,4 +203,4 @@ def _are_parallel(a: np.ndarray, b: np.ndarray) -> bool:
     return is_zero(float(sine), "two directions are parallel")
 
 
-_BY_FREEDOMS = (_rigid, _one, _two, _three, _four, _five, _free)
+_BY_FREEDOMS = (_rigid, _one_freedom, _two, _three, _four, _five, _free)

@@ -60,21 +60,21 @@ class Names:
         position = ids.index(part.part)
         return position + 1 if always.issuperset(ids[:position]) else None
 
-    def _known(self, part: ReportedQuestion) -> tuple[CourseExercise | None, Part | None]:
+    def _exercise_and_part(self, part: ReportedQuestion) -> tuple[CourseExercise | None, Part | None]:
         """Return the exercise and the part; None for one that the course does not have."""
         exercise = self.exercise(part.exercise)
         return exercise, None if exercise is None else exercise.spec.part(part.part)
 
     def symbol(self, part: PartStatistics) -> str:
         """Return LaTeX of the requested quantity; empty where no symbol names it, or the part is unknown."""
-        exercise, requested = self._known(part)
+        exercise, requested = self._exercise_and_part(part)
         if exercise is None or requested is None or not requested.sort.is_scalar:
             return ""
         return exercise.symbol(requested.quantity)
 
     def question(self, part: ReportedQuestion) -> str:
         """Return the words of the question, shortened, as plain text; the part's id where there are none."""
-        exercise, requested = self._known(part)
+        exercise, requested = self._exercise_and_part(part)
         if exercise is None or requested is None or self._lang not in exercise.languages:
             return part.part
         try:
@@ -90,12 +90,12 @@ class Names:
         an unknown message is empty."""
         if item.kind == "slip":
             return self._slip(item.name)
-        wording = [plain_line(text, self._lang) for text in self._told(item)]
+        wording = [plain_line(text, self._lang) for text in self._messages(item)]
         return _common(wording) if wording else ""
 
     def says_markdown(self, item: MistakeStatistics) -> str:
         """Return the message with its formulas, if it is the same for all; otherwise an empty text."""
-        text = set(self._told(item))
+        text = set(self._messages(item))
         return " ".join(text.pop().split()) if len(text) == 1 else ""
 
     def mistake(self, item: MistakeStatistics, most: int = SHORT) -> str:
@@ -104,7 +104,7 @@ class Names:
         first = re.split(r"(?<=[.?!])\s", self.says(item), maxsplit=1)[0]
         return shortened(first.removesuffix("."), most) or item.name
 
-    def _told(self, item: MistakeStatistics) -> list[str]:
+    def _messages(self, item: MistakeStatistics) -> list[str]:
         """Return the message for a mistake on two variants, Markdown."""
         if item.kind == "slip":
             return []

@@ -11,11 +11,11 @@ from coursework.statistics.marks import Line, Marks, StudentSummary, marks_of
 
 def marks_of_class(graded: Iterable[Graded], results: Mapping[str, Result], rejected: int = 0) -> Marks:
     """Return the columns of a class; for a student with several sittings only those of the one that counts."""
-    text = {student: _told(own) for student, own in results.items()}
+    text = {student: _summary_of(own) for student, own in results.items()}
     return marks_of(_lines(graded, results), text, rejected)
 
 
-def _told(own: Result) -> StudentSummary:
+def _summary_of(own: Result) -> StudentSummary:
     return StudentSummary(own.out_of, own.verdicts["missing"], bool(own.verdicts["unreadable"]))
 
 

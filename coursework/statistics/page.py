@@ -59,9 +59,9 @@ def report(course: Course, statistics: Statistics, lang: str) -> Report:
     return Report(
         lang,
         course.folder.title(lang),
-        page.said["title"],
-        page.said["source"],
-        page.said["opening"] if page.drawn else f"{page.said['opening']} {page.said['no_charts']}",
+        page.texts["title"],
+        page.texts["source"],
+        page.texts["opening"] if page.drawn else f"{page.texts['opening']} {page.texts['no_charts']}",
         tuple(sections),
     )
 
@@ -80,7 +80,7 @@ class _StatisticsPage:
         self.course = course
         self.statistics = statistics
         self.lang = lang
-        self.said: Words = words(lang)["statistics"]
+        self.texts: Words = words(lang)["statistics"]
         self.verdicts: Words = words(lang)["verdicts"]
         self.names = Names(course, statistics, lang)
         self.drawn = not lacking()
@@ -91,41 +91,41 @@ class _StatisticsPage:
         wording = self.statistics
         percents = wording.percents
         rows = [
-            (self.said["students"], self._number(wording.students)),
-            (self.said["silent"], self._number(wording.silent)),
-            (self.said["unread"], self._number(wording.unread)),
-            (self.said["answers"], self._number(wording.answers)),
-            (self.said["without_line"], self._number(wording.without_line)),
+            (self.texts["students"], self._number(wording.students)),
+            (self.texts["silent"], self._number(wording.silent)),
+            (self.texts["unread"], self._number(wording.unread)),
+            (self.texts["answers"], self._number(wording.answers)),
+            (self.texts["without_line"], self._number(wording.without_line)),
             (self.verdicts["missing"], self._number(wording.counts["missing"])),
             (self.verdicts["unreadable"], self._number(wording.counts["unreadable"])),
-            (self.said["rejected"], self._number(wording.rejected)),
+            (self.texts["rejected"], self._number(wording.rejected)),
         ]
         if wording.counts[WAITING]:
-            rows.append((self.said["to_mark"], self._number(wording.counts[WAITING])))
+            rows.append((self.texts["to_mark"], self._number(wording.counts[WAITING])))
         if percents.size:
-            rows.append((self.said["mean_percent"], self._percent(percents.mean() / 100)))
-            rows.append((self.said["median_percent"], self._percent(np.median(percents) / 100)))
+            rows.append((self.texts["mean_percent"], self._percent(percents.mean() / 100)))
+            rows.append((self.texts["median_percent"], self._percent(np.median(percents) / 100)))
         text = "\n".join(f"- {sentence}" for sentence in self._reading())
-        table = Table((self.said["measure"], self.said["count"]), tuple(rows), (False, True))
-        return Section(self.said["short"], text, tables=(table,))
+        table = Table((self.texts["measure"], self.texts["count"]), tuple(rows), (False, True))
+        return Section(self.texts["short"], text, tables=(table,))
 
     def points(self) -> Section:
         counts = self.statistics.histogram().tolist()
         edges = [round(100 * k / BINS) for k in range(BINS + 1)]
         heads = tuple(f"{a}–{b}" for a, b in pairwise(edges))
-        named = (self.said["chart_points"], self.said["axis_points"], self.said["axis_students"])
+        named = (self.texts["chart_points"], self.texts["axis_points"], self.texts["axis_students"])
         table = Table(heads, (tuple(self._number(c) for c in counts),), (True,) * BINS)
         return Section(
-            self.said["points"],
-            self.said["points_text"],
-            self._charts(lambda: histogram(counts, edges, *named), self.said["chart_points"]),
+            self.texts["points"],
+            self.texts["points_text"],
+            self._charts(lambda: histogram(counts, edges, *named), self.texts["chart_points"]),
             (table,),
         )
 
     def exercise(self, name: str) -> Section:
         parts = [p for p in self.statistics.parts if p.exercise == name]
         title = self._heading(name)
-        heading = self.said["chart_right"].format(title)
+        heading = self.texts["chart_right"].format(title)
         charts: list[Chart] = []
         for rows in _shared_out(parts, _CHART_ROWS):
             charts += self._charts(partial(self._right_chart, rows, heading), heading)
@@ -133,7 +133,7 @@ class _StatisticsPage:
 
     def _right_chart(self, parts: Sequence[PartStatistics], heading: str) -> bytes:
         rows = [(self._label(p), 100 * p.right, self._chart_text(self._percent(p.right))) for p in parts]
-        return bars(rows, self._chart_text(heading), self.said["axis_right"], full=100)
+        return bars(rows, self._chart_text(heading), self.texts["axis_right"], full=100)
 
     def mistakes(self) -> Section:
         wording = self.statistics
@@ -141,9 +141,9 @@ class _StatisticsPage:
             (self._mistake_label(m), m.count, str(m.count))
             for m in wording.mistakes_of_exercises()[:_CHARTED]
         ]
-        heading = self.said["chart_mistakes"]
+        heading = self.texts["chart_mistakes"]
         charts = self._charts(
-            lambda: bars(rows, self._chart_text(heading), self.said["axis_answers"]), heading
+            lambda: bars(rows, self._chart_text(heading), self.texts["axis_answers"]), heading
         )
         tables, left_out = [], 0
         for name in wording.exercises:
@@ -151,10 +151,10 @@ class _StatisticsPage:
             left_out += len(selected[_LISTED:])
             if selected:
                 tables.append(self._mistake_table(name, selected[:_LISTED]))
-        text = [self.said["mistakes_text"]]
+        text = [self.texts["mistakes_text"]]
         if left_out:
-            text.append(self.said["mistakes_more"].format(left_out))
-        return Section(self.said["mistakes"], " ".join(text), charts, tuple(tables))
+            text.append(self.texts["mistakes_more"].format(left_out))
+        return Section(self.texts["mistakes"], " ".join(text), charts, tuple(tables))
 
     # ------------------------------------------------------------------ tables
 
@@ -170,12 +170,12 @@ class _StatisticsPage:
             )
             for p in parts
         )
-        return Table(tuple(self.said[k] for k in keys), rows, (False, True, True, True, True))
+        return Table(tuple(self.texts[k] for k in keys), rows, (False, True, True, True, True))
 
     def _discriminates(self, part: PartStatistics) -> str:
         if part.discrimination is not None:
             return self._decimal(part.discrimination)
-        return self.said["too_few" if part.students < ENOUGH else "all_alike"]
+        return self.texts["too_few" if part.students < ENOUGH else "all_alike"]
 
     def _verdict_table(self, parts: Sequence[PartStatistics]) -> Table:
         """Return the table of verdicts, with a column for each verdict that occurs."""
@@ -184,8 +184,8 @@ class _StatisticsPage:
             (self._name(p), *(self._hundredths(p.share(f)) if p.counts[f] else "" for f in met))
             for p in parts
         )
-        heads = (self.said["part"], *(self.verdicts[f] for f in met))
-        return Table(heads, rows, (False, *[True] * len(met)), self.said["became"])
+        heads = (self.texts["part"], *(self.verdicts[f] for f in met))
+        return Table(heads, rows, (False, *[True] * len(met)), self.texts["became"])
 
     def _mistake_table(self, exercise: str, mistakes: Sequence[MistakeStatistics]) -> Table:
         parts = {p.part: p for p in self.statistics.parts if p.exercise == exercise}
@@ -199,14 +199,14 @@ class _StatisticsPage:
             )
             for item in mistakes
         )
-        heads = tuple(self.said[h] for h in ("part", "says", "part_answers", "share", "lost"))
+        heads = tuple(self.texts[h] for h in ("part", "says", "part_answers", "share", "lost"))
         return Table(heads, rows, (False, False, True, True, True), self._heading(exercise))
 
     # ----------------------------------------------------------------- reading
 
     def _reading(self) -> list[str]:
         if not self.statistics.answers:
-            results = [self.said["reading"]["nothing"]]
+            results = [self.texts["reading"]["nothing"]]
         else:
             results = [self._hardest(), self._discrimination(), self._costly()]
         return [*results, self._to_look_at()]
@@ -214,13 +214,13 @@ class _StatisticsPage:
     def _hardest(self) -> str:
         lost = [p for p in self.statistics.parts if p.marked and p.mean < 1]
         if not lost:
-            return self.said["reading"]["all_full"]
+            return self.texts["reading"]["all_full"]
         hardest = sorted(lost, key=lambda p: p.mean)[:3]
         displayed = [self._with(p, self._percent(p.mean)) for p in hardest]
-        return self.said["reading"]["hardest"].format(parts=listed(displayed, self.lang))
+        return self.texts["reading"]["hardest"].format(parts=listed(displayed, self.lang))
 
     def _discrimination(self) -> str:
-        reading = self.said["reading"]
+        reading = self.texts["reading"]
         known = ((p, p.discrimination) for p in self.statistics.parts)
         measured = [(p, d) for p, d in known if d is not None]
         if not measured:
@@ -241,7 +241,7 @@ class _StatisticsPage:
         return f"{reading['weak'].format(limit=limit, parts=parts)} {uncertain}"
 
     def _costly(self) -> str:
-        reading = self.said["reading"]
+        reading = self.texts["reading"]
         costly = max(self.statistics.mistakes_of_exercises(), key=lambda m: m.lost, default=None)
         if costly is None:
             return reading["no_mistake"]
@@ -254,7 +254,7 @@ class _StatisticsPage:
         )
 
     def _to_look_at(self) -> str:
-        text, reading = self.statistics, self.said["reading"]
+        text, reading = self.statistics, self.texts["reading"]
         waiting, rest = text.counts[WAITING], text.needs_a_look - text.counts[WAITING]
         look = reading["look"].format(
             total=rest, unreadable=text.counts["unreadable"], rejected=text.rejected
@@ -321,14 +321,14 @@ class _StatisticsPage:
         return localise(str(rounded), self.lang)
 
     def _percent(self, share: float) -> str:
-        return self.said["percent"].format(self._hundredths(share))
+        return self.texts["percent"].format(self._hundredths(share))
 
     def _chart_text(self, text: str) -> str:
         return _charted(typeset(_short(text, _HEADED), self.lang))
 
     def _charts(self, draw: Callable[[], bytes], heading: str) -> tuple[Chart, ...]:
         """Return the chart; none where charts cannot be drawn."""
-        return (Chart(draw().decode("utf-8"), self.said["alt"].format(heading)),) if self.drawn else ()
+        return (Chart(draw().decode("utf-8"), self.texts["alt"].format(heading)),) if self.drawn else ()
 
 
 def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[PartStatistics]]:

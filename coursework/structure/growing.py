@@ -128,20 +128,20 @@ class _Plant:
             alone = [host for host in results if len(host) == 1]
             full = len(occupied) == len(self.bodies)
             again = alone and (full or self.choices.below(2) == 0)
-            results.append(self.choices.one_of(alone) if again else self._place(occupied))
+            results.append(self.choices.one_of(alone) if again else self._free_host(occupied))
         return results
 
     def _first_host(self) -> frozenset[int]:
-        return frozenset([self._idle.pop()]) if self._idle else self._place(frozenset())
+        return frozenset([self._idle.pop()]) if self._idle else self._free_host(frozenset())
 
     def _second_host(self, first: frozenset[int]) -> frozenset[int]:
         if self._idle:
             return frozenset([self._idle.pop()])
         if len(self.bodies) == 2:
             return frozenset(self.bodies) - first
-        return self._place(first)
+        return self._free_host(first)
 
-    def _place(self, occupied: frozenset[int]) -> frozenset[int]:
+    def _free_host(self, occupied: frozenset[int]) -> frozenset[int]:
         """Return a body, or the bodies of a pivot, that are not taken; at least one other body stays free."""
         pivots = [
             frozenset(joint.bodies)

@@ -142,14 +142,14 @@ def copied(records: Iterable[Record]) -> tuple[dict[str, Any], ...]:
 
 def _cycle(parents: Mapping[int, int], first: int, other: int) -> tuple[int, ...]:
     """Return the cycle that a pair closes with the paths of its two bodies towards the frame."""
-    left, right = _way(parents, first), _way(parents, other)
+    left, right = _path_to_frame(parents, first), _path_to_frame(parents, other)
     while len(left) > 1 and len(right) > 1 and left[-2] == right[-2]:
         left.pop()
         right.pop()
     return (*reversed(left), *right[:-1])
 
 
-def _way(parents: Mapping[int, int], body: int) -> list[int]:
+def _path_to_frame(parents: Mapping[int, int], body: int) -> list[int]:
     direction = [body]
     while parents[direction[-1]]:
         direction.append(parents[direction[-1]])

@@ -87,7 +87,7 @@ class _Scheme:
     def _letter(self, joint: PlaneJoint) -> str:
         return joint.at if self.letters else ""
 
-    def _own(self, body: int) -> list[int]:
+    def _joints_of(self, body: int) -> list[int]:
         return [k for k, joint in enumerate(self.graph.joints) if body in joint.bodies]
 
     # ---------------------------------------------------------------- bodies
@@ -96,7 +96,7 @@ class _Scheme:
         """Return the bar or plate of a body, its wheel, its guides, and its number once: at the block of a
         body without others."""
         rigid, number = self._rigid(body), str(body)
-        selected = [k for k in self._own(body) if k in self.slides and self.slides[k].guide == body]
+        selected = [k for k in self._joints_of(body) if k in self.slides and self.slides[k].guide == body]
         guides = [self._guide(k, self._base(k, rigid, selected)) for k in selected]
         slots = [self._way_of(k, *guide) for k, guide in zip(selected, guides, strict=True)]
         if len(guides) == 1 and (lever := _straight(rigid, *guides[0])):
@@ -110,7 +110,7 @@ class _Scheme:
     def _rigid(self, body: int) -> list[complex]:
         """Return the points that a bar or plate of the body connects: pins, blocks, contact noses."""
         results: list[complex] = []
-        for k in self._own(body):
+        for k in self._joints_of(body):
             if k in self.slides and self.slides[k].guide == body:
                 continue
             position = self.at[k]
@@ -165,12 +165,14 @@ class _Scheme:
         here = self.at[index]
         if slide.guide != FRAME:
             selected = [
-                k for k in self._own(slide.guide) if k in self.slides and self.slides[k].guide == slide.guide
+                k
+                for k in self._joints_of(slide.guide)
+                if k in self.slides and self.slides[k].guide == slide.guide
             ]
             return _degrees(here - self._base(index, self._rigid(slide.guide), selected))
         if index in self.rails:
             return self.rails[index]
-        others = [k for k in self._own(slide.block) if k != index]
+        others = [k for k in self._joints_of(slide.block) if k != index]
         if len(others) == 1 and self.graph.joints[others[0]].kind == "higher":
             return _degrees(self.at[others[0]] - here)
         if len(others) == 1 and others[0] in self.slides:
@@ -211,7 +213,7 @@ class _Scheme:
     def _comes_from(self, body: int, joint: PlaneJoint) -> complex:
         """Return a unit vector from a body's other joints to a contact; none for the frame."""
         here = self.at[self.graph.joints.index(joint)]
-        others = [self.at[k] for k in self._own(body) if self.graph.joints[k] != joint]
+        others = [self.at[k] for k in self._joints_of(body) if self.graph.joints[k] != joint]
         if body == FRAME or not others:
             return 0j
         direction = here - added(others) / len(others)
@@ -228,7 +230,7 @@ class _Scheme:
     def _wheel(self, body: int) -> tuple[complex, float] | None:
         """Return the centre and radius of the disc of a body with one pivot and contacts alone; None for
         another body."""
-        own = self._own(body)
+        own = self._joints_of(body)
         kinds = sorted(self.graph.joints[k].kind for k in own)
         if kinds == ["revolute"]:
             return self.at[own[0]], _ROTOR
@@ -260,7 +262,7 @@ class _Scheme:
     def _arrow(self) -> list[Element]:
         """Return the arrow of the driver, round the pivot or along the slide between the frame and the driven
         body."""
-        for k in self._own(self.driven):
+        for k in self._joints_of(self.driven):
             joint, here = self.graph.joints[k], self.at[k]
             if FRAME not in joint.bodies:
                 continue

@@ -71,10 +71,10 @@ def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
     BadCourse
         It is not written in this language, a cell raises, or a picture or a link leads nowhere.
     """
-    return _told(course, name, lang, opened(course, name, lang))
+    return _drawn_and_run(course, name, lang, opened(course, name, lang))
 
 
-def _told(course: Course[Any], name: str, lang: str, lesson: LessonFile) -> LessonText:
+def _drawn_and_run(course: Course[Any], name: str, lang: str, lesson: LessonFile) -> LessonText:
     with CellSession(lesson.file, course.folder.root) as session:
         created = _Lesson(course, name, lang, session)
         for block in _untitled(lesson.blocks):
@@ -161,7 +161,7 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
     for lang in course.folder.languages:
         try:
             lesson = opened(course, name, lang)
-            _told(course, name, lang, lesson)
+            _drawn_and_run(course, name, lang, lesson)
         except CourseworkError as fault:
             result.append(f"{name}, {lang}: {fault}")
             continue

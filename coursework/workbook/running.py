@@ -53,15 +53,15 @@ class CellSession:
 
     def __init__(self, file: str, root: Path):
         self._file, self._root = file, root
-        self._kept = TemporaryDirectory(prefix="lesson-", ignore_cleanup_errors=True)
-        self._folder = _beside(root, Path(self._kept.name))
+        self._temporary = TemporaryDirectory(prefix="lesson-", ignore_cleanup_errors=True)
+        self._folder = _link_beside(root, Path(self._temporary.name))
         self._names: dict[str, Any] = {"__name__": "__lesson__"}
 
     def __enter__(self) -> CellSession:
         return self
 
     def __exit__(self, *fault: object) -> None:
-        self._kept.cleanup()
+        self._temporary.cleanup()
 
     def run(self, cell: CodeCell) -> CellOutput:
         """Run a cell.
@@ -76,7 +76,7 @@ class CellSession:
             with contextlib.redirect_stdout(printed), contextlib.chdir(self._folder):
                 value = self._value(cell)
         except (Exception, SystemExit) as fault:
-            raise BadCourse(self._said(fault, cell)) from fault
+            raise BadCourse(self._message(fault, cell)) from fault
         displayed, text = shows(value), tuple(self._clean(Printed(printed.getvalue()), cell))
         if isinstance(value, PredictionTable):
             return CellOutput(
@@ -95,7 +95,7 @@ class CellSession:
             return None
         return eval(compile(ast.Expression(last.value), self._file, "eval"), self._names)
 
-    def _said(self, fault: BaseException, cell: CodeCell) -> str:
+    def _message(self, fault: BaseException, cell: CodeCell) -> str:
         """Return a fault as one line."""
         if isinstance(fault, SyntaxError) and fault.filename == self._file:
             return f"{self._file}, line {fault.lineno}: the cell is no Python: {fault.msg}"
@@ -133,13 +133,13 @@ class CellSession:
     def _of_here(self, text: str) -> str:
         """Return a part of a text that holds for this machine or this moment alone: a memory address, a
         folder."""
-        here = [self._kept.name, str(Path(self._kept.name).resolve()), str(self._root)]
+        here = [self._temporary.name, str(Path(self._temporary.name).resolve()), str(self._root)]
         places = [line for line in text.splitlines() if any(item in line for item in here)]
         objects = _IN_MEMORY.findall(text)
         return (*places, *objects, "")[0]
 
 
-def _beside(root: Path, position: Path) -> Path:
+def _link_beside(root: Path, position: Path) -> Path:
     """Return a folder beside which the course appears under its name."""
     try:
         (position / root.name).symlink_to(root, target_is_directory=True)

@@ -58,7 +58,9 @@ def test_no_blank_holds_its_value_and_nothing_tells_what_every_variant_shares(na
         values = example.variant.solution()
         left = {part.quantity for part in example.variant.parts}
         # What is given, and what another quantity is as well: a reaction that is equal to the one before it.
-        numbers = (v for q, v in example._whole.walk.items() if q not in left and isinstance(v, (int, float)))
+        numbers = (
+            v for q, v in example._full_sheet.walk.items() if q not in left and isinstance(v, (int, float))
+        )
         given = {f"{abs(v):.4g}" for v in numbers}
         for part in example.variant.parts:
             value = values[part.quantity]
@@ -84,7 +86,7 @@ def test_examples_go_on_by_themselves_and_count_for_nothing(lang, here):
     assert levels == [1, 2, 3, 4, 4]
     example = session.example(2)
     example.check(right_answers(example.variant))
-    assert not outings(session._kept.progress)
+    assert not outings(session._store.progress)
     assert 'example.reveal("alpha4")' in example.hint("alpha4", 9).markdown
     assert session.fresh().variant.seed == session.fresh(1).variant.seed
     for level in (0, 5, "2", True):
@@ -94,7 +96,7 @@ def test_examples_go_on_by_themselves_and_count_for_nothing(lang, here):
 
 def test_a_blank_goes_by_the_number_of_its_question(here):
     example = coursework.study("slotted_mechanism", seed=1, lang="en").example(2)
-    by_number = {p.id: f"q{k}" for k, p in enumerate(example._whole.parts, start=1)}
+    by_number = {p.id: f"q{k}" for k, p in enumerate(example._full_sheet.parts, start=1)}
     assert f"`{by_number['a_coriolis']}`" in example.statement().markdown
     value = example.variant.solution()["a_coriolis"]
     number = int(by_number["a_coriolis"][1:])

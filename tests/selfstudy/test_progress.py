@@ -141,7 +141,7 @@ def test_what_is_written_in_one_instant_stays_in_order(here):
     for text in ("1", "2", "1", "3", "1"):
         session.check({"a_coriolis": text})
     assert session.answers == coursework.study("coriolis").answers == {"a_coriolis": "1"}
-    (one,) = outings(session._kept.progress)
+    (one,) = outings(session._store.progress)
     assert len(one.verdicts) == 5
 
 
@@ -293,7 +293,7 @@ def test_hints_and_solutions_that_were_shown_are_kept_once(here):
     for _ in range(2):
         session.hint("omega4", 2)
         session.reveal("theta4")
-    told = [(e["what"], e["part"], e.get("step")) for e in session._kept.progress]
+    told = [(e["what"], e["part"], e.get("step")) for e in session._store.progress]
     assert told == [("hint", "omega4", 2), ("reveal", "theta4", None)]
 
 
@@ -301,7 +301,7 @@ def test_right_answers_show_errors_that_would_have_given_another(here):
     session = coursework.study("slotted_mechanism", seed=1)
     right = session.variant.solution()
     session.check({"alpha4": f"{right['alpha4']:.6g}", "rA": f"{right['rA']:.6g}"})
-    shown = {e["part"]: set(e["shown"]) for e in session._kept.progress}
+    shown = {e["part"]: set(e["shown"]) for e in session._store.progress}
     assert "mistake:no_coriolis" in shown["alpha4"]
     assert "mistake:no_coriolis" not in shown["rA"]
 

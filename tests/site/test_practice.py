@@ -117,7 +117,7 @@ def test_an_answer_says_what_a_notebook_says(zoe, tmp_path, course):
         assert sentence in zoe.told(page, part)
         assert sentence in " ".join(said.split())
     kept = [(e["part"], e["what"], e.get("verdict")) for e in entries(zoe.class_)]
-    assert kept == [(e["part"], e["what"], e.get("verdict")) for e in session._kept.progress]
+    assert kept == [(e["part"], e["what"], e.get("verdict")) for e in session._store.progress]
 
 
 def test_no_answer_stands_in_the_page_before_it_is_asked_for(zoe):
