@@ -25,7 +25,10 @@ class Equation(Kind):
     family = "equation"
     wrong = "wrong_equation"
     quoted = ("unknown_unit", "unknown_symbol")
-    faults: ClassVar[Mapping[str, str]] = {}
+    faults: ClassVar[Mapping[str, str]] = {
+        "not_a_number": "not_an_equation",
+        "two_equals_signs": "not_an_equation",
+    }
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         from coursework.reading.equations import read_equation

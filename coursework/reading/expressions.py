@@ -37,6 +37,7 @@ _NUMBER = re.compile(
 )
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*")
 _TIMES = re.compile(r"(?<=[0-9)])\s*[xX]\s*(?=[0-9(])|(?<=[0-9A-Za-z)])\s+[xX]\s+(?=[0-9A-Za-z(\\])")
+_DOT_OF_PRODUCT = re.compile(r"(?<=[A-Za-z0-9)])\s*\.\s*(?=[A-Za-z(\\√])")  #: r2.cos(theta2)
 _FRACTION = re.compile(r"\\[dt]?frac\s*")
 _MINUS_ONE = re.compile(r"-\s*1(?![0-9.,])|\(\s*-\s*1\s*\)|\{\s*-\s*1\s*\}")
 _GROUPS = {"(": ")", "[": "]", "{": "}"}
@@ -338,6 +339,8 @@ def plain_expression(plain: str, variables: Iterable[str] = (), text: str = "") 
     plain = spelled_out(with_roots(plain))
     if vocabulary.variables and ("'" in plain or '"' in plain):
         plain = primes_as_dots(plain)
+    if vocabulary.variables:
+        plain = _DOT_OF_PRODUCT.sub("*", plain)
     if "x" not in vocabulary.variables:
         plain = _TIMES.sub("*", plain)
     root, ambiguous = _parse(plain, vocabulary, tight=False)

@@ -149,6 +149,9 @@ _INDEX = re.compile(
 )
 
 
+_COMMA_OF_ROWS = re.compile(r",\s+|\s+,|,(?=[^\W\d_])")
+
+
 def _cells(text: str, form: Form, *, plane: bool, symbols: bool) -> _Cells:
     """The cells of a text, whichever way it is laid out."""
     inside, behind = _opened(_laid_out(text))
@@ -158,6 +161,8 @@ def _cells(text: str, form: Form, *, plane: bool, symbols: bool) -> _Cells:
         if None not in halves:
             return _Cells(_kept((*(halves[0] or ()), *(halves[1] or ())), form, plane=plane), behind)
     rows = groups or [row for row in re.split(r"[;\n]", inside) if row.strip(" ,")]
+    if len(rows) == 1 and [len(row.split()) for row in re.split(_COMMA_OF_ROWS, inside)] == [2, 2, 2]:
+        rows = re.split(_COMMA_OF_ROWS, inside)  # {0 vx, wy 0, 0 vz}
     found = _of_rows(rows, plane=plane, symbols=symbols)
     if found is None:
         raise Stop("wrong_torsor", text)

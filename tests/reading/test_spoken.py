@@ -113,3 +113,24 @@ def test_answers_are_quoted_as_they_were_typed():
     ):
         assert f"“{quoted}”" in variant.grade({"rA": text})["rA"].feedback
     assert read_number("5 rad/s**2", "rad/s^2").read_as == ("5 rad/s**2",)
+
+
+def test_an_equation_is_read_with_dots_and_told_how_to_be_written():
+    variant = COURSE["slotted_mechanism"].variant(1, "en", ("all",))
+    marks = [
+        variant.grade({"loop_1_x": t})["loop_1_x"]
+        for t in ("r2*cos(theta2) = rA*cos(theta4)", "r2.cos(theta2)=rA.cos(theta4)")
+    ]
+    assert [m.verdict for m in marks] == ["correct", "correct"]
+    assert "as an equation" in variant.grade({"loop_1_x": "r2 cos(theta2) ="})["loop_1_x"].feedback
+
+
+def test_rows_of_two_by_commas_are_rows():
+    variant = COURSE["joint_twist"].variant(1, "en", ("all",))
+    parts = [p.id for p in variant.parts if p.kind == "twist_pattern"]
+    assert parts
+    for part in parts:
+        by_commas, by_semicolons = (
+            variant.grade({part: text})[part].read_as for text in ("{0 vx, wy 0, 0 vz}", "{0 vx; wy 0; 0 vz}")
+        )
+        assert by_commas == by_semicolons
