@@ -19,7 +19,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, lru_cache
@@ -46,7 +46,9 @@ class GivenSpec:
     default: float | str | None = None  #: value of a request that does not give it
     positive: bool = False
     nonzero: bool = False
-    shown: bool = True  #: whether the sheet lists it among the data
+    shown: bool | tuple[str, ...] = (
+        True  #: whether the sheet lists it among the data, or the parts it is listed with
+    )
 
     @property
     def is_choice(self) -> bool:
@@ -55,6 +57,10 @@ class GivenSpec:
     @property
     def is_fixed(self) -> bool:
         return self.low is None and not self.choices
+
+    def is_listed(self, asked: Collection[str]) -> bool:
+        """Return True if a sheet that asks these parts lists the quantity among its data."""
+        return self.shown if isinstance(self.shown, bool) else not {*self.shown}.isdisjoint(asked)
 
 
 def _bound(value: Bound | None) -> Bound | None:
@@ -70,7 +76,7 @@ def drawn(
     default: float | None = None,
     positive: bool | None = None,
     nonzero: bool = False,
-    shown: bool = True,
+    shown: bool | tuple[str, ...] = True,
 ) -> GivenSpec:
     """Declare a quantity drawn from the multiples of ``step`` in [low, high].
 
@@ -78,7 +84,8 @@ def drawn(
     says whether a request may only give positive values; unless told, it follows from a positive
     ``low``. ``nonzero`` refuses 0, both in draws and in requests. ``default`` is what a request
     that leaves the quantity out takes. With ``shown=False`` the sheet does not list it among the data: what
-    it stands for is in the statement or in the figure. The record keeps it.
+    it stands for is in the statement or in the figure. With ids of parts, as in ``shown=("pv_a", "pv_b")``, a sheet
+    lists it only where it asks one of them. The record keeps it.
     """
     if positive is None:
         positive = not callable(low) and low > 0 and unit != "deg"
@@ -93,7 +100,7 @@ def fixed(value: float, *, unit: str = "1") -> GivenSpec:
     return GivenSpec(unit, default=value)
 
 
-def chosen(*choices: str, shown: bool = True) -> GivenSpec:
+def chosen(*choices: str, shown: bool | tuple[str, ...] = True) -> GivenSpec:
     """Declare a quantity drawn among named cases, all equally likely; ``shown`` as in :func:`drawn`."""
     return GivenSpec("1", choices=tuple(choices), shown=shown)
 
@@ -422,6 +429,11 @@ class Exercise:
             raise BadCourse(f"two parts are called {twice[0]!r}; give one of them another id")
         earlier: list[str] = []
         for name, spec in self.given.items():
+            for part_id in spec.shown if isinstance(spec.shown, tuple) else ():
+                if part_id not in ids:
+                    raise BadCourse(
+                        f"{name} is shown with part {part_id!r}, which there is not{nearest(part_id, ids)}"
+                    )
             for bound in (spec.low, spec.high):
                 needs = _parameters(bound) if callable(bound) else ()
                 for need in needs:

@@ -41,7 +41,11 @@ def _unnamed(variant: Variant) -> Handout:
         student="",
         title=text.title,
         statement=text.opening,
-        given=tuple(_given(variant, name) for name, spec in exercise.spec.given.items() if spec.shown),
+        given=tuple(
+            _given(variant, name)
+            for name, spec in exercise.spec.given.items()
+            if spec.is_listed(variant.part_ids)
+        ),
         figure=variant.figure,
         figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
         more_figures=tuple(

@@ -51,7 +51,7 @@ EXERCISE = Exercise(
     given={
         "stroke": drawn(60, 200, step=5, unit="mm"),
         "Q": drawn(1.1, 1.35, step=0.01),
-        "mode": chosen("inward", "outward"),
+        "mode": chosen("inward", "outward", shown=("r3", "e")),
         "delta": drawn(lambda Q: least_lean(Q) + 3, 62, step=1, unit="deg", positive=True),
     },
     parts=(

@@ -69,8 +69,16 @@ EXERCISE = Exercise(
         "theta2": drawn(-175, 180, step=5, unit="deg"),
         "omega2": drawn(-150, 150, step=5, unit="rad/s"),
         "alpha2": fixed(0, unit="rad/s^2"),
-        "kv": drawn(velocity_scale, velocity_scale, unit="mm/s/mm", positive=True),
-        "ka": drawn(acceleration_scale, acceleration_scale, unit="mm/s^2/mm", positive=True),
+        "kv": drawn(
+            velocity_scale, velocity_scale, unit="mm/s/mm", positive=True, shown=("pv_a", "pv_b", "ab")
+        ),
+        "ka": drawn(
+            acceleration_scale,
+            acceleration_scale,
+            unit="mm/s^2/mm",
+            positive=True,
+            shown=("pa_a", "ab_n", "bb_t", "pa_b"),
+        ),
     },
     helpers=(rod,),
     keep=(crank_turns, offset_is_none_or_visible, rod_leans_visibly),

@@ -53,7 +53,9 @@ EXERCISE = Exercise(
         "omega": drawn(-20, 20, unit="rad/s", nonzero=True),
         "r_dot": drawn(-500, 500, step=10, unit="mm/s", nonzero=True),
         "theta": drawn(-175, 180, step=5, unit="deg"),
-        "points": replace(chosen("C3_C3", "C4_P4", "C3_C4", "C3_P4"), default="C3_C4"),
+        "points": replace(
+            chosen("C3_C3", "C4_P4", "C3_C4", "C3_P4", shown=("relative_motion",)), default="C3_C4"
+        ),
     },
     keep=(guide_turns_visibly, block_slides_visibly),
     parts=(

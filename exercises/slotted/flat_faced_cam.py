@@ -103,7 +103,7 @@ EXERCISE = Exercise(
         "h": drawn(8, 30, step=1, unit="mm"),
         "beta": drawn(60, 110, step=5, unit="deg"),
         "Rb": drawn(20, 110, step=1, unit="mm"),
-        "rho_min": drawn(4, 15, step=1, unit="mm"),
+        "rho_min": drawn(4, 15, step=1, unit="mm", shown=("Rb_min",)),
         "theta": drawn(5, 105, step=1, unit="deg"),
         "omega": drawn(-60, 60, unit="rad/s", nonzero=True),
     },

@@ -5,6 +5,8 @@ import re
 import pytest
 
 import coursework
+from coursework.errors import Cycle, MissingQuantity
+from coursework.quantities.graph import graph_of
 from coursework.rendering.renderer import renderer_of
 
 COURSE = coursework.open_course()
@@ -29,6 +31,33 @@ def test_the_paper_to_draw_on_is_told_by_its_size_and_drawn_on_the_page(name, la
     )
     assert lines == [(str(x), str(high)) for x in range(wide + 1)]
     assert not re.search(r"\.paper \{[^}]*display: none", page)
+
+
+def test_a_sheet_lists_what_the_statement_or_an_asked_question_uses_and_no_more():
+    wrong = []
+    for name in COURSE.names:
+        exercise = COURSE[name]
+        whole, graph, figure = exercise.variant(1, "en"), exercise.solution.graph, exercise.spec.figure
+        drawn = graph_of(figure, tuple(exercise.spec.helpers)).leaves if figure else ()
+        stated = bare(whole.text.opening, *(s.text for k, s in whole.text.sections.items() if "figure" in k))
+        for part in exercise.judged_parts:
+            asked = exercise.variant(1, "en", [part.id])  # and what is judged with it
+            listed = {given.name for given in asked.handout().given}
+            for given in [g for g, spec in exercise.spec.given.items() if spec.shown is not False]:
+                try:
+                    graph.plan(asked.asked_quantities, {*whole.used} - {given}, whole.effects)
+                    is_used = False
+                except (Cycle, MissingQuantity):
+                    is_used = True
+                may_be = is_used or given in drawn or bare(exercise.symbol(given)) in stated
+                if is_used > (given in listed) or (given in listed) > may_be:
+                    wrong.append((name, part.id, given, is_used))
+    assert not wrong
+
+
+def bare(*texts):
+    """Return LaTeX without braces and blanks, which may stand or not."""
+    return re.sub(r"[{}\s]|\\angle", "", " ".join(texts))
 
 
 @every_language
