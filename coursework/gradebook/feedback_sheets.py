@@ -21,10 +21,11 @@ from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.making.assignment import text_in
+from coursework.making.identity import printed_columns
 from coursework.making.issued import Issued
 from coursework.making.papers import date_text
 from coursework.making.practice import PracticeOf
-from coursework.making.students import file_stems, folded
+from coursework.making.students import file_stems
 from coursework.marking.feedback import localised
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
@@ -200,7 +201,7 @@ def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang:
         title=text_in(stated.get("title") or {}, lang) or str(stated.get("name", "")),
         course=text_in(stated.get("course") or {}, lang) or course.folder.title(lang),
         student=student,
-        identity=tuple((str(t), own.get(folded(str(t)), "")) for t in stated.get("identity") or ()),
+        identity=printed_columns(stated.get("identity") or (), own, lang),
         date=date_text(datetime.date.fromisoformat(date) if date else None, lang),
         duration=text_in(stated.get("duration") or {}, lang),
         version=next(filter(None, versions), ""),

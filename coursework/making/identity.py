@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
+from coursework.language.words import words
 from coursework.making.students import folded
 
 _ACCENTS = dict.fromkeys(range(0x300, 0x370))
@@ -61,6 +63,14 @@ LOGIN = _titles(
     "sis user id", "sis login id", "integration id", "username", "login", "nom d'utilisateur", "identifiant",
     "numéro d'identification",
 )  # fmt: skip
+_PRINTED = {
+    "number": (
+        *_NUMBER_FIRST,
+        *_titles("id number", "numéro", "numéro d'étudiant", "numéro étudiant", "num", "no", "n°"),
+    ),
+    "email": EMAIL,
+    "group": _titles("group", "groupe", "class group", "groupe de td"),
+}
 _APART = (
     *_NUMBER_FIRST,
     *_titles("id number", "numéro d'identification", "numéro", "sis user id"),
@@ -77,6 +87,20 @@ def is_called(title: str, known: Iterable[str]) -> bool:
     """Whether a title is one of those known, as a table writes it or as Moodle writes it in JSON."""
     known = tuple(known)
     return plain(title) in known or _IN_JSON.get(title) in known
+
+
+def printed_columns(titles: Iterable[Any], own: Mapping[str, str], lang: str) -> tuple[tuple[str, str], ...]:
+    """Return columns of a roster as a sheet prints them, from a student's line by folded titles; empty where it has none."""
+    return tuple((_printed_title(str(title), lang), own.get(folded(str(title)), "")) for title in titles)
+
+
+def _printed_title(title: str, lang: str) -> str:
+    """Return the heading of a column as a sheet prints it: ``number`` is "Student number"."""
+    named = next((key for key, titles in _PRINTED.items() if is_called(title, titles)), "")
+    if named:
+        return str(words(lang)["sheet"]["columns"][named])
+    text = " ".join(title.replace("_", " ").split())
+    return text if any(map(str.isupper, text)) else text.upper() if len(text) <= 3 else text.capitalize()
 
 
 def identifies(title: str) -> bool:

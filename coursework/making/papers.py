@@ -19,6 +19,7 @@ from coursework.making.answer_papers import printed_handouts
 from coursework.making.assignment import Assignment, text_in
 from coursework.making.booklets import Booklet
 from coursework.making.build import rendered, tables, tex_stem
+from coursework.making.identity import printed_columns
 from coursework.making.issuing import Issue
 from coursework.making.students import folded
 from coursework.rendering.renderer import Renderer, renderer_of
@@ -65,7 +66,7 @@ class IssuedPaper:
             title=text_in(assignment.title, lang) or assignment.name,
             course=text_in(assignment.course, lang) or first.variant.exercise.folder.title(lang),
             student=first.student,
-            identity=tuple((title, own.get(folded(title), "")) for title in assignment.identity),
+            identity=printed_columns(assignment.identity, own, lang),
             date=date_text(assignment.date, lang),
             duration=text_in(assignment.duration, lang),
             instructions=text_in(assignment.instructions, lang),

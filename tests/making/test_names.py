@@ -3,6 +3,7 @@
 from tables import each_row
 
 from coursework.errors import closest
+from coursework.making.identity import printed_columns
 from coursework.making.students import called, file_stems
 
 CLASS = ("Faure Loïc", "Faure Noémie", "Łukasz Nowak", "Cœur Anaïs", "Ruiz Ana", "Ruíz Ana")
@@ -48,3 +49,20 @@ def test_file_names_spell_letters_that_are_not_ascii():
         "aegir-strasse",
         "oyvind-dorde",
     ]
+
+
+@each_row(
+    ("title", "fr", "en"),
+    [
+        ("number", "Numéro d'étudiant", "Student number"),
+        ("numéro_étudiant", "Numéro d'étudiant", "Student number"),
+        ("e-mail", "Adresse électronique", "E-mail"),
+        ("groupe", "Groupe", "Group"),
+        ("td", "TD", "TD"),
+        ("N° Apogée", "N° Apogée", "N° Apogée"),
+        ("work_bench", "Work bench", "Work bench"),
+    ],
+)
+def test_a_sheet_prints_no_raw_title_of_a_column(title, fr, en):
+    for lang, printed in ("fr", fr), ("en", en):
+        assert printed_columns([title], {title.lower(): "7"}, lang) == ((printed, "7"),)
