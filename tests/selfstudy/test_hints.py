@@ -31,7 +31,8 @@ def test_another_scale_of_the_drawing_leaves_symbols_in_the_hints(lang, here):
     scale = 2 * walk["kv"]
     told = {"kv": f"{scale:g}", "p": "0; 0", "a": walk["a"] / 2, "b": walk["b"] / 2, "ab": walk["ab"] / 2}
     said = str(session.check({**told, "pv_b": walk["pv_b"] / 2}))
-    assert "- ✓ 9." in said
+    place = session.variant.part_ids.index("pv_b") + 1
+    assert f"- ✓ {place}." in said
     last = str(session.hint("v_B", 9))
     assert not re.search(r"\d", last.rpartition("=")[2].partition("\n")[0])
 
@@ -91,7 +92,8 @@ def test_no_hint_tells_the_case_of_a_choice(name):
 
 
 def test_numbers_side_by_side_would_be_the_answer_and_are_no_hint():
-    variant = COURSE["ball_reducer"].variant(3, "en")
+    variants = (COURSE["ball_reducer"].variant(seed, "en") for seed in range(20))
+    variant = next(v for v in variants if "axis_31_point" in v.part_ids)
     assert [
         r"\num{" in text.replace(r"\num{0}", "") for text in hints.steps(variant, "axis_31_point")[1:]
     ] == [

@@ -11,6 +11,7 @@ from study_words import BOTH, SAID, flat, start_of
 import coursework
 from coursework.course.answer_keys import answer_keys
 from coursework.errors import BadInput, CourseworkError, UnknownName
+from coursework.language.words import words
 from coursework.making.protection import worthy
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy import predictions
@@ -229,7 +230,7 @@ def test_a_call_without_what_it_needs_says_what_there_is(lang, here):
 
 
 NOT_READ = {
-    "velocity_polygon": {"kv": "12 ± 3 ± 1", "p": "là", "known_A": "je ne sais pas"},
+    "velocity_polygon": {"kv": "12 ± 3 ± 1", "p": "là", "known_A": "perhaps this"},
     "slider_extras": {"mobility": "un peu", "theta3": "50 ou 60", "loop_1_x": "r2 + + = 3 )"},
 }
 
@@ -249,7 +250,7 @@ def test_who_works_alone_is_not_told_that_somebody_will_look(name, lang, here):
         letter = session.variant.letters(part)["length"]
         assert f"{letter} ({flat(session.variant.label('known_A', 'length'))})" in said
     else:
-        assert start_of(SAID[lang]["not_read"]["equation"].partition("`")[0]) in said
+        assert start_of(words(lang)["marking"]["unreadable"]["not_an_equation"]) in said
 
 
 @BOTH
