@@ -35,7 +35,7 @@ _HIGHEST = 4  #: class that the course names
 
 _COUNTED_GROUPS = (DYAD, DYAD, FOLLOWER, TRIAD)
 _DECOMPOSED_GROUPS = (
-    (DYAD, DYAD),
+    (TRIAD,),
     (DYAD, DYAD, DYAD),
     (TRIAD,),
     (DYAD, TRIAD),
@@ -44,6 +44,11 @@ _DECOMPOSED_GROUPS = (
     (DYAD, TETRAD),
     (TETRAD, DYAD),
 )
+
+
+#: Numbers below are those of the exercise's first version: its sheets were issued, and stay what they are.
+_FIRST_VERSION = 1_000_000
+_DECOMPOSED_FIRST = ((DYAD, DYAD), *_DECOMPOSED_GROUPS[1:])
 
 
 class Driven(NamedTuple):
@@ -78,7 +83,8 @@ def to_decompose(number: int) -> Driven:
     if choices.below(_ONE_IN) == 0:
         grown = relabelled(number, LIBRARY[choices.one_of(_DECOMPOSED_FIGURES)].joints, (2,))
     else:
-        grown = grow(number, choices.one_of(_DECOMPOSED_GROUPS))
+        groups = _DECOMPOSED_FIRST if number < _FIRST_VERSION else _DECOMPOSED_GROUPS
+        grown = grow(number, choices.one_of(groups))
     graph = grown.graph
     able = (b for b in choices.shuffled(drivers(graph)) if b in grown.drivers or _can_drive(graph, b))
     return Driven(grown.joints, (FRAME, next(able)))

@@ -19,7 +19,7 @@ def figure(mechanism):
 
 
 EXERCISE = Exercise(
-    given={"mechanism": drawn(1000, 999999, shown=False)},
+    given={"mechanism": drawn(1_000_000, 1_999_999, shown=False)},
     parts=(
         Part("group_count", kind="integer", points=1),
         Part("group_size", kind="integer", points=1),
@@ -29,4 +29,5 @@ EXERCISE = Exercise(
     symbols={"group_count": r"n_{\mathrm{g}}", "group_size": "k"},
     tells=tells,
     figure=figure,
+    version=2,
 )
