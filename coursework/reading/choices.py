@@ -96,6 +96,8 @@ def _said_with_letters(text: str, choices: Choices, letters: Letters) -> list[st
     if is_verbatim(text, choices):  # "A and B are at rest" begins with no letter of a choice
         return in_words(text, choices)
     if (found := _BEFORE.fullmatch(text)) and (keys := _of_letter(found["letter"], letters)):
+        if found["mark"] == "=" and _ALONE.fullmatch(found["said"]):
+            return []  # a = a says nothing of b
         if said := _said(found["said"], choices, letters):
             return _together(keys, said)
         if (remark := _IN_BRACKETS.fullmatch(found["said"])) and not names_any(remark[1], choices):

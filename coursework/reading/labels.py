@@ -195,6 +195,19 @@ def _numbered(text: str) -> tuple[int | None, str]:
     return _numerals().get(first), rest
 
 
+#: What makes more than a numeral of one: ``2^``, ``/2``, ``\\vec{v}``, ``the two``; and a vector of a point, ``V(B∈2/0)``.
+_NO_NUMERAL = re.compile(r"[\\^]|^\s*/|/\s*$|^\s*(?:les|the)\s+[^\W\d_]{3,}\W*$", re.I)
+_OF_POINT = re.compile(r"\s*(?:\\vec\s*\{?\s*)?[ivx]+\s*\}?\([^()]*[∈/,]", re.I)
+
+
+def _is_no_numeral(text: str) -> bool:
+    """Whether a numeral stands in a text that states no number of a choice."""
+    if _OF_POINT.match(text):
+        return True
+    number, rest = _numbered(_BEFORE.sub("", text))
+    return number is not None and not rest and bool(_NO_NUMERAL.search(text))
+
+
 def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choice whose label begins with this number, however it is written, where the numbers tell choices apart."""
     number, rest = _numbered(text.strip("()[] "))
@@ -211,11 +224,15 @@ def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     return [key for key, (ns, follows) in found.items() if number in ns and (not rest or rest in follows)]
 
 
-_MARKED = re.compile(r"[(\[]?\s*(?P<mark>[a-z]|[0-9]{1,2})\s*(?:[)\]:]|\.(?![0-9]))\s*(?P<label>\S.*)", re.I)
+_MARKED = re.compile(
+    r"[(\[]?\s*(?P<mark>[a-z]|[0-9]{1,2})\s*(?:[)\]:]|\.(?![0-9]))\s*(?P<label>[^\s.…].*)", re.I
+)
 
 
 def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that a text may mean, whatever letters a sheet prints; a mark before a label counts where it is a number."""
+    if _is_no_numeral(text):
+        return []
     keys = by_label(text, choices)
     marked = None if keys else _MARKED.fullmatch(text.strip())
     if marked and (

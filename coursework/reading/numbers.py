@@ -88,15 +88,18 @@ _ELSEWHERE = re.compile(
 _NO_QUANTITY = re.compile(
     r"[eé]q(?:n|uation)?s?\.?\s*\(?[0-9]*\)?\s*[=:]|[fgh]\s*\(\s*[a-z]\s*\)\s*=|y\s*\(\s*x\s*\)\s*="
     r"|\\?(?:sin|cos|tan|exp|ln|log)(?![a-z])(?:\^\(?[0-9]\)?)?\s*[({]?\s*(?!pi\b)[^\W\d][^=(){}+*/]*[)}]?\s*="
+    r"|\\?(?:sin|cos|tan)\s*\^\(?2\)?+(?!\s*[({]?\s*[0-9])|e\s*\^"
+    r"|(?:[Σ∑]|\\sum(?![a-z])|sum\s+(?:of\s+)?|somme\s+(?:des?\s+)?)\s*\\?(?:F|M|R|vec|forces?|moments?|torques?|couples?|efforts?|actions?)(?![a-z])"
     r"|[^\W\d_]\w*\s*(?:\^|\*\*)\s*\(?[23]\)?\s*=",
     re.I,
 )
+_COMPARES = re.compile(r"(?<![-=])>|<(?![-=]*>)|[≤≥≠]|!\s*=|\\(?:leq?|geq?|neq?|lt|gt)(?![a-z])")
 _WORKS = re.compile(r"[-+*/^]")  #: what a formula has, and a name seldom
 
 
 def _is_equation(name: str) -> bool:
-    """Whether what stands before an equals sign makes an equation of it: ``f(x) =``, ``cos(t) =``, ``sin(t)^2 + cos(t)^2 =``."""
-    if _NO_QUANTITY.match(name):
+    """Whether what stands before an equals sign makes an equation or an inequality of it: ``f(x) =``, ``ΣF =``, ``x >=``."""
+    if _NO_QUANTITY.match(name) or _COMPARES.search(name):
         return True
     left = name.rstrip(" =≈≃:")
     if not _WORKS.search(left):
@@ -357,11 +360,11 @@ _CALENDAR = re.compile(
     r"|(?:(?:[01][0-9]|2[0-3]):[0-5][0-9]|[0-9]:0[0-9])(?::[0-5][0-9])?"
     r"|(?:\+[0-9]{2} ?[0-9]|0[1-9])(?:[ .-]?[0-9]{2}){4}"
 )
-_LETTER = re.compile(r"[+-]?\s*(?:(e)|pi|π)", re.I)
+_LETTER = re.compile(r"[+-]?\s*(?:(e)(?:\s+[^\W\d_].*)?|pi|π)", re.I)
 
 
 def refuse_no_number(text: str, target: Unit) -> None:
-    """Stop at a date, a time, a telephone number, and at a letter alone: ``e``, and ``π`` but where an angle or a rate of one is asked."""
+    """Stop at a date, a time, a telephone number, and at a letter alone: ``e``, ``e mm``, and ``π`` but where an angle or a rate of one is asked."""
     letter = _LETTER.fullmatch(text)
     is_angle = target.is_angle or "rad" in target.text
     if _CALENDAR.fullmatch(text) or (letter and (letter[1] or not is_angle)):
@@ -487,8 +490,8 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
     pieces = _EQUALS.split(text)
     if len(pieces) != 2 or not all(pieces):
         return None
-    is_idle = pieces[0] == pieces[1] and _NOUGHT.fullmatch(pieces[0])  # 0 = 0 holds whatever is asked
-    if is_idle or any(map(_PAIR.fullmatch, pieces)):
+    is_idle = pieces[0] == pieces[1] and (pieces[0][0] in "([" or _NOUGHT.fullmatch(pieces[0]))
+    if is_idle or any(map(_PAIR.fullmatch, pieces)):  # holds whatever is asked: 0 = 0, (1,2) = (1,2)
         raise Stop("not_a_number", text)
     other, end = (_way(piece, target, thousands) for piece in pieces)
     if not (amounts := _agreeing(end, other, target)):

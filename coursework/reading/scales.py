@@ -8,7 +8,7 @@ _NUMBER = r"[0-9]+(?:[.,][0-9]+)?"
 _PAPER = rf"(?P<paper>{_NUMBER})\s*(?P<length>mm|cm|dm|m)(?:\s+(?:de|of|sur le|on)\s+(?:papier|paper))?"
 _MEANT = rf"(?P<meant>{_NUMBER}(?:\s*[*]?\s*10\^\(?[0-9]\)?|[eE][0-9])?)\s*(?P<unit>[^\W\d_].*)"
 _FOR = r"(?:pour|for|représentent|représente|represents?|stands? for|vaut|équivaut à|correspond à|->|→|↔|≙)"
-_NAME = r"(?:(?:[^\W\d_]\w*|[ée]chelle|scale)\s*[=:]?\s*)?"
+_NAME = r"(?:(?:[^\W\d_]\w*\s*[=:]|[ée]chelle|scale|k\w{0,2}(?=\s))\s*[=:]?\s*)?"
 _STATED = re.compile(rf"{_NAME}(?:{_PAPER}\s*(?:=|:|{_FOR})\s*{_MEANT})", re.I)
 _TURNED = re.compile(rf"{_NAME}(?:{_MEANT}?)\s*{_FOR}\s*{_PAPER}", re.I)
 _RATIO = re.compile(rf"{_NAME}({_NUMBER})(?:\s*:\s*|/)({_NUMBER})", re.I)

@@ -438,6 +438,8 @@ def _marked(text: str, form: Form) -> set[str]:
     if has_dashes and not (is_table and (plane or _dashed_as_plane(cells, form))):
         raise Stop("wrong_torsor", text)
     written = {form.names[place]: cell for place, cell in enumerate(told) if cell and cell not in _DASHES}
+    if not written or ("≠" in written.values() and not is_table):  # && says nothing, 0 ≠ 1 is no row
+        raise Stop("wrong_torsor", text)
     marked = {name: cell for name, cell in written.items() if not _ZERO.fullmatch(cell)}
     has_zero = len(marked) < len(written) or all(
         component_place(c, form) is not None for c in marked.values()
