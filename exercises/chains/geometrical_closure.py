@@ -120,7 +120,7 @@ EXERCISE = Exercise(
         ),
         Part("omega3", unit="rad/s", points=2),
         Part("ratio", points=1),
-        Part("swing", unit="deg", points=2),
+        Part("swing", unit="deg", points=1),
     ),
     figure=figure,
     version=3,
