@@ -141,7 +141,7 @@ def to_typst_markup(markdown: str, lang: str) -> str:
     """Return Markdown as Typst markup."""
     if formula := _ONE_FORMULA.fullmatch(markdown):
         return typst_formula(formula[1].strip(), lang)
-    return _typst(tree(markdown), lang).strip()
+    return _block(tree(markdown), lang)
 
 
 #: A number and its unit.
@@ -154,6 +154,12 @@ def typst_value(markdown: str, lang: str) -> str:
     if _VALUE.fullmatch(markdown):
         return typst_text(to_text(markdown, lang), lang)
     return to_typst_markup(markdown, lang)
+
+
+def _block(node: SyntaxTreeNode, lang: str) -> str:
+    """Return a node's children as the body of a block: a list begins a line, since Typst nests items by their column."""
+    begins = node.children and node.children[0].type in ("bullet_list", "ordered_list")
+    return "\n" * bool(begins) + "".join(_typst(child, lang) for child in node.children).strip()
 
 
 def _typst(node: SyntaxTreeNode, lang: str) -> str:
@@ -193,7 +199,7 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
             start = int(node.attrs.get("start", 1))
             return items("+", "" if start == 1 else f"{start}.")
         case "blockquote":
-            return f"#remark[{inside().strip()}]\n\n"
+            return f"#remark[{_block(node, lang)}]\n\n"
         case "heading":
             return f"#heading(level: {min(int(node.tag[1]) + 2, 6)})[{inside()}]\n\n"
         case "hr":

@@ -68,8 +68,10 @@ class WorkedExample(NotebookDisplay):
         return [*pieces, "\n".join(numbered)]
 
     def _asked(self, question: Question) -> str:
+        # A letter is the mark of its line: a bullet before it would be a second one.
         cases = "".join(
-            f"\n   - {f'{letter}) ' if letter else ''}{label}" for letter, label in offered(question)
+            f"\\\n   {letter}) {label}" if letter else f"\n   - {label}"
+            for letter, label in offered(question)
         )
         return f"{_named(question)}{cases}"
 

@@ -26,6 +26,7 @@ from coursework.workbook.pictures import moving
 
 LINES = 200  #: that a cell may print into a book
 _IN_MEMORY = re.compile(r"<[^<>\n]* at 0x[0-9a-fA-F]+>")
+_MARKUP, _ESCAPED = re.compile(r"[\\`*_$<\[\]|]"), r"\\\g<0>"  #: signs of Markdown, and as they print
 #: Signs that no page shows: colours of a terminal, and what has no form.
 _UNSEEN = re.compile(r"\x1b\[[0-9;]*[A-Za-z]|\r(?=\n)|[\x00-\x08\x0b-\x1f\x7f]")
 
@@ -78,10 +79,8 @@ class CellSession:
         except (Exception, SystemExit) as fault:
             raise BadCourse(self._message(fault, cell)) from fault
         displayed, text = shows(value), tuple(self._clean(Printed(printed.getvalue()), cell))
-        if isinstance(value, PredictionTable):
-            return CellOutput(
-                (), (*text, *displayed.later)
-            )  # what it prints would tell what is to be predicted
+        if isinstance(value, PredictionTable):  # what it prints would tell what is to be predicted
+            return CellOutput((), (*map(_listed, text), *displayed.later))
         now = (piece for item in displayed.now for piece in self._clean(item, cell))
         return CellOutput((*text, *now), displayed.later)
 
@@ -146,6 +145,14 @@ def _link_beside(root: Path, position: Path) -> Path:
     except OSError:  # a system, or a user, without links
         return root.parent
     return position
+
+
+def _listed(piece: Piece) -> Piece:
+    """Return what a cell prints beside an answer as a list of sentences, unless it is drawn with signs."""
+    if not isinstance(piece, Printed) or "##" in piece.text:
+        return piece
+    lines = (" ".join(line.split()) for line in piece.text.splitlines() if line.strip())
+    return Prose("\n".join(f"- {_MARKUP.sub(_ESCAPED, line)}" for line in lines))
 
 
 def shows(value: Any) -> CellOutput:

@@ -97,7 +97,7 @@ def test_a_question_names_its_symbol_once(lang):
 def test_choices_are_lettered_as_their_answer_is(lang):
     bare = coursework.worked("grashof", seed=1, lang=lang, level=4, parts=("linkage_type",))
     letter = bare.right[0].rpartition("**")[0].rpartition("**")[2].partition(" ")[0]
-    assert f"\n   - {letter} " in bare.pieces[-1]
+    assert f"\n   {letter} " in bare.pieces[-1]  # the letter marks the line: no bullet before it
     half = coursework.worked("grashof", seed=5, lang=lang, level=2)
     assert "linkage" not in half.pieces[-1].rpartition("=")[0].rpartition("\n")[2]
     assert words(lang)["lesson"]["unnamed"].format(question="*Question 3.*") in half.pieces[-1]
