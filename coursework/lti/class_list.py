@@ -14,13 +14,14 @@ COLUMNS = ("student", "email", "number", "lti_user_id")
 
 
 def students(members: Iterable[Member]) -> list[Member]:
-    """The students that are there, by name."""
+    """Return the active students of a roster, sorted by name."""
     found = [one for one in members if one.role is Role.STUDENT and one.active]
     return sorted(found, key=lambda one: (folded(one.name), one.person))
 
 
 def as_csv(members: Iterable[Member]) -> str:
-    """A line a student; two of one name are told apart by what the platform knows besides."""
+    """Return the class list as CSV, one line per student; two students of one name are distinguished by
+    e-mail, number or identifier."""
     found = students(members)
     alike = Counter(folded(one.name) for one in found)
     rows = []

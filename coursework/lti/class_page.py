@@ -1,4 +1,4 @@
-"""What an instructor sees of a link: who has what, what was handed in, and whether it is in the gradebook."""
+"""Instructor's page of a link: the papers issued, the answers submitted, and the state of each score."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Row(NamedTuple):
 
 
 def settings_rows(visit: Visit, wanted: Wanted, title: str, versions: int | None) -> list[tuple[str, str]]:
-    """What the link is set to, each with its name."""
+    """Return the settings of the link, each with its label."""
     said = words(visit.lang)["lti"]["class"]
     dealt = (
         said["own"]
@@ -54,7 +54,7 @@ def class_rows(
     papers: Sequence[Paper], tries: Sequence[Try], counted: Mapping[str, Try | None], scores: Mapping[str, Waiting],
     members: Sequence[Member] | None, lang: str,
 ) -> list[Row]:  # fmt: skip
-    """A row a student: those of the roster and whoever opened the link, by name."""
+    """Return one row per student of the roster or of the opened link, sorted by name."""
     done = Counter(one.person for one in tries)
     own = {paper.person: paper for paper in papers}
     there = {one.person: one for one in students(members or ())}
@@ -95,13 +95,13 @@ def _standing(best: Try | None, waiting: Waiting | None, lang: str) -> str:
 
 
 def called(papers: Sequence[Paper]) -> dict[str, str]:
-    """What each person is called in files; two of one name are told apart."""
+    """Return the name of each person in files; two people of one name are distinguished by their identifiers."""
     alike = Counter(folded(paper.name) for paper in papers)
     return {p.person: p.name if alike[folded(p.name)] == 1 else f"{p.name} ({p.person})" for p in papers}
 
 
 def taken_csv(papers: Sequence[Paper], counted: Mapping[str, Try | None]) -> bytes:
-    """The answers that count, as ``coursework grade`` reads them."""
+    """Return the answers that count as CSV, in the format that ``coursework grade`` reads."""
     return csv_file(_answer_rows(papers, counted), COLUMNS)
 
 
@@ -121,7 +121,7 @@ def _answer_rows(papers: Sequence[Paper], counted: Mapping[str, Try | None]) -> 
 
 
 def issued_json(papers: Sequence[Paper], assignment: Assignment | None) -> dict[str, Any]:
-    """Who has which record, as ``coursework grade --issued`` reads it."""
+    """Return the records issued to each person, in the format that ``coursework grade --issued`` reads."""
     names = called(papers)
     stated = {} if assignment is None else {"assignment": assignment.stated()}
     items: Iterable[dict[str, Any]] = (

@@ -105,7 +105,7 @@ class CourseHost:
         return Offer(f"exercise:{name}", exercise.title(spoken), self._points(AskedExercise(name)), known)
 
     def _points(self, asked: AskedExercise, assignment: Assignment | None = None) -> float:
-        """What an exercise is worth, of an assignment or alone."""
+        """Return the points of an exercise, of an assignment or alone."""
         if isinstance(asked.points, float):
             return asked.points
         # Which parts are asked may hang on the given values; one variant stands for them all.
@@ -215,7 +215,7 @@ class CourseHost:
         )
 
     def _rules(self, visit: Visit, wanted: Wanted, done: int) -> list[str]:
-        """How often one may answer, and what counts."""
+        """Return the sentences that state how many attempts are left and which of them counts."""
         said = words(visit.lang)["lti"]
         counts = str(said["counts_best" if wanted.counts == BEST else "counts_last"])
         if wanted.tries is None:
@@ -270,7 +270,7 @@ class CourseHost:
         return Reply(goto=visit.home)
 
     def _answers(self, visit: Visit, wanted: Wanted, paper: Paper, form: Form) -> list[dict[str, str]]:
-        """The texts by part, for each exercise.
+        """Return the submitted answers by part, one mapping per exercise.
 
         Raises
         ------
@@ -289,7 +289,7 @@ class CourseHost:
         return found
 
     def _unread(self, visit: Visit, wanted: Wanted, graded: Sequence[Graded]) -> list[str]:
-        """A sentence for each answer that could not be read."""
+        """Return a sentence for each answer that could not be read."""
         form, found = str(words(visit.lang)["lti"]["unread_line"]), []
         for place, one in enumerate(graded, 1):
             for number, line in enumerate(one.lines.values(), 1):
@@ -368,7 +368,7 @@ class CourseHost:
     # --------------------------------------------------------------------- pieces
 
     def _wanted(self, visit: Visit) -> Wanted:
-        """What the link asks for, which is there.
+        """Return the settings of the link, after a check that their assignment or exercise exists.
 
         Raises
         ------
@@ -418,11 +418,13 @@ class CourseHost:
         )
 
     def _place(self, visit: Visit, wanted: Wanted) -> str:
-        """Where papers and tries are kept: the link, and what it opens, which a teacher may change."""
+        """Return the key under which papers and attempts are stored: the link and its content, since a
+        teacher may change the content."""
         return f"{visit.launch.place} {wanted.key}"
 
     def _paper(self, visit: Visit, wanted: Wanted) -> Paper:
-        """What was issued to the person, or is now. Who looks at the class is issued nothing."""
+        """Return the paper issued to the person; issue one if there is none. Nothing is issued to somebody
+        who sees the class."""
         place, launch = self._place(visit, wanted), visit.launch
         found = self._storage.paper(place, launch.person)
         if found is not None:
@@ -443,7 +445,7 @@ class CourseHost:
     def _marked(
         self, visit: Visit, wanted: Wanted, paper: Paper, answers: Sequence[Mapping[str, str]]
     ) -> list[Graded]:
-        """The answers marked, an exercise each, by the rules of the assignment."""
+        """Return the marked answers, one sheet per exercise, by the rules of the assignment."""
         stated = self._assignment(wanted).marking
         rules = Rules.of(stated, "the assignment", self.course.folder.rules) if stated else None
         found = []
@@ -464,14 +466,14 @@ _OF_CLASS = ("", "answers.csv", "issued.json")
 
 
 def counted_try(tries: Sequence[Try], wanted: Wanted) -> Try | None:
-    """The try that counts, of one person: the best, the latest of equal ones, or the last."""
+    """Return the attempt of one person that counts: the best, the latest of equal ones, or the last."""
     if not tries:
         return None
     return max(tries, key=lambda one: (one.points, one.number)) if wanted.counts == BEST else tries[-1]
 
 
 def _members(visit: Visit, lang: str) -> tuple[Any, str]:
-    """The roster, and what to say where there is none."""
+    """Return the roster, and the sentence to show if there is none."""
     said = words(lang)["lti"]["class"]
     if visit.roster is None:
         return None, said["no_roster"].format(said["roster_off"])
@@ -482,12 +484,13 @@ def _members(visit: Visit, lang: str) -> tuple[Any, str]:
 
 
 def _box(part: str, place: int, alone: bool) -> str:
-    """What the box of a part is called on the page."""
+    """Return the name of a part's input field on the page."""
     return part if alone else f"e{place}-{part}"
 
 
 def _filled(answers: Sequence[Mapping[str, str]], alone: bool) -> dict[str, list[str]]:
-    """What stands in the boxes; of ticks each, and the whole for a box to write in."""
+    """Return the values of the input fields: each tick of a multiple choice, and the whole text for a text
+    field."""
     return {
         _box(part, place, alone): [text, *text.split(", ")] if ", " in text else [text]
         for place, one in enumerate(answers, 1)

@@ -1,4 +1,4 @@
-"""A person's own variants in a link: drawn when they come first, and kept."""
+"""A person's own variants in a link: drawn at the first request, then stored."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def own_records(
     secret: Secret,
     issued: Sequence[Sequence[Record]] = (),
 ) -> list[Record]:
-    """The records of a person's variants, an exercise each.
+    """Return the records of a person's variants, one per exercise.
 
     A code is a function of the secret, issuer, link and person; the secret of the assignment's file wins. Where that variant is somebody's in this link already, as ``issued``
     says, the next one is drawn, while variants last.
@@ -54,7 +54,7 @@ def own_records(
 
 
 def _who(assignment: Assignment, launch: Launch, key: Secret) -> str:
-    """What a draw depends on: the person; where there are versions, which of them is theirs."""
+    """Return the text on which a draw depends: the person, or the version assigned to the person."""
     digest = key.digest("person", launch.issuer, launch.link, launch.person).hex()
     if assignment.versions is None:
         return digest
@@ -66,12 +66,12 @@ def _who(assignment: Assignment, launch: Launch, key: Secret) -> str:
 
 
 def _given(record: Record) -> tuple[Any, ...]:
-    """The given values of a record, as draws compare them."""
+    """Return the given values of a record in the form in which draws compare them."""
     return tuple(one["value"] for one in record["given"].values())
 
 
 def variants(course: Course[Any], records: Sequence[Record], lang: str) -> list[Variant]:
-    """The variants of records, in a language where they have it."""
+    """Return the variants of records, in a language that they support."""
     found = []
     for record in records:
         exercise = course[str(record["exercise"])]

@@ -24,7 +24,8 @@ _MOST_POINTS = 1_000_000.0
 
 
 def found(shelves: Sequence[Shelf], sought: str) -> list[Shelf]:
-    """Shelves with the offers that have all the words that are sought, in a title of any language or in the name."""
+    """Return the groups of offers, each reduced to the offers whose title, in any language, or name contains
+    every searched word."""
     pieces = _folded(sought).split()
     kept = (
         (
@@ -41,13 +42,13 @@ def found(shelves: Sequence[Shelf], sought: str) -> list[Shelf]:
 
 
 def _folded(text: str) -> str:
-    """A text without capitals and accents."""
+    """Return a text without capitals and accents."""
     apart = unicodedata.normalize("NFKD", text.casefold().replace("_", " "))
     return "".join(char for char in apart if not unicodedata.combining(char))
 
 
 def content_items(launch: Launch, shelves: Iterable[Shelf], form: Form, url: str) -> list[dict[str, Any]]:
-    """The links that a form asks for.
+    """Return the links that a form requests.
 
     Raises
     ------
@@ -123,7 +124,7 @@ def _item(offer: Offer, wanted: Wanted, points: float, url: str, with_line: bool
 
 
 def response(launch: Launch, items: Sequence[dict[str, Any]], key: Key) -> str:
-    """What goes back to the platform, signed by our key; no items where nothing was chosen."""
+    """Return the signed response to the platform; it lists no items if nothing was chosen."""
     now, picking = int(time.time()), launch.picking
     told: dict[str, Any] = {
         "iss": launch.client_id,

@@ -1,4 +1,5 @@
-"""What stands behind the service: what a link opens, what may be picked for one, and what a score is.
+"""Interface between the LTI service and its content: the page of a link, the offers for a new link, and the
+score.
 
 The service knows platforms, launches and sessions; a host knows exercises. The package brings one,
 :class:`coursework.lti.course_host.CourseHost`; a site of its own is another.
@@ -19,7 +20,7 @@ Form = Mapping[str, Sequence[str]]  #: the values of each field, as they came
 
 @dataclass(frozen=True)
 class Visit:
-    """Somebody who came by a launch, and what they ask for."""
+    """Request within the session of a launch."""
 
     launch: Launch
     lang: str
@@ -33,7 +34,7 @@ class Visit:
 
 @dataclass(frozen=True)
 class Reply:
-    """What is sent back: a page, another address, or a file."""
+    """Response: a page, a redirect, or a file."""
 
     html: str = ""
     status: int = 200
@@ -45,7 +46,7 @@ class Reply:
 
 @dataclass(frozen=True)
 class Offer:
-    """What a link may open."""
+    """Exercise or assignment that a link may open."""
 
     key: str  #: ``exercise:slotted_mechanism``
     title: str
@@ -62,19 +63,19 @@ class Shelf:
 
 
 class Host(Protocol):
-    """What the service asks of what stands behind it."""
+    """Interface that the service requires of the provider of its content."""
 
     @property
     def languages(self) -> tuple[str, ...]:
-        """The languages it speaks, the usual one first."""
+        """Languages of the pages, the default one first."""
         ...
 
     def shelves(self, lang: str) -> Sequence[Shelf]:
-        """What may be picked."""
+        """Return the groups of offers that an instructor may choose from."""
         ...
 
     def show(self, visit: Visit) -> Reply:
-        """The page that is asked for.
+        """Return the requested page.
 
         Raises
         ------
@@ -84,9 +85,9 @@ class Host(Protocol):
         ...
 
     def take(self, visit: Visit, form: Form) -> Reply:
-        """What a form brings; it may come twice."""
+        """Process a submitted form; the same form may be submitted twice."""
         ...
 
     def score(self, visit: Visit) -> Score | None:
-        """What the platform is told of the person; nothing before there is something to tell."""
+        """Return the person's score for the platform; None if there is no score to report yet."""
         ...

@@ -1,4 +1,4 @@
-"""The public keys of platforms: kept, had anew when a key is unknown, and not more often than once in a while."""
+"""Public keys of the platforms: cached, and fetched again for an unknown key, at a limited rate."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class KeySets:
         self._lock = threading.Lock()
 
     def key(self, platform: Platform, kid: str) -> Any:
-        """The public key of that identifier.
+        """Return the public key with the given identifier.
 
         Raises
         ------
@@ -57,7 +57,7 @@ class KeySets:
         raise Refused("signature", 401, f"{platform.name} has no key {kid[:80]!r}")
 
     def _fetched(self, platform: Platform) -> dict[str, Any] | None:
-        """The RSA keys by identifier; nothing where the platform does not answer with keys."""
+        """Return the RSA keys by identifier; None if the platform does not respond with keys."""
         try:
             with self._client.stream("GET", platform.jwks_url) as answer:
                 answer.raise_for_status()
@@ -73,7 +73,7 @@ class KeySets:
 
 
 def _usable(stated: Any) -> Any:
-    """An RSA key to verify with, else nothing: a platform may list others."""
+    """Return an RSA key for verification; None for a key of another kind, since a platform may list others."""
     if (
         stated.get("kty") != "RSA"
         or stated.get("use", "sig") != "sig"

@@ -91,7 +91,7 @@ class KeyFolder:
 
     @property
     def public(self) -> dict[str, Any]:
-        """What ``/jwks`` answers."""
+        """Return the public key set that ``/jwks`` serves."""
         return {"keys": [key.public for key in self.keys]}
 
     def new(self) -> Key:
@@ -107,7 +107,7 @@ class KeyFolder:
         return Key(kid, at, path)
 
     def _after_the_last(self) -> float:
-        """Keys are told apart by the second they were made in."""
+        """Return the earliest time of creation of another key, since the second of creation identifies a key."""
         if not self.keys:
             return 0.0
         return calendar.timegm(time.strptime(self.keys[-1].made, "%Y%m%dT%H%M%SZ")) + 1.0
@@ -133,7 +133,7 @@ class KeyFolder:
 
     @property
     def secret(self) -> bytes:
-        """What seals the service's own states and forms: made when it is first asked for."""
+        """Return the secret that signs the service's states and forms; create it at the first use."""
         path = self.folder / _SECRET
         if not path.exists():
             self._write(path, secrets.token_hex(32).encode())

@@ -22,7 +22,7 @@ _LONGEST = 4000  #: characters of any claim that is kept
 
 @dataclass(frozen=True)
 class Picking:
-    """How an instructor picks what a link opens, as the platform asks for it."""
+    """Deep-linking request: the platform's rules for the choice of a link's content."""
 
     return_url: str
     data: str | None = None  #: to be sent back as it came
@@ -33,7 +33,7 @@ class Picking:
 
 @dataclass(frozen=True)
 class Launch:
-    """What a verified launch says."""
+    """Verified launch: the content of its claims."""
 
     issuer: str
     client_id: str
@@ -80,7 +80,7 @@ class Launch:
 
 
 def launch_of(claims: Mapping[str, Any]) -> Launch:
-    """What verified claims say.
+    """Return the launch that verified claims describe.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def _picking(told: Mapping[str, Any]) -> Picking:
 
 
 def _truth(value: Any) -> bool:
-    """Platforms write ``true`` and ``"true"``."""
+    """Return True for ``true`` and ``"true"``, since platforms write both."""
     return value is True or str(value).lower() == "true"
 
 
@@ -157,7 +157,8 @@ def _table(claims: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 
 def _text(claims: Mapping[str, Any], name: str, *, needed: bool = False, called: str = "") -> str:
-    """A claim's text. One that tells people or places apart is taken as it is or refused: cut short, two would be one."""
+    """Return the text of a claim. A ``needed`` claim, such as an identifier, is refused if it is too long:
+    cut short, two of them could become equal."""
     found = claims.get(name)
     text = found if isinstance(found, str) else _written(found) if type(found) is int else ""
     kept = _kept(text)
@@ -171,7 +172,7 @@ def _text(claims: Mapping[str, Any], name: str, *, needed: bool = False, called:
 
 
 def _kept(text: str) -> str:
-    """A text that every database holds."""
+    """Return a text without the characters that some databases cannot store."""
     return text[:_LONGEST].replace("\0", "").encode("utf-8", "replace").decode()
 
 
@@ -180,6 +181,6 @@ def _written(number: int) -> str:
 
 
 def _address(claims: Mapping[str, Any], name: str) -> str:
-    """A web address, or nothing: no other scheme is followed or shown."""
+    """Return a web address; empty for any other scheme."""
     found = _text(claims, name)
     return found if found.startswith(("https://", "http://")) else ""

@@ -1,4 +1,4 @@
-"""The way in: where a browser is sent to log in, and whether who comes back is who was sent.
+"""Login: the redirect of a browser to its platform, and the check that the same browser returns.
 
 What is to be remembered meanwhile travels in the ``state``, sealed by the service. So nobody can fill its disk by logging
 in, and only what comes back well is written down, once.
@@ -26,7 +26,7 @@ _USE = "login"
 
 @dataclass(frozen=True)
 class Sent:
-    """Where a browser is sent, and the cookie by which it is known when it comes back."""
+    """Redirect of a browser to the platform, and the cookie that identifies the browser on its return."""
 
     url: str
     cookie: str
@@ -35,7 +35,7 @@ class Sent:
 
 @dataclass(frozen=True)
 class Returned:
-    """Who comes back."""
+    """Verified return of a browser from its platform."""
 
     platform: Platform
     nonce: str
@@ -50,7 +50,7 @@ class Login:
         self.settings, self._secret, self._clock = settings, secret, clock
 
     def sent(self, told: Mapping[str, str]) -> Sent:
-        """Where a login that a platform asks for goes.
+        """Return the redirect that answers a login request of a platform.
 
         Raises
         ------
@@ -96,7 +96,7 @@ class Login:
         )
 
     def returned(self, state: str, cookies: Mapping[str, str]) -> Returned:
-        """Who comes back with a state.
+        """Return the login to which a state belongs.
 
         Raises
         ------
@@ -148,7 +148,7 @@ def _digest(text: str) -> str:
 
 
 def _unlike(target: str, url: str) -> bool:
-    """Whether a page that is asked for is not below the service's address."""
+    """Return True if a requested page is not below the service's address."""
     try:
         return bool(target) and (origin(target) != origin(url) or "\\" in target)
     except ValueError:

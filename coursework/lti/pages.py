@@ -19,7 +19,7 @@ Filled = Mapping[str, Sequence[str]]
 
 @dataclass(frozen=True)
 class Form:
-    """What surrounds a sheet that is handed in, or its feedback."""
+    """Surroundings of a sheet that is to be submitted, or of its feedback."""
 
     action: str
     seal: str
@@ -39,7 +39,7 @@ class Pages:
         self._folders = folder.template_folders
 
     def page(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
-        """A page of a template, ``lti_class``."""
+        """Return the page of a template such as ``lti_class``."""
         said = words(lang)
         usual = {"lang": lang, "words": said, "said": said["lti"], "paper": "a4", "title": ""}
         return render(environment_of(self._folders, lang), f"{template}.html.j2", {**usual, **names})
@@ -49,7 +49,7 @@ class Pages:
         return script_digest(environment_of(self._folders, "en"), script)
 
     def sheet(self, paper: Paper, form: Form, *, alone: bool) -> str:
-        """A sheet whose answers are handed in here; ``alone`` where it is one exercise and no paper."""
+        """Return a sheet with input fields for the answers; ``alone`` for a single exercise without a paper."""
         if alone:
             return self.page(
                 "lti_sheet", paper.heading.lang, {**views.context(paper.handouts[0]), **_formed(form)}
@@ -57,7 +57,7 @@ class Pages:
         return self.page("lti_paper", paper.heading.lang, {**self._paper(paper, form), **_formed(form)})
 
     def feedback(self, told: FeedbackPaper, form: Form, *, alone: bool) -> str:
-        """What is said of what was handed in."""
+        """Return the feedback page of a submission."""
         env = environment_of(self._folders, told.heading.lang)
         if alone:
             names = feedback.context(told.sheets[0], "html.j2", partial(render, env))

@@ -1,4 +1,4 @@
-"""What the service refuses: a word that names the sentence, and what the log says of it."""
+"""Refusals of the service: the key of a message, and a detail for the log."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from coursework.errors import CourseworkError
 
 
 class Refused(CourseworkError, PermissionError):
-    """A request is refused.
+    """Refusal of a request.
 
     ``why`` names the sentence in ``[lti.refused]`` of each language; ``detail`` is for the log alone, and holds neither
     an answer nor a token. ``again`` are the parameters by which the platform is asked once more, in a new window, ``wait`` the

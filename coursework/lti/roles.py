@@ -1,4 +1,4 @@
-"""Who a person is in the course they come from, by the roles that the platform states; an unknown role gives nothing."""
+"""Role of a person in a course, from the roles that the platform states; an unknown role grants nothing."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _ABOVE = (
 
 
 class Role(StrEnum):
-    """What a person may do."""
+    """Role of a person in a course, which decides the permissions."""
 
     INSTRUCTOR = "instructor"  #: sees the class, picks what a link opens
     ASSISTANT = "assistant"  #: sees the class
@@ -45,7 +45,7 @@ _ASSISTANTS = ("TeachingAssistant", "TeachingAssistantGroup", "TeachingAssistant
 
 
 def role_of(stated: Iterable[str]) -> Role:
-    """The role that a launch states.
+    """Return the role that a launch states.
 
     Roles in the course count; only who has none there and administers the institution or the platform is an admin. Who is
     teacher or student elsewhere is nobody here.

@@ -77,6 +77,6 @@ class Sender:
 
 
 def wait_after(failures: int, status: int = 0) -> float:
-    """Seconds to wait after so many failures before: twice as long each time."""
+    """Return the seconds to wait after a number of failures: the wait doubles with each."""
     least = 900.0 if status in _HARD else _FIRST
     return float(min(_LONGEST, least * 2 ** min(failures, 20)))

@@ -65,7 +65,7 @@ def service(
     settings: Settings, host: Host, pages: Pages, *, storage: Storage | None = None, client: httpx.Client | None = None,
     clock: Callable[[], float] = time.time,
 ) -> Starlette:  # fmt: skip
-    """The service as an ASGI application.
+    """Return the service as an ASGI application.
 
     Parameters
     ----------
@@ -145,7 +145,8 @@ class _Service:
     # ------------------------------------------------------------------ answering
 
     def answering(self, work: Callable[[Request, Told], Response]) -> Callable[[Request], Any]:
-        """An endpoint that does some work in a thread; what is refused is told on a page, and nothing is a traceback."""
+        """Return an endpoint that works in a thread; a refusal or an unexpected fault becomes a page, never a
+        traceback."""
 
         async def answer(request: Request) -> Response:
             begun = time.perf_counter()
@@ -254,7 +255,8 @@ class _Service:
         return response
 
     def _lang(self, wanted: str) -> str:
-        """The first language that is wanted and spoken: of ``fr-CA, en;q=0.8`` or of ``fr_FR``."""
+        """Return the first requested language that the host supports, from ``fr-CA, en;q=0.8`` or from
+        ``fr_FR``."""
         for one in re.findall(r"[a-zA-Z]{2,3}(?=[-_,;.\s]|$)", wanted):
             if one.lower() in self.host.languages:
                 return str(one.lower())
@@ -299,8 +301,8 @@ class _Service:
         return response
 
     def _set_cookie(self, response: Response, name: str, value: str, seconds: float) -> None:
-        """A cookie that is sent in the frame of another site too, and there kept for that site alone. Browsers take such a
-        one from this machine in plain http as well."""
+        """Set a cookie that browsers also send in the frame of another site, partitioned by that site.
+        Browsers accept it from this machine over plain HTTP as well."""
         response.headers.append(
             "set-cookie",
             f"{name}={value}; Path=/; Max-Age={int(seconds)}; HttpOnly; SameSite=None; Secure; Partitioned",
@@ -355,7 +357,7 @@ class _Service:
         return {person: waiting for (_, person), waiting in self.storage.scores(launch.place).items()}
 
     def _check_seal(self, request: Request, visit: Visit, form: Told) -> None:
-        """A form comes from our own page, made for this session."""
+        """Check the CSRF token of a form: the form must come from a page of this session."""
         sent = request.headers.get("origin")
         if sent is not None and sent != origin(self.settings.url):
             raise Refused("form", 403, "a form from another site")
@@ -428,7 +430,7 @@ class _Service:
         return Response(self.pages.page("lti_pick", visit.lang, names), media_type="text/html")
 
     def _sent_back(self, visit: Visit, items: Sequence[dict[str, Any]], request: Request) -> Response:
-        """A page that takes the instructor back to the platform, with what was picked."""
+        """Return a page that sends the instructor and the chosen links back to the platform."""
         launch, said = visit.launch, words(visit.lang)["lti"]["pick"]
         if launch.picking is None:
             raise Refused("page", 404, "picking")
@@ -455,7 +457,8 @@ class _Service:
 
 
 async def _form(request: Request) -> dict[str, list[str]]:
-    """The fields of a form: of one kind, of bounded size and number, sent within a time. None of a request that sends none.
+    """Return the fields of a form, within limits of type, size, number and time; empty unless the request is
+    a POST.
 
     Raises
     ------
@@ -496,12 +499,13 @@ def _first(form: Told, name: str) -> str:
 
 
 def _shown_path(request: Request) -> str:
-    """The path for the log: neither what is asked of it nor the name of a session."""
+    """Return the path for the log, without the query and the name of the session."""
     return re.sub(r"/at/[^/]+", "/at/…", request.url.path)[:100]
 
 
 def _place_of(fault: BaseException) -> str:
-    """What went wrong and where, without any value: a message may hold an answer."""
+    """Return the type of a fault and the lines that raised it, without its message, since a message may
+    contain an answer."""
     frames = traceback.extract_tb(fault.__traceback__)[-4:]
     told = " < ".join(
         f"{frame.filename.rpartition('coursework/')[2]}:{frame.lineno}" for frame in reversed(frames)

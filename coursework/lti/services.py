@@ -1,4 +1,4 @@
-"""What a platform does for us: points into its gradebook, and its roster."""
+"""Services of a platform: scores for its gradebook, and its roster."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Member:
 
 
 class Services:
-    """Asks platforms, with a token that is had once and kept while it holds."""
+    """Client of the platforms' services, with access tokens cached until they expire."""
 
     def __init__(self, client: httpx.Client, keys: KeyFolder):
         self._client, self._keys = client, keys
@@ -84,7 +84,8 @@ class Services:
         self._asked(platform, [SCORE], "POST", _below(line, "scores"), json=told, kind=_SCORE_TYPE)
 
     def _line(self, platform: Platform, waiting: Waiting) -> str:
-        """The column of a link that came without one: the one that we made before, else another."""
+        """Return the address of a gradebook column for a link without one: an existing column of the link, or
+        else a new one."""
         link = waiting.link
         if not waiting.lines or LINE not in waiting.scopes:
             raise NotServed("the link has no column in the gradebook", 404)
@@ -106,7 +107,7 @@ class Services:
     # ------------------------------------------------------------------ roster
 
     def roster(self, platform: Platform, url: str) -> list[Member]:
-        """Who is in a course.
+        """Return the members of a course.
 
         Raises
         ------
@@ -133,7 +134,7 @@ class Services:
     def _asked(
         self, platform: Platform, scopes: Sequence[str], method: str, url: str, *, accept: str = "", kind: str = "", json: Any = None
     ) -> httpx.Response:  # fmt: skip
-        """An answer of the platform; one more try with a new token where it no longer takes the old one."""
+        """Return the response of the platform; retry once with a new token if it rejects the cached one."""
         if origin(url) not in platform.services:
             raise NotServed(
                 f"{platform.name} names an address at {origin(url)[:100]!r}, which is not among its own: add it to its 'origins' in "
@@ -152,7 +153,7 @@ class Services:
         return answer
 
     def token(self, platform: Platform, scopes: Sequence[str], fresh: bool = False) -> str:
-        """A token that the platform takes for these scopes, ``fresh`` where the one before is no longer good.
+        """Return an access token for these scopes; request a new one if ``fresh``.
 
         Raises
         ------
@@ -201,7 +202,8 @@ class Services:
 
 
 def _below(line: str, name: str) -> str:
-    """An address below a column's, before what is asked of it: ``…/lineitem?type_id=1`` has ``…/lineitem/scores?type_id=1``."""
+    """Return an address below a column's, with its query preserved: ``…/lineitem?type_id=1`` becomes
+    ``…/lineitem/scores?type_id=1``."""
     parts = urlsplit(line)
     return urlunsplit(parts._replace(path=f"{parts.path.rstrip('/')}/{name}"))
 

@@ -1,4 +1,4 @@
-"""Which platforms the service knows, and where it stands: ``platforms.toml``."""
+"""Settings of the service and its platforms, read from ``platforms.toml``."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ class Platform:
 
     @property
     def frames(self) -> tuple[str, ...]:
-        """The origins whose pages may hold ours in a frame."""
+        """Return the origins whose pages may embed this service in a frame."""
         return tuple(dict.fromkeys([origin(self.auth_url), origin(self.issuer), *self.origins]))
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Where the service stands, whom it knows, and how long things hold."""
+    """Settings of the service: its address, its platforms, and its time limits."""
 
     folder: Path  #: of the keys and the data
     url: str = ""  #: where browsers find it, without a slash at the end
@@ -59,7 +59,8 @@ class Settings:
     extra: Mapping[str, Any] = field(default_factory=dict)
 
     def platform(self, issuer: str, client_id: str = "") -> Platform | None:
-        """The one of an issuer; where it has several clients, the one that is named."""
+        """Return the platform of an issuer; if the issuer has several clients, the one with the given client
+        identifier."""
         found = [p for p in self.platforms if p.issuer == issuer and client_id in ("", p.client_id)]
         return found[0] if len(found) == 1 else None
 
@@ -75,7 +76,7 @@ def origin(url: str) -> str:
 
 
 def is_loopback(host: str) -> bool:
-    """Whether a name or number of a machine is this one's own."""
+    """Return True if a host name or address denotes this machine."""
     try:
         return ipaddress.ip_address(host.strip("[]")).is_loopback
     except ValueError:
@@ -83,7 +84,7 @@ def is_loopback(host: str) -> bool:
 
 
 def checked_url(url: str, what: str, *, slash: bool = False) -> str:
-    """An address as the service uses it.
+    """Check an address; return it, without slashes at its end unless ``slash``.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def checked_url(url: str, what: str, *, slash: bool = False) -> str:
 
 
 def moodle(site: str, **told: Any) -> dict[str, Any]:
-    """What the pages of a Moodle are called."""
+    """Return the addresses of a Moodle platform."""
     lti = f"{site}/mod/lti"
     return {
         "issuer": site,
@@ -124,7 +125,7 @@ def moodle(site: str, **told: Any) -> dict[str, Any]:
 
 
 def canvas(site: str, **told: Any) -> dict[str, Any]:
-    """What those of a Canvas that Instructure hosts are called; one issuer for them all."""
+    """Return the addresses of a Canvas platform hosted by Instructure; all of them share one issuer."""
     security = "https://sso.canvaslms.com/api/lti"
     return {
         "issuer": "https://canvas.instructure.com",
@@ -155,7 +156,7 @@ _SERVICE = ("url", "assignments", "session_hours")
 
 
 def read_settings(folder: Path) -> Settings:
-    """What ``platforms.toml`` of a folder says; no platform where there is no such file.
+    """Return the settings in a folder's ``platforms.toml``; without the file, there are no platforms.
 
     Raises
     ------
@@ -269,7 +270,7 @@ class _Reader:
 
 
 def with_platform(settings: Settings, added: Platform) -> Settings:
-    """The same with a platform more, in the place of the one of its issuer and client."""
+    """Return the settings with one more platform, which replaces another of the same issuer and client."""
     kept = [p for p in settings.platforms if (p.issuer, p.client_id) != (added.issuer, added.client_id)]
     return replace(settings, platforms=(*kept, added))
 

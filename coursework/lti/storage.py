@@ -1,4 +1,5 @@
-"""What the service keeps, in one SQLite file: launches that came, sessions, papers, tries, and scores on their way."""
+"""Database of the service in one SQLite file: nonces of launches, sessions, papers, attempts, and scores to
+send."""
 
 from __future__ import annotations
 
@@ -52,7 +53,7 @@ CREATE TABLE IF NOT EXISTS courses (
 
 @dataclass(frozen=True)
 class Paper:
-    """What was issued to a person in a link."""
+    """Variants issued to a person in a link."""
 
     person: str
     name: str
@@ -76,7 +77,7 @@ class Try:
 
 @dataclass(frozen=True)
 class Score:
-    """What a platform is told of a person in a link."""
+    """Score of a person in a link, as reported to the platform."""
 
     given: float
     maximum: float
@@ -123,7 +124,7 @@ class Storage:
 
     @contextmanager
     def _open(self) -> Iterator[sqlite3.Connection]:
-        """One transaction; what was written is on the disk when it ends."""
+        """Open one transaction; its changes are on the disk when it ends."""
         file = sqlite3.connect(self.path, timeout=_WAIT, isolation_level=None)
         try:
             file.row_factory = sqlite3.Row
@@ -147,14 +148,14 @@ class Storage:
     # ---------------------------------------------------------------- sessions
 
     def use(self, nonce: str, until: float) -> bool:
-        """Note that a launch came; whether it is the first time."""
+        """Record the nonce of a launch; return True if it is new."""
         with self._writing() as file:
             file.execute("DELETE FROM used WHERE until < ?", [self._clock() - 120])
             done = file.execute("INSERT OR IGNORE INTO used VALUES (?, ?)", [_digest(nonce), until])
             return done.rowcount == 1
 
     def begin(self, launch: Launch, seconds: float) -> tuple[str, str]:
-        """A session of a launch: its name, and the token by which its browser is known."""
+        """Begin the session of a launch; return its name, and the token that identifies its browser."""
         name, token = secrets.token_urlsafe(12), secrets.token_urlsafe(32)
         now = self._clock()
         with self._writing() as file:
@@ -174,7 +175,7 @@ class Storage:
         return name, token
 
     def launch(self, name: str, token: str | None) -> Launch:
-        """The launch of a session.
+        """Return the launch of a session.
 
         Raises
         ------
@@ -192,7 +193,7 @@ class Storage:
         return Launch.from_json(row["launch"])
 
     def opened(self) -> list[Launch]:
-        """The last launch of each student in each link."""
+        """Return the last launch of each student in each link."""
         with self._open() as file:
             rows = file.execute("SELECT launch FROM opened ORDER BY place, person")
             return [Launch.from_json(row["launch"]) for row in rows]
@@ -241,7 +242,7 @@ class Storage:
             return done.rowcount == 1
 
     def tries(self, place: str, person: str = "") -> list[Try]:
-        """The tries in a link, of one person or of all, the earliest first."""
+        """Return the attempts in a link, of one person or of everybody, the earliest first."""
         with self._open() as file:
             rows = file.execute(
                 "SELECT * FROM tries WHERE place = ? AND (? = '' OR person = ?) ORDER BY person, number",
@@ -278,8 +279,9 @@ class Storage:
         return True
 
     def due(self, count: int = 50) -> list[tuple[tuple[str, str], Waiting]]:
-        """Scores to send now, those that wait longest first, each with the issuer and the client of its platform. They are due
-        again in a while, for whoever looks then, unless it is told what became of them."""
+        """Return the scores to send now, the longest waiting first, each with the issuer and client of its
+        platform. Each is postponed for a while, so that another process sends it if no result is recorded
+        by then."""
         now = self._clock()
         with self._open() as file:
             if file.execute("SELECT 1 FROM scores WHERE due <= ? LIMIT 1", [now]).fetchone() is None:
@@ -314,7 +316,7 @@ class Storage:
             file.execute("UPDATE scores SET stamp = ? WHERE place = ? AND person = ? AND stamp = ?", told)
 
     def scores(self, place: str = "") -> dict[tuple[str, str], Waiting]:
-        """Scores by link and person."""
+        """Return the scores by link and person."""
         with self._open() as file:
             rows = file.execute(
                 "SELECT * FROM scores WHERE ? = '' OR place = ? ORDER BY place, person", [place, place]
@@ -345,7 +347,7 @@ class Storage:
             raise BadInput(f"{self.path}: {fault}; restore a backup") from None
 
     def stood(self, what: str) -> str:
-        """How something stood when it was last looked at; nothing before."""
+        """Return the state of something when it was last checked; empty if it never was."""
         with self._open() as file:
             row = file.execute("SELECT stood FROM looked WHERE what = ?", [what]).fetchone()
         return str(row["stood"]) if row else ""
@@ -358,17 +360,19 @@ class Storage:
     # ----------------------------------------------------------------- courses
 
     def courses(self) -> list[tuple[tuple[str, str, str, str], str, str]]:
-        """The courses that came, the latest first: what tells each apart, its title, and the address of its roster."""
+        """Return the known courses, the latest first: each with its identifier, its title, and the address of
+        its roster."""
         with self._open() as file:
             rows = file.execute("SELECT * FROM courses ORDER BY seen DESC")
             return [(tuple(json.loads(row["course"])), row["title"], row["memberships"]) for row in rows]
 
     def scrub(self) -> bool:
-        """Rewrite the file without what was deleted; returns False where another process kept some of it."""
+        """Rewrite the file without deleted data; return False if another process still uses it."""
         return scrub(self.path)
 
     def forget(self, person: str, issuer: str = "") -> int:
-        """Take away all that is kept of a person, of one platform where it is told; how many lines that were."""
+        """Delete all data of a person, on one platform if an issuer is given; return the number of deleted
+        rows."""
         begins = json.dumps([issuer])[:-1] + "," if issuer else ""  # as places do
         with self._writing() as file:
             gone = sum(

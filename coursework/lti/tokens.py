@@ -1,4 +1,4 @@
-"""Whether a platform's token is genuine, for this tool, and of now."""
+"""Verification of a platform's token: its signature, its audience, and its time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _FAULTS: tuple[tuple[type[Exception], str, int], ...] = (
 
 
 def verified(token: str, settings: Settings, keys: KeySets, expected: Platform) -> Mapping[str, Any]:
-    """The claims of a token from the ``expected`` platform; ``client_id`` among them.
+    """Return the claims of a token from the ``expected`` platform, with ``client_id`` among them.
 
     Only RS256 is taken: a token without a signature, or sealed with what everybody may read, is none.
 
@@ -59,7 +59,7 @@ def verified(token: str, settings: Settings, keys: KeySets, expected: Platform) 
 
 
 def _check_party(claims: Mapping[str, Any], expected: Platform) -> None:
-    """A token for several tools says which of them asked for it."""
+    """Check that a token for several tools was issued to this one."""
     party, audience = claims.get("azp"), claims["aud"]
     several = isinstance(audience, list) and len(audience) > 1
     if (party is not None or several) and party != expected.client_id:

@@ -1,4 +1,5 @@
-"""What a link asks for, as its custom parameters say: which exercise or assignment, how many tries, what counts."""
+"""Settings of a link, from its custom parameters: the exercise or assignment, the number of attempts, and the
+attempt that counts."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ _MOST_TRIES = 1000
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a link opens, and by which rules."""
+    """Content of a link and its rules."""
 
     exercise: str = ""
     assignment: str = ""
@@ -26,7 +27,8 @@ class Wanted:
 
     @property
     def key(self) -> str:
-        """What tells apart what was issued in a link whose content was changed."""
+        """Key of the link's content, which separates papers issued before a change of content from those
+        issued after it."""
         return " ".join(
             filter(
                 None,
@@ -42,7 +44,7 @@ class Wanted:
         return self.answers == AFTER and self.tries is not None
 
     def custom(self) -> dict[str, str]:
-        """The custom parameters that say so; what is as usual is left out."""
+        """Return the custom parameters that state these settings, without those at their defaults."""
         told = {
             "exercise": self.exercise, "assignment": self.assignment, "parts": ",".join(self.parts),
             "tries": "" if self.tries is None else str(self.tries),
@@ -56,7 +58,7 @@ class Wanted:
 
     @classmethod
     def of(cls, custom: Mapping[str, str]) -> Self:
-        """What custom parameters say.
+        """Return the settings that custom parameters state.
 
         Raises
         ------
@@ -77,7 +79,7 @@ class Wanted:
 
 
 def tries_of(text: str) -> int | None:
-    """A number of tries; none for as many as one likes."""
+    """Return a number of attempts; None if it is unlimited."""
     if not text.strip():
         return None
     if not text.strip().isdecimal() or len(text) > 20 or not 1 <= int(text) <= _MOST_TRIES:
