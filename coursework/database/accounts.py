@@ -1,4 +1,4 @@
-"""How people sign in with a password: the account of a person, and the invitation by which one is taken up."""
+"""Accounts with a password, and the invitations by which people choose one."""
 
 from __future__ import annotations
 
@@ -24,31 +24,32 @@ def _found() -> Select[Any]:
 
 
 def account_by_login(connection: Connection, login: str) -> Any | None:
-    """The open account of a login, with the person's name."""
+    """Return the open account of a login, with the person's name."""
     return connection.execute(_found().where(account.c.login == login)).first()
 
 
 def account_of(connection: Connection, number: int) -> Any | None:
-    """The open account of a person."""
+    """Return the open account of a person."""
     return connection.execute(_found().where(account.c.person_id == number).order_by(account.c.id)).first()
 
 
 def account_invited(connection: Connection, invitation: str, at: datetime) -> Any | None:
-    """The account that an invitation, told by its digest, is for; none where it was used, renewed or is over."""
+    """Return the account of an invitation, given its digest; None if the invitation was used, replaced or has
+    expired."""
     found = connection.execute(_found().where(account.c.invitation == invitation)).first()
     return None if found is None or found.invited_until is None or found.invited_until < at else found
 
 
 def accounts(connection: Connection) -> dict[int, Any]:
-    """The open accounts by person."""
+    """Return the open accounts by person."""
     return {row.person_id: row for row in connection.execute(_found())}
 
 
 def invite(
     connection: Connection, number: int, login: str, role: str, invitation: str, until: datetime, at: datetime
 ) -> None:
-    """Invite a person: an account where there is none; where there is one, a new invitation in the place of those before.
-    Its password holds until the invitation is taken up.
+    """Invite a person: create an account, or replace the invitation of an existing one. The current password
+    remains valid until the invitation is accepted.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def take_up(connection: Connection, invitation: str, secret: str, at: datetime) 
 
 
 def set_secret(connection: Connection, number: int, secret: str) -> None:
-    """Another password, or the same kept in another way."""
+    """Store another password, or the same one under another hash."""
     connection.execute(update(account).where(account.c.id == number).values(secret=secret))
 
 

@@ -1,9 +1,9 @@
-"""Aggregates of the desk: totals by student, answers as they stand, counts by assignment.
+"""Aggregates for the instructor's pages: totals by student, current answers, counts by assignment.
 
-Whatever changes marks, decisions, hand-ins, papers or rules notes in its own transaction whose aggregates are outdated
-(:mod:`coursework.database.outdated`). :func:`refresh` computes these anew from the tables themselves, by the very code that makes
-``summary.csv``, a few hundred students at a time. Two that refresh at once do no harm: who finds that a note is gone throws away
-what it computed.
+A transaction that changes marks, decisions, submissions, papers or rules also records which aggregates become outdated
+(:mod:`coursework.database.outdated`). :func:`refresh` computes these again from the other tables, with the code that writes
+``summary.csv``, a few hundred students at a time. Two concurrent refreshes do no harm: the one that no longer finds its note
+discards its results.
 """
 
 from __future__ import annotations
@@ -75,7 +75,8 @@ def _how_many(connection: Connection, number: int) -> int:
 
 
 def refresh(course: Course, store: Store, assignment_id: int, most: int | None = None) -> bool:
-    """Compute what is outdated of an assignment, at most so many students where that is told; False where some is left.
+    """Compute the outdated aggregates of an assignment, at most for the given number of students; return
+    False if some remain.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def _step(course: Course, store: Store, number: int) -> int | None:
 
 
 class _Notes(NamedTuple):
-    """Notes that are dealt with together."""
+    """Notes of outdated aggregates that are processed together."""
 
     kind: str
     ids: Sequence[int]
@@ -142,7 +143,7 @@ def _notes(connection: Connection, number: int) -> _Notes | None:
 
 
 def _taken(connection: Connection, ids: Sequence[int]) -> bool:
-    """Take notes away; False where somebody else dealt with one of them meanwhile."""
+    """Delete notes; return False if another process has processed one of them meanwhile."""
     gone = 0
     for start in range(0, len(ids), _WRITTEN):
         some = outdated.c.id.in_(ids[start : start + _WRITTEN])
@@ -151,7 +152,7 @@ def _taken(connection: Connection, ids: Sequence[int]) -> bool:
 
 
 class _Computed:
-    """What is to be written of an assignment."""
+    """Computed aggregates of an assignment, ready to be written."""
 
     def __init__(self, about: About):
         self.about = about
@@ -255,7 +256,7 @@ def _as_issued(connection: Connection, about: About, noted: Collection[str]) -> 
 
 
 def _places(connection: Connection, about: About, now: ClassNow) -> dict[str, int]:
-    """Return the place of each student in the class: as issued, else as they came."""
+    """Return the position of each student in the class: the order of issue, then the order of arrival."""
     names = list(now.results)
     order = (
         select(dealt.c.student, func.min(dealt.c.place))
@@ -400,7 +401,8 @@ def _facts_before(connection: Connection, number: int) -> dict[str, Any]:
 
 
 def _has_files(connection: Connection, number: int) -> bool:
-    """Tell whether anything came in that may have no place: by a file, or on a sheet that cannot be marked."""
+    """Return True if there may be rows of no student: from a file, rejected, or on a sheet that cannot be
+    marked."""
     files = select(delivery.c.id).where(delivery.c.assignment_id == number, delivery.c.person_id.is_(None))
     faults = select(marking.c.id).where(marking.c.assignment_id == number, marking.c.fault != "")
     refused = select(rejected.c.id).join(delivery).where(delivery.c.assignment_id == number)

@@ -1,4 +1,4 @@
-"""Assignments and groups of assistants: kept, and turned into the students of an assignment."""
+"""Areas of assistants, by assignment and group, and the students of an assignment within them."""
 
 from __future__ import annotations
 
@@ -80,7 +80,8 @@ def students_within(connection: Connection, holder: Holder, number: int) -> froz
 def may_for(
     connection: Connection, holder: Holder, permission: Permission, number: int, student: str
 ) -> bool:
-    """Return whether somebody may do something to a student of an assignment, who is told by the name as issued."""
+    """Return True if somebody has a permission for a student of an assignment; the student is given by the
+    name as issued."""
     if not may(holder, permission, number):
         return False
     within = students_within(connection, holder, number)

@@ -1,4 +1,4 @@
-"""What was issued: ``issued.json``, row by row."""
+"""Issued assignments: ``issued.json`` as rows of the database."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ _Place = tuple[
 
 
 def names(connection: Connection) -> dict[str, int]:
-    """The assignments by name, in the order in which they came."""
+    """Return the ids of the assignments by name, in the order in which they were added."""
     rows = connection.execute(select(assignment.c.name, assignment.c.id).order_by(assignment.c.id))
     return {row.name: row.id for row in rows}
 
 
 def assignment_called(connection: Connection, name: str = "") -> int:
-    """The assignment of a name; the only one there is, where none is told.
+    """Return the id of the assignment with a name; without a name, that of the only assignment.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def assignment_called(connection: Connection, name: str = "") -> int:
 
 
 def name_of(content: Mapping[str, Any], otherwise: str = "") -> str:
-    """What an assignment is called by; ``otherwise`` for a build of exercises."""
+    """Return the name of an assignment; ``otherwise`` for a build of exercises."""
     stated = content.get("assignment")
     return str(stated.get("name") or otherwise) if isinstance(stated, Mapping) else otherwise
 
@@ -63,7 +63,7 @@ def name_of(content: Mapping[str, Any], otherwise: str = "") -> str:
 
 
 def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "", course: str = "") -> int:
-    """Keep what ``issued.json`` says; gives the assignment's id.
+    """Store the content of ``issued.json``; return the assignment's id.
 
     What was issued stays issued: the same content again adds nothing, a longer one adds what is new, and who is no more
     in it is kept, after the others.
@@ -103,7 +103,7 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
 
 
 def _told_before(connection: Connection, name: str) -> dict[str, Any] | None:
-    """What the assignment of a name said before; None where there is none."""
+    """Return the stored columns of an assignment by its name; None if there is none."""
     columns = assignment.c.stated, assignment.c.is_pool, assignment.c.columns
     row = connection.execute(select(*columns).where(assignment.c.name == name)).first()
     return None if row is None else dict(row._mapping)
@@ -112,7 +112,7 @@ def _told_before(connection: Connection, name: str) -> dict[str, Any] | None:
 def _assignment(
     connection: Connection, name: str, course: str, told: Mapping[str, Any]
 ) -> tuple[int, dict[_Place, Any]]:
-    """The assignment's id, and what was dealt of it."""
+    """Return the assignment's id and its issued variants; add or update the assignment."""
     known = connection.execute(
         select(assignment).where(assignment.c.name == name).with_for_update(key_share=True)
     ).first()
@@ -132,7 +132,7 @@ def _assignment(
 
 
 def _places(items: Sequence[Mapping[str, Any]]) -> list[_Place]:
-    """Whose each is, all different."""
+    """Return the key of each issued item, with a count that makes equal keys differ."""
     met: Counter[tuple[Any, ...]] = Counter()
     places = []
     for item in items:
@@ -159,7 +159,7 @@ def _item(item: Mapping[str, Any], place: int) -> dict[str, Any]:
 def _put_variants(
     connection: Connection, number: int, name: str, items: Sequence[Mapping[str, Any]]
 ) -> dict[tuple[str, str], int]:
-    """The variants' ids by exercise and seed; those that are new are added."""
+    """Return the variants' ids by exercise and seed; add the new ones."""
     found = select(variant).where(variant.c.assignment_id == number)
     known = {(row.exercise, row.seed): row for row in connection.execute(found)}
     new: dict[tuple[str, str], Mapping[str, Any]] = {}
@@ -186,7 +186,7 @@ def _in_no_language(record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _people(connection: Connection, issued: Issued) -> dict[str, int]:
-    """The persons of a roster by their names as issued."""
+    """Return the persons of a roster by their names as issued."""
     students = {name: Student(name, columns=issued.columns.get(name, {})) for name in issued.students}
     ids = put_people(connection, list(students.values()))
     return {name: ids[student.who] for name, student in students.items()}
@@ -254,8 +254,9 @@ def issued_content(
     students: Collection[str] = (),
     secret: bool = False,
 ) -> dict[str, Any]:
-    """What ``issued.json`` says of an assignment; of one person alone, or of students by name, where they are told and were
-    issued something. With its ``secret`` where more is to be drawn, or where an instructor has the whole file.
+    """Return the content of ``issued.json`` for an assignment; for one person or some students alone, if they
+    are given and were issued something. The ``secret`` is included on request: further draws need it, and
+    so does an instructor's complete file.
 
     Raises
     ------
@@ -314,6 +315,6 @@ def issued_of(
     student: str | None = None,
     students: Collection[str] = (),
 ) -> Issued:
-    """What was issued, to mark against; to one person alone, where they are told."""
+    """Return the issued variants to mark against, of one person alone if given."""
     content = issued_content(connection, number, person_id, student=student, students=students)
     return Issued(content, f"assignment {number} of the database")

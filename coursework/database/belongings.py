@@ -54,7 +54,7 @@ class Whose(NamedTuple):
     words: frozenset[str]  #: names, logins, numbers, e-mails
 
     def answers_to(self, number: int, student: str) -> bool:
-        """Whether somebody of an assignment is this person."""
+        """Return True if a student of an assignment is this person."""
         return (number, folded(student)) in self.students
 
 
@@ -95,7 +95,8 @@ def _words(connection: Connection, mine: Any, issued: Any) -> frozenset[str]:
 
 
 def conditions(connection: Connection, who: Whose) -> dict[str, tuple[Table, ColumnElement[bool]]]:
-    """The rows of each table that are a person's, in an order in which they can be taken away."""
+    """Return the condition that selects the person's rows of each table, in an order in which they can be
+    deleted."""
     deliveries = select(delivery.c.id).where(delivery.c.person_id == who.person)
     markings = ids_of(connection, marking, who)
     own_answers = or_(answer.c.delivery_id.in_(deliveries), answer.c.id.in_(_answers(connection, who)))
@@ -122,7 +123,7 @@ def conditions(connection: Connection, who: Whose) -> dict[str, tuple[Table, Col
 
 
 def ids_of(connection: Connection, table: Table, who: Whose) -> list[int]:
-    """Rows of a table that names assignments and students."""
+    """Return the ids of the person's rows in a table with the columns assignment and student."""
     numbers = {number for number, _ in who.students}
     found = select(table.c.id, table.c.assignment_id, table.c.student).where(
         table.c.assignment_id.in_(numbers)
@@ -131,7 +132,7 @@ def ids_of(connection: Connection, table: Table, who: Whose) -> list[int]:
 
 
 def _dealt(connection: Connection, who: Whose) -> list[int]:
-    """What was issued under the person's name where there is no roster."""
+    """Return the ids of the variants issued under the person's name without a roster."""
     found = (
         select(dealt.c.id, dealt.c.student, variant.c.assignment_id)
         .join(variant)
@@ -151,7 +152,7 @@ def _answers(connection: Connection, who: Whose) -> list[int]:
 
 
 def _rejected(connection: Connection, who: Whose) -> list[int]:
-    """Rows that could not be placed, and say that they are of this person."""
+    """Return the ids of rejected rows that name this person."""
     own = {folded(word) for word in who.words}
     found = []
     for row in connection.execute(select(rejected.c.id, rejected.c.row)):
@@ -162,7 +163,7 @@ def _rejected(connection: Connection, who: Whose) -> list[int]:
 
 
 def belongings(connection: Connection, who: Whose) -> dict[str, list[dict[str, Any]]]:
-    """All that is kept of a person, by table, row by row; and what the audit says of them."""
+    """Return all stored data of a person: the rows of each table, and the audit entries about the person."""
     found = {}
     for name, (table, mine) in reversed(conditions(connection, who).items()):
         columns = [one for one in table.c if one.name not in _HIDDEN.get(name, ())]
@@ -191,7 +192,7 @@ def _tells_of(row: Any, who: Whose) -> bool:
 
 
 def _papers(connection: Connection, who: Whose) -> list[dict[str, Any]]:
-    """What was issued, with the given values."""
+    """Return the variants issued to the person, with their given values."""
     found = (
         select(
             assignment.c.id.label("assignment_id"), assignment.c.name.label("assignment"), dealt.c.student, dealt.c.sitting,

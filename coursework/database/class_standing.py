@@ -1,5 +1,6 @@
-"""A class as it stands, or some of its students: sheets, marks, totals, what waits. A page of the desk reads aggregates instead
-(:mod:`coursework.database.aggregates`), which are computed from this."""
+"""Current state of a class, or of some of its students: sheets, marks, totals, answers that wait for a
+person. The instructor's pages read aggregates instead (:mod:`coursework.database.aggregates`), which are
+computed from this."""
 
 from __future__ import annotations
 
@@ -41,13 +42,13 @@ class RejectedRow:
 
     @property
     def waits(self) -> bool:
-        """Whether somebody must still look at it."""
+        """Return True if a person must still look at the row."""
         return self.became is None
 
 
 @dataclass(frozen=True)
 class Open:
-    """What of a group waits for a person still."""
+    """Group of answers, with those of its members that still wait for a person."""
 
     group: Group
     members: tuple[Waits, ...]
@@ -59,7 +60,8 @@ class Open:
 
 @dataclass(frozen=True)
 class Facts:
-    """What the sheets of others bear on somebody's points: which exercises came, whole or part by part."""
+    """Exercises that occur in the answers of a class, in full or part by part; they affect the points of each
+    student."""
 
     exercises: tuple[str, ...] = ()
     whole: frozenset[str] = frozenset()
@@ -101,7 +103,7 @@ class ClassNow:
 
     @cached_property
     def is_marked(self) -> bool:
-        """Whether all that came is marked, or cannot be."""
+        """Return True if every received sheet is marked or cannot be marked."""
         return self.sheets.sheets.keys() <= self.machine.keys() | self.faults.keys()
 
     @cached_property
@@ -130,7 +132,7 @@ class ClassNow:
 
     @cached_property
     def results(self) -> dict[str, Result]:
-        """What each student has, of the sitting that counts."""
+        """Result of each student, of the attempt that counts."""
         return dict(results(self.book))
 
     @cached_property
@@ -142,14 +144,14 @@ class ClassNow:
 
     @cached_property
     def one_sitting(self) -> bool:
-        """Whether nobody has several."""
+        """True if no student has several attempts."""
         sittings: dict[str, int] = {}
         return all(
             sittings.setdefault(one.student, one.sitting) == one.sitting for one in self.machine.values()
         )
 
     def matters(self, one: Graded) -> bool:
-        """Whether a sheet is of the sitting that counts, or of the last one."""
+        """Return True if a sheet belongs to the attempt that counts, or to the last one."""
         if self.one_sitting:
             return True
         return one.sitting in (self.results[one.student].sitting, self.last_sitting[one.student])
@@ -184,7 +186,7 @@ class ClassNow:
         )
 
     def number(self, exercise: str, part: str) -> str:
-        """What papers call a question, ``2.3``."""
+        """Return the number of a question on the papers, such as ``2.3``."""
         names = list(dict.fromkeys(name for name, _ in self.questions))
         own = [p for name, p in self.questions if name == exercise]
         return f"{names.index(exercise) + 1}.{own.index(part) + 1}"
@@ -209,7 +211,7 @@ class ClassNow:
 
     @cached_property
     def measures(self) -> dict[tuple[str, str, int, int], Measure]:
-        """What sheets are compared by: by student, exercise, seed and sitting."""
+        """Measures by which sheets are compared, by student, exercise, seed and attempt."""
         return {
             (*place[:3], self.machine[place].sitting): self.measured[number]
             for place, number in self.numbers.items()
@@ -218,7 +220,7 @@ class ClassNow:
 
     @cached_property
     def open(self) -> dict[str, Open]:
-        """What waits, by the group's id, in order: also what is looked at on request alone."""
+        """Groups that wait for a person, by id, in order; including those that are looked at only on request."""
         found = {}
         for group in self.groups:
             members = tuple(one for one in group.members if not self.is_decided(one))
@@ -231,7 +233,7 @@ class ClassNow:
 
     @property
     def waiting(self) -> int:
-        """How many answers and rows wait for a person."""
+        """Number of answers and rows that wait for a person."""
         asked = sum(len(one.members) for one in self.open.values() if one.why not in SHOWN_ON_REQUEST)
         return asked + sum(one.waits for one in self.named)
 
@@ -249,7 +251,7 @@ class ClassNow:
 
     @property
     def of_nobody(self) -> int:
-        """How many rows that name no student of the class wait on the page of files."""
+        """Number of waiting rows, on the page of files, that name no student of the class."""
         return sum(one.waits for one in self.rejected) - sum(one.waits for one in self.named)
 
     @property
@@ -268,7 +270,7 @@ def named_by(issued: Issued, row: Rejected) -> tuple[str, str]:
 
 
 def row_id(row: Rejected) -> str:
-    """The digest by which a rejected row is known."""
+    """Return the digest that identifies a rejected row."""
     told = "\0".join((row.source, *(f"{k}={v}" for k, v in sorted(row.row.items()))))
     return sha256(told.encode("utf-8", "backslashreplace")).hexdigest()[:32]
 

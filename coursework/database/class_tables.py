@@ -1,5 +1,6 @@
-"""What pages of the desk ask of the aggregates: a page of students, the cards of the queue, the answers to a question. Each costs a
-fixed number of statements, and gives no more rows than a page has."""
+"""Queries of the instructor's pages on the aggregates: a page of students, the cards of the queue, the
+answers to a question. Each takes a fixed number of statements and returns no more rows than a page shows.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +44,8 @@ Question = tuple[str, str]  #: exercise and part
 
 @dataclass(frozen=True)
 class Scope:
-    """Which students and assignments somebody may see; None for all. Every listing of the desk takes one."""
+    """Students and assignments that somebody may see; None for all. Every listing of the instructor's pages
+    takes one."""
 
     students: Collection[str] | None = None  #: names as issued
     assignments: Collection[int] | None = None
@@ -200,7 +202,7 @@ def means(connection: Connection, number: int, scope: Scope = ALL) -> dict[Quest
 
 
 class Totals(NamedTuple):
-    """What a class comes to."""
+    """Totals of a class."""
 
     students: int = 0
     handed_in: int = 0
@@ -314,7 +316,7 @@ def answers_waiting(connection: Connection, number: int, scope: Scope = ALL) -> 
 
 
 class Filter(NamedTuple):
-    """Which cards are shown."""
+    """Selection of the cards to show."""
 
     why: str = ""  #: all but what waits for nobody, unless told
     exercise: str = ""
@@ -427,7 +429,8 @@ class Queue:
         return select(*columns).select_from(joined).where(*own).order_by(at.first, at.place)
 
     def members(self, names: Collection[str], *, open_only: bool, limit: int | None = None) -> list[Any]:
-        """Return answers of cards in the order in which they came: id, student, exercise, seed, sitting, part, answer."""
+        """Return answers of cards in the order of arrival: id, student, exercise, seed, attempt, part,
+        answer."""
         at = answer_now.c
         columns = at.id, at.student, at.exercise, at.seed, at.sitting, at.part, at.decided, mark.c.answer
         return list(

@@ -1,4 +1,5 @@
-"""What a person decides of an answer: accepted, given points, its mark kept, or withdrawn; kept for ever, the last of an answer stands."""
+"""Decisions on answers: accepted, given points, mark confirmed, or withdrawn. All are stored; the last on an
+answer counts."""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ class Place(NamedTuple):
 
 
 class Decision(NamedTuple):
-    """What somebody decided."""
+    """Decision of a person on an answer."""
 
     seed: str
     kind: str
@@ -121,7 +122,7 @@ class Decisions:
     def read(
         connection: Connection, assignment_id: int, student: str | Collection[str] | None = None
     ) -> Decisions:
-        """Return those of an assignment in their order; of one student or of several, where they are told."""
+        """Return the decisions on an assignment in their order; of one student or of several, if given."""
         found = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
         if student is not None:
             names = [student] if isinstance(student, str) else list(student)
@@ -138,19 +139,20 @@ class Decisions:
         )
 
     def on(self, student: str, exercise: str, part: str) -> Sequence[Decision]:
-        """All on an answer of somebody, whatever the variant."""
+        """Return all decisions on a student's answer, of any variant."""
         return self._of.get((folded(student), exercise, part), ())
 
     def standing(self, graded: Graded, line: Mark) -> Decision | None:
-        """The one that counts for an answer."""
+        """Return the decision that counts for an answer."""
         return next(self.counting(graded[:3], line), None)
 
     def given(self, graded: Graded, line: Mark) -> Decision | None:
-        """The points given for an answer, whether it was accepted as well or not."""
+        """Return the decision that gives points for an answer, even if the answer was also accepted."""
         return next((one for one in self.counting(graded[:3], line) if one.kind == GIVEN), None)
 
     def counting(self, sheet: tuple[str, str, int], line: Mark) -> Iterator[Decision]:
-        """Those that are on this very answer of a sheet, the last first, as far as the last that was withdrawn."""
+        """Yield the decisions on exactly this answer of a sheet, the last first, as far as the last
+        withdrawal."""
         student, exercise, seed = sheet
         for one in reversed(self.on(student, exercise, line.part)):
             if one.seed not in ("", str(seed)):
@@ -161,7 +163,7 @@ class Decisions:
                 yield one
 
     def apply(self, graded: Graded, lang: str = "") -> Graded:
-        """The sheet with the marks that a person decided on."""
+        """Return the sheet with the marks that a person decided."""
         if not self._of:
             return graded
         lines, unanswered = dict(graded.lines), list(graded.unanswered)
@@ -189,7 +191,7 @@ def _decision(row: Any) -> Decision:
 
 
 class Happened(NamedTuple):
-    """What became of an answer, once."""
+    """Event in the history of an answer."""
 
     at: datetime
     by: str  #: empty for the marking
@@ -208,7 +210,8 @@ MARKED = "marked"
 def history(
     connection: Connection, assignment_id: int, student: str | None = None, exercise: str = "", part: str = ""
 ) -> list[tuple[str, str, str, Happened]]:
-    """Student, exercise and part with all that became of the answer, in the order of time; of all of them unless told."""
+    """Return the events in the history of answers, in chronological order, each with its student, exercise
+    and part; of the given student, exercise or part alone."""
 
     def asked(found: Select[Any], own: Any) -> Select[Any]:
         for name, told in (("exercise", exercise), ("part", part)):

@@ -1,4 +1,5 @@
-"""What comes in: files, or what somebody hands in on the site; kept as it came, the same twice once."""
+"""Submissions: files, or answers that a person submits on the site. Each is stored as received; a repeated
+one is stored once."""
 
 from __future__ import annotations
 
@@ -26,7 +27,7 @@ _Placed = tuple[tuple[Any, ...], Row | Rejected | Seen]  #: delivery and place i
 
 
 class Delivery(NamedTuple):
-    """What came in together."""
+    """Submission of several answers together."""
 
     id: int
     is_new: bool  #: False where the same had come before
@@ -53,7 +54,8 @@ def deliver(
     replaces: bool = False,
     in_place: bool = False,
 ) -> Delivery:
-    """Keep rows as they came; where the same came before, that one is given and nothing is added.
+    """Store the rows of a submission as received; return an equal one from before, if there is one, and store
+    nothing.
 
     ``number`` is which try of the person it is (:func:`next_number`), ``late`` how many seconds after it closed for them.
     A file that ``replaces`` takes the place of what came from the same source before: that is kept, and counts no more.
@@ -86,7 +88,8 @@ def deliver(
 def _after_tries(
     connection: Connection, assignment_id: int, rows: list[Row | Rejected | Seen]
 ) -> list[Row | Rejected | Seen]:
-    """The rows of a file, those of who handed in on the site as of a sitting after theirs: two are never added up as one."""
+    """Return the rows of a file; those of students who submitted on the site get a later attempt number, so
+    that two submissions are never merged."""
     on_site = delivery.c.assignment_id == assignment_id, delivery.c.number > 0
     found = select(answer.c.student, func.max(delivery.c.number)).join(delivery).where(*on_site)
     tries = {row[0]: row[1] for row in connection.execute(found.group_by(answer.c.student))}
@@ -118,7 +121,8 @@ def _replace(connection: Connection, assignment_id: int, number: int, source: st
 
 
 def next_number(connection: Connection, assignment_id: int, person_id: int, student: str) -> int:
-    """The number of a person's next try: one more than the greatest sitting of theirs so far, on the site or elsewhere."""
+    """Return the number of a person's next attempt: one more than the greatest so far, on the site or
+    elsewhere."""
     of_theirs = delivery.c.assignment_id == assignment_id, delivery.c.person_id == person_id
     tries = connection.execute(select(func.max(delivery.c.number)).where(*of_theirs)).scalar() or 0
     elsewhere = (
@@ -139,7 +143,7 @@ def next_number(connection: Connection, assignment_id: int, person_id: int, stud
 
 
 def delivery_alike(connection: Connection, assignment_id: int, digest: str) -> Delivery:
-    """The delivery that holds the same."""
+    """Return the submission with the given digest."""
     found = connection.execute(
         select(delivery).where(delivery.c.assignment_id == assignment_id, delivery.c.digest == digest)
     ).one()
@@ -173,7 +177,7 @@ def _put_rows(connection: Connection, number: int, rows: Sequence[Row | Rejected
 
 
 def deliveries(connection: Connection, assignment_id: int, person_id: int | None = None) -> list[Delivery]:
-    """What came in for an assignment, in order; of one person alone, where they are told."""
+    """Return the submissions for an assignment, in order; of one person alone, if given."""
     found = select(delivery).where(delivery.c.assignment_id == assignment_id).order_by(delivery.c.id)
     if person_id is not None:
         found = found.where(delivery.c.person_id == person_id)
@@ -181,7 +185,8 @@ def deliveries(connection: Connection, assignment_id: int, person_id: int | None
 
 
 def tries_used(connection: Connection, assignment_id: int, person_id: int, done: Sequence[Delivery]) -> int:
-    """How often somebody handed in the paper that is theirs to do: a make-up, where there is one, is another paper.
+    """Return the number of attempts that a person has used for the paper that is now theirs; a make-up is
+    another paper.
 
     ``done`` are the person's :func:`deliveries`.
     """
@@ -204,7 +209,8 @@ def tries_used(connection: Connection, assignment_id: int, person_id: int, done:
 def rows_of(
     connection: Connection, assignment_id: int, delivery_id: int | None = None
 ) -> Iterator[Row | Rejected | Seen]:
-    """What came in and counts, in the order in which it came; of one delivery alone, all of it, where it is told.
+    """Yield the rows that count, in the order of arrival; if a submission is given, all of its rows and no
+    others.
 
     A row that says the very same as one of an earlier delivery is that one come again, and is given once.
     """
@@ -235,7 +241,7 @@ def rows_of(
 
 
 def _content(row: Row | Rejected | Seen) -> tuple[Any, ...] | None:
-    """What a row says of an answer, wherever it stood; None where it says nothing of one."""
+    """Return the content of a row, wherever it stood in its file; None if it states no answer."""
     if isinstance(row, Row):
         return (*row[:4], type(row.answer), row.answer, row.lang, row.origin)
     if isinstance(row, Rejected) and row.row:
@@ -257,7 +263,8 @@ _NUMBERS: Mapping[str, Callable[[str], Any]] = {"int": int, "float": float, "com
 
 
 def _as_json(value: Any) -> Any:
-    """An answer as every database holds it: a number in its digits, ``{"float": "3.0"}``, since some make another of it."""
+    """Return an answer in a form that every database can store: a number as its digits, ``{"float": "3.0"}``,
+    since some databases change it."""
     if value is None or isinstance(value, (str, bool)):
         return value
     kind = next((name for name, made in _NUMBERS.items() if type(value) is made), None)
@@ -272,7 +279,7 @@ def _as_came(value: Any) -> Any:
 
 
 def _origin_as_json(origin: Collected) -> dict[str, Any]:
-    """What differs from what is usual."""
+    """Return the fields that differ from their defaults."""
     usual = Collected._field_defaults
     return {name: value for name, value in origin._asdict().items() if value != usual[name]}
 
@@ -308,11 +315,12 @@ def _said(row: Row | Rejected | Seen) -> tuple[Any, ...]:
 
 
 def _name(source: str) -> str:
-    """A file's name and the place in it, whatever the folder."""
+    """Return a file's name and the place in it, without the folder."""
     return source.replace("\\", "/").rpartition("/")[2]
 
 
 def _receipt(assignment_id: int, digest: str) -> str:
-    """A few letters, which nobody misreads for others: the first of a digest of assignment and content."""
+    """Return the code of a receipt: letters that are not mistaken for others, from a digest of the assignment
+    and the content."""
     short = b32encode(sha256(f"{assignment_id}/{digest}".encode()).digest()).decode()[:12]
     return "-".join((short[:4], short[4:8], short[8:12]))

@@ -1,5 +1,5 @@
-"""What the instructors' desk asks of the database: what is new since, who decided meanwhile, what can be undone, what became of
-rows that were rejected."""
+"""Queries of the instructor's pages: changes since a stamp, decisions made meanwhile, decisions that can be
+undone, and the placing of rejected rows."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ _BESIDE = 50  #: numbers before the last that may be seen after it
 
 
 class Stamp(NamedTuple):
-    """What tells whether anything of an assignment is new: counts and the last of what is only ever added."""
+    """State of an assignment in counts and last ids of its append-only tables; it differs as soon as
+    something is new."""
 
     markings: tuple[int, int]
     decisions: tuple[int, int]
@@ -44,7 +45,7 @@ class Stamp(NamedTuple):
 
     @staticmethod
     def read(text: str) -> Stamp | None:
-        """The stamp that a text tells; None of what is none."""
+        """Return the stamp that a text states; None if it states none."""
         found = re.fullmatch(r"\.".join(["([0-9]{1,15})-([0-9]{1,15})"] * 6), text, re.ASCII)
         if found is None:
             return None
@@ -53,7 +54,7 @@ class Stamp(NamedTuple):
 
 
 def stamp(connection: Connection, assignment_id: int) -> Stamp:
-    """The stamp of an assignment, by a few small questions."""
+    """Return the stamp of an assignment, from a few small queries."""
     found = []
     for table in (marking, decision, delivery, placing):
         asked = select(func.count(), func.max(table.c.id)).where(table.c.assignment_id == assignment_id)
@@ -72,7 +73,7 @@ def stamp(connection: Connection, assignment_id: int) -> Stamp:
 
 
 class About(NamedTuple):
-    """An assignment, as the desk lists it."""
+    """Assignment, as the instructor's pages list it."""
 
     id: int
     name: str
@@ -85,7 +86,7 @@ class About(NamedTuple):
 
 
 def listed(connection: Connection, assignment_id: int | None = None) -> list[About]:
-    """The assignments, the latest first; one alone where it is told."""
+    """Return the assignments, the latest first; one alone if given."""
     found = (
         select(assignment, func.count(delivery.c.id), func.max(delivery.c.id))
         .select_from(assignment.outerjoin(delivery))
@@ -131,7 +132,7 @@ def _made(found: Select[Any], connection: Connection) -> list[Made]:
 
 
 def decided_since(connection: Connection, assignment_id: int, after: int) -> list[Made]:
-    """The decisions that are later than a number, in their order."""
+    """Return the decisions with an id above a number, in their order."""
     found = select(decision).where(decision.c.assignment_id == assignment_id, decision.c.id > after)
     return _made(found.order_by(decision.c.id), connection)
 
@@ -142,7 +143,7 @@ def decisions_of(connection: Connection, assignment_id: int) -> list[Made]:
 
 
 def undoable(connection: Connection, assignment_id: int, by: str) -> list[Made]:
-    """What somebody decided last and at once, and what neither they nor another decided on since: that can be undone."""
+    """Return the latest batch of decisions of a person that can be undone: no later decision replaces them."""
     found = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id.desc())
     met: set[tuple[str, ...]] = set()
     batch: list[Made] = []
@@ -158,7 +159,7 @@ def undoable(connection: Connection, assignment_id: int, by: str) -> list[Made]:
 
 
 def place_of(one: Made) -> Place:
-    """The answer that a decision is on."""
+    """Return the key of the answer that a decision is about."""
     return Place(one.student, one.exercise, one.seed, one.part, one.answer)
 
 
@@ -166,7 +167,7 @@ def place_of(one: Made) -> Place:
 
 
 class Placed(NamedTuple):
-    """What became of a rejected row."""
+    """Placing of a rejected row."""
 
     row: str  #: digest
     delivery_id: int | None  #: of the answer that was made of it; none where it was put aside
@@ -176,7 +177,7 @@ class Placed(NamedTuple):
 
 
 def placings(connection: Connection, assignment_id: int) -> dict[str, Placed]:
-    """What became of rejected rows, by digest; the last stands."""
+    """Return the placings of rejected rows by digest; the last of each row counts."""
     found = select(placing).where(placing.c.assignment_id == assignment_id).order_by(placing.c.id)
     rows = connection.execute(found)
     return {row.row: Placed(row.row, row.delivery_id, row.reason, row.by, row.made) for row in rows}
@@ -197,7 +198,7 @@ def drop_placing(connection: Connection, assignment_id: int, row: str) -> None:
 
 
 class Came(NamedTuple):
-    """When somebody handed in."""
+    """Submissions of a student on the site: the number of attempts, and the last of them."""
 
     tries: int
     last: datetime
@@ -207,7 +208,7 @@ class Came(NamedTuple):
 def came_of(
     connection: Connection, assignment_id: int, students: Collection[str] | None = None
 ) -> dict[str, Came]:
-    """Who handed in on the site, by the name as issued; of some students alone, where they are told."""
+    """Return the submissions on the site, by the student's name as issued; of some students alone, if given."""
     called = {person: name for name, person in people_of(connection, assignment_id, students).items()}
     found = (
         select(delivery.c.person_id, delivery.c.came, delivery.c.late)
@@ -224,7 +225,7 @@ def came_of(
 
 
 def unmarked(connection: Connection, assignment_id: int, before: datetime) -> list[int]:
-    """The numbers of the hand-ins on the site that came before a moment and that nobody marked."""
+    """Return the ids of submissions on the site that were received before a moment and are not marked yet."""
     theirs = select(answer.c.student).where(answer.c.delivery_id == delivery.c.id)
     marked = select(marking.c.id).where(
         marking.c.assignment_id == assignment_id,
@@ -241,8 +242,8 @@ def unmarked(connection: Connection, assignment_id: int, before: datetime) -> li
 
 
 def students_since(connection: Connection, assignment_id: int, before: Stamp) -> set[str]:
-    """Whose sheets were marked or decided on since a stamp. What was written beside the last that it knows counts too: where
-    many write at once, numbers are not given in the order in which rows are seen."""
+    """Return the students with a sheet marked or decided on since a stamp. Some rows before the last of the
+    stamp count too: with concurrent writers, ids do not become visible in order."""
     found: set[str] = set()
     for table, (_, last) in ((marking, before.markings), (decision, before.decisions)):
         asked = select(table.c.student).where(
@@ -255,7 +256,8 @@ def students_since(connection: Connection, assignment_id: int, before: Stamp) ->
 def people_of(
     connection: Connection, assignment_id: int, students: Collection[str] | None = None
 ) -> dict[str, int]:
-    """The persons of those whom an assignment was issued to, by the name as issued; of some alone, where they are told."""
+    """Return the person's id of each student of an assignment, by the name as issued; of some students alone,
+    if given."""
     found = (
         select(dealt.c.student, dealt.c.person_id)
         .join(variant)
@@ -268,7 +270,7 @@ def people_of(
 
 
 class Try(NamedTuple):
-    """Something that came in for a student."""
+    """Submission on the site, or file with answers, of a student."""
 
     source: str
     number: int  #: which try on the site; 0 for a file
@@ -278,7 +280,8 @@ class Try(NamedTuple):
 
 
 def tries_of(connection: Connection, assignment_id: int, student: str) -> list[Try]:
-    """What came in of a student, in order: hand-ins on the site, and files that name them as issued."""
+    """Return the submissions of a student, in order: those on the site, and files that name the student as
+    issued."""
     named = select(answer.c.delivery_id).where(answer.c.student == student)
     found = (
         select(delivery)
@@ -291,7 +294,8 @@ def tries_of(connection: Connection, assignment_id: int, student: str) -> list[T
 def practised(
     connection: Connection, person: int, exercises: Collection[str]
 ) -> dict[str, tuple[int, datetime | None]]:
-    """How many variants of some exercises a person practised alone, and when last; nothing of what they answered."""
+    """Return the number of variants of each exercise that a person practised alone, and the time of the last;
+    never an answer."""
     named = progress.c.entry["exercise"].as_string()
     found = select(
         named.label("exercise"),

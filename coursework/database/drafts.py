@@ -1,4 +1,5 @@
-"""What somebody has typed and not handed in: kept box by box, so that two pages open at once lose nothing of one another."""
+"""Drafts of answers, not yet submitted: stored box by box, so that two open pages do not overwrite one
+another."""
 
 from __future__ import annotations
 
@@ -13,21 +14,21 @@ from coursework.database.tables import draft
 
 
 class Box(NamedTuple):
-    """What stands in a box."""
+    """Current text of a box."""
 
     text: str
     version: int  #: counts its changes; 0 where nothing was ever written
 
 
 class Sent(NamedTuple):
-    """What a page sends: a text, and the version that it was written over."""
+    """Text from a page, and the version that it replaces."""
 
     text: str
     over: int
 
 
 def drafts(connection: Connection, person: int, sheet: str) -> dict[str, Box]:
-    """What is kept of a sheet."""
+    """Return the drafts of a sheet by box."""
     rows = connection.execute(
         select(draft.c.box, draft.c.text, draft.c.version).where(
             draft.c.person_id == person, draft.c.sheet == sheet
@@ -39,7 +40,8 @@ def drafts(connection: Connection, person: int, sheet: str) -> dict[str, Box]:
 def save(
     connection: Connection, person: int, sheet: str, sent: Mapping[str, Sent], at: datetime
 ) -> dict[str, Box]:
-    """Keep what was typed; gives the boxes that another page wrote to since, with what stands there: these are not overwritten.
+    """Store drafts; return the boxes that another page has changed meanwhile, with their current text. These
+    are not overwritten.
 
     The same text once more is no change, so that what is sent twice is kept once.
     """
@@ -56,7 +58,7 @@ def save(
 def _is_written(
     connection: Connection, place: tuple[int, str, str], text: str, now: Box, at: datetime
 ) -> bool:
-    """Whether a text took the place of what stood there: not where another page was faster."""
+    """Replace the draft of a box; return False if another page was faster."""
     person, sheet, box = place
     written = {"text": text, "version": now.version + 1, "changed": at}
     if now.version:
@@ -72,7 +74,8 @@ def _is_written(
 
 
 def sheets(connection: Connection, person: int, beginning: str) -> dict[str, datetime]:
-    """The sheets of somebody whose names begin so, with the time of the last change of each, the last changed first."""
+    """Return a person's sheets whose names have a prefix, with the time of the last change of each, the last
+    changed first."""
     last = func.max(draft.c.changed)
     rows = connection.execute(
         select(draft.c.sheet, last)

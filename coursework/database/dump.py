@@ -42,7 +42,7 @@ _NEWER: Mapping[str, set[str]] = {"assignment": {"secret"}, "audit": {"actor", "
 
 
 def dump(store: Store, folder: Path) -> dict[str, int]:
-    """Write every table as it is at one moment, ``TABLE.csv``; gives how many rows each has.
+    """Write every table, as it is at one moment, to ``TABLE.csv``; return the number of rows of each.
 
     A text that a spreadsheet would run has an apostrophe before it, which :func:`restore` takes away.
 
@@ -64,7 +64,7 @@ def dump(store: Store, folder: Path) -> dict[str, int]:
 
 
 def _dumped() -> list[Table]:
-    """Return the tables that a dump holds: what is computed from others is computed anew, and nobody stays signed in."""
+    """Return the tables of a dump: without those computed from others, and without sessions."""
     return [table for table in METADATA.sorted_tables if not table.info.keys() & {"derived", "fleeting"}]
 
 
@@ -92,7 +92,7 @@ def _write(connection: Connection, table: Table, path: Path) -> int:
 
 
 def _private(path: str, flags: int) -> int:
-    """Open a file that its owner alone may read: it holds what the database holds."""
+    """Open a file that its owner alone may read, since it contains the data of the database."""
     return os.open(path, flags, 0o600)
 
 
@@ -106,7 +106,7 @@ def _as_text(value: Any) -> str:
 
 
 def restore(folder: Path, store: Store) -> dict[str, int]:
-    """Put a dump into an empty database; gives how many rows each table has.
+    """Load a dump into an empty database; return the number of rows of each table.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
 
 @contextmanager
 def _told(folder: Path) -> Iterator[None]:
-    """What a database says against rows, told with where they come from."""
+    """Turn a fault of the database into a message that names the folder of the dump."""
     try:
         yield
     except (DBAPIError, OverflowError, UnicodeEncodeError) as fault:
@@ -146,7 +146,7 @@ def _told(folder: Path) -> Iterator[None]:
 
 
 def _check_readable(connection: Connection) -> None:
-    """Whether what was put in can be read as what it is: cells of JSON hold anything.
+    """Check that the restored rows can be read, since cells of JSON may contain anything.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def _check_readable(connection: Connection) -> None:
 
 
 def _about(folder: Path) -> tuple[Mapping[str, int], CellText]:
-    """How many rows each table has, and what takes the text out of a cell."""
+    """Return the number of rows of each table, and the function that reads the text of a cell."""
     if not (folder / _ABOUT).is_file():
         raise BadInput(
             f"{folder} holds no dump: there is no {_ABOUT} in it; 'coursework database dump' makes one"
@@ -242,7 +242,7 @@ def _row(
 
 
 def _maker(column: Column[Any]) -> Callable[[str], Any]:
-    """A value of its cell."""
+    """Return the function that makes a value from its cell."""
     for kind, made in _MAKERS:
         if isinstance(column.type, kind):
             return made

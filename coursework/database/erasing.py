@@ -1,5 +1,5 @@
-"""Taking away all that is kept of one person. Nothing of theirs stays, not even a mark without its name: who has the paper
-that was handed out, with its name and its seed, would know whose it is.
+"""Erasure of all data of one person. Not even an anonymous mark remains: anybody with the printed paper,
+which states the name and the seed, could tell whose it is.
 
 What others wrote stays as it is; where they, a file or the staff *named* the person, the name is struck out.
 """
@@ -64,7 +64,7 @@ TELLING: tuple[tuple[Table, tuple[str, ...]], ...] = (
 
 
 def erase(connection: Connection, number: int) -> dict[str, int]:
-    """Take away all that is kept of a person; how many rows of each table that were.
+    """Delete all data of a person; return the number of deleted rows of each table.
 
     The audit's line on it is for who calls to write.
     """
@@ -109,7 +109,8 @@ def _strike(connection: Connection, who: Whose) -> None:
 
 
 def _struck(value: Any, words: Collection[str], *, keys: bool = False) -> Any:
-    """A text or JSON without the names; in a table ``keys`` by student, without their line as well."""
+    """Return a text or JSON without the names; if the ``keys`` of a table are names of students, without the
+    entries of these names."""
     if isinstance(value, str):
         return _without(value, words)
     if isinstance(value, list):
@@ -129,5 +130,6 @@ def _without(text: str, words: Collection[str]) -> str:
 
 @lru_cache(maxsize=64)
 def _pattern(word: str) -> re.Pattern[str]:
-    """A name as a whole word; one that is but letters by its capitals as well, since it may be a word of the language."""
+    """Return the pattern of a name as a whole word. A name of letters alone is case-sensitive, since it may
+    be a word of the language."""
     return re.compile(rf"(?<!\w){re.escape(word)}(?!\w)", 0 if word.isalpha() else re.IGNORECASE)

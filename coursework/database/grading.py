@@ -1,4 +1,5 @@
-"""The job of Monday, kept: new files are deliveries, changed sheets are marked, and what is told is of all that ever came."""
+"""Grading with a database: new files become submissions, changed sheets are marked, and the results cover all
+submissions so far."""
 
 from __future__ import annotations
 
@@ -34,7 +35,7 @@ from coursework.system.writing import Progress
 
 @dataclass
 class GradedNow:
-    """What came, what was decided and what was marked."""
+    """Result of a grading run: submissions, new decisions, and marks."""
 
     deliveries: list[Delivery]
     decided: int  #: decisions that are new in files
@@ -57,7 +58,7 @@ def grade_new(
     form: Form = USUAL,
     replaces: bool = False,
 ) -> GradedNow:
-    """Keep new files and new decisions, and mark the sheets that changed.
+    """Store new files and new decisions, and mark the sheets that changed.
 
     ``accepted`` and the files in ``out`` are those of :func:`coursework.gradebook.grading.grade_files`. A file that
     ``replaces`` takes the place of what came from it before.
@@ -88,7 +89,7 @@ TO_MARK_FILE = "to_mark.csv"
 
 
 def accepted_in(accepted: Path | None, out: Path | None) -> Path | None:
-    """The file of accepted answers: as it is told, else that of ``out`` where there is one."""
+    """Return the file of accepted answers: the given one, else that of ``out`` if it exists."""
     if accepted is not None or out is None:
         return accepted
     return out / "accepted.csv" if (out / "accepted.csv").exists() else None
@@ -119,7 +120,8 @@ def write_standing(
     progress: Progress = lambda done, of: None,
     form: Form = USUAL,
 ) -> Gradebook:
-    """Write the very files that :func:`coursework.gradebook.grading.grade_files` would write of all that ever came."""
+    """Write the files that :func:`coursework.gradebook.grading.grade_files` would write for all submissions
+    so far."""
     with store.reading() as connection:
         decisions = Decisions.read(connection, work.assignment_id)
         charged = charges(connection, work.assignment_id)

@@ -1,4 +1,4 @@
-"""How platforms know people: a person is tied to what a platform calls them, and never to a name."""
+"""Identities of people on platforms: a person is linked to a platform's identifier, never to a name."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from coursework.making.identity import EMAIL, NUMBER, is_called, same_id
 
 
 def person_known(connection: Connection, issuer: str, subject: str) -> Any | None:
-    """The person of a platform's identifier; None where nobody is tied to it."""
+    """Return the person with a platform's identifier; None if no person is linked to it."""
     told = identity.c.issuer == issuer, identity.c.subject == subject
     number = connection.execute(select(identity.c.person_id).where(*told)).scalar()
     return None if number is None else person_by_id(connection, number)
@@ -27,7 +27,7 @@ def tie(connection: Connection, number: int, issuer: str, subject: str) -> bool:
 
 
 def known_as(connection: Connection, number: int) -> list[tuple[str, str]]:
-    """What platforms call a person: issuer and identifier."""
+    """Return the identities of a person on platforms: issuer and identifier."""
     told = select(identity.c.issuer, identity.c.subject).where(identity.c.person_id == number)
     return [(row.issuer, row.subject) for row in connection.execute(told)]
 
@@ -77,7 +77,7 @@ def separate(connection: Connection, number: int, tie_id: int) -> tuple[str, str
 
 
 def take_over(connection: Connection, number: int, name: str, lang: str) -> None:
-    """The name and the language that a platform tells, in the place of those before."""
+    """Replace a person's name and language by those that a platform states."""
     told = {key: value for key, value in (("name", name), ("lang", lang)) if value}
     if told:
         connection.execute(update(person).where(person.c.id == number).values(told))

@@ -1,7 +1,7 @@
-"""Queue of the work that a worker does beside the requests: kept with what it is about, taken by one worker at a time.
+"""Queue of the jobs of background workers: each job is taken by one worker at a time.
 
-A job that is begun belongs to its worker for a while; where the worker was killed, it is taken again: at once by the worker that
-follows under the same name, by any other once the time is over. What fails too often is given up and kept with its fault.
+A worker has a lease on the job that it has begun. If the worker is killed, the job is taken again: at once by a worker of the
+same name, by any other after the end of the lease. A job that fails too often is given up, and its fault is stored.
 """
 
 from __future__ import annotations
@@ -65,7 +65,8 @@ def put_job(
 
 
 def waiting(connection: Connection) -> tuple[int, datetime | None, datetime | None]:
-    """The number of hand-ins that wait and are not given up, and when the first and the last of them were added."""
+    """Return the number of submissions that wait for their marks, and the times at which the first and the
+    last were added."""
     found = select(func.count(), func.min(job.c.id), func.max(job.c.id)).where(job.c.fault == "", _HANDED_IN)
     count, first, last = connection.execute(found).one()
     ends = {
@@ -76,7 +77,7 @@ def waiting(connection: Connection) -> tuple[int, datetime | None, datetime | No
 
 
 def is_any(connection: Connection) -> bool:
-    """Whether any job is not given up."""
+    """Return True if a job is left that is not given up."""
     return connection.execute(select(job.c.id).where(job.c.fault == "").limit(1)).first() is not None
 
 
@@ -120,13 +121,13 @@ def put_back(connection: Connection, one: Job, fault: str) -> bool:
 
 
 def give_up(connection: Connection, number: int, fault: str) -> None:
-    """Keep a job as one that nobody tries any more; a page is made when it is asked for."""
+    """Give up a job; one that prepares a page is deleted, since the page is made on request."""
     connection.execute(delete(job).where(job.c.id == number, ~_HANDED_IN))
     connection.execute(update(job).where(job.c.id == number).values(fault=fault, worker="", until=None))
 
 
 def job_of(connection: Connection, delivery: int) -> Job | None:
-    """The job that marks a delivery; None where it is marked, or nobody was asked to."""
+    """Return the job that marks a submission; None if it is marked, or no job was added."""
     row = connection.execute(
         select(*_COLUMNS).where(job.c.delivery_id == delivery, job.c.kind == MARK)
     ).first()
@@ -134,12 +135,12 @@ def job_of(connection: Connection, delivery: int) -> Job | None:
 
 
 def before(connection: Connection, one: Job) -> int:
-    """The number of jobs that come before one."""
+    """Return the number of jobs ahead of one."""
     found = select(func.count()).where(job.c.fault == "", job.c.id < one.id, _HANDED_IN)
     return int(connection.execute(found).scalar_one())
 
 
 def given_up(connection: Connection, assignment: int) -> list[Job]:
-    """The jobs of an assignment that failed too often."""
+    """Return the jobs of an assignment that failed too often."""
     found = select(*_COLUMNS).where(job.c.assignment_id == assignment, job.c.fault != "").order_by(job.c.id)
     return [Job(*row) for row in connection.execute(found)]

@@ -44,12 +44,12 @@ class Change(NamedTuple):
     points_now: str
 
     def row(self) -> dict[str, Any]:
-        """A line of ``changes.csv``."""
+        """Return a line of ``changes.csv``."""
         return self._asdict()
 
 
 class MarkedNow(NamedTuple):
-    """What a marking did."""
+    """Result of a marking run."""
 
     sheets: int  #: how many are answered
     marked: int  #: how many of them were marked now
@@ -129,14 +129,14 @@ class Work:
             yield from _changes(self._rows(was), self._rows(self.now.get(place, "")))
 
     def _before(self, sheets: Iterable[Stood]) -> dict[SheetPlace, Graded | str]:
-        """Sheets as they were marked before."""
+        """Return the sheets as they were marked before."""
         sheets = list(sheets)
         with self.store.reading() as connection:
             lines = lines_of(connection, sheets)
         return dict(machine_marks(self.issued, sheets, lines))
 
     def _rows(self, result: Graded | str) -> dict[str, Mapping[str, Any]]:
-        """The lines of a sheet in a table of marks, by part."""
+        """Return the lines of a sheet in a table of marks, by part."""
         if isinstance(result, str):
             return {}
         return {row["part"]: row for row in marks_rows(self.decisions.apply(result))}
@@ -216,14 +216,15 @@ def mark_delivery(course: Course, store: Store, delivery_id: int) -> MarkedNow:
 
 
 def would_change(course: Course, store: Store, assignment_id: int) -> MarkedNow:
-    """What :func:`mark_new` would do; nothing is written."""
+    """Return the result that :func:`mark_new` would have; write nothing."""
     work = Work(course, store, assignment_id)
     work.mark()
     return work.told()
 
 
 def marked_now(course: Course, store: Store, assignment_id: int, delivery_id: int | None = None) -> Work:
-    """All sheets of an assignment, or of a delivery, what changed of them marked and kept."""
+    """Mark the changed sheets of an assignment, or of a submission; store their marks, and return the work
+    with all sheets."""
     work = Work(course, store, assignment_id, delivery_id)
     work.mark()
     if work.now or work.gone:

@@ -31,7 +31,7 @@ def person_by_id(connection: Connection, number: int) -> Any | None:
 
 
 def person_by_who(connection: Connection, who: str) -> Any | None:
-    """The person whom a roster tells apart so."""
+    """Return the person with a roster's identifier."""
     return connection.execute(found_people().where(person.c.who == who)).first()
 
 
@@ -41,8 +41,8 @@ def hold(connection: Connection, number: int) -> None:
 
 
 def put_person(connection: Connection, who: str, name: str, lang: str, columns: Mapping[str, str]) -> int:
-    """The person of a roster, added where there is none; a name, a language and columns that are told take the place of
-    those before."""
+    """Add or update the person of a roster; return the id. A name, a language and columns replace those
+    before, unless they are empty."""
     known = person_by_who(connection, who)
     told = {
         key: value for key, value in (("name", name), ("lang", lang), ("columns", dict(columns))) if value
@@ -56,7 +56,8 @@ def put_person(connection: Connection, who: str, name: str, lang: str, columns: 
 
 
 def put_people(connection: Connection, students: Sequence[Student]) -> dict[str, int]:
-    """The people of a roster by what it tells them apart by; those who are new are added, columns that are new are taken in."""
+    """Add the new people of a roster, and new columns of the known ones; return the ids of all people by the
+    roster's identifier."""
     known = {row.who: row for row in connection.execute(select(person.c.who, person.c.id, person.c.columns))}
     now = datetime.now(UTC)
     new = {one.who: one for one in students if one.who not in known}
@@ -74,7 +75,7 @@ def put_people(connection: Connection, students: Sequence[Student]) -> dict[str,
 
 
 def put_account(connection: Connection, number: int, login: str, role: str) -> None:
-    """A way to sign in for a person, added where there is none."""
+    """Add an account to a person, unless the login has one already."""
     if connection.execute(select(account.c.id).where(account.c.login == login)).first() is None:
         row = {"person_id": number, "login": login, "role": role, "created": datetime.now(UTC)}
         connection.execute(insert(account).values(row))

@@ -16,7 +16,7 @@ STAFF = frozenset(ROLES) - {STUDENT}
 
 
 class Permission(StrEnum):
-    """What a page needs of the person who asks for it."""
+    """Permission that a page requires."""
 
     PUBLIC = "public"  #: pages that everybody sees, signed in or not
     OWN = "own"  #: practice, one's own papers, account and data
@@ -86,7 +86,7 @@ class Area(NamedTuple):
 
 
 class Holder(Protocol):
-    """Somebody who holds permissions."""
+    """Holder of permissions: a role, with areas for an assistant."""
 
     @property
     def role(self) -> str: ...
@@ -103,7 +103,7 @@ def group_key(group: str) -> str:
 def may(
     holder: Holder | None, permission: Permission, assignment: int | None = None, group: str | None = None
 ) -> bool:
-    """Return whether somebody may do something, in an assignment, to a student of a group, where these are told.
+    """Return True if somebody has a permission; in a given assignment, for a student of a given group.
 
     Parameters
     ----------

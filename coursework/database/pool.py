@@ -19,7 +19,7 @@ class Pooled(NamedTuple):
 
 
 def pooled(connection: Connection, exercise: str, version: int) -> Pooled:
-    """What was found of a version of an exercise; nothing of one that nobody looked at."""
+    """Return the seeds found for a version of an exercise; none if nobody has searched."""
     text = connection.execute(
         select(setting.c.value).where(setting.c.name == _name(exercise, version))
     ).scalar()
@@ -27,7 +27,7 @@ def pooled(connection: Connection, exercise: str, version: int) -> Pooled:
 
 
 def pools(connection: Connection, versions: Mapping[str, int]) -> dict[str, Pooled]:
-    """What was found of exercises in their versions; those that nobody looked at are left out."""
+    """Return the seeds found for exercises in their versions; exercises without a search are omitted."""
     names = {_name(exercise, version): exercise for exercise, version in versions.items()}
     rows = connection.execute(select(setting.c.name, setting.c.value).where(setting.c.name.in_(names)))
     return {names[row.name]: _of_text(row.value) for row in rows}
@@ -47,14 +47,14 @@ def put_pooled(connection: Connection, exercise: str, version: int, found: Poole
 
 
 def issued_seeds(connection: Connection, exercise: str) -> frozenset[str]:
-    """The seeds of an exercise that are in some assignment, as texts."""
+    """Return the seeds of an exercise in any assignment, as texts."""
     return frozenset(
         connection.execute(select(variant.c.seed).where(variant.c.exercise == exercise)).scalars()
     )
 
 
 def issued_given(connection: Connection, exercise: str) -> Sequence[Mapping[str, Any]]:
-    """The given values of an exercise that are in some assignment, as its records have them."""
+    """Return the given values of an exercise in any assignment, as its records state them."""
     rows = connection.execute(select(variant.c.record).where(variant.c.exercise == exercise)).scalars()
     return [record["given"] for record in rows]
 

@@ -1,4 +1,5 @@
-"""Pages of papers, made once before an assignment opens, and shared by all processes. No dump holds them: they are made again."""
+"""Cache of the pages of papers, made before an assignment opens and shared by all processes. A dump omits it,
+since the pages can be made again."""
 
 from __future__ import annotations
 
@@ -13,14 +14,14 @@ from coursework.database.tables import Moment, dealt, job, person, prepared, var
 
 
 class Pieces(NamedTuple):
-    """The pieces of a page that hold a paper, as HTML, with nothing typed in its boxes."""
+    """Parts of a page that contain a paper, as HTML, with empty boxes."""
 
     head: str
     body: str
 
 
 def prepared_state(connection: Connection, number: int, person_id: int, lang: str) -> str:
-    """Return the state of a page that is kept; empty where none is."""
+    """Return the state of a cached page; empty if there is none."""
     found = select(prepared.c.state).where(*_key(number, person_id, lang))
     return str(connection.execute(found).scalar() or "")
 

@@ -1,4 +1,5 @@
-"""What somebody did alone, in the database: the progress of :mod:`coursework.selfstudy.progress`, entry by entry."""
+"""Progress of a person's practice in the database: that of :mod:`coursework.selfstudy.progress`, entry by
+entry."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ def _now() -> datetime:
 
 
 class PersonProgress:
-    """The progress of one person, or what it holds of one exercise; what is added stands there once, from wherever it comes."""
+    """Progress of one person, or that of one exercise; an entry is stored once, however often it is added."""
 
     def __init__(self, store: Store, person: int, clock: Clock = _now, exercise: str = ""):
         self._store, self._person, self._exercise = store, person, exercise
@@ -37,11 +38,11 @@ class PersonProgress:
             return Progress(row.entry for row in rows)
 
     def refresh(self) -> None:
-        """Take in what came since."""
+        """Read the progress again, with the entries added meanwhile."""
         self.progress = self._read()
 
     def take_over(self, exercise: str) -> None:
-        """No earlier version kept anything here."""
+        """Do nothing: no earlier version stored progress in the database."""
 
     def add(self, entries: Iterable[Entry]) -> None:
         """Keep what happened.

@@ -1,7 +1,8 @@
-"""What the publication of an assignment says: from when to when, how often, what comes late, and what is told when.
+"""Publication of an assignment: its dates, the number of attempts, late submissions, and the release of marks
+and answers.
 
-Dates are compared with the server's clock alone. A date that passed is written down (:func:`reach`), so that a clock set back
-neither opens again what was closed nor takes back what was told.
+Dates are compared with the server's clock alone. A date that has passed is recorded (:func:`reach`), so that a clock that is
+set back neither reopens an assignment nor withdraws what was released.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _MOMENTS = ("opens", "closes", "feedback_on", "answers_on", "late_until", "reach
 
 
 class Phase(Enum):
-    """Where an assignment stands for somebody."""
+    """Phase of an assignment for one person."""
 
     TO_COME = "to_come"
     OPEN = "open"
@@ -46,14 +47,14 @@ class Phase(Enum):
 
 
 class Fault(NamedTuple):
-    """What makes no sense in a publication: the field, and the name of a sentence."""
+    """Fault in a publication: the field, and the key of a message."""
 
     field: str
     sentence: str
 
 
 class Extension(NamedTuple):
-    """Other dates or tries for one person."""
+    """Other dates or another number of attempts for one person."""
 
     closes: datetime | None
     tries: int | None
@@ -64,7 +65,7 @@ class Extension(NamedTuple):
 
 @dataclass(frozen=True)
 class Publication:
-    """Dates, tries and rules of an assignment on the site. Times are UTC."""
+    """Dates, number of attempts and rules of an assignment on the site. Times are UTC."""
 
     opens: datetime | None = None  #: at once, where there is none
     closes: datetime | None = None  #: never; the moment itself still counts as in time
@@ -85,7 +86,7 @@ class Publication:
 
     @staticmethod
     def of(told: Mapping[str, Any]) -> Publication:
-        """What a row of the database holds; a key that is not known was written by a later version, and says nothing here."""
+        """Return the publication stored in a row; an unknown key, from a later version, is ignored."""
         known = {field.name for field in fields(Publication)}
         own = {key: value for key, value in told.items() if key in known}
         moments = {key: datetime.fromisoformat(own[key]) for key in _MOMENTS if own.get(key)}
@@ -102,7 +103,7 @@ class Publication:
     # --------------------------------------------------------------- what it says
 
     def faults(self) -> Iterator[Fault]:
-        """What makes no sense in it."""
+        """Yield the inconsistencies of the publication."""
         if self.tries is not None and not 1 <= self.tries <= MOST_TRIES:
             yield Fault("tries", "tries")
         if self.opens and self.closes and self.closes <= self.opens:
@@ -126,11 +127,11 @@ class Publication:
 
     @property
     def _waits_for_the_end(self) -> bool:
-        """Whether something is done once nothing is taken any more."""
+        """True if something happens only after the assignment has closed."""
         return CLOSED in (self.feedback, self.answers) or self.takes_saved
 
     def extended(self, more: Extension | None) -> Publication:
-        """What it says to somebody who has an extension: that wins, longer or shorter."""
+        """Return the publication with a person's extension applied, which may be longer or shorter."""
         if more is None:
             return self
         closes = more.closes or self.closes
@@ -140,7 +141,7 @@ class Publication:
         return replace(self, closes=closes, tries=more.tries or self.tries, late_until=until)
 
     def now(self, clock: datetime) -> datetime:
-        """The time that counts: the clock's, and never before a date that has passed already."""
+        """Return the effective time: that of the clock, but never before a date that has already passed."""
         return clock if self.reached is None else max(clock, self.reached)
 
     def counted(self, arrived: datetime, clock: datetime) -> datetime:
@@ -169,32 +170,34 @@ class Publication:
         return self.closes if self.late == REFUSE or self.closes is None else self.late_until
 
     def late_seconds(self, came: datetime) -> int:
-        """By how much something came after it closed, a second begun is one; 0 in time."""
+        """Return the seconds by which a submission was late, rounded up; 0 in time."""
         if self.closes is None or came <= self.closes:
             return 0
         return math.ceil((came - self.closes) / timedelta(seconds=1))
 
     def charged(self, late: int) -> float:
-        """The share of the points that is taken off, 0 to 1, of what came so many seconds late."""
+        """Return the share of the points, 0 to 1, deducted from a submission that was late by the given
+        seconds."""
         if self.late != CHARGE or late <= 0:
             return 0.0
         return min(1.0, self.late_percent / 100 * math.ceil(late / _DAY))
 
     def tells(self, what: str, now: datetime, ends: datetime | None) -> bool:
-        """Whether ``feedback`` or ``answers`` are told, where ``ends`` is when everybody concerned has closed."""
+        """Return True if ``feedback`` or ``answers`` are released; ``ends`` is the time at which the
+        assignment has closed for everybody concerned."""
         when, on = getattr(self, what), getattr(self, f"{what}_on")
         if when == CLOSED:
             return ends is not None and now > ends
         return when == AT_ONCE or (when == DATE and on is not None and now >= on)
 
     def dates(self, extensions: Sequence[Extension] = ()) -> list[datetime]:
-        """All its dates, in order."""
+        """Return all its dates, in order."""
         own = [getattr(self, name) for name in _MOMENTS if name != "reached"]
         return sorted(one for one in (*own, *(more.closes for more in extensions)) if one is not None)
 
 
 def last_end(publication: Publication, extensions: Sequence[Extension]) -> datetime | None:
-    """When nobody can hand in any more; none where that never comes."""
+    """Return the time after which nobody can submit any more; None if there is none."""
     ends = [publication.ends, *(publication.extended(more).ends for more in extensions)]
     return None if None in ends else max(one for one in ends if one is not None)
 
@@ -203,7 +206,7 @@ def last_end(publication: Publication, extensions: Sequence[Extension]) -> datet
 
 
 def published(connection: Connection, number: int) -> Publication | None:
-    """What the publication of an assignment says; None where it is not published, or not there."""
+    """Return the publication of an assignment; None if the assignment is not published or does not exist."""
     told = connection.execute(select(assignment.c.published).where(assignment.c.id == number)).scalar()
     return None if told is None else Publication.of(told)
 
@@ -217,7 +220,8 @@ def publish(connection: Connection, number: int, publication: Publication | None
 
 
 def is_over(connection: Connection, number: int, clock: datetime) -> bool:
-    """Whether nobody can hand in any more, or nobody can yet since it is not published."""
+    """Return True if nobody can submit any more, or if nobody can yet because the assignment is not
+    published."""
     said = published(connection, number)
     if said is None:
         return True
@@ -226,7 +230,7 @@ def is_over(connection: Connection, number: int, clock: datetime) -> bool:
 
 
 def _charging(publication: Publication | None) -> tuple[object, ...]:
-    """What bears on the points that are taken off of late hand-ins."""
+    """Return the rules that affect the penalty of late submissions."""
     if publication is None or publication.late != CHARGE:
         return ()
     return publication.closes, publication.late_until, publication.late_percent
@@ -235,8 +239,8 @@ def _charging(publication: Publication | None) -> tuple[object, ...]:
 def charges(
     connection: Connection, number: int, students: Collection[str] | None = None
 ) -> dict[tuple[str, int], float]:
-    """The shares that are taken off of what came late, by student and try; what an extension, or a later date of closing, has
-    brought back into time is not late any more. Those of some students alone, where they are told."""
+    """Return the penalties of late submissions as shares of the points, by student and attempt; a submission
+    that an extension or a later closing date covers is no longer late. Some students alone, if given."""
     publication = published(connection, number)
     if publication is None or publication.late != CHARGE:
         return {}
@@ -257,14 +261,14 @@ def charges(
 
 
 def extend(connection: Connection, number: int, person: int, more: Extension) -> None:
-    """Give somebody other dates or tries; the last that was given stands."""
+    """Add an extension for a person; the last one counts."""
     row = {"assignment_id": number, "person_id": person, **more._asdict()}
     connection.execute(insert(extension).values(row))
     outdate_person(connection, number, person)
 
 
 def extensions(connection: Connection, number: int) -> dict[int, Extension]:
-    """The extension that stands, by person."""
+    """Return the current extension of each person."""
     found = select(extension).where(extension.c.assignment_id == number).order_by(extension.c.id)
     return {
         row.person_id: Extension(row.closes, row.tries, row.reason, row.by, row.made)
@@ -303,13 +307,13 @@ class Place(NamedTuple):
 
     @property
     def own(self) -> Publication:
-        """What the publication says to this person."""
+        """Publication as it applies to this person."""
         assert self.publication is not None
         return self.publication.extended(self.extension)
 
 
 def places(connection: Connection, person: int, number: int | None = None) -> list[Place]:
-    """The assignments that somebody was issued, the latest first; of these the one of a number, where it is told."""
+    """Return the assignments issued to a person, the latest first; one alone, if its number is given."""
     told = {"person": person} if number is None else {"person": person, "number": number}
     return [
         Place(
@@ -324,7 +328,7 @@ def places(connection: Connection, person: int, number: int | None = None) -> li
 
 @cache
 def _places_query(is_of_one: bool) -> Select[Any]:
-    """The query of :func:`places`, put together once: requests ask it again and again."""
+    """Return the query of :func:`places`, cached since many requests execute it."""
     theirs = select(variant.c.assignment_id, dealt.c.student).join(variant)
     mine = theirs.where(dealt.c.person_id == bindparam("person")).distinct().subquery()
     one = assignment.c
@@ -334,7 +338,7 @@ def _places_query(is_of_one: bool) -> Select[Any]:
 
 
 def extension_of(connection: Connection, number: int, person: int) -> Extension | None:
-    """What somebody was given last."""
+    """Return the last extension of a person; None if there is none."""
     own = extension.c.assignment_id == number, extension.c.person_id == person
     row = connection.execute(select(extension).where(*own).order_by(extension.c.id.desc()).limit(1)).first()
     return None if row is None else Extension(row.closes, row.tries, row.reason, row.by, row.made)

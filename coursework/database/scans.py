@@ -25,7 +25,7 @@ class Page(NamedTuple):
 
 
 class TypedRow(NamedTuple):
-    """What a person typed of one place; an answer of None withdraws what stood there."""
+    """Text typed by a person for one place on a scan; an answer of None withdraws the text before."""
 
     student: str
     exercise: str
@@ -48,7 +48,7 @@ def put_scanned(connection: Connection, assignment_id: int, page: Page, picture:
 
 
 def pages_scanned(connection: Connection, assignment_id: int) -> list[Page]:
-    """The pages, in the order of their files."""
+    """Return the scanned pages, in the order of their files."""
     columns = [scanned.c[name] for name in Page._fields]
     found = select(*columns).where(scanned.c.assignment_id == assignment_id)
     in_order = found.order_by(scanned.c.file, scanned.c.page)
@@ -56,7 +56,7 @@ def pages_scanned(connection: Connection, assignment_id: int) -> list[Page]:
 
 
 def picture_scanned(connection: Connection, assignment_id: int, page: str) -> bytes | None:
-    """The picture of a page; None where there is none."""
+    """Return the picture of a page; None if there is none."""
     of_page = scanned.c.assignment_id == assignment_id, scanned.c.page == page
     found = connection.execute(select(scanned.c.picture).where(*of_page)).scalar()
     return base64.b64decode(found) if found else None
@@ -76,7 +76,8 @@ def put_typed(connection: Connection, assignment_id: int, rows: Iterable[TypedRo
 
 
 def typed_rows(connection: Connection, assignment_id: int) -> list[TypedRow]:
-    """What stands: the last of each place, in the order in which it was typed; without what was withdrawn."""
+    """Return the current texts: the last of each place, in the order in which they were typed, without those
+    withdrawn."""
     columns = [typed.c[name] for name in TypedRow._fields]
     in_order = select(*columns).where(typed.c.assignment_id == assignment_id).order_by(typed.c.id)
     last: dict[tuple[str, ...], TypedRow] = {}
@@ -88,7 +89,8 @@ def typed_rows(connection: Connection, assignment_id: int) -> list[TypedRow]:
 
 
 def scans_stamp(connection: Connection, assignment_id: int) -> tuple[int, int]:
-    """The last page and the last typing of an assignment: others when something is new."""
+    """Return the ids of the last page and the last typed text of an assignment; they change when something is
+    new."""
     last = [select(func.max(t.c.id)).where(t.c.assignment_id == assignment_id) for t in (scanned, typed)]
     pages, texts = (connection.execute(one).scalar() or 0 for one in last)
     return pages, texts

@@ -1,4 +1,5 @@
-"""Sessions: a row for each browser in which somebody is signed in. A session that ends loses its row.
+"""Sessions: a row for each browser with a signed-in person. The row of a session is deleted when the session
+ends.
 
 The browser holds a random token; the database keeps its SHA-256 alone, so that nobody who reads the database can use it.
 """
@@ -61,7 +62,8 @@ def session_of(connection: Connection, token: str, at: datetime) -> Any | None:
 
 @cache
 def _session_query() -> Select[Any]:
-    """The query of :func:`session_of`: every request asks it, and to put it together costs as much as its answer."""
+    """Return the query of :func:`session_of`, cached: every request executes it, and composing it takes as
+    long as its execution."""
     own = [session.c[name].label(f"session_{name}") for name in ("id", "created", "seen")]
     former = account.alias()
     is_closed = exists().where(former.c.person_id == person.c.id, former.c.closed.is_not(None))

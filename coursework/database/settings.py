@@ -16,7 +16,7 @@ _COURSE = "course"
 
 
 def secret(connection: Connection) -> bytes:
-    """The key that signs what the site gives out: drawn once.
+    """Return the key that signs tokens and cookies of the site; create it at the first use.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def renew_secret(connection: Connection) -> None:
 
 
 def value_of(connection: Connection, name: str) -> Any:
-    """What is kept under a name; None where nothing is."""
+    """Return the value stored under a name; None if there is none."""
     found = connection.execute(select(setting.c.value).where(setting.c.name == name)).scalar()
     return None if found is None else json.loads(found)
 
@@ -54,12 +54,13 @@ def put_value(connection: Connection, name: str, value: Any) -> None:
 
 
 def drop_value(connection: Connection, name: str) -> None:
-    """Delete what is kept under a name."""
+    """Delete the value stored under a name."""
     connection.execute(delete(setting).where(setting.c.name == name))
 
 
 def course_taken(connection: Connection) -> int:
-    """How often a course was taken anew, after its files were corrected: every process of a site goes on with the last."""
+    """Return the number of times that a course was reloaded after a correction of its files; every process of
+    a site continues with the last."""
     return int(value_of(connection, _COURSE) or 0)
 
 

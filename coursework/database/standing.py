@@ -50,7 +50,8 @@ Whom = str | Collection[str] | None
 
 
 def stood(connection: Connection, assignment_id: int, student: Whom = None) -> dict[SheetPlace, Stood]:
-    """The last marking of each sheet, in the order in which they first came; those too that nothing answers to any more."""
+    """Return the last marking of each sheet, in the order of the first marking of each; including sheets
+    without any current answer."""
     last = _last(assignment_id, student).subquery()
     found = select(marking, last.c.first).join(last, marking.c.id == last.c.last).order_by(last.c.first)
     rows = connection.execute(found)
@@ -71,14 +72,14 @@ def _stood(row: Any) -> Stood:
 
 
 class _Lines(NamedTuple):
-    """The marks of a sheet, and the parts that came, in their order."""
+    """Marks of a sheet, and its answered parts in their order."""
 
     marks: Mapping[str, Mark]
     came: tuple[str, ...]
 
 
 def lines_of(connection: Connection, sheets: Iterable[Stood]) -> dict[int, _Lines]:
-    """The marks of sheets, by the marking's id."""
+    """Return the marks of sheets, by the marking's id."""
     ids = [one.id for one in sheets]
     marks: dict[int, dict[str, Mark]] = {}
     came: dict[int, list[tuple[int, str]]] = {}
@@ -97,14 +98,15 @@ def lines_of(connection: Connection, sheets: Iterable[Stood]) -> dict[int, _Line
 
 
 def _line(sent: Sequence[Any]) -> Mark:
-    """A mark of its columns."""
+    """Return a mark from its columns."""
     return Mark.received((*sent[:_MATCHES], tuple(sent[_MATCHES]), *sent[_MATCHES + 1 :]))
 
 
 def machine_marks(
     issued: Issued, sheets: Iterable[Stood], lines: Mapping[int, _Lines]
 ) -> Iterator[tuple[SheetPlace, Graded | str]]:
-    """Sheets as the marking gave them, or why they could not be marked; those that nothing answers to are passed over."""
+    """Yield each sheet as marked by the machine, or the reason for which it cannot be marked; skip sheets
+    without any current answer."""
     for one in sheets:
         if one.fault:
             yield one.place, one.fault
@@ -123,7 +125,7 @@ def _graded(issued: Issued, one: Stood, lines: _Lines) -> Graded:
 
 
 def graded(connection: Connection, assignment_id: int, student: str | None = None) -> list[Graded]:
-    """The sheets of a class, or of a student, as they stand: last marked, and decided on."""
+    """Return the current sheets of a class, or of a student: the last marking with the decisions applied."""
     sheets = stood(connection, assignment_id, student)
     if not sheets:
         return []
@@ -135,7 +137,7 @@ def graded(connection: Connection, assignment_id: int, student: str | None = Non
 
 
 def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gradebook:
-    """What the marking of a class came to, as it stands.
+    """Return the current gradebook of a class.
 
     Raises
     ------
@@ -180,7 +182,8 @@ WAIT = (TO_MARK, "unreadable")
 def waiting(
     connection: Connection, assignment_id: int, verdicts: Sequence[str] = WAIT, *, decided: bool = False
 ) -> list[Waits]:
-    """The answers that wait for a person, question by question; those too that are ``decided``, where they are asked for."""
+    """Return the answers that wait for a person, question by question; on request, including those that are
+    ``decided``."""
     last = _last(assignment_id, None).subquery()
     found = (
         select(marking, *_LINE)

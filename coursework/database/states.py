@@ -46,7 +46,8 @@ def engine_state() -> str:
 
 
 def page_state(course: Course, exercises: Iterable[str], *told: Any) -> str:
-    """Digest of all that the page of a paper hangs on: what is ``told``, its exercises, the templates and the whole package."""
+    """Return the digest of everything on which the page of a paper depends: the given values, its exercises,
+    the templates and the whole package."""
     how = package_state(), _templates_state(course), *(exercise_state(course, one) for one in exercises)
     return sha256("\0".join((*how, json.dumps(told, sort_keys=True))).encode()).hexdigest()
 

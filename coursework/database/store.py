@@ -1,4 +1,4 @@
-"""A database opened: its tables brought to what this version knows, its faults told in a line."""
+"""Open database: its tables migrated to this version, its faults reported in one line."""
 
 from __future__ import annotations
 
@@ -67,7 +67,8 @@ class Store:
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
-        """The database as it is at one moment, which waits for nobody: what is written meanwhile is not seen.
+        """Open a read-only transaction, which sees the database as it is at one moment and waits for no
+        writer.
 
         Raises
         ------
@@ -84,7 +85,7 @@ class Store:
 
     @contextmanager
     def begin(self) -> Iterator[Connection]:
-        """A transaction: all of it is kept, or nothing.
+        """Open a transaction: all of it is committed, or nothing.
 
         Raises
         ------
@@ -101,7 +102,7 @@ class Store:
 
     @property
     def has_one_writer(self) -> bool:
-        """Whether one transaction alone may write at a time."""
+        """Return True if only one transaction may write at a time."""
         return self.engine.dialect.name == "sqlite"
 
     @property
@@ -115,7 +116,7 @@ class Store:
         )
 
     def scrub(self, patience: float = 5.0) -> bool:
-        """Rewrite the file of SQLite without what was deleted; servers do so by themselves, later.
+        """Rewrite the SQLite file without deleted data; servers do so by themselves, later.
 
         Returns
         -------
@@ -165,13 +166,13 @@ def insert_unless_there(
 
 
 def json_of(value: Any) -> str:
-    """JSON as a person reads it, in letters that every database holds."""
+    """Return readable JSON in characters that every database can store."""
     text = json.dumps(value, ensure_ascii=False)
     return text if _is_whole(text) else json.dumps(value)
 
 
 def _is_whole(text: str) -> bool:
-    """Whether there is no half of a character in a text."""
+    """Return True if a text contains no lone surrogate."""
     try:
         return text.isascii() or bool(text.encode("utf-8"))
     except UnicodeEncodeError:
@@ -183,7 +184,7 @@ def _url(told: str) -> str:
 
 
 def file_of(url: str) -> Path | None:
-    """The file of a database of SQLite; None where it is in none."""
+    """Return the file of an SQLite database; None for another database."""
     try:
         told = make_url(_url(url))
     except ArgumentError:
@@ -193,8 +194,9 @@ def file_of(url: str) -> Path | None:
 
 
 def _make_private(url: str) -> None:
-    """Make the file of a new database of SQLite, with passwords, keys and answers in it, for its owner alone; those that SQLite puts
-    beside it are like it. What stands in the way is told when the file is opened."""
+    """Create the file of a new SQLite database for its owner alone, since it contains passwords, keys and
+    answers. SQLite's auxiliary files take the same permissions. A fault is reported when the file is
+    opened."""
     file = file_of(url)
     if file is not None and not str(file).startswith("file:"):
         with suppress(OSError):
@@ -207,7 +209,7 @@ def is_shared(file: Path | None) -> bool:
 
 
 def _shown(url: str) -> str:
-    """The address without a password."""
+    """Return the address without its password."""
     try:
         return make_url(url).render_as_string(hide_password=True)
     except ArgumentError:
@@ -224,7 +226,7 @@ def _options(url: str) -> dict[str, Any]:
 
 
 def _sqlite_settings(connection: Any, record: Any) -> None:
-    """Readers beside one writer, nothing acknowledged is lost, and rows that belong together go together."""
+    """Configure SQLite: concurrent readers, durable commits, foreign keys, and overwriting of deleted data."""
     connection.isolation_level = None  # transactions are begun by :func:`_begin_writing`
     cursor = connection.cursor()
     for setting in (
@@ -239,7 +241,7 @@ def _sqlite_settings(connection: Any, record: Any) -> None:
 
 
 def _begin_writing(connection: Connection) -> None:
-    """A transaction of SQLite takes its place among writers at once: none is refused half-way."""
+    """Acquire SQLite's write lock at the beginning of a transaction, so that none is refused half-way."""
     reads = connection.get_execution_options().get(_READS)
     connection.exec_driver_sql("BEGIN" if reads else "BEGIN IMMEDIATE")
 
@@ -250,7 +252,8 @@ def _one_at_a_time(connection: Connection) -> None:
 
 
 def _is_ours(fault: DatabaseError | NoConnection) -> bool:
-    """Whether what was asked is at fault, and not the database: a row that is there already, a mistake of this package."""
+    """Return True if the statement is at fault and not the database: a duplicate row, or a mistake of this
+    package."""
     return isinstance(fault, DatabaseError) and type(fault) not in (DatabaseError, OperationalError)
 
 

@@ -1,4 +1,4 @@
-"""What a database holds, an assignment a line."""
+"""Summary of a database, one line per assignment."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from coursework.database.tables import answer, dealt, decision, delivery, markin
 
 
 class Summary(NamedTuple):
-    """How far an assignment has come."""
+    """Progress of an assignment, in counts."""
 
     assignment: str
     students: int  #: with a variant of their own
@@ -26,7 +26,7 @@ class Summary(NamedTuple):
 
 
 def summaries(connection: Connection) -> list[Summary]:
-    """The assignments in the order in which they came."""
+    """Return the summaries of the assignments, in the order in which they were added."""
     return [_summary(connection, name, number) for name, number in names(connection).items()]
 
 

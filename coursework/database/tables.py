@@ -1,4 +1,5 @@
-"""The tables. A row that tells what happened is added and never changed; what stands now is the last of its kind.
+"""Tables of the database. A row that records an event is added and never changed; the last of its kind is the
+current one.
 
 Times are UTC. Texts are as they came. JSON holds what other files define: records (:mod:`coursework.course.records`), what
 ``issued.json`` states, entries of progress (:mod:`coursework.selfstudy.progress`); it is kept as it was written, keys in
@@ -60,8 +61,8 @@ class Moment(TypeDecorator[datetime]):
 
 
 class Words(TypeDecorator[str]):
-    """A text of any length. What no server holds is written as something that it does: a NUL as ``␀``, half a character
-    by its code."""
+    """Text of any length. Characters that some server cannot store are replaced: NUL by ``␀``, a lone
+    surrogate by its code."""
 
     impl = Text
     cache_ok = True

@@ -81,7 +81,7 @@ def written(connection: Connection, assignment_id: int, path: Path) -> None:
 
 
 def _keep(connection: Connection, assignment_id: int, line: _Line) -> None:
-    """Keep a decision; a line that names nothing that was issued is told by who reads the file, and is none."""
+    """Store a decision; ignore a line that names nothing issued, since the reader of the file reports it."""
     place = Place(line.student, line.exercise, line.seed, line.part, line.answer)
     with suppress(UnknownName):
         decide(connection, assignment_id, [place], line.kind, line.points, line.reason, line.by)
@@ -146,7 +146,7 @@ class DecidedToMark(ToMark):
         self.decisions = decisions
 
     def found(self, graded: Graded, part: str, line: Mark) -> Given | None:
-        """The points decided for an answer; what the file itself says is looked at, to be told."""
+        """Return the points decided for an answer; the file itself is only checked, for its warnings."""
         super().found(graded, part, line)
         one = self.decisions.given(graded, line)
         if one is None:
@@ -163,6 +163,6 @@ class DecidedAccepted(Accepted):
         self.decisions = decisions
 
     def apply(self, graded: Graded, lang: str) -> Graded:
-        """The sheet as it was decided on; what the file itself says is looked at, to be told."""
+        """Return the sheet with the decisions applied; the file itself is only checked, for its warnings."""
         super().apply(graded, lang)
         return self.decisions.apply(graded, lang)
