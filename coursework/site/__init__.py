@@ -1,1 +1,1 @@
-"""The site: practice for students, a desk for instructors. It adds no judgement of its own."""
+"""Site: practice for students and instructor's pages. It marks with the rules of the other packages alone."""

@@ -61,7 +61,8 @@ PAGES: tuple[Page, ...] = (
 
 
 def application(site: Site, lti: Starlette | None = None) -> Starlette:
-    """The site, ready for a server; with the service that learning platforms ask, of the site's own folder unless told."""
+    """Return the ASGI application of the site; ``lti`` is the service for learning platforms, by default that
+    of the site's folder."""
     door = Door(site)
     lti = lti or _lti(site)
     routes: list[BaseRoute] = [
@@ -85,7 +86,7 @@ def application(site: Site, lti: Starlette | None = None) -> Starlette:
 
 
 def _lti(site: Site) -> Starlette | None:
-    """What learning platforms ask, where links of theirs lead here."""
+    """Return the service for learning platforms; None if the site has none."""
     if site.lti is None:
         return None
     from coursework.site.lti.mount import mounted
@@ -95,7 +96,7 @@ def _lti(site: Site) -> Starlette | None:
 
 @asynccontextmanager
 async def _beside(site: Site, lti: Starlette | None) -> AsyncIterator[None]:
-    """What goes on beside the requests, while the site is served."""
+    """Run the background work of the site while it is served."""
     current_default_thread_limiter().total_tokens = PAGES_AT_ONCE
     stop = begin_warming(site)
     if scrubbing.is_left(site):

@@ -1,6 +1,5 @@
-"""Connections of the server, stamped with the time at which their last bytes came, as the system itself knows it: a process that is
-busy reads them later.
-"""
+"""Connections of the server, with the time at which the operating system received their last bytes; a busy
+process reads them later."""
 
 from __future__ import annotations
 
@@ -36,7 +35,7 @@ class Stamped(_Protocol):
 
 
 def waited(line: Any) -> float:
-    """Return the seconds since the last bytes of a connection came; 0 where the system does not say."""
+    """Return the seconds since the last bytes of a connection were received; 0 if the system does not tell."""
     with suppress(OSError, AttributeError, struct.error, TypeError):
         told = line.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _LAST_DATA + 4)
         seconds = struct.unpack_from("=I", told, _LAST_DATA)[0] / 1000

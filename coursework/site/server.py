@@ -45,7 +45,7 @@ Application = Callable[..., Any]
 
 @dataclass(frozen=True)
 class Serving:
-    """What a process is told of the site that it serves."""
+    """Settings of a process that serves the site."""
 
     course: str | None  #: its folder; the built-in course where none is told
     db: str
@@ -55,7 +55,7 @@ class Serving:
     worker: str = ""  #: name under which a worker marks beside the processes that answer; none where they mark themselves
 
     def site(self) -> Site:
-        """The site.
+        """Return the site.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class Serving:
 
 
 def listening(host: str, port: int) -> socket.socket:
-    """A socket that listens; at any port that is free where 0 is asked.
+    """Return a listening socket; on any free port if 0 is given.
 
     Raises
     ------
@@ -148,7 +148,8 @@ def run(
 
 
 def _open_more() -> None:
-    """Hold as many connections as the machine lets a process hold: the usual 1024 are filled by who sends half of a request."""
+    """Raise the limit on open connections to the system's maximum, since slow clients can fill the usual
+    1024."""
     with suppress(ImportError, OSError, ValueError):
         import resource
 
@@ -159,7 +160,7 @@ def _open_more() -> None:
 
 
 def _logs(tells_all: bool) -> dict[str, Any]:
-    """What is written to standard error."""
+    """Return the configuration of the log on standard error."""
     return {
         "version": 1,
         "disable_existing_loggers": False,
@@ -199,13 +200,13 @@ def _many(config: Config, at: socket.socket, ready: Callable[[], None]) -> None:
 
 
 def _end_with_terminal(end: Callable[[], None]) -> None:
-    """A terminal that is closed ends the server, unless it was begun to outlive it."""
+    """End the server when its terminal is closed, unless it was started to outlive it."""
     if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
         signal.signal(signal.SIGHUP, lambda *_: end())
 
 
 def _made(made: Callable[[], Application]) -> Application:
-    """The application of this process, which ends with the process that began it."""
+    """Return the application of this process, which ends with its parent process."""
     parent = multiprocessing.parent_process()
     if parent is None:
         return made()
@@ -229,7 +230,8 @@ def worker_name() -> str:
 
 
 def working(serving: Serving) -> AbstractContextManager[None]:
-    """One process, whatever the number of those that answer, that marks what was handed in and rescues what was saved."""
+    """Start one process, whatever the number of server processes, that marks submissions and submits saved
+    answers."""
     return kept_beside(_NICENESS, _work, serving) if serving.worker else nullcontext()
 
 
@@ -242,7 +244,8 @@ def _work(serving: Serving) -> None:
 
 
 def filling(serving: Serving) -> AbstractContextManager[None]:
-    """One process, whatever the number of those that answer, that finds variants to practise; none where all were found."""
+    """Start one process, whatever the number of server processes, that searches variants for practice; none
+    if all were found."""
     site = serving.site()
     try:
         return nullcontext() if site.pool.is_filled() else beside(_fill, serving)

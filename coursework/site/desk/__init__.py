@@ -1,1 +1,1 @@
-"""The instructors' desk: the queue, the class, questions, students, files, marking again."""
+"""Instructor's pages: the queue, the class, questions, students, files, marking again."""

@@ -1,4 +1,5 @@
-"""A class as it stands, kept at hand: what is only ever added is read once, and what is new is told by a stamp."""
+"""Cache of the current state of a class: append-only rows are read once, and a stamp tells if there are new
+ones."""
 
 from __future__ import annotations
 
@@ -50,13 +51,13 @@ class RejectedRow:
 
     @property
     def waits(self) -> bool:
-        """Whether somebody must still look at it."""
+        """Return True if a person must still look at the row."""
         return self.became is None
 
 
 @dataclass(frozen=True)
 class Open:
-    """What of a group waits for a person still."""
+    """Group of answers, with those of its members that still wait for a person."""
 
     group: Group
     members: tuple[Waits, ...]
@@ -86,7 +87,7 @@ class ClassNow:
 
     @cached_property
     def is_marked(self) -> bool:
-        """Whether all that came is marked, or cannot be."""
+        """Return True if every received sheet is marked or cannot be marked."""
         return self.sheets.sheets.keys() <= self.machine.keys() | self.faults.keys()
 
     @cached_property
@@ -109,7 +110,7 @@ class ClassNow:
 
     @cached_property
     def results(self) -> dict[str, Result]:
-        """What each student has, of the sitting that counts."""
+        """Result of each student, of the attempt that counts."""
         return dict(results(self.book))
 
     @cached_property
@@ -121,14 +122,14 @@ class ClassNow:
 
     @cached_property
     def one_sitting(self) -> bool:
-        """Whether nobody has several."""
+        """True if no student has several attempts."""
         sittings: dict[str, int] = {}
         return all(
             sittings.setdefault(one.student, one.sitting) == one.sitting for one in self.machine.values()
         )
 
     def matters(self, one: Graded) -> bool:
-        """Whether a sheet is of the sitting that counts, or of the last one."""
+        """Return True if a sheet belongs to the attempt that counts, or to the last one."""
         if self.one_sitting:
             return True
         return one.sitting in (self.results[one.student].sitting, self.last_sitting[one.student])
@@ -163,7 +164,7 @@ class ClassNow:
         )
 
     def number(self, exercise: str, part: str) -> str:
-        """What papers call a question, ``2.3``."""
+        """Return the number of a question on the papers, such as ``2.3``."""
         names = list(dict.fromkeys(name for name, _ in self.questions))
         own = [p for name, p in self.questions if name == exercise]
         return f"{names.index(exercise) + 1}.{own.index(part) + 1}"
@@ -193,7 +194,7 @@ class ClassNow:
 
     @cached_property
     def open(self) -> dict[str, Open]:
-        """What waits, by the group's id, in order: also what is looked at on request alone."""
+        """Groups that wait for a person, by id, in order; including those that are looked at only on request."""
         found = {}
         for group in self.groups:
             members = tuple(one for one in group.members if not self.is_decided(one))
@@ -206,7 +207,7 @@ class ClassNow:
 
     @property
     def waiting(self) -> int:
-        """How many answers and rows wait for a person."""
+        """Number of answers and rows that wait for a person."""
         asked = sum(len(one.members) for one in self.open.values() if one.why not in SHOWN_ON_REQUEST)
         return asked + sum(one.waits for one in self.named)
 
@@ -231,7 +232,7 @@ class ClassNow:
 
     @property
     def of_nobody(self) -> int:
-        """How many rows that name no student of the class wait on the page of files."""
+        """Number of waiting rows, on the page of files, that name no student of the class."""
         return sum(one.waits for one in self.rejected) - sum(one.waits for one in self.named)
 
     @property
@@ -241,7 +242,7 @@ class ClassNow:
 
 
 def row_id(row: Rejected) -> str:
-    """The digest by which a rejected row is known."""
+    """Return the digest that identifies a rejected row."""
     told = "\0".join((row.source, *(f"{k}={v}" for k, v in sorted(row.row.items()))))
     return sha256(told.encode("utf-8", "backslashreplace")).hexdigest()[:32]
 
@@ -251,7 +252,7 @@ def row_id(row: Rejected) -> str:
 
 @dataclass
 class _Kept:
-    """What is kept of an assignment between visits."""
+    """Cached data of an assignment."""
 
     lock: Any = field(default_factory=RLock)
     now: ClassNow | None = None
@@ -264,7 +265,8 @@ _lock = Lock()
 
 
 def class_now(site: Site, assignment_id: int) -> ClassNow:
-    """The class as it is now: what was saved as it closed is handed in, and nothing that came in is without its mark.
+    """Return the current state of a class, after saved answers of a closed assignment are submitted and all
+    new sheets are marked.
 
     Raises
     ------
@@ -343,7 +345,7 @@ def _read(course: Course, connection: Connection, about: About, at: Stamp, kept:
 
 
 def _has_come(at: Stamp, about: About) -> tuple[Any, ...]:
-    """What decisions do not change."""
+    """Return the part of a stamp that decisions do not change."""
     return at.markings, at.deliveries, at.dealt, about.columns, about.stated
 
 
@@ -358,7 +360,7 @@ def _measured(
 
 
 def assignment_of(visit: Visit) -> int:
-    """Which assignment an address names.
+    """Return the id of the assignment that the address names.
 
     Raises
     ------
@@ -372,15 +374,15 @@ def assignment_of(visit: Visit) -> int:
 
 
 def by_whom(visit: Visit) -> str:
-    """Who decides, as it is written down."""
+    """Return the name under which a decision is recorded."""
     return visit.who.name or str(visit.said["site"]["local"])
 
 
 def class_page_of(visit: Visit, now: ClassNow, template: str, tab: str, **names: Any) -> Reply:
-    """A page of the desk on one assignment, under its heading."""
+    """Return an instructor's page of one assignment, under its heading."""
     return visit.page(template, now=now, tab=tab, heading=called(now.about, visit.lang), **names)
 
 
 def called(about: About, lang: str) -> str:
-    """An assignment by its title, else by its name."""
+    """Return the title of an assignment, or its name if it has none."""
     return text_in((about.stated or {}).get("title") or {}, lang) or about.name

@@ -109,7 +109,7 @@ def _row(
 
 
 def class_page(visit: Visit) -> Reply:
-    """The table."""
+    """Return the table of the class."""
     now = class_now(visit.site, assignment_of(visit))
     found = rows(now)
     sort, sought = visit.query.get("sort", ""), visit.query.get("find", "").strip()
@@ -122,7 +122,7 @@ def class_page(visit: Visit) -> Reply:
 
 
 def news(visit: Visit) -> Reply:
-    """The rows that changed since a stamp, and nothing where none did."""
+    """Return the rows that changed since a stamp; an empty response if none did."""
     now = class_now(visit.site, assignment_of(visit))
     before = Stamp.read(visit.query.get("stamp", ""))
     if before == now.stamp:
@@ -140,7 +140,8 @@ def news(visit: Visit) -> Reply:
 
 
 def _words(visit: Visit) -> dict[str, Any]:
-    """What a table of thousands of cells says, made once for each word."""
+    """Return the functions that format the cells of a table, with a cache since a table has thousands of
+    cells."""
     verdicts: dict[str, str] = {}
     numbers: dict[float, str] = {}
 
@@ -162,7 +163,7 @@ def _is_found(row: Row, sought: str) -> bool:
 
 
 def _sorting(now: ClassNow, sort: str) -> Callable[[Row], Any]:
-    """The key of an order; what is said of nobody stands last."""
+    """Return the sort key of an order; students without a value are last."""
     by: dict[str, Callable[[Row], Any]] = {
         "name": lambda row: folded(row.student),
         "total": lambda row: (-row.points, row.place),

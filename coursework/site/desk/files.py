@@ -46,7 +46,7 @@ _DELIVERIES = ("came", "source", "number", "late", "receipt")
 
 
 def files_page(visit: Visit, told: Sequence[str] = (), filled: Filled | None = None, name: str = "") -> Reply:
-    """What can come in and go out."""
+    """Return the page of uploads and downloads."""
     now = class_now(visit.site, assignment_of(visit))
     with visit.site.store.reading() as connection:
         came = deliveries(connection, now.about.id)
@@ -58,7 +58,7 @@ def files_page(visit: Visit, told: Sequence[str] = (), filled: Filled | None = N
 
 
 def answers_in(visit: Visit) -> Reply:
-    """Take answers in, and mark what is new.
+    """Store uploaded answers, and mark the new ones.
 
     Raises
     ------
@@ -88,8 +88,8 @@ def answers_in(visit: Visit) -> Reply:
 
 
 def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[Row | Rejected | Seen]:
-    """The rows of what was sent, the files called as they were sent; ``too_many`` and ``too_much`` are what is told of more
-    than is taken, and of what takes too long."""
+    """Return the rows of uploaded files, with the files' original names; ``too_many`` and ``too_much`` are
+    the messages for too many rows and for reading that takes too long."""
     with TemporaryDirectory(prefix="coursework-") as made:
         folder = Path(made).resolve()
         for number, one in enumerate(sent):
@@ -103,7 +103,8 @@ def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[Row | Re
 
 
 def _rows_in(folder: Path) -> list[Row | Rejected | Seen]:
-    """The rows of the files below a folder, archives opened; one more than are taken where there are more."""
+    """Return the rows of the files below a folder, archives included; one more than the limit if there are
+    too many."""
     for path in sorted(folder.glob("*/*")):
         if path.suffix.lower() == ".zip" and is_zip(path.read_bytes()[:4]):
             inside = path.parent / "zip"
@@ -114,7 +115,7 @@ def _rows_in(folder: Path) -> list[Row | Rejected | Seen]:
 
 
 def file_name(one: Upload) -> str:
-    """A file's own name, whatever a browser says of its folders."""
+    """Return the base name of a file, without the folders that a browser may state."""
     own = PurePath(one.name.replace("\\", "/")).name
     plain = "".join(c for c in own if c.isprintable() and c not in '/:*?"<>|').lstrip(".")
     return plain.encode("utf-8", "ignore")[-_NAME:].decode("utf-8", "ignore") or "answers"
@@ -128,7 +129,7 @@ def _read(folder: Path) -> Iterator[Row | Rejected | Seen]:
 
 
 def _called(row: Row | Rejected | Seen, folder: Path) -> Row | Rejected | Seen:
-    """A row without the folder that it lay in meanwhile."""
+    """Return a row without the temporary folder in its source."""
 
     def own(text: str) -> str:
         for number in range(60):
@@ -143,7 +144,7 @@ def _called(row: Row | Rejected | Seen, folder: Path) -> Row | Rejected | Seen:
 
 
 def roster_in(visit: Visit) -> Reply:
-    """Take in what a roster says of the students of the assignment; who is on it and was issued nothing is told.
+    """Store the columns of a roster; report the students on it to whom nothing was issued.
 
     Raises
     ------
@@ -192,7 +193,7 @@ def _list(names: Sequence[str]) -> str:
 
 
 def _spreadsheet(visit: Visit) -> Spreadsheet:
-    """For which spreadsheet tables are written: by the language, unless told."""
+    """Return the spreadsheet format of tables: that of the query, or else that of the language."""
     told = visit.query.get("decimal", "comma" if visit.lang == "fr" else "point")
     return SPREADSHEETS.get(told, SPREADSHEETS["point"])
 
@@ -263,7 +264,7 @@ _TABLES: Mapping[str, Callable[[Visit, ClassNow], bytes]] = {
 
 
 def table(visit: Visit) -> Reply:
-    """One file, or all of them in an archive."""
+    """Return one table, or all of them in an archive."""
     now = class_now(visit.site, assignment_of(visit))
     name = str(visit.path["file"])
     if name == "archive.zip":
@@ -282,7 +283,7 @@ def _safe(name: str) -> str:
 
 
 def feedback(visit: Visit) -> Reply:
-    """The feedback of a student, or of all of them in an archive."""
+    """Return the feedback of a student, or of all students in an archive."""
     now = class_now(visit.site, assignment_of(visit))
     only = visit.query.get("student", "")
     shown = [one for one in now.graded.values() if not only or one.student == only]
@@ -303,7 +304,7 @@ def feedback(visit: Visit) -> Reply:
 
 
 def _of_one(now: ClassNow, student: str) -> Any:
-    """The gradebook as it stands, of which one student's feedback alone is written."""
+    """Return the current gradebook, set to write the feedback of one student alone."""
     from copy import copy
 
     book, issued = copy(now.book), copy(now.issued)
@@ -316,7 +317,7 @@ def _of_one(now: ClassNow, student: str) -> Any:
 
 
 def gradebook(visit: Visit) -> Reply:
-    """A platform's own export with the marks in it.
+    """Return a platform's exported gradebook with the marks filled in.
 
     Raises
     ------
@@ -363,7 +364,7 @@ def _filled_in(
 
 
 def _filled(visit: Visit, filled: Filled | None, name: str) -> Mapping[str, str] | None:
-    """A filled gradebook as a link that holds it."""
+    """Return a filled gradebook as a data URL."""
     if filled is None:
         return None
     return {"name": name, "data": f"data:text/csv;base64,{base64.b64encode(filled.data).decode()}"}

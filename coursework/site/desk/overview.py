@@ -1,4 +1,4 @@
-"""The desk: the assignments there are, what has come in of each, and what waits for a person."""
+"""Instructor's overview: the assignments, their submissions, and the answers that wait for a person."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
 
 @dataclass(frozen=True)
 class Tile:
-    """An assignment on the desk."""
+    """Assignment on the overview page."""
 
     id: int
     title: str
@@ -36,7 +36,7 @@ class Tile:
 
 
 def overview(visit: Visit) -> Reply:
-    """The assignments, the latest first."""
+    """Return the overview of the assignments, the latest first."""
     with visit.site.store.reading() as connection:
         found = listed(connection)
         leap = last_leap(connection, visit.at)
@@ -49,7 +49,7 @@ def overview(visit: Visit) -> Reply:
 
 
 def _clock_text(visit: Visit, leap: Leap) -> str:
-    """Return what the desk tells of a leap of the server's clock."""
+    """Return the message about a leap of the server's clock."""
     which = "clock_held" if leap.held else "clock_back" if leap.seconds < 0 else "clock_followed"
     length = length_text(timedelta(seconds=abs(leap.seconds)), visit.lang)
     return str(visit.said["desk"][which]).format(
@@ -58,7 +58,7 @@ def _clock_text(visit: Visit, leap: Leap) -> str:
 
 
 def _tile(visit: Visit, number: int) -> Tile:
-    """A tile; of an assignment that the course of the site cannot mark, why."""
+    """Return the tile of an assignment; with the reason if the course of the site cannot mark it."""
     try:
         return _counted(visit, class_now(visit.site, number))
     except CourseworkError as fault:
@@ -109,7 +109,7 @@ def _content(file: Upload) -> dict[str, object]:
 
 
 def figure(visit: Visit) -> Reply:
-    """The figure of somebody's variant."""
+    """Return the figure of somebody's variant."""
     now = class_now(visit.site, assignment_of(visit))
     exercise, seed = visit.query.get("exercise", ""), visit.query.get("seed", "")
     sheet = next(

@@ -19,7 +19,8 @@ from coursework.system.zips import zipped
 
 
 def sheets(visit: Visit) -> Reply:
-    """The papers of those who are ticked, else of all, as one PDF; an archive where there are several.
+    """Return the papers of the selected students, or of all, as a PDF; several files are returned in an
+    archive.
 
     Raises
     ------
@@ -53,7 +54,7 @@ def _papers(visit: Visit, connection: Connection, number: int) -> list[OwnPaper]
 
 
 def _printed(visit: Visit, papers: Sequence[OwnPaper], stem: str) -> Iterator[tuple[str, bytes]]:
-    """The files by their names."""
+    """Yield the files with their names."""
     renderer = renderer_of(visit.site.course.folder)
     for lang in dict.fromkeys(one.lang for one in papers):
         for name, part in parted(f"{stem}.{lang}", [one for one in papers if one.lang == lang]):

@@ -1,4 +1,5 @@
-"""What the desk shows of one question on somebody's variant: what is asked, the data, the reference, how an answer stands to it."""
+"""Card of one question on a student's variant: the task, the data, the reference, and the answers compared
+with it."""
 
 from __future__ import annotations
 
@@ -77,7 +78,7 @@ class Asked:
 
 
 def asked(course: Course, issued: Issued, graded: Graded, part: str, lang: str) -> Asked:
-    """The question of an answer, in the language of who looks, where its exercise has it."""
+    """Return the question of an answer, in the reader's language if its exercise has it."""
     exercise = course[graded.exercise]
     own = str(graded.record.get("lang", ""))
     spoken = lang if lang in exercise.languages else own
@@ -114,7 +115,8 @@ def _asked(of: _Hashed, part: str) -> Asked:
 
 
 def steps(out_of: float) -> tuple[float, ...]:
-    """The points that a button gives: halves, whole points where these are many; the half of a part that is worth less."""
+    """Return the points offered as buttons: halves, or whole points if there are many; half the points of a
+    part that is worth less."""
     step = 0.5 if out_of >= _HALF else out_of / 2
     while out_of / step > _STEPS:
         step *= 2
@@ -135,12 +137,12 @@ def sign_of(mark: Mark) -> str:
 
 
 def moment(at: datetime, lang: str) -> str:
-    """A time to the minute."""
+    """Return a time to the minute."""
     return moment_text(at.replace(second=0, microsecond=0), lang)
 
 
 def decided_words(visit: Visit, made: Any) -> str:
-    """What was decided, by whom and when, in a line; ``made`` is a decision."""
+    """Return a line on a decision: its kind, its author and its time."""
     said = visit.said["queue"]["made"]
     points = localise(f"{made.points or 0:g}", visit.lang)
     told = str(said[made.kind]).format(by=made.by, at=moment(made.made, visit.lang), points=points)
@@ -148,5 +150,5 @@ def decided_words(visit: Visit, made: Any) -> str:
 
 
 def raw_texts(marks: Sequence[Mark]) -> tuple[str, ...]:
-    """The different ways in which the same was written."""
+    """Return the different texts that were typed for the same answer."""
     return tuple(dict.fromkeys(mark.answer for mark in marks))

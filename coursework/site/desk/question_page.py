@@ -25,7 +25,7 @@ _ANSWERS = 60  #: ways of answering that are listed
 
 
 def statistics_of(now: ClassNow) -> Statistics:
-    """The statistics of the class as it stands."""
+    """Return the current statistics of the class."""
     marks = marks_of_class(now.graded.values(), now.results, len(now.book.rejected))
     return measure(marks, sheet_order(now.course, now.issued.exercises))
 
@@ -42,7 +42,7 @@ class Asked:
 
 
 def questions(visit: Visit) -> Reply:
-    """The questions, hardest or not, in the order of the sheets."""
+    """Return the page of the questions, in the order of the sheets or the hardest first."""
     now = class_now(visit.site, assignment_of(visit))
     told = statistics_of(now)
     names = Names(now.course, told, visit.lang)
@@ -75,7 +75,7 @@ class Written:
 
 
 def question(visit: Visit) -> Reply:
-    """One question: its figures, its mistakes, and the answers themselves, those that most wrote first."""
+    """Return the page of one question: its figures, its mistakes, and the answers, the most frequent first."""
     now = class_now(visit.site, assignment_of(visit))
     exercise, part = visit.query.get("exercise", ""), visit.query.get("part", "")
     if (exercise, part) not in now.questions:
@@ -122,13 +122,13 @@ def _written(visit: Visit, own: list[tuple[str, Mark]]) -> Written:
 
 
 def _verdicts(visit: Visit, own: PartStatistics | None) -> list[tuple[str, str, int]]:
-    """The verdicts that some answer has: name, word, count."""
+    """Return the verdicts that occur among the answers: name, word, count."""
     counts: Mapping[str, int] = Counter() if own is None else own.counts
     return [(name, verdict_word(name, visit.lang), count) for name, count in counts.items() if count]
 
 
 def statistics(visit: Visit) -> Reply:
-    """The report as a page of its own, or as a PDF to keep."""
+    """Return the report of the statistics as a page, or as a PDF."""
     now = class_now(visit.site, assignment_of(visit))
     told = report(now.course, statistics_of(now), visit.lang)
     renderer = renderer_of(now.course.folder)

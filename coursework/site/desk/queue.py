@@ -36,7 +36,7 @@ _SCAN = re.compile(r"scan ([0-9a-f]{16}-\d{4,6})/(\d{1,4})")  #: an answer that 
 
 @dataclass(frozen=True)
 class Filters:
-    """Which of the queue is shown."""
+    """Selection of the cards in the queue."""
 
     why: str = ""  #: all but what waits for nobody, unless told
     exercise: str = ""
@@ -49,7 +49,7 @@ class Filters:
 
     @property
     def query(self) -> dict[str, str]:
-        """As an address holds them."""
+        """Return the filters as parameters of an address."""
         return {k: v for k, v in (("why", self.why), ("exercise", self.exercise), ("part", self.part)) if v}
 
     def shows(self, why: str, exercise: str, part: str) -> bool:
@@ -72,7 +72,7 @@ class Item:
 
 
 def items(now: ClassNow, filters: Filters) -> list[Item]:
-    """What waits and is shown, in order."""
+    """Return the waiting cards that the filters select, in order."""
     found = [
         Item(one.group.id, one.why, one.group.exercise, one.group.part, len(one.members), one.group)
         for one in now.open.values()
@@ -115,7 +115,7 @@ class Card:
 
 
 def card_of(visit: Visit, now: ClassNow, item: Item) -> Card:
-    """The card of a group, decided or not."""
+    """Return the card of a group, decided or not."""
     assert item.group is not None
     group = item.group
     waits = now.open[group.id].members if group.id in now.open else ()
@@ -131,7 +131,7 @@ def card_of(visit: Visit, now: ClassNow, item: Item) -> Card:
 
 
 def _alike(now: ClassNow, group: Group) -> list[Open]:
-    """What waits of other questions because the same cannot be read there."""
+    """Return the groups of other questions that wait because of the same unreadable text."""
     if group.why != "unreadable":
         return []
     text = written(group.first.mark)
@@ -143,7 +143,7 @@ def _alike(now: ClassNow, group: Group) -> list[Open]:
 
 
 def queue(visit: Visit) -> Reply:
-    """The card that is asked for, else the first."""
+    """Return the requested card, or else the first."""
     filters = Filters.of(visit.query)
     now = class_now(visit.site, assignment_of(visit))
     return shown_card(visit, now, filters, visit.query.get("at", ""))
@@ -174,7 +174,7 @@ def queue_page(visit: Visit) -> Reply:
 
 
 def watch(visit: Visit) -> Reply:
-    """Whether somebody else decided on a card meanwhile: nothing, or what."""
+    """Return a message if somebody else has decided on a card meanwhile; otherwise an empty response."""
     now = class_now(visit.site, assignment_of(visit))
     name = visit.query.get("group", "")
     group = next((one for one in now.groups if one.id == name), None)
@@ -190,7 +190,7 @@ def _around(now: ClassNow, filters: Filters) -> list[Item]:
 
 
 def _after(before: Sequence[str], name: str, now: ClassNow, filters: Filters) -> str:
-    """The card that follows another in the order before: the same, where somebody of it waits still."""
+    """Return the card after another in the previous order; the same card if some of its answers still wait."""
     left = {one.id for one in items(now, filters)}
     if name in before:
         place = before.index(name)
@@ -199,7 +199,7 @@ def _after(before: Sequence[str], name: str, now: ClassNow, filters: Filters) ->
 
 
 def shown_card(visit: Visit, now: ClassNow, filters: Filters, at: str, told: str = "") -> Reply:
-    """The card that is asked for, else the first; or that nothing waits."""
+    """Return the requested card, or else the first; if there is none, a message."""
     shown = items(now, filters)
     place = next((k for k, one in enumerate(shown) if one.id == at), None)
     item = shown[place or 0] if shown else None
@@ -231,7 +231,7 @@ def shown_card(visit: Visit, now: ClassNow, filters: Filters, at: str, told: str
 
 
 def _closed(now: ClassNow, name: str) -> Item | None:
-    """A card of which nobody waits any more, to be looked at once more."""
+    """Return a decided card, to be shown again."""
     group = next((one for one in now.groups if one.id == name), None)
     if group is None:
         return None
@@ -248,14 +248,14 @@ def _by_whom_told(visit: Visit, now: ClassNow, name: str) -> str:
 
 
 def _counts(now: ClassNow) -> list[tuple[str, int]]:
-    """How many cards wait, by why."""
+    """Return the number of waiting cards, by reason."""
     found = Counter(one.why for one in now.open.values())
     found[REJECTED] = sum(one.waits for one in now.named)
     return [(why, found[why]) for why in (*WHY, REJECTED) if found[why]]
 
 
 def _done(now: ClassNow) -> int:
-    """How many answers were decided."""
+    """Return the number of decided answers."""
     return sum(now.is_decided(one) for group in now.groups for one in group.members)
 
 
@@ -267,7 +267,7 @@ def _can_undo(visit: Visit, now: ClassNow) -> bool:
 
 
 def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, int]]:
-    """The questions of which something waits: number, exercise, part, cards."""
+    """Return the questions with waiting cards: number, exercise, part, cards."""
     shown = items(now, replace(filters, exercise="", part=""))
     found = Counter((one.exercise, one.part) for one in shown if one.group is not None)
     return [
@@ -302,7 +302,7 @@ def _decide(visit: Visit, now: ClassNow, group: Group, asked_for: str) -> str:
 
 
 def _told(visit: Visit, kind: str, points: float | None, count: int, others: Sequence[str]) -> str:
-    """What was decided, and of how many somebody else had decided already."""
+    """Return the message on a decision, with the number of answers that somebody else had already decided."""
     said = visit.said["queue"]
     told = str(said["decided"][kind]).format(count, localise(f"{points or 0:g}", visit.lang)) if count else ""
     return f"{told} {said['taken'].format(others[0], len(others))}".strip() if others else told
@@ -313,7 +313,8 @@ def _key(one: Waits) -> tuple[str, str, str, str]:
 
 
 def _chosen(visit: Visit, now: ClassNow, group: Group) -> Sequence[Waits]:
-    """Whom a decision is on: all who wrote the same and wait, or the first alone; of a card that is done, all of it."""
+    """Return the answers that a decision covers: all waiting ones with the same text, or the first alone; for
+    a decided card, all of it."""
     waits = now.open[group.id].members if group.id in now.open else group.members
     if visit.form.text("all"):
         return waits
@@ -322,7 +323,7 @@ def _chosen(visit: Visit, now: ClassNow, group: Group) -> Sequence[Waits]:
 
 
 def _asked_kind(asked_for: str, visit: Visit, group: Group) -> tuple[str, float | None]:
-    """The kind of a decision, and its points.
+    """Return the kind of a decision, and its points.
 
     Raises
     ------
@@ -352,7 +353,7 @@ def _place(one: Waits) -> Place:
 
 
 def _taken(later: Sequence[Made]) -> dict[tuple[str, str, str, str], Made]:
-    """The answers on which a later decision stands."""
+    """Return the answers with a later decision."""
     found: dict[tuple[str, str, str, str], Made] = {}
     for one in later:
         key = one.student, one.exercise, one.seed, one.part

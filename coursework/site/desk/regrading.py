@@ -35,7 +35,7 @@ class Row(NamedTuple):
 
 
 def regrade(visit: Visit) -> Reply:
-    """What would change; after a press, what did."""
+    """Return the marks that would change; after confirmation, mark again and return the marks that changed."""
     now = class_now(visit.site, assignment_of(visit))
     course = _as_it_stands(visit.site, now)
     done = visit.posted and visit.form.text("do") == "regrade"
@@ -56,7 +56,7 @@ def regrade(visit: Visit) -> Reply:
 
 
 def _as_it_stands(site: Site, now: ClassNow) -> Course[Any]:
-    """The course as its files stand: the open one, where nothing of what was issued changed in them."""
+    """Return the course with its current files; the open one if no issued exercise has changed."""
     course, fresh = site.course, site.reopened()
     same = fresh.folder.rules == course.folder.rules and all(
         exercise_state(fresh, name) == exercise_state(course, name) for name in now.issued.exercises
@@ -95,7 +95,7 @@ def _number(points: str) -> float:
 
 
 def changes(visit: Visit) -> Reply:
-    """The same as a table to keep."""
+    """Return the table of changed marks as a file."""
     now = class_now(visit.site, assignment_of(visit))
     told = would_change(_as_it_stands(visit.site, now), visit.site.store, now.about.id)
     spreadsheet = SPREADSHEETS["comma" if visit.lang == "fr" else "point"]

@@ -1,4 +1,4 @@
-"""Rows that could not be placed: placed by hand, as an answer of its own that keeps where it came from, or put aside."""
+"""Rejected rows: assigned by hand, as an answer that records its source, or set aside."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def rejected(visit: Visit) -> Reply:
 
 
 def _decided(visit: Visit, now: ClassNow, row: RejectedRow) -> str:
-    """What was done.
+    """Apply the action of a form to a rejected row; return the message.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def _decided(visit: Visit, now: ClassNow, row: RejectedRow) -> str:
 
 
 def _answer(visit: Visit, now: ClassNow, row: RejectedRow) -> Row:
-    """The answer that a rejected row is, where a person says that it belongs."""
+    """Return the answer that a person assigns to a rejected row."""
     said, issued = visit.said["files"], now.issued
     student = issued.student(visit.form.text("student"))
     exercise, _, part = visit.form.text("question").partition("/")

@@ -32,7 +32,7 @@ RUNNING, DONE, FAILED = "running", "done", "failed"
 
 
 class Job(NamedTuple):
-    """How far the reading of what was sent last is."""
+    """State of the job that reads the last upload."""
 
     state: str
     files: int
@@ -59,7 +59,8 @@ def begin(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
 
 
 def job(site: Site, number: int) -> Job | None:
-    """How far it is; None where nothing was ever sent. What was interrupted says so."""
+    """Return the state of the last job; None if nothing was ever uploaded. An interrupted job counts as
+    failed."""
     with site.store.reading() as connection:
         kept = value_of(connection, _key(number))
     if kept is None:
@@ -134,7 +135,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _keep(site: Site, number: int, content: Mapping[str, Any], found: Sequence[_Found], by: str) -> int:
-    """All of it is kept, or nothing; gives how many pages are new."""
+    """Store all pages in one transaction; return the number of new ones."""
     papers = Papers(site.course, content).papers
     at = site.clock()
     with site.store.begin() as connection:

@@ -1,4 +1,5 @@
-"""Scans on the desk: they are sent, read beside the pages, and what could not be read is typed card by card, like the queue."""
+"""Instructor's page of scans: they are uploaded, read in the background, and unreadable answers are typed
+card by card."""
 
 from __future__ import annotations
 
@@ -44,7 +45,7 @@ class Shown:
 
 
 def scans_page(visit: Visit, told: str = "") -> Reply:
-    """What was scanned, and what became of it; with a form, more is sent."""
+    """Return the page of scans and their state; store an upload, if a form brings one."""
     now = class_now(visit.site, assignment_of(visit))
     if visit.posted:
         told = _sent(visit, now)
@@ -77,7 +78,7 @@ def _sent(visit: Visit, now: ClassNow) -> str:
 
 
 def _by_names(sent: list[Upload]) -> dict[str, bytes]:
-    """Files by names that differ."""
+    """Return files by names, made distinct."""
     found: dict[str, bytes] = {}
     for number, one in enumerate(sent, 1):
         name = file_name(one)
@@ -86,13 +87,13 @@ def _by_names(sent: list[Upload]) -> dict[str, bytes]:
 
 
 def _absent(now: ClassNow, scans: ScansNow) -> list[str]:
-    """Who has a paper of which no page was scanned."""
+    """Return the students with a paper of which no page was scanned."""
     met = set(scans.found.whose.values())
     return [student for student in now.issued.students if student not in met]
 
 
 def cards_page(visit: Visit) -> Reply:
-    """One card after another; a form decides on one."""
+    """Return one card after another; a form decides on one."""
     now = class_now(visit.site, assignment_of(visit))
     scans = scans_now(visit.site, now.about.id)
     if not visit.posted:
@@ -115,7 +116,7 @@ def cards_page(visit: Visit) -> Reply:
 
 
 def _answer(visit: Visit, card: Card) -> str:
-    """What was typed.
+    """Return the typed answer.
 
     Raises
     ------
@@ -153,7 +154,7 @@ def _numbers(scans: ScansNow, code: str) -> list[str]:
 
 
 def _shown(visit: Visit, now: ClassNow, scans: ScansNow, at: str, told: str = "") -> Reply:
-    """The card that is asked for, else the first; or that nothing waits."""
+    """Return the requested card, or else the first; if there is none, a message."""
     cards = scans.cards
     place = next((k for k, one in enumerate(cards) if one.id == at), 0)
     names: dict[str, Any] = {
@@ -185,13 +186,13 @@ def _as_shown(visit: Visit, now: ClassNow, scans: ScansNow, card: Card) -> Shown
 
 
 def picture(visit: Visit) -> Reply:
-    """The picture of a page."""
+    """Return the picture of a page."""
     name, data = _picture(visit)
     return Reply(kind="image/jpeg", data=data) if name else Reply(status=404)
 
 
 def crop(visit: Visit) -> Reply:
-    """The picture of a field of a page."""
+    """Return the picture of a field of a page."""
     name, data = _picture(visit)
     scans = scans_now(visit.site, assignment_of(visit))
     told, page = visit.query.get("field", ""), scans.by_id[name].page
@@ -204,7 +205,7 @@ def crop(visit: Visit) -> Reply:
 
 
 def _picture(visit: Visit) -> tuple[str, bytes]:
-    """The page of this assignment that an address names, and its picture."""
+    """Return the page of this assignment that the address names, and its picture."""
     number, name = assignment_of(visit), visit.query.get("page", "")
     if _ID.fullmatch(name):
         with visit.site.store.reading() as connection:

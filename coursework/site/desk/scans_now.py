@@ -74,7 +74,7 @@ class ScansNow:
 
 
 def scans_now(site: Site, number: int) -> ScansNow:
-    """The scans of an assignment."""
+    """Return the scans of an assignment."""
     with site.store.reading() as connection:
         content = issued_content(connection, number)
         rows = pages_scanned(connection, number)
@@ -94,7 +94,7 @@ def scans_now(site: Site, number: int) -> ScansNow:
 
 
 def _stamp(content: dict[str, Any]) -> int:
-    """What tells an issue from what it was before: who has which record."""
+    """Return a hash that changes when other records are issued to a student."""
     return hash(
         tuple(
             (str(i.get("student")), i["record"]["exercise"], str(i["record"]["seed"]))
@@ -118,7 +118,7 @@ def hand_over(site: Site, number: int, now: ScansNow) -> int:
 
 
 def answer_told(one: Answer) -> str:
-    """An answer as it is marked; of one that a person marks from its picture, which that is."""
+    """Return the text of an answer; for one that is marked from its picture, a reference to the picture."""
     return "; ".join(f"scan {s.page}/{s.index}" for s in one.pictures) or one.answer
 
 

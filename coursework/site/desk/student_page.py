@@ -1,4 +1,5 @@
-"""A student on the desk: what was handed in and when, every try, each answer with its reading, verdict and history, decided here too.
+"""Instructor's page of a student: every attempt and its time, each answer with its reading, verdict and
+history; answers are decided here too.
 
 Of what a student practises alone the desk shows how often and when last, for the exercises of this assignment; never an
 answer, a mark or a mistake: practice is the student's own.
@@ -57,7 +58,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Practised:
-    """What a student did alone, as far as it is the staff's business."""
+    """Practice of a student, as far as the instructor may see it."""
 
     title: str
     variants: int
@@ -65,7 +66,7 @@ class Practised:
 
 
 def student_page(visit: Visit) -> Reply:
-    """The page, or a decision on one of its answers."""
+    """Return the page of a student; a form decides on one of the answers."""
     now = class_now(visit.site, assignment_of(visit))
     student = _student(visit, now)
     told = ""
@@ -138,7 +139,7 @@ def _line(
 
 
 def _told(visit: Visit, one: Happened) -> str:
-    """A line of the history."""
+    """Return a line of the history."""
     if one.kind == "marked":
         from coursework.rendering.feedback import verdict_word
 
@@ -149,7 +150,7 @@ def _told(visit: Visit, one: Happened) -> str:
 
 
 class _Made:
-    """What happened, in the words of a decision."""
+    """Event of the history, in the form of a decision."""
 
     def __init__(self, one: Happened):
         self.kind, self.points, self.by, self.made, self.reason = (

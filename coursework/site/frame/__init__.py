@@ -1,1 +1,1 @@
-"""What all pages go through: the door, who comes, forms, cookies, limits, and what is kept at hand."""
+"""Common layers of all pages: middleware, permissions, forms, cookies, limits, and caches."""

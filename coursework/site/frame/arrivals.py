@@ -48,7 +48,8 @@ _arrival: ContextVar[Arrival | None] = ContextVar("arrival", default=None)
 
 
 def arrived(clock: Clock) -> datetime:
-    """The time that counts for the request that is answered: its arrival where it sends something, else now."""
+    """Return the effective time of the current request: its arrival if it sends data, otherwise the current
+    time."""
     one = _arrival.get()
     return clock() if one is None else one.counts
 
@@ -90,7 +91,7 @@ class _Body:
         self._is_ahead = False
 
     async def read_ahead(self) -> None:
-        """Take in what comes until it is whole or more than was told."""
+        """Read the body until it is complete or exceeds a limit."""
         self._is_ahead, size, is_more = True, 0, True
         while is_more and size <= _AHEAD:
             try:
@@ -105,7 +106,7 @@ class _Body:
             self._read.put_nowait(message)
 
     async def receive(self) -> Message:
-        """The next piece."""
+        """Return the next message."""
         if self._read.empty() and not self._is_ahead:
             return await self._stamped()
         found = await self._read.get()

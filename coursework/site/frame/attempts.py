@@ -19,7 +19,7 @@ from coursework.errors import CourseworkError
 
 
 class Track(NamedTuple):
-    """What attempts are counted by, such as a login from one network."""
+    """Counter of failed attempts, such as logins from one network."""
 
     key: str  #: digest, of which nothing can be read
     free: int  #: failures that cost no waiting

@@ -38,7 +38,7 @@ _BY = "clock"
 
 
 class Leap(NamedTuple):
-    """A leap of the machine's clock, as the desk tells of it."""
+    """Leap of the machine's clock, as the instructor's pages report it."""
 
     at: datetime  #: the time that counted
     seconds: float  #: ahead; below 0 where it was set back
@@ -147,12 +147,12 @@ class SteadyClock:
 
 
 def is_steady(clock: Callable[[], datetime]) -> bool:
-    """Return whether dates that a clock says have passed may be written down for good."""
+    """Return True if a date may be recorded as passed for good."""
     return bool(getattr(clock, "is_steady", True))
 
 
 def last_leap(connection: Connection, now: datetime) -> Leap | None:
-    """Return the last leap of the machine's clock, as long as the desk tells of it."""
+    """Return the last leap of the machine's clock, while the instructor's pages report it."""
     told: list[Any] | None = value_of(connection, _LEAPT)
     if told is None:
         return None

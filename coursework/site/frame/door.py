@@ -1,4 +1,4 @@
-"""The door: what every request goes through. Who comes, whether they may, and how a page goes back."""
+"""Middleware of all requests: the current user, the permissions, and the response."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ _AGAIN = 5  #: seconds after which to try again what the database did not take
 
 
 class _Comer(NamedTuple):
-    """Who asks."""
+    """Current user of a request."""
 
     session: Session
     is_new: bool  #: the browser holds no cookie of the session
@@ -66,7 +66,7 @@ class _Comer(NamedTuple):
 
 
 class Door:
-    """What every request goes through."""
+    """Middleware of all requests."""
 
     def __init__(self, site: Site):
         self.site, self.cookies, self._lanes = site, Cookies(site.secret), Lanes(site.store)
@@ -75,7 +75,7 @@ class Door:
         self._device = cookie_name(site.is_secure, DEVICE)
 
     def answering(self, page: Page) -> Any:
-        """The endpoint of a page."""
+        """Return the endpoint of a page."""
 
         async def answer(request: Request) -> Response:
             return await self._written_down(request, page.path, lambda: self._answer(request, page))
@@ -83,7 +83,7 @@ class Door:
         return answer
 
     async def lost(self, request: Request, fault: Exception) -> Response:
-        """An address that there is not, or that takes no form."""
+        """Return the response to an unknown address, or to a method that it does not support."""
         status = fault.status_code if isinstance(fault, HTTPException) else 404
         why = Refused("method" if status == 405 else "page", status)
         allowed = {"allow": "GET, HEAD"} if status == 405 else {}
@@ -96,7 +96,7 @@ class Door:
         return await self._written_down(request, "-", answer)
 
     async def _written_down(self, request: Request, path: str, answer: Callable[[], Any]) -> Response:
-        """What is answered, with a line of the log: which page, by the number of a person, never with what."""
+        """Return the response and log the request: the page and the number of the person, never the content."""
         begun, why = time.perf_counter(), ""
         try:
             response: Response = await answer()
@@ -129,7 +129,7 @@ class Door:
             return await run(self._refused, request, comer, why)
 
     async def _read_and_answered(self, request: Request, page: Page, comer: _Comer, run: Run) -> Response:
-        """The answer to a request whose turn it is; its body is read before it takes a thread."""
+        """Return the response to a request whose turn it is; its body is read before it takes a thread."""
         form, means = Form(), page.means
         if request.method == "POST":
             try:
@@ -144,7 +144,8 @@ class Door:
             return await run(self._answered, request, page, comer, form)
 
     async def _attempted(self, request: Request, page: Page, comer: _Comer, form: Form, run: Run) -> Response:
-        """Answer a form that holds a password, after the waiting that failures before it cost; no thread waits."""
+        """Respond to a form with a password, after the delay caused by earlier failures; no thread waits
+        meanwhile."""
         attempt = await run(self._attempt, request, page, comer, form)
         if isinstance(attempt, Response):
             return attempt
@@ -164,7 +165,8 @@ class Door:
             return self._refused(request, comer, _mistaken(fault))
 
     def _let_in(self, request: Request, page: Page) -> _Comer | Response:
-        """Who asks, where they may; else what they are told. Nothing of a form is read before."""
+        """Return the current user if they have the permission; otherwise the response of the refusal. The
+        form is not read before."""
         try:
             self._check_host(request)
             _check_path(request)
@@ -274,14 +276,15 @@ class Door:
     # ------------------------------------------------------------ whether they may
 
     def _check_host(self, request: Request) -> None:
-        """A name that is not ours leads here only by a trick; and where nobody needs a password, no other machine may."""
+        """Check the host name against DNS rebinding; where no password is needed, also refuse requests from
+        other machines."""
         if _host(f"//{request.headers.get('host', '')}") not in (_host(self.site.url), *_LOOPBACK):
             raise Refused("page", 421)
         if self.site.entrance is not Entrance.ACCOUNTS and any(one in request.headers for one in _FORWARDED):
             raise Refused("forwarded", 421)
 
     def _check_often(self, request: Request, page: Page, comer: _Comer) -> None:
-        """A page is not asked for too often, and those before it did not take too much of a processor.
+        """Check the limits on the rate of requests and on processor time.
 
         What stores and shows nothing, handing in among it, is refused to nobody for what they did before.
         """
@@ -294,7 +297,7 @@ class Door:
             raise Refused("too_often", 429, wait)
 
     def _check_origin(self, request: Request) -> None:
-        """A form comes from a page of ours, as far as the browser says."""
+        """Check that a form comes from a page of this site, as far as the browser tells."""
         sent, host = request.headers.get("origin"), request.headers.get("host", "")
         own = {_origin(self.site.url)}
         if _host(f"//{host}") in _LOOPBACK:
@@ -305,7 +308,7 @@ class Door:
             raise Refused("form", 403)
 
     def _check_seal(self, request: Request, session: Session, form: Form) -> None:
-        """A form was made for this session."""
+        """Check the CSRF token of a form."""
         if not self.cookies.fits(session, request.headers.get("x-seal") or form.text("_seal")):
             raise Refused("form", 403)
 
@@ -357,7 +360,7 @@ class Door:
         return response
 
     def _broken(self, request: Request) -> Response:
-        """What is told when something was not foreseen; in two words where even the page for it is broken."""
+        """Return the response to an unexpected fault; a short text if even the error page fails."""
         try:
             return self._without_person(request, Refused("fault", 500))
         except Exception as fault:
@@ -367,7 +370,7 @@ class Door:
             )
 
     def _without_person(self, request: Request, why: Refused) -> Response:
-        """What is told to whom nothing may be told of anybody, or when nobody can be looked up; no session begins."""
+        """Return a refusal without the data of any person; no session begins."""
         happened(request, event_of(why))
         lang = self._lang(request, None)
         visit = Visit(self.site, None, lang, self.site.clock(), "/")
@@ -383,7 +386,7 @@ def _refusal(visit: Visit, why: Refused) -> Reply:
 
 
 def _mistaken(fault: BadInput) -> Refused:
-    """A file or a value that somebody mistook is told as the commands tell it; a database that takes nothing, as such."""
+    """Return the refusal for a fault in the input, with its message; for an unavailable database, status 503."""
     if isinstance(fault.__cause__, (DBAPIError, NoConnection)):
         damaged = type(fault.__cause__) is DatabaseError
         LOG.error("the database: %s", "its file is damaged" if damaged else type(fault.__cause__).__name__)
@@ -392,7 +395,7 @@ def _mistaken(fault: BadInput) -> Refused:
 
 
 def _check_path(request: Request) -> None:
-    """No address of ours holds what no keyboard writes."""
+    """Check the path: refuse control characters and numbers too large for the database."""
     if any(ord(letter) < 32 or letter in "\x7f\ufffd" for letter in request.scope["path"]):
         raise Refused("page", 404)
     if any(isinstance(one, int) and one > _GREATEST for one in request.path_params.values()):
@@ -400,8 +403,8 @@ def _check_path(request: Request) -> None:
 
 
 def _address(request: Request) -> str:
-    """The machine that asks, as the server tells it: what a request itself says of it counts only behind a proxy that the
-    server was told of."""
+    """Return the client's address as the server states it: headers of the request count only behind a
+    configured proxy."""
     return request.client.host if request.client else ""
 
 

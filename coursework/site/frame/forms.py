@@ -1,4 +1,4 @@
-"""What a form brings, read within bounds: of size, of number, of time."""
+"""Reading of forms, within limits of size, number and time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _PLAIN, _WITH_FILES = "application/x-www-form-urlencoded", "multipart/form-data"
 
 
 async def read_form(request: Request, budget: Budget) -> Form:
-    """What a form brings; no more of it is read than its budget allows.
+    """Return the content of a form; no more of it is read than its budget allows.
 
     Raises
     ------
@@ -47,7 +47,7 @@ async def read_form(request: Request, budget: Budget) -> Form:
 
 
 def _size(request: Request) -> int:
-    """Bytes that it says to have, and has: what comes in pieces may be of any length, whatever else it says."""
+    """Return the stated length of the body; a chunked body is refused, since its length is unknown."""
     told = request.headers.get("content-length", "")
     if "transfer-encoding" in request.headers:
         raise Refused("bad_request", 411)
@@ -57,7 +57,8 @@ def _size(request: Request) -> int:
 
 
 def _kind(request: Request) -> str:
-    """A form, in the only encoding that pages of the site send; another one could make reading slow."""
+    """Return the content type of a form; refuse one that the site's own pages never send, since it could be
+    slow to read."""
     told = Message()
     told["content-type"] = request.headers.get("content-type", "")
     if told.get_content_type() not in (_PLAIN, _WITH_FILES) or told.get_param("charset", "utf-8") not in (
@@ -117,7 +118,8 @@ async def _form(items: Sequence[tuple[str, Any]], most: int) -> Form:
 
 
 def clean(text: str) -> str:
-    """A text that databases and pages hold: lines end in one way, without zeros and without halves of characters."""
+    """Return a text that databases and pages can contain: with uniform line ends, without NUL and lone
+    surrogates."""
     return text.replace("\r\n", "\n").replace("\0", "").encode("utf-8", "replace").decode()
 
 

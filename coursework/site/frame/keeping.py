@@ -1,4 +1,4 @@
-"""What is typed is kept as it is typed: the other end of ``static/keeping.js``, for whatever sheet a page shows."""
+"""Storage of drafts as they are typed: the server's part of ``static/keeping.js``, for any sheet."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ def kept(
     read: Callable[[str, str], str] | None = None,
     is_open: bool = True,
 ) -> Reply:
-    """Keep what a page sends of its boxes, and say what stands where another page wrote, and how each text is read.
+    """Store the boxes that a page sends; return those that another page has changed, and the reading of each
+    text.
 
     A sheet that is closed takes nothing new; what was kept before it closed is said to be kept, however often it is sent.
 
@@ -54,7 +55,8 @@ def _is_new(stood: Mapping[str, Box], sent: Mapping[str, Sent]) -> bool:
 def keep_form(
     visit: Visit, sheet: str, texts: Mapping[str, str], shown: Mapping[str, str], versions: str
 ) -> tuple[dict[str, Box], dict[str, Box]]:
-    """Keep what a form without a script brings: ``texts`` by box, where it ``shown`` something else or something is kept.
+    """Store the drafts of a form without a script: ``texts`` by box, if they differ from those ``shown`` or a
+    draft exists.
 
     ``versions`` is JSON, as :func:`keeper` has it. Gives what is kept now, and the boxes that another page wrote to since:
     these are not overwritten.
@@ -82,7 +84,8 @@ def json_reply(told: Mapping[str, Any], status: int = 200) -> Reply:
 
 
 def sent_boxes(form: Form, boxes: Collection[str]) -> dict[str, Sent]:
-    """What a page sends, by box: ``text.NAME``, and ``over.NAME``, the version that it was written over."""
+    """Return the boxes that a page sends: ``text.NAME``, and ``over.NAME``, the version that the text
+    replaces."""
     found = {}
     for field in form.texts:
         name = field.removeprefix(_TEXT)
@@ -97,7 +100,7 @@ def sent_boxes(form: Form, boxes: Collection[str]) -> dict[str, Sent]:
 
 
 def versions_of(text: str) -> dict[str, int]:
-    """The versions of boxes that a form of a page without a script holds.
+    """Return the versions of boxes stated in a form without a script.
 
     Raises
     ------
@@ -113,7 +116,8 @@ def versions_of(text: str) -> dict[str, int]:
 def keeper(
     visit: Visit, address: str, sheet: str, boxes: Mapping[str, Box], own: str = "", **said: str
 ) -> dict[str, str]:
-    """The attributes of a form whose boxes are kept; ``boxes`` as the page shows them.
+    """Return the attributes of a form whose boxes are stored as drafts; ``boxes`` are those that the page
+    shows.
 
     ``own`` is what the names of the boxes begin with on the page, and ``said`` sentences beside those of ``[keeping]``, or
     in their places.
@@ -128,5 +132,5 @@ def keeper(
 
 
 def held(text: str) -> list[str]:
-    """What stands in a box, as templates of sheets ask: the text, and each of several ticks."""
+    """Return the content of a box for the templates of sheets: the text, and each of several ticks."""
     return [text, *text.split(", ")] if ", " in text else [text]

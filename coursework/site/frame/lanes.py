@@ -32,7 +32,7 @@ class Lanes:
         self._lock, self._count = Lock(), 0
 
     async def short(self, function: Callable[..., T], *told: Any) -> T:
-        """Call a function that takes a few milliseconds, in the order in which requests came."""
+        """Call a function that takes a few milliseconds, in the order of the requests."""
         self._add(1)
         try:
             call = partial(contextvars.copy_context().run, function, *told)

@@ -1,4 +1,4 @@
-"""How often something may be asked, and how much of a processor it may take, counted in memory by each process.
+"""Limits on the rate of requests and on their processor time, counted in the memory of each process.
 
 A whole class may stand behind one address: who is signed in is counted by person, a browser that signed in before by itself, and
 an address alone only where nothing else is known.
@@ -45,7 +45,8 @@ class Limits:
         self._processor = Allowances(AT_ONCE, BACK)
 
     def asked(self, kind: str, person: int, address: str, browser: str = "") -> int:
-        """A page of a class is asked for by somebody, or by nobody (0) from an address, in a browser that signed in before."""
+        """Count a request for a page of a class, by a person, or without one (0) by address and known
+        browser."""
         if kind == FREE:
             return 0
         if person:

@@ -29,12 +29,12 @@ def _time(here: datetime, form: str) -> str:
 
 
 def zone_name(at: datetime) -> str:
-    """The zone in which times are told."""
+    """Return the time zone of displayed times."""
     return at.astimezone().tzname() or "UTC"
 
 
 def length_text(length: timedelta, lang: str) -> str:
-    """How long: the two greatest units that there are, ``3 days 4 hours``; less than a minute in seconds."""
+    """Return a duration in its two greatest units, ``3 days 4 hours``; less than a minute in seconds."""
     said = words(lang, "site")["moments"]
     seconds = max(0, int(length.total_seconds()))
     units = (("day", 86400), ("hour", 3600), ("minute", 60))
@@ -53,12 +53,12 @@ def length_text(length: timedelta, lang: str) -> str:
 
 
 def field_text(at: datetime | None) -> str:
-    """As a field of a form holds it."""
+    """Return a time in the format of a form field."""
     return "" if at is None else at.astimezone().strftime(_FORM)
 
 
 def from_field(text: str) -> datetime | None:
-    """What a field of a form holds; none where it is empty.
+    """Return the time in a form field; None if it is empty.
 
     Raises
     ------

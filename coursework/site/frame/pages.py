@@ -36,7 +36,7 @@ class Pages:
         self._folder = folder
 
     def page(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
-        """A page of a template with what all pages need."""
+        """Return the page of a template, with the names that all pages need."""
         said = words(lang, "site")
         usual = {
             "lang": lang,
@@ -54,7 +54,7 @@ class Pages:
         return render(environment_of(self._folder.template_folders, lang), f"{template}.html.j2", names)
 
     def static(self, name: str) -> tuple[str, bytes] | None:
-        """The kind and the bytes of a file that all pages share; none where there is no such file."""
+        """Return the content type and the bytes of a shared static file; None if there is no such file."""
         if name in _OF_SHEETS:
             env = environment_of(self._folder.template_folders, "en")
             return KINDS[Path(name).suffix], render(env, _OF_SHEETS[name], {"paper": "a4"}).encode()
@@ -62,7 +62,7 @@ class Pages:
         return (KINDS[known[name].suffix], known[name].read_bytes()) if name in known else None
 
     def file(self, name: str) -> str:
-        """The address of such a file: another one when the file changes, so that browsers may keep it."""
+        """Return the address of a static file, which changes with the file so that browsers may cache it."""
         return f"/static/{name}?{_stamp(self, name)}"
 
 

@@ -26,7 +26,7 @@ def person_of(connection: Connection, row: Any) -> Person:
 def check_permission(
     site: Site, page: Page, person: Person | None, path: Mapping[str, Any], *, posted: bool
 ) -> None:
-    """Let who may have a page pass.
+    """Check that a person may request a page.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ COUNTS = (8, 60)  #: variants of an exercise that are found ahead, in turns
 
 
 class Pool:
-    """Seeds that are worth practising, by exercise: the same for all, kept in the database."""
+    """Pool of seeds for practice, by exercise: shared by everybody, and stored in the database."""
 
     def __init__(self, course: Course[Any], store: Store):
         self._course, self._store = course, store
@@ -32,20 +32,20 @@ class Pool:
         self._lock = Lock()
 
     def seeds(self, exercise: str) -> tuple[int, ...]:
-        """Those that were found; the first of them are found now, where nobody did."""
+        """Return the seeds found so far; search for the first of them if there are none."""
         known = self._found.get(exercise)
         if known is None or not _is_whole(known):  # another process may have found more
             known = self._grown(exercise, COUNTS[0])
         return known.seeds
 
     def holds(self, exercise: str, seed: int) -> bool:
-        """Whether a seed is one of them."""
+        """Return True if the pool contains a seed."""
         known = self._found.get(exercise, Pooled())
         return seed in known.seeds or seed in self.seeds(exercise)
 
     def own(self, exercise: str, person: int, begun: Collection[int]) -> int:
-        """The seed of a person who has begun some: it hangs on person and exercise, and no class was given its variant while
-        there is another.
+        """Return a seed for a person who has begun the given ones: it depends on the person and the exercise,
+        and was issued to no class while another remains.
 
         Raises
         ------
@@ -57,7 +57,7 @@ class Pool:
         return next((s for s in in_order if not self._is_issued(exercise, s)), in_order[0])
 
     def _left(self, exercise: str, begun: Collection[int]) -> list[int]:
-        """Seeds not begun; all where everything is."""
+        """Return the seeds not begun; all of them if every one was begun."""
         seeds: tuple[int, ...] = self.seeds(exercise)
         left = [seed for seed in seeds if seed not in begun]
         if not left:
@@ -90,7 +90,8 @@ class Pool:
         return found
 
     def _kept(self, exercise: str, version: int, found: Pooled) -> Pooled:
-        """What was found, or what another process has kept meanwhile where that is more: nothing that somebody began is let go."""
+        """Store the seeds found; return those of another process if it has stored more meanwhile, so that no
+        begun variant is lost."""
         with (
             suppress(IntegrityError),
             self._store.begin() as connection,
@@ -104,7 +105,7 @@ class Pool:
     # ---------------------------------------------------------------------- ahead
 
     def is_filled(self) -> bool:
-        """Whether all that is wanted ahead was found: one look at the database."""
+        """Return True if the pool contains all the seeds wanted in advance; one query of the database."""
         known = {name: self._course[name].version for name in self._course.folder.study_order}
         with self._store.reading() as connection:
             found = pools(connection, known)

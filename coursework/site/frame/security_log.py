@@ -1,4 +1,4 @@
-"""Log of what concerns security: who signed in or out, from where, and what was refused.
+"""Log of security events: sign-ins and sign-outs with their addresses, and refused requests.
 
 A person is a number of the table ``person``; no line holds a name, a login, an answer or a token. Times are those of the log, UTC.
 """

@@ -1,4 +1,4 @@
-"""How an answer goes back: its headers, what browsers may keep of it, and its bytes made small."""
+"""Sending of responses: headers, browser caching, and compression."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _PACKED = ("text/", "application/json", "image/svg+xml")
 
 
 def response_of(request: Request, reply: Reply, is_secure: bool) -> Response:
-    """A reply as it is sent."""
+    """Return the response of a reply."""
     headers = security_headers(is_secure)
     headers["cache-control"] = f"public, max-age={reply.keep}, immutable" if reply.keep else "no-store"
     if reply.goto and request.headers.get("hx-request") == "true":
@@ -49,7 +49,8 @@ def _kept_small(data: bytes) -> bytes:
 
 
 def attached(name: str) -> str:
-    """A file that is to be kept, by its name: in letters that every browser reads, and as it is."""
+    """Return the header value of a download: the file name in characters that every browser reads, and in
+    full."""
     plain = "".join(
         letter if letter.isascii() and (letter.isalnum() or letter in " ._-()") else "_" for letter in name
     )
@@ -58,5 +59,5 @@ def attached(name: str) -> str:
 
 
 def _written(address: str) -> str:
-    """An address as a header holds it."""
+    """Return an address in the form that a header requires."""
     return quote(address, safe="/:%#?=@[]!$&'()*+,;~")

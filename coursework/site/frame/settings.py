@@ -1,4 +1,4 @@
-"""What the site stands on: a course, a database, its address, and how people come in."""
+"""Settings of the site: its course, its database, its address, and the way in which people sign in."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Clock = Callable[[], datetime]
 
 
 class Entrance(Enum):
-    """How people come in."""
+    """Way in which people sign in."""
 
     LOCAL = "local"  #: whoever opens it on this machine is its owner
     DEMO = "demo"  #: one chooses who to be
@@ -82,7 +82,7 @@ class Site:
 
     @cached_property
     def secret(self) -> bytes:
-        """What signs cookies and seals: kept in the database, the same for all workers."""
+        """Key that signs cookies and CSRF tokens: stored in the database, the same for all workers."""
         with self.store.begin() as connection:
             return secret(connection)
 
@@ -101,7 +101,7 @@ class Site:
             self._go_on_with(self.reopened())
 
     def reopened(self) -> Course[Any]:
-        """The course, its files read anew."""
+        """Return the course, read again from its files."""
         return Course(course_folder(self.course.folder.root), Variant)
 
     def _go_on_with(self, course: Course[Any]) -> None:
@@ -119,7 +119,8 @@ class Site:
         return self.url.startswith("https:")
 
     def variant(self, exercise: str, seed: int, lang: str) -> Any:
-        """A variant that asks the usual parts, kept at hand; in a language that the exercise has.
+        """Return a variant with the default parts, from a cache; in the given language if the exercise has
+        it.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What is kept at hand: so many things at most, those that were not asked for longest let go."""
+"""LRU cache: at most a given number of items; the least recently used are evicted."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Shelf:
         self._lock = Lock()
 
     def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """The thing of a key; two who ask for a new one at the same time may both make it."""
+        """Return the item of a key; two concurrent requests for a new one may both compute it."""
         with self._lock:
             if key in self._things:
                 self._things.move_to_end(key)

@@ -1,4 +1,4 @@
-"""What a page is asked, and what it answers: who comes, with what; and what is sent back."""
+"""Request and response of a page: the current user with the input, and the content sent back."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def local(address: str, usual: str = "/") -> str:
-    """An address of this site; the first page in the place of any other, however it is written."""
+    """Return an address of this site; the first page if the given address leads elsewhere."""
     seen = "".join(letter for letter in address if ord(letter) >= 32)  # browsers take no notice of the others
     leads_away = seen.startswith("//") or "\\" in seen.partition("?")[0]
     return seen if seen.startswith("/") and not leads_away else usual
@@ -35,7 +35,7 @@ class Refused(CourseworkError):
 
 
 class Person(NamedTuple):
-    """Who is signed in."""
+    """Current user who is signed in."""
 
     id: int
     name: str
@@ -48,7 +48,7 @@ class Person(NamedTuple):
         return self.role in STAFF
 
     def may(self, permission: str, assignment: int | None = None, group: str | None = None) -> bool:
-        """Return whether the person may do something, in an assignment, to a student of a group, where these are told."""
+        """Return True if the person has a permission; in a given assignment, for a student of a given group."""
         return may(self, Permission(permission), assignment, group)
 
 
@@ -61,7 +61,7 @@ class Upload(NamedTuple):
 
 @dataclass(frozen=True)
 class Form:
-    """What a form brings: texts and files by the names of its fields, each as often as it came."""
+    """Content of a form: texts and files by the names of its fields, each with all of its values."""
 
     texts: Mapping[str, Sequence[str]] = field(default_factory=dict)
     files: Mapping[str, Sequence[Upload]] = field(default_factory=dict)
@@ -91,7 +91,7 @@ class Visit:
 
     @property
     def who(self) -> Person:
-        """Who is signed in.
+        """Current user, who must be signed in.
 
         Raises
         ------
@@ -104,7 +104,7 @@ class Visit:
 
     @property
     def actor(self) -> Actor:
-        """Who asks and from where, as the audit records it."""
+        """Current user and address, as the audit records them."""
         name = self.who.name or str(self.said["site"]["local"])
         return Actor(name, self.who.id, self.came_from)
 
@@ -127,14 +127,14 @@ class Visit:
         return words(self.lang, "site")
 
     def page(self, template: str, status: int = 200, **names: Any) -> Reply:
-        """A page of a template, ``site_practice``, with the surroundings of all pages."""
+        """Return the page of a template such as ``site_practice``, with the frame of all pages."""
         own = {"visit": self, "person": self.person, "seal": self.seal}
         return Reply(self.site.pages.page(template, self.lang, {**own, **names}), status)
 
 
 @dataclass(frozen=True)
 class Reply:
-    """What is sent back: a page or a piece of one, another address, or a file."""
+    """Response of a page: a page or a part of one, a redirect, or a file."""
 
     html: str = ""
     status: int = 200
