@@ -231,7 +231,7 @@ def worker_name() -> str:
 
 def working(serving: Serving) -> AbstractContextManager[None]:
     """Start one process, whatever the number of server processes, that marks submissions and submits saved
-    answers."""
+    answers; none for a site without a worker."""
     return kept_beside(_NICENESS, _work, serving) if serving.worker else nullcontext()
 
 

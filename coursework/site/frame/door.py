@@ -276,8 +276,8 @@ class Door:
     # ------------------------------------------------------------ whether they may
 
     def _check_host(self, request: Request) -> None:
-        """Check the host name against DNS rebinding; where no password is needed, also refuse requests from
-        other machines."""
+        """Check the host name against DNS rebinding; where no password is needed, also refuse requests that a
+        proxy forwarded."""
         if _host(f"//{request.headers.get('host', '')}") not in (_host(self.site.url), *_LOOPBACK):
             raise Refused("page", 421)
         if self.site.entrance is not Entrance.ACCOUNTS and any(one in request.headers for one in _FORWARDED):

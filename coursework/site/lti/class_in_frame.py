@@ -1,4 +1,5 @@
-"""The class as a platform's frame shows it to who teaches: the rows of the desk's table, and where each score stands."""
+"""Class page in a platform's frame, for teachers: the rows of the instructor's table, and the state of each
+score."""
 
 from __future__ import annotations
 
@@ -75,7 +76,7 @@ def _subjects(connection: Connection, issuer: str) -> dict[int, str]:
 
 
 def _way(waiting: Waiting | None, subject: str, lang: str) -> str:
-    """Where a score stands on its way."""
+    """Return the state of a score on its way to the platform."""
     said, own = words(lang)["lti"]["class"], words(lang, "site")["lti"]["class"]
     if waiting is None:
         return str(own["kept_back"] if subject else own["never_came"])
@@ -85,7 +86,7 @@ def _way(waiting: Waiting | None, subject: str, lang: str) -> str:
 
 
 def rules_rows(visit: Visit, now: ClassNow, said: Publication | None) -> list[tuple[str, str]]:
-    """What the assignment is published with, each with its name."""
+    """Return the rules with which the assignment is published, each with its label."""
     link, own = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
     if said is None:
         return [(own["published"], own["hidden"])]

@@ -14,7 +14,7 @@ from coursework.site.lti.scores import number_text
 
 
 def waiting(visit: Visit) -> Reply:
-    """The scores that wait, and how many arrived."""
+    """Return the scores that wait to be sent, and the number of those that arrived."""
     if visit.site.lti is None:
         return visit.page("site_lti", is_on=False, rows=[], arrived=0)
     every = list(Storage(visit.site.lti).scores().values())
@@ -35,7 +35,8 @@ def waiting(visit: Visit) -> Reply:
 
 
 def _names(connection: Connection) -> dict[str, str]:
-    """Names by what platforms call people; of one identifier on two platforms the first."""
+    """Return the names of people by their identifiers on platforms; for an identifier on two platforms, the
+    first."""
     found = select(identity.c.subject, person.c.name).join(person).order_by(identity.c.id.desc())
     return {row.subject: row.name for row in connection.execute(found)}
 

@@ -24,7 +24,7 @@ PATH = "/lti"
 
 
 def settings_of(folder: Path, url: str) -> Settings:
-    """What a folder says of the platforms, for a site at an address.
+    """Return the settings of the platforms in a folder, for a site at an address.
 
     Raises
     ------
@@ -41,7 +41,8 @@ def settings_of(folder: Path, url: str) -> Settings:
 
 
 def mounted(site: Site, folder: Path, client: Any = None, settings: Settings | None = None) -> Starlette:
-    """The service with the site behind it, which also follows what changes scores; ``state.watch`` does."""
+    """Return the service with the site as its host; ``state.watch`` is the thread that looks for changed
+    scores."""
     storage = Storage(folder)
     app = service(
         settings or settings_of(folder, site.url), SiteHost(site, storage), Pages(site.course.folder), storage=storage,

@@ -1,4 +1,4 @@
-"""Who comes by a launch: the person whom the platform's identifier tells, and the paper that is dealt to them."""
+"""People of launches: the person with the platform's identifier, and the paper assigned to them."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ _AGAIN = 5  #: seconds after which to try again
 
 
 def platform_name(launch: Launch) -> str:
-    """What pages and the audit call the platform."""
+    """Return the name of the platform on pages and in the audit."""
     return urlsplit(launch.issuer).hostname or launch.issuer
 
 
 def comer(site: Site, launch: Launch, lang: str) -> Any:
-    """The person of a launch, with the name and the language that it tells; one who is new is added."""
+    """Return the person of a launch, with its name and language; add a new one."""
     with site.store.reading() as connection:
         known = person_known(connection, launch.issuer, launch.person)
     if known is not None and _is_as_told(known, launch, lang):
@@ -51,7 +51,8 @@ def comer(site: Site, launch: Launch, lang: str) -> Any:
 
 
 def _is_as_told(known: Any, launch: Launch, lang: str) -> bool:
-    """Whether nothing is to be taken over; who has an account keeps the name of it."""
+    """Return True if nothing is to be updated from the launch; a person with an account keeps the account's
+    name."""
     return bool(known.login) or (launch.name in ("", known.name) and lang == known.lang)
 
 
@@ -77,7 +78,8 @@ def _put(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
 
 
 def _new(connection: Connection, launch: Launch) -> Student:
-    """Somebody new, as a roster would tell them: by the number or the e-mail, unless somebody has it; never by the name."""
+    """Return a new student as a roster would list them: identified by number or e-mail, unless another has
+    it; never by the name."""
     told = [
         {"number": launch.number.strip()},
         {"email": launch.email.strip()},
@@ -95,7 +97,7 @@ def _new(connection: Connection, launch: Launch) -> Student:
 
 
 def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> None:
-    """Deal somebody a paper as who comes late is dealt one: everybody else keeps theirs.
+    """Assign a paper to somebody who joins late; all other papers remain as they are.
 
     Raises
     ------
@@ -126,12 +128,12 @@ def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> N
 
 
 def _spoken(site: Site, asked: Assignment, lang: str) -> str:
-    """The language of a person, where all the exercises have it."""
+    """Return the language if all the exercises have it; otherwise an empty text."""
     return lang if all(lang in site.course[name].languages for name in asked.names) else ""
 
 
 def _student(known: Any, launch: Launch, lang: str, taken: set[str]) -> Student:
-    """Somebody as a roster would tell them; two of one name are told apart."""
+    """Return the student of a launch as a roster would list them; two students of one name are distinguished."""
     name = launch.name or known.name or launch.person
     if folded(name) in taken:
         name = f"{name} ({launch.number or launch.email or launch.person})"

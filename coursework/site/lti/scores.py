@@ -1,4 +1,5 @@
-"""Points for platforms: those of the class page, less what coming late costs, once they may be told; sent anew when they change.
+"""Scores for platforms: the points of the class page, less the penalty for lateness, once they are released;
+sent again after each change.
 
 What changes them is not asked of the pages that change it: whoever decides, marks again or grades from the command line, the
 assignment's stamp is another afterwards, and that is looked at every few seconds.
@@ -45,7 +46,7 @@ _PAUSE = 5.0  #: seconds between two looks
 
 
 class Marked(NamedTuple):
-    """What the marks of somebody come to, as they stand."""
+    """Current marks of a student."""
 
     issued: Issued
     result: Result
@@ -53,7 +54,7 @@ class Marked(NamedTuple):
     waits: bool  #: a person has to look at some of it
 
     def given(self, state: State) -> float:
-        """The points with what coming late costs taken off."""
+        """Return the points after the penalty for lateness."""
         late = next((one.late for one in state.done if one.number == self.result.sitting), 0)
         return round(self.result.points * (1 - state.place.own.charged(late)), 9)
 
@@ -65,7 +66,7 @@ def marked_in(now: ClassNow, student: str) -> Marked | None:
 
 
 def marked_of(connection: Connection, number: int, student: str) -> Marked | None:
-    """The same of one student alone, whatever the size of the class."""
+    """Return the marks of one student alone, at a cost that does not depend on the size of the class."""
     stands = stood(connection, number, student).values()
     issued = issued_of(connection, number, student=student)
     decisions = Decisions.read(connection, number, student)
@@ -92,7 +93,7 @@ def _marked(
 
 
 def score_of(site: Site, launch: Launch, now: ClassNow | None = None) -> Score | None:
-    """What the platform of a launch is told of its person; nothing before marks may be told."""
+    """Return the score of a launch's person; None before the marks are released."""
     number, lang = assignment_number(site, launch), lang_of(site, launch)
     if number is None:
         return None
@@ -110,7 +111,8 @@ def score_of(site: Site, launch: Launch, now: ClassNow | None = None) -> Score |
 
 
 def assignment_number(site: Site, launch: Launch) -> int | None:
-    """The assignment that a link opens; none where it opens an exercise, or what there is not."""
+    """Return the number of the assignment that a link opens; None if it opens an exercise, or nothing that
+    exists."""
     try:
         name = Wanted.of(launch.custom).assignment
     except LtiRefused:
@@ -120,7 +122,7 @@ def assignment_number(site: Site, launch: Launch) -> int | None:
 
 
 def standing(connection: Connection, number: int, person: int, lang: str, at: datetime) -> State | None:
-    """Where a published assignment stands for somebody; none where they have no paper of it."""
+    """Return the state of a published assignment for a person; None if they have no paper of it."""
     place = next(iter(places(connection, person, number)), None)
     if place is None or place.publication is None:
         return None
@@ -181,7 +183,7 @@ class Watch:
         return new
 
     def _stands(self, number: int) -> str:
-        """What is another text when a score may be another."""
+        """Return a text that changes whenever a score may have changed."""
         with self._site.store.reading() as connection:
             said, more = published(connection, number), extensions(connection, number)
             stamped = stamp(connection, number)
@@ -215,6 +217,6 @@ class Watch:
 
 
 def lang_of(site: Site, launch: Launch) -> str:
-    """The language of a launch."""
+    """Return the language of a launch."""
     told = launch.locale[:2].lower()
     return told if told in site.languages else site.languages[0]

@@ -1,4 +1,5 @@
-"""The site behind the LTI service: a link opens a published assignment of the database, or an exercise for practice.
+"""Host of the LTI service on the site: a link opens a published assignment of the database, or an exercise
+for practice.
 
 A student answers their own paper, which is handed in, marked and told of as on the site; who teaches sees the class. An
 exercise is served by the host that the package brings, with papers and tries of its own beside those of the site.
@@ -78,7 +79,7 @@ class SiteHost:
     # -------------------------------------------------------------- what there is
 
     def shelves(self, lang: str) -> Sequence[Shelf]:
-        """The published assignments, then the exercises by chapter."""
+        """Return the published assignments, then the exercises by chapter."""
         with self._site.store.reading() as connection:
             found = [one for one in handed_out(connection) if one.publication is not None]
             offers = [
@@ -111,7 +112,7 @@ class SiteHost:
         return score_of(self._site, visit.launch) if wanted.assignment else self.practice.score(visit)
 
     def _answered(self, visit: Visit, work: Callable[[int], Reply]) -> Reply:
-        """What is done with the assignment of a link; what the site refuses is told in its words."""
+        """Return the response for the assignment of a link; a refusal of the site becomes a page."""
         if visit.launch.role is not Role.STUDENT and not visit.launch.role.sees_class:
             raise LtiRefused("nobody", 403, f"role {visit.launch.role}")
         number = assignment_number(self._site, visit.launch)
@@ -152,7 +153,7 @@ class SiteHost:
     # ------------------------------------------------------------------- a student
 
     def _visit(self, visit: Visit, number: int, form: SiteForm) -> SiteVisit:
-        """The visit as the site's own pages have one, of the person of the launch, who has a paper from now on.
+        """Return the site's request of the launch's person, after a paper has been assigned to them.
 
         Raises
         ------
@@ -206,7 +207,7 @@ class SiteHost:
         return self.pages.sheet(own.paper, form, alone=False)
 
     def _handed_in(self, state: State, own: OwnPaper) -> dict[str, str]:
-        """What was handed in last, by box."""
+        """Return the last submission, by box."""
         with self._site.store.reading() as connection:
             rows = [
                 one for one in rows_of(connection, state.place.id, state.done[-1].id) if isinstance(one, Row)
@@ -241,7 +242,7 @@ class SiteHost:
         return [" ".join(found)]
 
     def _became(self, visit: Visit, own_visit: SiteVisit, state: State, own: OwnPaper) -> Reply:
-        """What became of what was handed in last, as far as it is told by now; else that it is there."""
+        """Return the feedback on the last submission if it is released; otherwise a confirmation."""
         said, last = words(visit.lang)["lti"], state.done[-1]
         came = said["try_number"].format(last.number, exact_text(last.came, visit.lang))
         receipt = own_visit.said["lti"]["receipt"].format(last.receipt)
@@ -266,7 +267,7 @@ class SiteHost:
         return Reply(self.pages.page("lti_site_handed_in", visit.lang, names))
 
     def _sent(self, visit: Visit, state: State | None = None) -> str:
-        """Where the points stand on their way."""
+        """Return the state of the score on its way to the platform."""
         said, launch = words(visit.lang)["lti"], visit.launch
         if not (launch.line or launch.lines):
             return str(said["score_none"])
@@ -303,7 +304,7 @@ class SiteHost:
         return {one.person for one in opened if one.custom.get("assignment", "").strip() == named}
 
     def _class(self, visit: Visit, number: int) -> Reply:
-        """The class as the desk has it, to look at; what is decided is decided on the site, by who has an account there."""
+        """Return the class table, read-only; decisions are made on the site, with an account there."""
         if visit.path:
             raise LtiRefused("page", 404, "no such page")
         now, lang = class_now(self._site, number), visit.lang
@@ -321,7 +322,7 @@ class SiteHost:
 
 
 def _worth(connection: Connection, number: int) -> float:
-    """The points of an assignment: those of the first paper that was issued."""
+    """Return the points of an assignment: those of the first issued paper."""
     issued = issued_of(connection, number)
     student = next(iter(issued.students), "")
     own = issued.issued_to(student) if student else {}
@@ -330,7 +331,7 @@ def _worth(connection: Connection, number: int) -> float:
 
 
 def _unread(visit: Visit, own: OwnPaper, texts: Mapping[str, str]) -> list[str]:
-    """A sentence for each answer that could not be read."""
+    """Return a sentence for each answer that could not be read."""
     form = str(words(visit.lang)["lti"]["unread_line"])
     return [form.format(box.number, told.says) for box, _, told in read_lines(own, texts) if told.is_in_doubt]
 
@@ -343,7 +344,7 @@ def _number(form: Form) -> int:
 
 
 def _members(visit: Visit, lang: str) -> tuple[Sequence[Member] | None, str]:
-    """The platform's roster, and what to say where there is none."""
+    """Return the platform's roster, and the sentence to show if there is none."""
     said = words(lang)["lti"]["class"]
     if visit.roster is None:
         return None, said["no_roster"].format(said["roster_off"])
@@ -354,7 +355,7 @@ def _members(visit: Visit, lang: str) -> tuple[Sequence[Member] | None, str]:
 
 
 def _not_there(members: Sequence[Member] | None, names: set[str], known: set[str]) -> list[str]:
-    """Students of the platform who have no paper yet."""
+    """Return the students of the platform who have no paper yet."""
     return sorted(
         (one.name or one.person for one in students(members or ()) if one.person not in known and folded(one.name) not in names),
         key=folded,

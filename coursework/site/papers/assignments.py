@@ -42,7 +42,7 @@ _ORDER = (Phase.OPEN, Phase.LATE, Phase.TO_COME, Phase.CLOSED)
 
 
 def listed(visit: Visit) -> Reply:
-    """All that somebody has to do, may do, and did."""
+    """Return the page of the person's assignments, by phase."""
     with visit.site.store.reading() as connection:
         numbers = [one.id for one in places(connection, visit.who.id) if one.publication is not None]
     for number in numbers:
@@ -58,7 +58,7 @@ def listed(visit: Visit) -> Reply:
 
 
 def paper(visit: Visit) -> Reply:
-    """One's own paper to fill in; sent, it comes back as it is read."""
+    """Return the person's paper to fill in; a submitted form returns with its reading."""
     state, own = own_assignment(visit)
     if visit.posted:
         return _read_back(visit, state, own)
@@ -75,7 +75,7 @@ def _shown(
     problem: str = "",
     status: int = 200,
 ) -> Reply:
-    """The paper with what is kept of it in its boxes, or with other ``boxes`` where they are told."""
+    """Return the page of the paper, with the drafts in its boxes, or with the given ``boxes``."""
     number, who, sheet = state.place.id, visit.who.id, sheet_of(state.place, own)
     with visit.site.store.reading() as connection:
         stands = drafts(connection, who, sheet) if boxes is None else boxes
@@ -91,7 +91,7 @@ def _shown(
 
 
 def keep(visit: Visit) -> Reply:
-    """What is typed is kept, as long as it may be handed in."""
+    """Store drafts while the assignment can be submitted."""
     if not visit.posted:
         raise Refused("method", 405)
     state, own = own_assignment(visit)
@@ -111,13 +111,13 @@ def _read_back(visit: Visit, state: State, own: OwnPaper) -> Reply:
 
 
 def _kept_too(visit: Visit, state: State, own: OwnPaper, texts: Mapping[str, str]) -> dict[str, Box]:
-    """What a form without a script brings is kept as well; gives the boxes as they now stand for this page."""
+    """Store the drafts of a form without a script as well; return the boxes for this page."""
     now, _ = keep_form(visit, sheet_of(state.place, own), texts, {}, visit.form.text("_versions"))
     return {name: Box(text, now[name].version if name in now else 0) for name, text in texts.items()}
 
 
 def _too_late(visit: Visit, state: State) -> Reply:
-    """What is handed in after all is over: it is not taken, and that is said."""
+    """Refuse a submission that is no longer accepted."""
     if state.done:
         raise Refused("no_try_left" if state.phase.takes else "not_open", 409)
     raise Refused("not_open", 409)
@@ -131,7 +131,7 @@ def _confirming(
     source: str,
     notes: Sequence[str] = (),
 ) -> Reply:
-    """How each answer is read, to be confirmed."""
+    """Return the reading of each answer, for confirmation."""
     lines = read_lines(own, texts)
     late = state.place.own.late_seconds(state.now)
     charged = state.place.own.charged(late)
@@ -147,7 +147,7 @@ def _confirming(
 
 
 def files(visit: Visit) -> Reply:
-    """The very same paper as a PDF or as a notebook."""
+    """Return the paper as a PDF or as a notebook."""
     state, own = own_assignment(visit)
     renderer, stem = renderer_of(visit.site.course.folder), _stem(state, own)
     if visit.path["file"] == "paper.pdf":
@@ -163,7 +163,7 @@ def _stem(state: State, own: OwnPaper) -> str:
 
 
 def take_file(visit: Visit) -> Reply:
-    """A notebook or a file of answers that was filled in elsewhere: read, never run, and shown as it is read."""
+    """Read a completed notebook or file of answers, without running it, and return its reading."""
     if not visit.posted:
         raise Refused("method", 405)
     state, own = own_assignment(visit)
@@ -188,7 +188,7 @@ def _ending(sent: Upload) -> str:
 
 
 def _of_file(visit: Visit, own: OwnPaper, sent: Upload) -> tuple[dict[str, str], list[str]]:
-    """The answers of a file to the person's own paper, by box, and what is to be known of it.
+    """Return the answers of a file to the person's own paper, by box, and messages about the file.
 
     Raises
     ------
@@ -237,7 +237,7 @@ def confirm(visit: Visit) -> Reply:
 
 
 def receipt(visit: Visit) -> Reply:
-    """What was handed in, when, and what comes next."""
+    """Return the receipt of a submission, with the next steps."""
     state, own = own_assignment(visit)
     row = receipts.find(visit, state.place.id, str(visit.path["code"]))
     told = receipts.told_of(visit, row, answers=True)
@@ -258,7 +258,7 @@ def receipt(visit: Visit) -> Reply:
 
 
 def feedback_from(visit: Visit, state: State) -> str:
-    """When somebody hears what became of it."""
+    """Return the time of the feedback, as a sentence."""
     said, own = visit.said["assignments"]["feedback_when"], state.place.own
     if own.feedback == "date":
         return str(said["date"]).format(state.moment(own.feedback_on))
@@ -269,7 +269,7 @@ def feedback_from(visit: Visit, state: State) -> str:
 
 
 def feedback(visit: Visit) -> Reply:
-    """What became of what was handed in, as far as it is told by now."""
+    """Return the feedback on a submission, as far as it is released."""
     state, own = own_assignment(visit)
     if not state.tells("feedback"):
         raise Refused("feedback_later", 409)

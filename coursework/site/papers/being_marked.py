@@ -24,7 +24,7 @@ class Marking(NamedTuple):
 
 
 def being_marked(visit: Visit, delivery: int) -> Marking | None:
-    """Return what is told of a hand-in that waits for its marks; None of one that is marked."""
+    """Return the message for a submission that waits for its marks; None if it is marked."""
     said = visit.said["assignments"]
     with visit.site.store.reading() as connection:
         one = job_of(connection, delivery)

@@ -1,4 +1,4 @@
-"""What is told of what was handed in: the sheets that ``grade`` prints, as far as the publication tells them."""
+"""Feedback on submissions: the sheets that ``grade`` prints, as far as the publication releases them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from coursework.site.papers.own_paper import OwnPaper
 def feedback_of(
     visit: Visit, state: State, own: OwnPaper, chosen: Delivery
 ) -> tuple[FeedbackPaper, list[str]]:
-    """What became of a hand-in, and what is said above it: of a late one, what it costs."""
+    """Return the feedback on a submission, and the notes above it: for a late one, the penalty."""
     mark_delivery(visit.site.course, visit.site.store, chosen.id)
     with visit.site.store.reading() as connection:
         sheets = [
@@ -38,7 +38,7 @@ def feedback_of(
 
 
 def _allowed(content: dict[str, Any], state: State) -> dict[str, Any]:
-    """What was issued, with the right answers kept back before their time."""
+    """Return the issued content, without the right answers before their release."""
     stated = content.get("assignment") or {"name": state.place.name, "exercises": _exercises(content)}
     if not state.tells("answers"):
         stated = {**stated, "answers": "never"}
@@ -50,7 +50,8 @@ def _exercises(content: dict[str, Any]) -> list[str]:
 
 
 def _shows_solutions(issued: Issued, state: State) -> bool:
-    """The worked solutions come with the right answers, and not before the day that the assignment states."""
+    """Return True if the worked solutions are released: with the right answers, and not before the day that
+    the assignment states."""
     stated = issued.assignment or {}
     if not state.tells("answers") or stated.get("answers") == "never":
         return False
@@ -59,7 +60,7 @@ def _shows_solutions(issued: Issued, state: State) -> bool:
 
 
 def _charged(visit: Visit, state: State, issued: Issued, told: FeedbackPaper, chosen: Delivery) -> list[str]:
-    """What coming late costs, beside the points: the marks of the answers are what they are."""
+    """Return notes on the penalty for lateness, which is separate from the marks of the answers."""
     if not chosen.late:
         return []
     said = visit.said["assignments"]
@@ -80,5 +81,5 @@ def _number(number: float, lang: str) -> str:
 
 
 def charged_text(share: float, lang: str) -> str:
-    """A share as its percent, ``10 %``, without the sign."""
+    """Return a share as a number of percent, without the sign: ``10`` for 0.1."""
     return _number(100 * share, lang)

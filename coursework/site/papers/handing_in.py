@@ -1,4 +1,5 @@
-"""What somebody hands in: once, whatever is pressed twice, opened twice, or sent again after the line was lost.
+"""Submission of answers: stored once, even if a form is sent twice, opened twice, or sent again after a lost
+connection.
 
 A form holds which of the person's hand-ins it is to be. A number that is taken is that hand-in again, and never another; the
 person's row in the database is held meanwhile, so that two that come together come one after the other.
@@ -37,7 +38,7 @@ ON_THE_PAGE, IN_A_FILE, AS_SAVED = "site", "site: a file", "site: as saved when 
 
 
 class HandedIn(NamedTuple):
-    """What became of a form that was sent to be handed in."""
+    """Result of a submitted form."""
 
     delivery: Delivery
     is_new: bool
@@ -45,7 +46,7 @@ class HandedIn(NamedTuple):
 
 
 def sheet_of(place: Place, paper: OwnPaper) -> str:
-    """What drafts of the paper are kept under."""
+    """Return the key under which drafts of the paper are stored."""
     return f"assignment/{place.id}" if paper.sitting == 1 else f"assignment/{place.id}/{paper.sitting}"
 
 
@@ -134,7 +135,8 @@ def _deliver(
 
 
 def mark(site: Site, made: int) -> None:
-    """Mark what was handed in, where no worker does. It is kept already: what goes wrong here is marked later."""
+    """Mark a submission, unless a worker does. The submission is already stored: after a fault, it is marked
+    later."""
     if site.has_worker:
         return
     try:
@@ -146,7 +148,8 @@ def mark(site: Site, made: int) -> None:
 
 
 def rows_for(paper: OwnPaper, texts: Texts, number: int, came: datetime, source: str) -> list[Row]:
-    """A row for every question, blank ones too: what was handed in says what was not answered."""
+    """Return a row for every question, including blank ones, so that the submission records the questions
+    left blank."""
     origin = Collected(sitting=number, submitted=came.isoformat(timespec="seconds"))
     return [
         Row(
@@ -161,7 +164,7 @@ def rows_for(paper: OwnPaper, texts: Texts, number: int, came: datetime, source:
 
 
 def content(rows: Iterable[Any]) -> list[list[str]]:
-    """What was handed in: exercise, seed, part and answer of each question."""
+    """Return the submitted answers: exercise, seed, part and answer of each question."""
     return [[r.exercise, r.seed, r.part, str(r.answer or "")] for r in rows if isinstance(r, Row)]
 
 
@@ -277,7 +280,7 @@ def _saved(site: Site, connection: Connection, number: int, person_id: int, at: 
 
 
 def _known(came: Any, otherwise: datetime) -> datetime:
-    """A time that the database computed."""
+    """Return a time that the database computed; ``otherwise`` if it computed none."""
     if isinstance(came, str):
         came = datetime.fromisoformat(came)
     if not isinstance(came, datetime):
@@ -289,7 +292,7 @@ def _known(came: Any, otherwise: datetime) -> datetime:
 
 
 def receipt_called(connection: Connection, code: str, number: int | None = None) -> Any | None:
-    """The delivery of a receipt, with its assignment and its person; None where nobody was given it."""
+    """Return the submission of a receipt, with its assignment and its person; None for an unknown receipt."""
     from coursework.database.tables import assignment
 
     found = (

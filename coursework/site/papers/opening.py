@@ -28,7 +28,7 @@ _AFTER_VALUE = re.compile(r' value="[^"]*"')
 
 
 def made(site: Site, number: int, person_id: int, own: OwnPaper, *, keeps: bool) -> Pieces:
-    """Make the pieces of a page, and keep them where that is told.
+    """Make the parts of a page; cache them if ``keeps``.
 
     A database that takes nothing refuses no reader, and of who was erased meanwhile nothing is kept.
     """

@@ -1,4 +1,4 @@
-"""One assignment as it stands for the person who asks: whether it is theirs, open, handed in, told."""
+"""Assignment as it concerns the current user: access, phase, submissions, and release of marks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from coursework.site.papers.own_paper import OwnPaper, own_paper
 
 @dataclass(frozen=True)
 class State:
-    """Where an assignment stands for the person who asks."""
+    """State of an assignment for the current user."""
 
     place: Place
     lang: str
@@ -53,13 +53,13 @@ class State:
 
     @property
     def closed_for_both(self) -> datetime | None:
-        """When it has closed for the class and for this person; none where that never comes."""
+        """Time at which it has closed for the class and for this person; None if that never happens."""
         assert self.place.publication is not None
         ends = self.place.own.ends, self.place.publication.ends
         return None if ends[0] is None or ends[1] is None else max(ends[0], ends[1])
 
     def tells(self, what: str) -> bool:
-        """Whether ``feedback`` or ``answers`` are told now."""
+        """Return True if ``feedback`` or ``answers`` are released now."""
         ends = self.closed_for_both if what == "feedback" else self.everybody_ends
         return self.place.own.tells(what, self.now, ends)
 
@@ -71,7 +71,7 @@ class State:
 
     @property
     def left(self) -> str:
-        """What is left of the time; nothing where it does not close, or has."""
+        """Remaining time as text; empty if the assignment does not close, or has closed."""
         own = self.place.own
         ends = own.closes if self.phase is Phase.OPEN else own.ends if self.phase is Phase.LATE else None
         return "" if ends is None else length_text(ends - self.now, self.lang)
@@ -87,7 +87,7 @@ def state_of(visit: Visit, place: Place, connection: Connection) -> State:
 
 
 def to_hand_in(visit: Visit) -> list[State]:
-    """What somebody may hand in now and has not yet."""
+    """Return the assignments that a person may submit now and has not submitted yet."""
     with visit.site.store.reading() as connection:
         published = [one for one in places(connection, visit.who.id) if one.publication is not None]
         found = [state_of(visit, one, connection) for one in published]
@@ -95,7 +95,7 @@ def to_hand_in(visit: Visit) -> list[State]:
 
 
 def own_place(visit: Visit, connection: Connection) -> Place:
-    """The assignment that is asked for, where it is published and the person was issued a paper of it.
+    """Return the requested assignment, if it is published and the person was issued a paper of it.
 
     Raises
     ------
@@ -109,13 +109,13 @@ def own_place(visit: Visit, connection: Connection) -> Place:
 
 
 def own_assignment(visit: Visit) -> tuple[State, OwnPaper]:
-    """Where it stands, and the paper; nothing of it before it opens."""
+    """Return the state of the assignment and the paper; refuse it before it opens."""
     with _opened(visit) as (connection, place, own):
         return state_of(visit, place, connection), own
 
 
 def own_sheet(visit: Visit) -> tuple[Place, OwnPaper]:
-    """The paper alone, for who hands it in: whether it is taken is asked when it is stored."""
+    """Return the assignment and the paper, without the state: the submission is checked when it is stored."""
     with _opened(visit) as (_, place, own):
         return place, own
 

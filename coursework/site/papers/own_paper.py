@@ -53,7 +53,7 @@ class Box(NamedTuple):
 
 @dataclass(frozen=True)
 class OwnPaper:
-    """What a student was issued: a variant of each exercise, in one language."""
+    """Paper of a student: a variant of each exercise, in one language."""
 
     course: Course[Any]
     content: Mapping[str, Any]  #: what ``issued.json`` says of it
@@ -95,7 +95,7 @@ class OwnPaper:
         return self.shelf.get(("issued", dumps(whole, sort_keys=True)), lambda: one.from_record(whole))
 
     def _spoken(self, exercise: str) -> str:
-        """The language of an exercise on this paper."""
+        """Return the language of an exercise on this paper."""
         spoken = self.course[exercise].languages
         return self.lang if self.lang in spoken else spoken[0]
 
@@ -122,7 +122,7 @@ class OwnPaper:
 
     @cached_property
     def heading(self) -> Heading:
-        """What stands above it."""
+        """Heading of the paper."""
         found = heading_of(self.course, self.issued, self.student, self.sitting, self.lang)
         return replace(found, instructions=text_in(self.instructions, self.lang))
 
@@ -132,12 +132,12 @@ class OwnPaper:
         return Paper(self.heading, tuple(variant.handout(self.student) for variant in self.variants))
 
     def read(self, name: str, text: str) -> ReadBack:
-        """How what stands in a box is read."""
+        """Return the reading of a text in a box."""
         box = self.boxes[name]
         return read_back(box.variant, box.part, text)
 
     def texts(self, form: Form) -> dict[str, str]:
-        """What a form of the page holds, by box; ticks of one box joined.
+        """Return the answers in a form of the page, by box; ticks of one box are joined.
 
         Raises
         ------
@@ -152,12 +152,12 @@ class OwnPaper:
         return found
 
     def pieces(self) -> Pieces:
-        """The pieces of its page, with nothing in its boxes."""
+        """Return the parts of its page, with empty boxes."""
         names, env = self.shown(self.paper), environment_of(self.course.folder.template_folders, self.lang)
         return Pieces(render(env, "_paper_head.html.j2", names), render(env, "_paper_body.html.j2", names))
 
     def shown(self, one: Paper | FeedbackPaper) -> dict[str, Any]:
-        """The names that the page of a paper, or of what was said of it, sees."""
+        """Return the names for the template of a paper, or of its feedback."""
         env = environment_of(self.course.folder.template_folders, self.lang)
         return {**papers.context(one, "html.j2", partial(render, env)), "image": papers.image, "keeping": ""}
 
@@ -170,7 +170,7 @@ def own_paper(
     lang: str,
     shelf: Shelf | None = None,
 ) -> OwnPaper:
-    """The paper of a person, who was issued one; its variants are kept on a shelf, where one is told."""
+    """Return the paper of a person; its variants are cached in ``shelf``, if given."""
     content = issued_content(connection, place.id, person)
     told = place.asked.get("instructions") or {}
     instructions = {"": told} if isinstance(told, str) else told
@@ -186,7 +186,7 @@ def read_lines(paper: OwnPaper, texts: Texts) -> list[tuple[Box, str, ReadBack]]
 
 
 def counts(lines: Sequence[tuple[Box, str, ReadBack]]) -> dict[str, int]:
-    """How many are answered, in doubt, and blank."""
+    """Return the number of answered, doubtful, blank, and all questions."""
     doubt = sum(one.is_in_doubt for _, _, one in lines)
     blank = sum(one.status == "missing" for _, _, one in lines)
     return {"answered": len(lines) - doubt - blank, "doubt": doubt, "blank": blank, "all": len(lines)}

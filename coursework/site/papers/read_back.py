@@ -1,4 +1,4 @@
-"""How an answer is read, told before it counts: nothing here knows whether it is right."""
+"""Reading of answers, shown before they count, without any check for correctness."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from coursework.selfstudy.reading_back import read_back as readings
 
 
 class ReadBack(NamedTuple):
-    """What was understood of a text."""
+    """Reading of a text."""
 
     status: str  #: ``read``, ``waits`` for a person, ``missing``, ``unreadable`` or ``wrong_unit``
     says: str  #: plain text; nothing of an empty box
@@ -24,8 +24,8 @@ class ReadBack(NamedTuple):
 
 
 def read_back(variant: Any, part: Part, text: str) -> ReadBack:
-    """How an answer is read: as what, or why not. Of two honest readings both are told, since which is meant hangs on the
-    reference, and that is not looked at."""
+    """Return the reading of an answer, or the reason for which it cannot be read. Two plausible readings are
+    both returned: the choice between them depends on the reference, which is not used here."""
     reading, said = read(variant, part, text), words(variant.lang, "site")["read_back"]
     if reading.status == "missing":
         return ReadBack("missing", "")

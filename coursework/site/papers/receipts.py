@@ -1,4 +1,4 @@
-"""What somebody is given to show that they handed in: a code, a time, a digest, and what was handed in."""
+"""Receipts of submissions: a code, a time, a digest, and the submitted answers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from coursework.site.papers.handing_in import content, digest, receipt_called
 
 
 def told_of(visit: Visit, row: Any, *, answers: bool) -> dict[str, Any]:
-    """What a receipt says of a delivery; with the ``answers`` where they may be shown."""
+    """Return the content of a submission's receipt; with the ``answers`` if they may be shown."""
     with visit.site.store.reading() as connection:
         handed = content(rows_of(connection, row.assignment_id, row.id))
     told = {
@@ -38,7 +38,7 @@ def told_of(visit: Visit, row: Any, *, answers: bool) -> dict[str, Any]:
 
 
 def as_text(visit: Visit, told: dict[str, Any], row: Any) -> str:
-    """A receipt as a text to keep."""
+    """Return a receipt as text."""
     said = words(visit.lang, "site")["receipts"]
     lines = [
         said["title"], "",
@@ -56,7 +56,7 @@ def as_text(visit: Visit, told: dict[str, Any], row: Any) -> str:
 
 
 def find(visit: Visit, number: int, code: str) -> Any:
-    """The person's own delivery of a receipt.
+    """Return the person's own submission with a receipt.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def find(visit: Visit, number: int, code: str) -> Any:
 
 
 def file(visit: Visit) -> Reply:
-    """A receipt to keep, as a text or as JSON."""
+    """Return a receipt as a file, as text or as JSON."""
     row = find(visit, int(visit.path["number"]), str(visit.path["code"]))
     told = told_of(visit, row, answers=True)
     if visit.path["ending"] == "json":
@@ -84,7 +84,7 @@ def file(visit: Visit) -> Reply:
 
 
 def verify(visit: Visit) -> Reply:
-    """Whose a receipt is, for the staff: its code is looked up, and a digest compared."""
+    """Return the submission of a receipt, for staff: look up its code, and compare a digest."""
     code, told_digest = visit.query.get("code", "")[:40], visit.query.get("digest", "").strip().lower()[:80]
     row = told = None
     if code:

@@ -1,4 +1,4 @@
-"""What somebody may be told of an assignment by now: the paper from when it opens, marks from when they are told."""
+"""Release of an assignment's content: the paper once it opens, marks once they are released."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ from coursework.site.papers.own_assignment import state_of
 
 
 class Told(NamedTuple):
-    """What may be told."""
+    """Released content of an assignment."""
 
     paper: bool = True
     marks: bool = True
 
 
 def all_told(number: int) -> Told:
-    """What the staff is told."""
+    """Return the content that staff may see: all of it."""
     return Told()
 
 
 def told_to(connection: Connection, visit: Visit) -> Callable[[int], Told]:
-    """What who asks may be told, by assignment: of one that is not published, nothing."""
+    """Return the function that gives the released content of an assignment to the current user; nothing of an
+    unpublished one."""
     if visit.who.may(Permission.ASSIGNMENTS_READ):
         return all_told
     states = [state_of(visit, one, connection) for one in places(connection, visit.who.id) if one.publication]

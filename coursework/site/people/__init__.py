@@ -1,1 +1,1 @@
-"""Who comes in: accounts, invitations, the people of a site, and what is kept of them."""
+"""People of the site: accounts, invitations, and personal data."""

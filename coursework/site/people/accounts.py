@@ -39,7 +39,7 @@ _HAPPENED = 20  #: lines on what was done with an account
 
 
 def as_login(text: str) -> str:
-    """A login as it is kept: spaces around it and capitals do not count."""
+    """Return the normalised form of a login, without surrounding spaces and capitals."""
     return " ".join(text.split()).casefold()[:320]
 
 
@@ -47,7 +47,7 @@ def as_login(text: str) -> str:
 
 
 def sign_in(visit: Visit) -> Reply:
-    """A login and its password; nobody learns which of the two did not fit."""
+    """Sign in with a login and a password; the response does not tell which of the two is wrong."""
     if visit.site.entrance is not Entrance.ACCOUNTS:
         return _without_account(visit)
     after = local(visit.form.text("after") or visit.query.get("after", ""))
@@ -94,7 +94,7 @@ def sign_out(visit: Visit) -> Reply:
 
 
 def invited(site: Site, connection: Connection, person: int, login: str, role: str) -> str:
-    """Invite a person; gives the address at which they choose a password, which is kept nowhere.
+    """Invite a person; return the address at which they choose a password. The address itself is not stored.
 
     Raises
     ------
@@ -108,12 +108,12 @@ def invited(site: Site, connection: Connection, person: int, login: str, role: s
 
 
 def digest_of(end: str) -> str:
-    """What is kept of an invitation's address."""
+    """Return the stored digest of an invitation's address."""
     return hashlib.sha256(end.encode()).hexdigest()
 
 
 def invitation(visit: Visit) -> Reply:
-    """A password is chosen: once, and before the invitation is over."""
+    """Accept an invitation, with the choice of a password: once, and before it expires."""
     end = digest_of(str(visit.path["token"]))
     with visit.site.store.reading() as connection:
         found = account_invited(connection, end, visit.at)
@@ -140,7 +140,7 @@ def _invitation_page(visit: Visit, mine: Any, status: int = 200, **told: Any) ->
 
 
 def _chosen(visit: Visit, mine: Any) -> tuple[str, str]:
-    """What is kept of the password that is chosen, or else why it will not do."""
+    """Return the hash of the chosen password, or the reason for which it is refused."""
     password, again = visit.form.text("password"), visit.form.text("again")
     wrong = passwords.weakness(password, mine.login, mine.name) or ("again" if password != again else "")
     return ("", wrong) if wrong else (passwords.kept(password), "")

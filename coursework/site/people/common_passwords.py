@@ -50,7 +50,7 @@ def is_common(password: str, *context: str) -> bool:
 
 
 def _core(text: str) -> str:
-    """The text without figures and signs at its ends."""
+    """Return the text without digits and signs at its ends."""
     return re.sub(r"^[\W\d_]+|[\W\d_]+$", "", text)
 
 
@@ -66,5 +66,5 @@ def _is_row(text: str) -> bool:
 
 
 def _is_repeated(text: str) -> bool:
-    """A few characters over and over."""
+    """Return True if the text repeats a few characters."""
     return any(text == (text[:size] * len(text))[: len(text)] for size in range(1, _LONGEST_UNIT + 1))

@@ -15,14 +15,14 @@ _YEAR = 365 * 24 * 3600
 
 
 def first(visit: Visit) -> Reply:
-    """Where who comes goes on."""
+    """Redirect to the first page of the current user."""
     if visit.person is None:
         return Reply(goto=door_to(visit))
     return Reply(goto="/desk" if visit.person.may(Permission.DESK) else "/practice")
 
 
 def door_to(visit: Visit) -> str:
-    """Where one comes in, to go on to the page that was asked for."""
+    """Return the address of the sign-in page, with the requested page as its target."""
     if visit.site.entrance is Entrance.DEMO:
         return "/who"
     return "/sign-in" if visit.address == "/" else f"/sign-in?after={quote(visit.address, safe='/')}"
@@ -36,7 +36,7 @@ def shared_file(visit: Visit) -> Reply:
 
 
 def choose_person(visit: Visit) -> Reply:
-    """Who to be: in a demonstration alone."""
+    """Choose the current user, in a demonstration alone."""
     if visit.site.entrance is not Entrance.DEMO:
         raise Refused("page", 404)
     with visit.site.store.reading() as connection:
@@ -50,7 +50,7 @@ def choose_person(visit: Visit) -> Reply:
 
 
 def choose_language(visit: Visit) -> Reply:
-    """The other languages in turn; back to the page that asked."""
+    """Switch to the next language; redirect to the page before."""
     if not visit.posted:
         return Reply(goto="/")
     known = visit.site.languages
@@ -59,7 +59,7 @@ def choose_language(visit: Visit) -> Reply:
 
 
 def owner(site: Site) -> int:
-    """Who opens the site on their own machine: staff, and their own student."""
+    """Return the owner of a site on their own machine: an administrator who is also a student."""
     with site.store.reading() as connection:
         known = person_by_who(connection, "owner")
     if known is not None and known.role:

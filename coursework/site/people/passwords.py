@@ -1,4 +1,4 @@
-"""Passwords: which will do, what is kept of one, and whether one fits."""
+"""Passwords: requirements, hashing, and verification."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ def weakness(password: str, *known: str) -> str:
 
 
 def kept(password: str) -> str:
-    """What is kept of a password: nobody finds it by that."""
+    """Return the hash of a password, from which the password cannot be recovered."""
     with _AT_A_TIME:
         return _HASHER.hash(_plain(password))
 
 
 def fits(secret: str, password: str) -> bool:
-    """Whether a password is the one that was kept; it takes the same time where nothing was kept."""
+    """Return True if a password matches a stored hash; it takes as long if nothing is stored."""
     try:
         with _AT_A_TIME:
             return _HASHER.verify(secret or _of_nobody(), _plain(password)) and bool(secret)
@@ -45,7 +45,7 @@ def fits(secret: str, password: str) -> bool:
 
 
 def is_dated(secret: str) -> bool:
-    """Whether a password is kept in a way that is no longer the usual one."""
+    """Return True if a hash uses outdated parameters."""
     return _HASHER.check_needs_rehash(secret)
 
 
@@ -55,5 +55,5 @@ def _of_nobody() -> str:
 
 
 def _plain(password: str) -> str:
-    """A password as any keyboard sends it, no longer than one is."""
+    """Return the normalised form of a password, cut far above the greatest length."""
     return unicodedata.normalize("NFKC", password[: 4 * LONGEST])

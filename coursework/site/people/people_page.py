@@ -1,4 +1,4 @@
-"""The desk's page of people: who is on the site, what they may, and the invitations by which they come in."""
+"""Instructor's page of people: the people of the site, their permissions, and their invitations."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Link(NamedTuple):
 
 
 def everybody(visit: Visit) -> Reply:
-    """The people of the site; forms of the page invite some of them."""
+    """Return the people of the site; forms of the page invite some of them."""
     if visit.posted:
         return _invite(visit)
     with visit.site.store.reading() as connection:
@@ -65,7 +65,7 @@ def everybody(visit: Visit) -> Reply:
 
 
 def _staff_roles(visit: Visit) -> list[str]:
-    """The roles with which somebody new of the staff can be added."""
+    """Return the roles that new staff can be given."""
     return [role for role in ROLES if role in STAFF] if visit.who.may(Permission.PEOPLE_INVITE_STAFF) else []
 
 
@@ -87,7 +87,8 @@ def _line(visit: Visit, one: Any, account: Any) -> Line:
 
 
 def login_of(person: Any) -> str:
-    """What somebody of a roster signs in with: their e-mail, else their login, else what tells them apart."""
+    """Return the login of a person from a roster: the e-mail address, or else the login, or else the
+    identifier."""
     told = {plain(title): str(value) for title, value in (person.columns or {}).items() if value}
     found = next((told[title] for title in (*EMAIL, *LOGIN) if title in told), "")
     return as_login(found or person.who)
@@ -200,7 +201,7 @@ def add_staff(visit: Visit) -> Reply:
 
 
 def one_person(visit: Visit) -> Reply:
-    """The page of a person: the account, the role, what can be done for them."""
+    """Return the page of a person: the account, the role, and the available actions."""
     with visit.site.store.reading() as connection:
         one = somebody(visit, connection)
         line = _line(visit, one, accounts(connection).get(one.id))
@@ -217,12 +218,12 @@ def one_person(visit: Visit) -> Reply:
 
 
 def _gone(areas: Sequence[Area], groups: Any) -> dict[str, str]:
-    """The groups of an assistant that no roster names any more."""
+    """Return the groups of an assistant that no roster contains any more."""
     return {one.group: one.group for one in areas if one.group is not None and one.group not in groups}
 
 
 def _ties(connection: Connection, person: int) -> list[tuple[Any, str]]:
-    """The accounts of platforms that open the site as a person, and how each was tied."""
+    """Return the accounts on platforms that sign in as a person, and the way in which each was linked."""
     lines = noted(connection, what=("connected a platform",), subject=person)
     by_password = {str(line.about.get("platform")) for line in lines}
     return [
@@ -278,7 +279,8 @@ def change_role(visit: Visit) -> Reply:
 
 
 def _areas_of_form(visit: Visit, connection: Connection) -> list[Area]:
-    """The areas that a form ticks: each group in each assignment; nothing where one of the two lists is left empty."""
+    """Return the areas that a form selects: each group in each assignment; none if one of the two lists is
+    empty."""
     known, groups = {str(one.id): one.id for one in listed(connection)}, groups_known(connection)
     numbers = visit.form.texts.get("assignment", ())
     named = visit.form.texts.get("group", ())
@@ -289,12 +291,12 @@ def _areas_of_form(visit: Visit, connection: Connection) -> list[Area]:
 
 
 def _told(area: Area) -> str:
-    """An area as the audit records it: the assignment's number and the group, ``*`` for every one."""
+    """Return an area as the audit records it: the assignment's number and the group, ``*`` for all."""
     return f"{area.assignment or _ANY} / {_ANY if area.group is None else area.group}"
 
 
 def somebody(visit: Visit, connection: Connection) -> Any:
-    """The person whom the address names.
+    """Return the person whom the address names.
 
     Raises
     ------
@@ -308,7 +310,7 @@ def somebody(visit: Visit, connection: Connection) -> Any:
 
 
 def number(text: str) -> int:
-    """A number of an address; 0, which is nobody's, for anything else."""
+    """Return a number in an address; 0, which is nobody's, for anything else."""
     return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else 0
 
 

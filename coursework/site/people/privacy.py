@@ -1,4 +1,4 @@
-"""What is kept of somebody: given to them, erased, and who did what."""
+"""Personal data: export, erasure, and the audit."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ Rows = Sequence[Mapping[str, Any]]
 
 
 def own_data(visit: Visit) -> Reply:
-    """All that is kept of who asks; of what an assignment keeps back until its time, that it is kept back."""
+    """Return all stored data of the current user; content that is not released yet is only mentioned."""
     with visit.site.store.reading() as connection:
         return _given(visit, connection, visit.who.id, told_to(connection, visit))
 
 
 def their_data(visit: Visit) -> Reply:
-    """All that is kept of somebody, for the staff."""
+    """Return all stored data of a person, for staff."""
     with visit.site.store.reading() as connection:
         one = somebody(visit, connection)
         return _given(visit, connection, one.id, all_told)
@@ -60,7 +60,7 @@ def _given(visit: Visit, connection: Connection, person: int, told: Callable[[in
 
 
 def _withheld(tables: Mapping[str, Rows], told: Callable[[int], Told]) -> dict[str, Rows]:
-    """The tables without what is not told yet."""
+    """Return the tables without the content that is not released yet."""
     markings = {row["id"]: row["assignment_id"] for row in tables["marking"]}
     seen = {
         "dealt": [row for row in tables["dealt"] if told(row["assignment_id"]).paper],
@@ -144,7 +144,8 @@ def erase_person(visit: Visit) -> Reply:
 
 
 def audit(visit: Visit) -> Reply:
-    """Who did what, the latest first, a hundred lines a page; of one person, or of one kind, where the query says so."""
+    """Return the audit, the latest entries first, a hundred lines a page; of one person or of one kind, if
+    the query names it."""
     asked = {name: visit.query.get(name, "").strip()[:200] for name in ("by", "what", "of")}
     before, subject = number(visit.query.get("before", "")), number(asked["of"])
     with visit.site.store.reading() as connection:
@@ -161,7 +162,7 @@ def audit(visit: Visit) -> Reply:
 
 
 def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:
-    """What a line is about: people by their names, as long as they are there."""
+    """Return the description of an audit line, with the names of people who still exist."""
     told = dict(line.about) if isinstance(line.about, Mapping) else {"": line.about}
     people = [*told.pop("people", ()), *([told.pop("person")] if "person" in told else [])]
     called = [names[one][0] for one in people if one in names and names[one][1] <= line.at]

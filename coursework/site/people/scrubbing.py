@@ -1,4 +1,5 @@
-"""No byte of an erased person stays in the files of the site's databases, also where another process held them at that moment."""
+"""Scrubbing: removal of every byte of an erased person from the database files, even if another process was
+using them at the time of erasure."""
 
 from __future__ import annotations
 
