@@ -1,4 +1,5 @@
-"""What a process makes ready when it begins, since whoever asks first would wait for it: solutions, the course's contents, templates."""
+"""Warm-up of a process: it prepares solutions, the course's contents and templates, so that the first request
+is not slow."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class Worker:
         self._variants = Shelf(_VARIANTS)
 
     def run(self) -> None:
-        """Work until the process is told to end."""
+        """Work until the process is told to terminate."""
         self._tell_faults(self.take_over)
         self._tell_faults(self.prepare_all)
         dates = 0.0
@@ -183,5 +183,5 @@ class Worker:
 
 
 def work(site: Site, name: str) -> None:
-    """Work for a site until this process is told to end."""
+    """Work for a site until this process is told to terminate."""
     Worker(site, name).run()

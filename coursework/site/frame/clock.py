@@ -124,7 +124,7 @@ class SteadyClock:
 
     @property
     def is_steady(self) -> bool:
-        """Whether a date may be written down as passed for good."""
+        """Return True if a date may be recorded as passed for good."""
         return self._leapt is None and self._elapsed() >= self._steady_from
 
     def _note(self, now: datetime, elapsed: float, leap: Leap | None) -> None:

@@ -82,7 +82,7 @@ class OwnPaper:
 
     @property
     def sitting(self) -> int:
-        """Which paper it is: 2 for a make-up."""
+        """Number of the paper: 2 for a make-up."""
         return max(self.issued.sitting_of(self.student, e, seed) for e, seed in self.seeds.items())
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What somebody has begun to practise, the last touched first."""
+"""Variants that a person has begun to practise, the last used first."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Begun(NamedTuple):
 
 
 def begun(visit: Visit, progress: Progress, exercise: str = "") -> Iterator[Begun]:
-    """Variants to go on with, of one exercise where it is told."""
+    """Yield the variants to continue with, of one exercise if given."""
     for name, seed in _touched(visit, progress, exercise):
         if name not in visit.site.course or not visit.site.pool.holds(name, seed):
             continue
@@ -52,7 +52,7 @@ def _touched(visit: Visit, progress: Progress, exercise: str) -> list[tuple[str,
 
 
 def _standing(visit: Visit, progress: Progress, exercise: str, seed: int) -> Begun | None:
-    """How far one is; none where the variant was shown with its solution."""
+    """Return the progress on a variant; None if it was shown with its solution."""
     mine = [e for e in progress.of(exercise) if e["seed"] == seed]
     if any(e["what"] == EXAMPLE for e in mine):
         return None

@@ -1,4 +1,5 @@
-"""The course as it is learnt, chapter by chapter, with where somebody stands in each exercise."""
+"""Contents of the course in the order of study, chapter by chapter, with a person's progress in each
+exercise."""
 
 from __future__ import annotations
 
@@ -56,7 +57,7 @@ class Chaptered(NamedTuple):
 
 
 def contents(visit: Visit, progress: Progress) -> list[Chaptered]:
-    """The chapters in the workbook's order."""
+    """Return the chapters in the workbook's order, with the person's progress."""
     stands = {one.exercise: one for one in standings(progress)}
     return [
         chapter._replace(groups=tuple(_standing(visit, group, stands) for group in chapter.groups))
@@ -70,7 +71,8 @@ def _standing(visit: Visit, group: Grouped, stands: Mapping[str, ExerciseProgres
 
 
 def titles(site: Site, lang: str) -> tuple[Chaptered, ...]:
-    """The same before anybody began anything: kept at hand, since it hangs on the course's files alone."""
+    """Return the chapters without anybody's progress, from a cache, since they depend on the course's files
+    alone."""
     found: tuple[Chaptered, ...] = site.shelf.get(("contents", lang), lambda: _titles(site, lang))
     return found
 
@@ -109,12 +111,12 @@ def _placed(visit: Visit, new: Placed, stand: ExerciseProgress | None) -> Placed
 
 
 def called(exercise: Any, lang: str) -> str:
-    """An exercise by its title alone, in a language that it has."""
+    """Return the title of an exercise, in a language that it has."""
     return str(exercise.title(lang if lang in exercise.languages else exercise.languages[0]))
 
 
 class Next(NamedTuple):
-    """What to do next, and why."""
+    """Next step to take, with its reason."""
 
     exercise: str
     html: Markup
@@ -122,7 +124,7 @@ class Next(NamedTuple):
 
 
 def next_of(visit: Visit, progress: Progress) -> Next | None:
-    """What to do next today; none in a course without exercises."""
+    """Return the next step for today; None in a course without exercises."""
     site = visit.site
     order = site.shelf.get("study order", lambda: site.course.folder.study_order)
     advice: Advice | None = next_step(site.course, progress, visit.at.date(), order)

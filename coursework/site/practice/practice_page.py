@@ -24,7 +24,7 @@ from coursework.site.practice.worksheet import OWN, Hinted, Worksheet
 
 
 def course(visit: Visit) -> Reply:
-    """The course in the order in which it is learnt, where one stands in it, what to do next."""
+    """Return the page of the course: its order of study, the person's progress, and the next step."""
     progress = PersonProgress(visit.site.store, visit.who.id, visit.site.clock).progress
     going = next(begun(visit, progress), None)
     return visit.page(
@@ -52,7 +52,8 @@ def exercise(visit: Visit) -> Reply:
 
 
 def sheet(visit: Visit) -> Reply:
-    """A variant to work on; what a form asks of it: check, hint, the solution of a step, predictions."""
+    """Return the page of a variant; a form checks answers, or requests a hint, the solution of a step, or
+    predictions."""
     work = _worksheet(visit)
     if visit.posted:
         return _asked(visit, work)
@@ -91,7 +92,7 @@ def _asked(visit: Visit, work: Worksheet) -> Reply:
 
 
 def _gone(visit: Visit, work: Worksheet, place: str) -> Reply:
-    """On to another page, once what was typed is kept."""
+    """Return a redirect to another page, after the drafts have been stored."""
     if place == "fresh":
         return exercise(visit)
     if place not in ("solution", "motion"):
@@ -100,7 +101,7 @@ def _gone(visit: Visit, work: Worksheet, place: str) -> Reply:
 
 
 def _checked(visit: Visit, work: Worksheet) -> tuple[CheckedAnswers, tuple[str, ...]]:
-    """What becomes of one answer, or of all; and of which something is to be shown."""
+    """Check one answer or all of them; return the result, and the parts to show again."""
     one = visit.form.text("check")
     given = work.typed if not one else {work.part(one).id: work.typed[one]}
     checked = work.attempt.check(given)
@@ -109,7 +110,7 @@ def _checked(visit: Visit, work: Worksheet) -> tuple[CheckedAnswers, tuple[str, 
 
 
 def _hinted(visit: Visit, work: Worksheet) -> dict[str, tuple[Hinted, ...]]:
-    """The hints of a question, below them those of the step on the way to it that were asked for."""
+    """Return the hints of a question, and below them those of the requested step towards it."""
     what = "hint" if "hint" in visit.form.texts else "reveal"
     under, _, name = visit.form.text(what).partition(" ")
     work.part(under)
@@ -137,7 +138,7 @@ def _page(
 def _pieces(
     visit: Visit, work: Worksheet, checked: CheckedAnswers, shown: tuple[str, ...], hinted: dict[str, Any]
 ) -> Reply:
-    """What a script puts in the places of what was there."""
+    """Return the parts of the page that a script replaces."""
     results = work.results(checked, work.typed)
     summary = work.summary(checked, work.typed)
     return visit.page(
@@ -155,7 +156,7 @@ def _pieces(
 
 
 def _focus(visit: Visit, hinted: dict[str, Any]) -> str:
-    """The id of what came, to which a keyboard goes on."""
+    """Return the id of the new element that receives the keyboard focus."""
     if hinted:
         return f"hints-{OWN}{next(iter(hinted))}"
     one = visit.form.text("check")
@@ -163,7 +164,7 @@ def _focus(visit: Visit, hinted: dict[str, Any]) -> str:
 
 
 def _after(visit: Visit, summary: dict[str, Any]) -> dict[str, Any]:
-    """What to do next, where all is done."""
+    """Return the next step, if every question is answered."""
     if not summary["is_done"]:
         return {"next": None}
     return {"next": next_of(visit, PersonProgress(visit.site.store, visit.who.id, visit.site.clock).progress)}
@@ -186,7 +187,7 @@ def draft(visit: Visit) -> Reply:
 
 
 def read(visit: Visit) -> Reply:
-    """What is read in a box; nothing is kept."""
+    """Return the reading of a box; store nothing."""
     _only_posted(visit)
     work = _worksheet(visit)
     part = work.part(visit.form.text("part"))
@@ -202,7 +203,7 @@ def _only_posted(visit: Visit) -> None:
 
 
 def solution(visit: Visit) -> Reply:
-    """The worked solution, once it is said that the variant then counts no more."""
+    """Return the worked solution, after a confirmation that the variant then no longer counts."""
     work = _worksheet(visit)
     if visit.posted:
         work.attempt.reveal()
@@ -215,7 +216,8 @@ def solution(visit: Visit) -> Reply:
 
 
 def motion(visit: Visit) -> Reply:
-    """The mechanism in motion; its numbers once everything is answered right, or the solution was shown."""
+    """Return the mechanism in motion; with its numbers once every answer is correct, or after the solution
+    was shown."""
     work = _worksheet(visit)
     if not work.variant.exercise.is_animated:
         raise Refused("page", 404)

@@ -1,4 +1,4 @@
-"""Where one stands: exercises, skills, what comes again when; the file of it to take away, and one to bring."""
+"""Progress of a person: exercises, skills, and repetitions; a file of it to download, and one to upload."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MOST_KEPT = 30_000  #: entries of a person, with those that are brought
 
 
 def progress(visit: Visit) -> Reply:
-    """Where one stands; a form brings a file, whose entries are added to what is here."""
+    """Return the page of the person's progress; a form uploads a file, whose entries are added."""
     kept = PersonProgress(visit.site.store, visit.who.id, visit.site.clock)
     brought = _brought(visit, kept) if visit.posted else None
     skills = told_skills(visit.site.course, kept.progress, visit.lang, called)
@@ -38,7 +38,8 @@ def progress(visit: Visit) -> Reply:
 
 
 def _brought(visit: Visit, kept: PersonProgress) -> int:
-    """Add what a file holds; gives how many entries are new. None is marked: that would try answers to a class's variants.
+    """Add the entries of a file; return the number of new ones. Their answers are not marked, since that
+    would test answers to a class's variants.
 
     Raises
     ------
@@ -67,7 +68,7 @@ def _brought(visit: Visit, kept: PersonProgress) -> int:
 
 
 def file(visit: Visit) -> Reply:
-    """All of it, as notebooks keep it."""
+    """Return the whole progress, in the format of notebooks."""
     kept = PersonProgress(visit.site.store, visit.who.id, visit.site.clock).progress
     return Reply(kind="application/json", data=kept.text().encode(), file=FILE)
 

@@ -42,7 +42,7 @@ _ASKS = re.compile(r'<a href="#(hint|reveal)-([^"]+)">(.*?)</a>')
 
 
 class Told(NamedTuple):
-    """What is said of an answer."""
+    """Feedback on an answer."""
 
     sign: str
     verdict: str  #: in a word or two; empty where the sentence says all
@@ -86,7 +86,7 @@ class Worksheet:
         self.attempt = StudyAttempt(self.variant, self.kept)
 
     def _asked(self) -> Variant:
-        """The variant; without its theory where another was begun before."""
+        """Return the variant; without its theory questions if another variant was begun before."""
         whole: Variant = self.visit.site.variant(self.exercise, self.seed, self.visit.lang)
         begun = list(self.kept.progress)
         known = theory(whole.exercise) if begun and begun[0]["seed"] != self.seed else frozenset()
@@ -101,7 +101,7 @@ class Worksheet:
 
     @property
     def name(self) -> str:
-        """What its drafts are kept under."""
+        """Key under which its drafts are stored."""
         return f"practice/{self.exercise}/{self.seed}"
 
     @property
@@ -115,7 +115,7 @@ class Worksheet:
         return {part.id: part for part in self.variant.parts}
 
     def part(self, name: str) -> Part:
-        """The part of a name.
+        """Return the part with a name.
 
         Raises
         ------
@@ -128,18 +128,18 @@ class Worksheet:
 
     @cached_property
     def typed(self) -> dict[str, str]:
-        """What a form brings, by part; blank where a box is, or nothing is ticked."""
+        """Texts of a form, by part; empty for a blank box, and if nothing is ticked."""
         texts = self.visit.form.texts
         return {name: ", ".join(texts.get(OWN + name, ()))[:LONGEST] for name in self.parts}
 
     @cached_property
     def drafts(self) -> dict[str, Box]:
-        """What was typed and kept, by part."""
+        """Drafts by part."""
         with self.visit.site.store.reading() as connection:
             return drafts(connection, self.visit.who.id, self.name)
 
     def stands(self) -> dict[str, str]:
-        """What stands in each box: what was typed last, else what was answered, as the box writes it."""
+        """Content of each box: the draft, or else the last answer, in the form that the box uses."""
         answers = self.attempt.answers
         found = {
             name: self.drafts[name].text if name in self.drafts else str(answers.get(name) or "")
@@ -157,7 +157,7 @@ class Worksheet:
     # -------------------------------------------------------------------- what is said
 
     def told(self, mark: Mark) -> Told:
-        """What is said of an answer."""
+        """Return the feedback on an answer."""
         said = sentence_of(self.variant, mark, self._asks("reveal", mark.part))
         html = self._with_buttons(markdown.html_inline(said, self.variant.lang), mark.part)
         says_all = mark.verdict in ("correct", "to_mark")
@@ -165,7 +165,7 @@ class Worksheet:
         return Told(sign_of(mark), word, html, mark.verdict == "correct")
 
     def results(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Told]:
-        """What is said of the answers that still stand in their boxes."""
+        """Return the feedback on the answers that are still in their boxes."""
         return {
             name: self.told(mark)
             for name, mark in checked.marking.items()
@@ -177,7 +177,7 @@ class Worksheet:
         return _ticked(self.variant, part, str(answer)) == _ticked(self.variant, part, stands[name])
 
     def read_as(self, name: str, text: str) -> Markup:
-        """What is read in a box, as HTML; nothing of one that is blank, or holds no words."""
+        """Return the reading of a box as HTML; empty for a blank box, and for one without text."""
         part, said = self.parts[name], self.visit.said["practice"]
         if part.choices or is_blank(text):
             return Markup("")
@@ -189,7 +189,7 @@ class Worksheet:
         return Markup(markdown.html_inline(told, self.variant.lang))
 
     def hinted(self, name: str, most: int | None = None) -> Hinted:
-        """The first hints for a question or a step on the way: those that were seen unless told.
+        """Return the first hints for a question or for a step towards it, by default those that were seen.
 
         Raises
         ------
@@ -219,7 +219,7 @@ class Worksheet:
         )
 
     def hint(self, name: str) -> Hinted:
-        """The same with one hint more, which is kept."""
+        """Return the hints with one more, and record it."""
         before = self.hinted(name, 0)
         step = min(self.attempt.hints_seen(name) + 1, before.of)
         if step:
@@ -227,7 +227,7 @@ class Worksheet:
         return self.hinted(name, step)
 
     def reveal(self, name: str) -> Hinted:
-        """The same with the step of the solution, which is kept."""
+        """Return the hints with the solution of the step, and record it."""
         self.hinted(name, 0)
         self.attempt.note(REVEAL, name)
         return self.hinted(name)
@@ -236,7 +236,7 @@ class Worksheet:
         return any(e["what"] == REVEAL and e["part"] == name for e in self.kept.happened(self.variant.seed))
 
     def _asks(self, what: str, name: str) -> str:
-        """A link in Markdown that :meth:`_with_buttons` makes a button."""
+        """Return a link in Markdown that :meth:`_with_buttons` turns into a button."""
         return f"[{self.visit.said['practice'][f'{what}_call']}](#{what}-{name})"
 
     def _with_buttons(self, html: str, under: str) -> Markup:
@@ -249,7 +249,8 @@ class Worksheet:
     # ------------------------------------------------------------------ predictions
 
     def asked_before(self) -> list[dict[str, Any]]:
-        """What is predicted before anything is computed, each with its options and what was said."""
+        """Return the predictions to make before the computation, each with its options and the person's
+        choice."""
         said = self.attempt.predictions
         return [
             {
@@ -264,7 +265,7 @@ class Worksheet:
         ]
 
     def _options(self, one: predictions.Prediction) -> list[tuple[str, str]]:
-        """What may be chosen, each with what it is called."""
+        """Return the options of a prediction, each with its label."""
         if one.kind != "guess":
             told = self.visit.said["practice"]["options"][one.kind]
             return list(zip(told["values"], told["names"], strict=True))
@@ -276,7 +277,7 @@ class Worksheet:
         ]
 
     def compared(self, checked: CheckedAnswers) -> dict[str, Markup]:
-        """Predictions beside what came out, by the part that is right."""
+        """Return the predictions compared with the results, for the parts that are answered correctly."""
         asked = [one for one in predictions.before_answers(self.variant) if one.id in checked.right]
         if not any(one.id in self.attempt.predictions for one in asked):
             return {}
@@ -294,7 +295,7 @@ class Worksheet:
     # ------------------------------------------------------------------------ the page
 
     def summary(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Any]:
-        """How far one is: points, and the questions by their numbers that are still open."""
+        """Return the state of the variant: the points, and the numbers of the open questions."""
         numbers = {name: k for k, name in enumerate(self.parts, 1)}
         blank = [n for n in self.parts if is_blank(checked.answers.get(n)) and not self._is_drawn(n)]
         missed = [n for n in self.parts if n not in checked.right and n not in blank and not self._is_open(n)]
@@ -320,7 +321,7 @@ class Worksheet:
         return self.parts[name].sort.box in ("blank", "millimetre")
 
     def names(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Any]:
-        """What the page's template sees."""
+        """Return the names for the page's template."""
         shown = views.context(handout(self.variant))
         results = self.results(checked, stands)
         said = self.visit.said["practice"]["keeping"]
@@ -357,7 +358,7 @@ class Worksheet:
 
 
 def _ticked(variant: Variant, part: Part, text: str) -> tuple[str, ...]:
-    """What a box holds: a text; of choices the letters that are ticked."""
+    """Return the values of a box: the text, or the letters of the ticked choices."""
     if not part.choices or is_blank(text):
         return (text,) if text else ()
     reading = read(variant, part, text)

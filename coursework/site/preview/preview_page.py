@@ -44,7 +44,7 @@ _FRAMED = {
 
 
 def preview(work: UnderWork, lang: str) -> Starlette:
-    """The application; ``lang`` is spoken unless another is chosen."""
+    """Return the application; ``lang`` is the default language."""
     pages = _Pages(work, lang)
     routes = [
         Route("/", _local(pages.page)),
@@ -56,7 +56,7 @@ def preview(work: UnderWork, lang: str) -> Starlette:
 
 
 def _local(answer: Callable[[Request], Response]) -> Callable[[Request], Response]:
-    """What is asked under another name than this machine's own is a trick of a page elsewhere."""
+    """Refuse a request under a host name other than this machine's own, as in DNS rebinding."""
 
     def answered(request: Request) -> Response:
         host = urlsplit(f"//{request.headers.get('host', '')}").hostname
@@ -68,7 +68,7 @@ def _local(answer: Callable[[Request], Response]) -> Callable[[Request], Respons
 
 
 class _Choice:
-    """What an address asks for."""
+    """Parameters of an address."""
 
     def __init__(self, query: Mapping[str, str], lang: str):
         told = query.get("seed", "0")
@@ -86,7 +86,8 @@ class _Pages:
         self._pages = Pages(course_folder(None))
 
     def page(self, request: Request) -> Response:
-        """The whole page; the script asks for it again when something is new, and takes over what differs."""
+        """Return the whole page; the script requests it again after each change, and updates the parts that
+        differ."""
         work, choice = self._work, _Choice(request.query_params, self._lang)
         stamp = work.stamp
         about = work.shown(Asked("about"))
@@ -114,7 +115,7 @@ class _Pages:
         return JSONResponse({"stamp": self._work.stamp}, headers=_OWN)
 
     def view(self, request: Request) -> Response:
-        """A sheet by itself, as it is or as it last was."""
+        """Return a sheet by itself, in its current state or its last valid one."""
         choice = _Choice({**request.query_params, "view": request.path_params["view"]}, self._lang)
         view, form = VIEWS[choice.view]
         found = self._work.shown(Asked(view, choice.seed, choice.lang, form)) if form else None

@@ -1,4 +1,4 @@
-"""What a preview shows of an exercise: made in a process of its own, which opens the course once and never again."""
+"""Content of a preview, made in a separate process that opens the course only once."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Asked(NamedTuple):
 
 
 class Made(NamedTuple):
-    """What was asked for, or in a line why it cannot be shown."""
+    """Requested content, or the reason in one line for which it cannot be shown."""
 
     content: Any = None
     fault: str = ""

@@ -46,7 +46,7 @@ class _Process:
         self._lock = threading.Lock()
 
     def made(self, asked: Asked, seconds: float = _LONGEST) -> Made | None:
-        """A view; None where the process was ended meanwhile."""
+        """Return a view; None if the process was ended meanwhile."""
         with self._lock:
             try:
                 self._pipe.send(asked)
@@ -95,7 +95,7 @@ class UnderWork:
         return f"{self.state}.{int(self.check is not None)}"
 
     def shown(self, asked: Asked) -> Shown:
-        """A view of the state that stands; where it cannot be made, the last that could, and why not."""
+        """Return a view of the current state; if it cannot be made, the last valid one, with the reason."""
         while True:
             state, process = self.state, self._views
             made = process.made(asked)
@@ -114,7 +114,7 @@ class UnderWork:
         return Shown(content, made.fault, worked)
 
     def _take(self) -> None:
-        """The files as they are now are the state that is shown."""
+        """Start new processes for the current state of the files."""
         with self._lock:
             for process in {self._views, self._checks} - set(self._spare):
                 process.end()
@@ -143,7 +143,7 @@ class UnderWork:
     # --------------------------------------------------------------------- files
 
     def _watch(self) -> None:
-        """A state is taken once its files have stood still for a moment: an editor may write in steps."""
+        """Take a new state once its files have not changed for a moment, since an editor may write in steps."""
         taken = before = self._files()
         while not self._ended.wait(_EVERY):
             now = self._files()

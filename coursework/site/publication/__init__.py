@@ -1,1 +1,1 @@
-"""Assignments as the staff hands them out: dealt, published, extended."""
+"""Publication of assignments by staff: assignment of variants, dates, and extensions."""

@@ -37,7 +37,7 @@ RUNNING, DONE, FAILED = "running", "done", "failed"
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is to be dealt: an assignment as its file says it, to whom."""
+    """Request to assign variants: an assignment as its file states it, and the students."""
 
     name: str
     table: Mapping[str, Any]
@@ -52,7 +52,7 @@ class Wanted:
 
 
 class Dealing(NamedTuple):
-    """How far it is."""
+    """State of a job that assigns variants."""
 
     state: str
     name: str
@@ -72,7 +72,7 @@ class _Outcome:
 
 
 def holders(content: Mapping[str, Any]) -> list[Student]:
-    """Who was issued something, with the columns of their roster."""
+    """Return the students to whom something was issued, with the columns of their roster."""
     names = dict.fromkeys(str(item.get("student", "")) for item in content["issued"])
     return [Student(name, columns=content.get("students", {}).get(name, {})) for name in names if name]
 
@@ -88,7 +88,8 @@ def begin(site: Site, wanted: Wanted, by: str, what: str) -> str:
 
 
 def dealing(site: Site, token: str) -> Dealing | None:
-    """How far it is; None where nobody asked for it. What was interrupted says so: nothing of it was issued."""
+    """Return the state of a job; None for an unknown one. An interrupted job counts as failed: none of its
+    variants were issued."""
     with site.store.reading() as connection:
         kept = value_of(connection, _key(token))
     if kept is None:
@@ -122,7 +123,7 @@ def _run(site: Site, token: str, wanted: Wanted, by: str, what: str) -> None:
 
 
 def _dealt_apart(site: Site, wanted: Wanted) -> _Outcome:
-    """Dealt in another process where there is much to do."""
+    """Assign variants, in another process if there are many."""
     root = str(site.course.folder.root)
     if wanted.papers <= _ALONE or workers(2) < 2:
         return _dealt(root, wanted)
@@ -139,7 +140,7 @@ def _dealt(root: str, wanted: Wanted) -> _Outcome:
 
 
 def _keep(site: Site, wanted: Wanted, found: _Outcome, by: str, what: str) -> int:
-    """All of it is issued, or nothing."""
+    """Store all issued variants in one transaction; return the assignment's id."""
     with site.store.begin() as connection:
         number = put_issued(connection, found.content, wanted.name)
         asked = {key: value for key, value in wanted.table.items() if key != SECRET}  # it has its own column

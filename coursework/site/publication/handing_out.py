@@ -1,4 +1,4 @@
-"""What a form of the staff says is to be handed out: an assignment from its file or from chosen exercises, and a roster.
+"""Form of a new assignment: its file or selected exercises, and a roster.
 
 What comes from a browser names no file on this machine: of a file that is sent, its contents alone are read.
 """
@@ -30,7 +30,7 @@ _LONGEST = 80  #: characters of a name
 
 
 class HandOut(NamedTuple):
-    """What is to be handed out: dealt here, or as it was issued elsewhere."""
+    """Assignment to hand out: with variants to draw here, or as issued elsewhere."""
 
     name: str
     wanted: Wanted | None = None
@@ -45,7 +45,7 @@ class Shelf(NamedTuple):
 
 
 def read(visit: Visit) -> HandOut:
-    """What the form says.
+    """Return the assignment that the form states.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def read(visit: Visit) -> HandOut:
 
 
 def spoken(visit: Visit, asked: Assignment) -> str:
-    """The language of who reads the page where all its exercises have it, else the course's own."""
+    """Return the reader's language if all the exercises have it, or else the course's default."""
     all_have = all(visit.lang in visit.site.course[name].languages for name in asked.names)
     return visit.lang if all_have else visit.site.languages[0]
 
@@ -138,12 +138,12 @@ def _number(text: str, fault: str) -> float:
 
 
 def _name(text: str) -> str:
-    """A name of letters, figures and dashes: it stands in addresses and files that are kept."""
+    """Return a name of letters, digits and dashes, for use in addresses and file names."""
     return re.sub(r"[^\w.-]+", "-", text.strip()).strip("-.")[:_LONGEST]
 
 
 def _as_json(value: Any) -> Any:
-    """A table of TOML as JSON holds it: days as texts."""
+    """Return a table of TOML as JSON, with dates as texts."""
     if isinstance(value, dict):
         return {key: _as_json(one) for key, one in value.items()}
     if isinstance(value, list):
@@ -155,7 +155,8 @@ def _as_json(value: Any) -> Any:
 
 
 def roster(visit: Visit) -> list[Student]:
-    """The students of the roster that was sent, else, where the form says so, everybody who signs in as a student.
+    """Return the students of the uploaded roster, or else, if the form states so, all who sign in as
+    students.
 
     Raises
     ------
@@ -197,7 +198,7 @@ def _student(one: Any, *, apart: bool) -> Student:
 
 
 def shelves(course: Course[Any], lang: str) -> list[Shelf]:
-    """The exercises by chapter, then the others."""
+    """Return the exercises by chapter, then the others."""
     return [shelf for shelf in _shelves(course, lang) if shelf.exercises]
 
 

@@ -60,7 +60,7 @@ _NOTED = 30  #: lines of what was done that a page shows
 
 
 class Handed(NamedTuple):
-    """An assignment, as the desk lists it."""
+    """Assignment, as the instructor's pages list it."""
 
     id: int
     name: str
@@ -75,7 +75,7 @@ class Handed(NamedTuple):
 
 
 def handed_out(connection: Connection, number: int | None = None) -> list[Handed]:
-    """The assignments that there are, the latest first; or one."""
+    """Return the assignments, the latest first; or one of them."""
     columns = (
         assignment.c.id,
         assignment.c.name,
@@ -106,7 +106,7 @@ def handed_out(connection: Connection, number: int | None = None) -> list[Handed
 
 
 def _by_number(connection: Connection, counted: Select[Any]) -> dict[int, int]:
-    """A count by number."""
+    """Return counts by number."""
     return {row[0]: row[1] for row in connection.execute(counted)}
 
 
@@ -155,7 +155,7 @@ def _new_page(visit: Visit, problem: str = "", status: int = 200) -> Reply:
 
 
 def _take_in(visit: Visit, made: handing_out.HandOut) -> int:
-    """What was issued elsewhere is issued here as well, as it is."""
+    """Store an assignment that was issued elsewhere; return its id."""
     assert made.issued is not None
     with visit.site.store.begin() as connection:
         number = put_issued(connection, made.issued, made.name)
@@ -164,7 +164,7 @@ def _take_in(visit: Visit, made: handing_out.HandOut) -> int:
 
 
 def dealing(visit: Visit) -> Reply:
-    """How far a dealing is; to the assignment when it is done, unless something is to be told."""
+    """Return the state of a job; redirect to the assignment when it is done, unless there is a message."""
     found = dealings.dealing(visit.site, str(visit.path["token"]))
     if found is None:
         raise Refused("page", 404)
@@ -210,7 +210,7 @@ class Holder(NamedTuple):
 
 
 def holders(connection: Connection, number: int) -> list[Holder]:
-    """Who was issued a paper, in the order in which they were."""
+    """Return the students with a paper, in the order of issue."""
     found = (
         select(
             dealt.c.person_id, dealt.c.student, func.max(variant.c.letter), func.max(dealt.c.sitting), func.max(dealt.c.lang),
@@ -230,7 +230,7 @@ def holders(connection: Connection, number: int) -> list[Holder]:
 
 
 def _noted(connection: Connection, name: str) -> list[Any]:
-    """What was done with an assignment, the latest first."""
+    """Return the audit entries of an assignment, the latest first."""
     found = select(audit).order_by(audit.c.id.desc()).limit(500)
     own = [row for row in connection.execute(found) if row.about.get("assignment") == name]
     return own[:_NOTED]
@@ -268,7 +268,7 @@ def put_out(visit: Visit) -> Reply:
 
 
 def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
-    """What a form says, and what in it is no date, no number or no choice."""
+    """Return the publication that a form states, and the fields without a valid date, number or choice."""
     faults: list[Fault] = []
 
     def moment(name: str) -> datetime | None:
@@ -324,7 +324,7 @@ def take_back(visit: Visit) -> Reply:
 
 
 def give_more(visit: Visit) -> Reply:
-    """An extension for one person, with its reason."""
+    """Give one person an extension, with its reason."""
     _posted(visit)
     with visit.site.store.reading() as connection:
         one = assignment_here(visit, connection)
@@ -360,7 +360,7 @@ def _posted(visit: Visit) -> None:
 
 
 def add_late(visit: Visit) -> Reply:
-    """A longer roster: who is late is dealt a paper, and everybody else keeps theirs."""
+    """Assign variants to the new students of a longer roster; all other papers remain as they are."""
     _posted(visit)
     return _deal_more(visit, handing_out.roster(visit), (), "late ones added")
 
@@ -390,7 +390,7 @@ def _deal_more(visit: Visit, students: Sequence[Student], names: Sequence[str], 
 
 
 def preview(visit: Visit) -> Reply:
-    """The page as students will see it, with a variant that is nobody's."""
+    """Return the page as students will see it, with a variant that is issued to nobody."""
     with visit.site.store.reading() as connection:
         one = assignment_here(visit, connection)
         issued = issued_of(connection, one.id)
@@ -422,7 +422,7 @@ def preview(visit: Visit) -> Reply:
 
 
 def _as_asked(visit: Visit, one: Handed, issued: Issued) -> Assignment:
-    """The assignment as its file says it; of one that was issued elsewhere, as its records ask."""
+    """Return the assignment as its file states it; for one issued elsewhere, as its records state it."""
     if one.asked is not None:
         return assignment_of(one.name, one.asked, visit.site.course)
     exercises = []
@@ -434,7 +434,7 @@ def _as_asked(visit: Visit, one: Handed, issued: Issued) -> Assignment:
 
 
 def as_somebody(visit: Visit) -> Reply:
-    """What a student of a name sees, to look at alone; what they typed and did not hand in is theirs."""
+    """Return the page as a student sees it, read-only; without the student's drafts."""
     with visit.site.store.begin() as connection:
         one = assignment_here(visit, connection)
         person_id = int(visit.path["person"])
@@ -460,7 +460,7 @@ def _seen(visit: Visit, one: Handed, state: State, own: OwnPaper, look: str) -> 
 
 
 def issued_file(visit: Visit) -> Reply:
-    """What was issued, as ``grade`` takes it."""
+    """Return the content of ``issued.json``, as ``grade`` reads it."""
     with visit.site.store.reading() as connection:
         number = assignment_here(visit, connection).id
         # Who may not publish draws no paper that is to come.
