@@ -33,8 +33,8 @@ def known_as(connection: Connection, number: int) -> list[tuple[str, str]]:
 
 
 def fitting(connection: Connection, issuer: str, email: str, number: str) -> list[Any]:
-    """The people whom an e-mail or a number tells, and whom the platform does not know yet. Nobody of the staff is among them:
-    what a platform says of an address gives nobody a role."""
+    """Return the people with the e-mail or the number of a launch who are not linked to the platform yet.
+    Staff are excluded: a platform's statement of an address grants no role."""
     known = set(connection.execute(select(identity.c.person_id).where(identity.c.issuer == issuer)).scalars())
     rows = {row.id: row for row in people(connection)}
     staff = {row.id for row in people(connection) if row.role in STAFF}

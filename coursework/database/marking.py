@@ -123,7 +123,8 @@ class Work:
                 yield place, self.now[place] if place in self.now else before[place]
 
     def changes(self) -> Iterator[Change]:
-        """Marks that are not what they were, of sheets that were marked before; decided marks on both sides."""
+        """Yield the changed marks of sheets that were marked before, with the decisions applied on both
+        sides."""
         marked = [self.stood[place] for place in self.now if place in self.stood]
         for place, was in self._before([*marked, *self.gone]).items():
             yield from _changes(self._rows(was), self._rows(self.now.get(place, "")))

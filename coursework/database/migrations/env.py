@@ -11,7 +11,7 @@ from coursework.database.tables import METADATA, Moment, Words
 
 
 def _printed(kind: str, item: Any, autogenerate: Any) -> str | Literal[False]:
-    """A type of the tables by its name there, in a migration that is made from them."""
+    """Return the name of a column's type, for a migration generated from the tables."""
     name = "Json" if isinstance(item, JSON) else type(item).__name__
     if kind != "type" or not isinstance(item, (JSON, Moment, Words)):
         return False
