@@ -1,4 +1,5 @@
-"""What is written where nothing is printed: beside the boxes of a row, a ring or another unit; below all rows, an answer gone astray."""
+"""Writing where nothing is printed: beside the boxes of a row, such as a ring or another unit; below all
+rows, an answer in the wrong place."""
 
 from __future__ import annotations
 
@@ -29,7 +30,7 @@ _WRITING = 1.5  #: mm2 of it, less than a digit has
 
 
 def written_beside(page: Straight, field: Field) -> bool:
-    """Whether ink stands beside the boxes of a row, and is no part of what is written in them."""
+    """Return True if ink lies beside the boxes of a row and is not part of the writing in them."""
     boxes = boxes_of(field)
     ink, span = row_ink(page, boxes, within=field.whole)
     found = pieces(255 - ink > STRONG)
@@ -42,7 +43,8 @@ def written_beside(page: Straight, field: Field) -> bool:
 
 
 def written_below(page: Straight, sheet: AnswerPage) -> bool:
-    """Whether something like writing stands below all rows, where nothing is printed; a stain or a fold is larger."""
+    """Return True if there is ink of the size of writing below all rows, where nothing is printed; a stain or
+    a fold is larger."""
     top = max(field.whole.bottom + _BELOW.get(field.what, 2.0) for field in sheet.fields)
     corners = [corner for corner in sheet.marks if corner[1] > sheet.height / 2]
     left, right = (end(x for x, _ in corners) for end in (min, max))
@@ -56,13 +58,13 @@ def written_below(page: Straight, sheet: AnswerPage) -> bool:
 
 
 def boxes_of(field: Field) -> list[Box]:
-    """The boxes of a row that are filled in, without the one for words."""
+    """Return the boxes of a row that are filled in, without the one for words."""
     row = (field.sign, *field.digits, *field.decimals, field.power_sign, *field.power, field.unit)
     return [box for box in (*row, *(box for _, box in field.ticks)) if box is not None]
 
 
 def _bare(field: Field) -> Iterator[Box]:
-    """Where nothing is printed in a row."""
+    """Yield the areas of a row in which nothing is printed."""
     if field.ticks:
         yield from _about_ticks(field, [box for _, box in field.ticks])
     if field.free is not None:
@@ -72,7 +74,7 @@ def _bare(field: Field) -> Iterator[Box]:
 
 
 def _printed_to(field: Field) -> float:
-    """How far the print of a row's first line reaches at most, mm from the left of the page."""
+    """Return the right end of the print in a row's first line at most, mm from the left of the page."""
     if field.ticks:
         lines = {box.y: box.right for _, box in field.ticks}
         return lines[min(lines)] + (_NONE if field.none else _LABEL)

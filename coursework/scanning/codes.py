@@ -24,7 +24,8 @@ class Code:
 
 
 def codes_in(grey: np.ndarray) -> tuple[Code, ...]:
-    """The symbols on a picture, each text once; what is hard to read is tried sharper, softer and evenly lit."""
+    """Return the codes in a picture, each text once; a picture that is hard to read is also tried sharpened,
+    softened and evenly lit."""
     for scale, tried in _tries(grey):
         found = {code.text: code for code in _read(tried, scale)}
         if found:
@@ -33,7 +34,8 @@ def codes_in(grey: np.ndarray) -> tuple[Code, ...]:
 
 
 def _tries(grey: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
-    """The picture as it may be read, the quickest first, with pixels of it for one of the original."""
+    """Yield versions of the picture, the fastest to read first, each with its pixels per pixel of the
+    original."""
     cv2 = opencv()
     scale = min(1.0, _LONG / max(grey.shape))
     small = grey if scale == 1 else cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)

@@ -33,7 +33,7 @@ BATCH = 256
 
 
 def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """The digit in each box, ``EMPTY`` for none, and the confidence in it.
+    """Return the digit in each box, ``EMPTY`` for none, and its confidence.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np
 
 
 def read_signs(cells: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """Whether a minus sign stands in each box, and the confidence in that.
+    """Return True for each box with a minus sign, and the confidence.
 
     Boxes as for :func:`read_digits`. Low where the box holds neither nothing nor a minus: a plus, an upright stroke.
     """
@@ -63,7 +63,8 @@ def read_signs(cells: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.
 
 
 def prepared(cells: NDArray[np.uint8]) -> Floats:
-    """What the net sees of boxes: darkness against the paper, 0 to 1, on the scale of the darkest ink; shape (n, 40, 32)."""
+    """Return boxes as input of the network: darkness relative to the paper, 0 to 1, on the scale of the
+    darkest ink; shape (n, 40, 32)."""
     seen = np.zeros((len(cells), HEIGHT + 2 * RIM, WIDTH + 2 * RIM), np.float32)
     for cell, place in zip(cells, seen, strict=True):
         place[RIM:-RIM, RIM:-RIM] = _darkness(_resized(cell))
@@ -71,7 +72,7 @@ def prepared(cells: NDArray[np.uint8]) -> Floats:
 
 
 def probabilities(seen: Floats) -> NDArray[np.float64]:
-    """Calibrated probabilities of the classes, shape (n, 13), of prepared boxes."""
+    """Return calibrated probabilities of the classes, shape (n, 13), for prepared boxes."""
     batches = [_softmax(_logits(seen[k : k + BATCH])) for k in range(0, len(seen), BATCH)]
     return np.concatenate(batches) if batches else np.zeros((0, OTHER + 1))
 
@@ -89,7 +90,8 @@ def _resized(cell: NDArray[np.uint8]) -> Floats:
 
 
 def _darkness(grey: Floats) -> Floats:
-    """Darkness against the paper on the scale of the darkest ink inside; what is fainter than a quarter stays faint."""
+    """Return the darkness relative to the paper, on the scale of the darkest ink inside; ink fainter than a
+    quarter stays faint."""
     paper = max(float(np.percentile(grey, 90)), 1.0)
     dark = np.clip(1 - grey / paper, 0, 1)
     ink = float(np.percentile(dark[OUTLINE:-OUTLINE, OUTLINE:-OUTLINE], 98))
@@ -117,7 +119,7 @@ def _logits(seen: Floats) -> Floats:
 
 
 def _convolved(flow: Floats, weight: Floats, stride: int) -> Floats:
-    """A 3 by 3 convolution with a rim of zeros; ``flow`` (n, h, w, in), ``weight`` (9 in, out)."""
+    """Return the 3 by 3 convolution with zero padding; ``flow`` (n, h, w, in), ``weight`` (9 in, out)."""
     around = np.pad(flow, ((0, 0), (1, 1), (1, 1), (0, 0)))
     height, width = flow.shape[1:3]
     shifted = [

@@ -1,4 +1,4 @@
-"""From pages that were read, and what people typed, to answers: what is sure, what waits for a person, what is missing.
+"""Combination of scanned pages and typed texts into answers: settled, waiting for a person, or missing.
 
 A pure function of what it is told: the order in which pages came makes no difference.
 """
@@ -20,7 +20,7 @@ CODE = "code"  #: why a page waits of which the code cannot be read
 
 
 class Place(NamedTuple):
-    """Where an answer is asked, or one coordinate of it."""
+    """Place of an answer, or of one of its coordinates."""
 
     exercise: str
     seed: int
@@ -49,7 +49,7 @@ class PaperAsked:
 
 @dataclass(frozen=True)
 class Said:
-    """What one scan of a page says of a place."""
+    """Reading of one place on one scan of a page."""
 
     page: str  #: its id
     field: FieldKept
@@ -62,7 +62,7 @@ class Said:
 
 @dataclass(frozen=True)
 class Card:
-    """What a person is asked to type or to confirm."""
+    """Card on which a person types or confirms a text."""
 
     student: str
     paper: str
@@ -109,7 +109,7 @@ class Pending:
 
 @dataclass
 class Gathered:
-    """What all pages say together."""
+    """Combined content of all pages."""
 
     answers: list[Answer] = field(default_factory=list)
     cards: list[Card] = field(default_factory=list)
@@ -127,16 +127,16 @@ Part: TypeAlias = tuple[str, int, str]  #: exercise, seed and id
 
 
 class Parts(Protocol):
-    """What is known of the parts that papers ask."""
+    """Properties of the questions on the papers."""
 
     def is_open(self, part: Part) -> bool:
-        """Whether a person marks it."""
+        """Return True if a person marks the question."""
 
     def is_drawn(self, part: Part) -> bool:
-        """Whether it is a point in millimetres on paper."""
+        """Return True if the answer is a point in millimetres on paper."""
 
     def joined(self, part: Part, texts: Sequence[str]) -> str:
-        """The texts of its coordinates as one answer."""
+        """Return the texts of the coordinates as one answer."""
 
 
 def gather(
@@ -145,7 +145,7 @@ def gather(
     typed: Iterable[Typed],
     parts: Parts,
 ) -> Gathered:
-    """What pages say together."""
+    """Combine pages and typed texts."""
     found = Gathered()
     by_paper: dict[str, dict[int, dict[str, PageKept]]] = {}
     lost: dict[str, str] = {}
@@ -179,7 +179,8 @@ def _whose(
     used: set[Any],
     found: Gathered,
 ) -> str:
-    """Whose a paper is; of one that was made for nobody a person says it, and until then it goes by its code."""
+    """Return the student of a paper; for a paper without a name, the student whom a person has typed, or else
+    the code."""
     if paper.student or not scans:
         return paper.student or paper.code
     told = decided.get((paper.code, NAME, "", "", "1"))
@@ -230,7 +231,8 @@ def _to_click(
     whose: str,
     said: Mapping[Place, Sequence[Said]],
 ) -> _Settled | Card | None:
-    """A coordinate that was left blank beside a drawing: somebody may click it there."""
+    """Return a card for a blank coordinate beside a drawing, since a person may click it there; any other
+    state unchanged."""
     if not isinstance(settled, _Settled) or settled.text or settled.by_hand:
         return settled
     own = said[one.place]
@@ -240,7 +242,8 @@ def _to_click(
 def _put(
     found: Gathered, whose: str, part: Part, settled: Sequence[_Settled | Card | None], parts: Parts
 ) -> None:
-    """An answer, where all its pieces are known; else what waits of it."""
+    """Add the answer to a question if all its coordinates are known; otherwise add their cards, and list the
+    answer as pending if all its pages were scanned."""
     cards = [one for one in settled if isinstance(one, Card)]
     known = [one for one in settled if isinstance(one, _Settled)]
     found.cards += cards
@@ -261,7 +264,7 @@ def _put(
 
 
 def _said(scans: Mapping[int, Mapping[str, PageKept]]) -> dict[Place, tuple[Said, ...]]:
-    """What the scans of a paper say, place by place; scans in the order of their ids."""
+    """Return the readings of a paper's scans by place, ordered by the ids of the scans."""
     found: dict[Place, list[Said]] = {}
     for number in sorted(scans):
         for name in sorted(scans[number]):
@@ -288,7 +291,8 @@ def _settle(
     used: set[Any],
     is_open: bool,
 ) -> _Settled | Card | None:
-    """What stands in a place: what a person typed, else what all scans of it say and none of them doubts.
+    """Return the settled text of a place: the typed one, or else the reading on which all scans agree without
+    doubt; otherwise a card for a person.
 
     None where nothing was scanned nor typed.
     """
@@ -344,7 +348,7 @@ def _typed_at(
 
 
 def _holds(typed: Typed, said: Sequence[Said]) -> bool:
-    """Whether what was typed still stands: whoever typed it saw these scans, or what came since says the same."""
+    """Return True if a typed text still applies: its author saw these scans, or later ones agree with it."""
     if not typed.pages:
         return True
     seen = {s.field.text for s in said if s.page in typed.pages and s.is_sure}

@@ -1,4 +1,4 @@
-"""What is kept of each page that was read, so that a job that was stopped goes on, and one that is run on more scans adds.
+"""Stored results of each page, so that a stopped job continues, and another run adds more scans.
 
 A page is known by the digest of its file and its number there, never by a file's name or place; what is kept of it is written
 whole or not at all.
@@ -36,7 +36,7 @@ OTHER_NAME = "other name"  #: why a page is lost whose code is of one student, a
 
 @dataclass(frozen=True)
 class FieldKept:
-    """What was read in the place of one answer, or of one coordinate of it."""
+    """Reading of one answer, or of one of its coordinates."""
 
     exercise: str
     seed: int
@@ -53,7 +53,8 @@ class FieldKept:
 
 @dataclass(frozen=True)
 class PageKept:
-    """What one page of a scan is: answers, a page of a statement, blank, lost (nobody knows which page it is), or refused."""
+    """Result of one scanned page: answers, a page of a statement, blank, lost (unknown which page it is), or
+    refused."""
 
     what: str
     reason: str = ""  #: why nothing was read of it
@@ -77,29 +78,29 @@ class FileKept:
 
 
 def page_id(digest: str, number: int) -> str:
-    """The name of a page, from 1, of a file."""
+    """Return the name of a file's page, counted from 1."""
     return f"{digest}-{number:04d}"
 
 
 def put_page(out: Path, name: str, page: PageKept, pictures: Mapping[str, bytes]) -> None:
-    """Keep a page: its pictures first, by their files' names, so that a page that is kept has them."""
+    """Store a page: its pictures first, so that a stored page always has them."""
     for file, data in pictures.items():
         write_whole(out / file, data)
     write_whole(out / FOLDER / f"{name}.json", json_text(page_as_json(page)).encode())
 
 
 def picture_of(name: str) -> str:
-    """Where the picture of a page is, below the folder of the job."""
+    """Return the file of a page's picture, relative to the folder of the job."""
     return f"{PICTURES}/{name}.jpg"
 
 
 def crop_of(name: str, place: int) -> str:
-    """Where the picture of a field is, below the folder of the job."""
+    """Return the file of a field's picture, relative to the folder of the job."""
     return f"{CROPS}/{name}-{place:02d}.png"
 
 
 def page_of(told: Mapping[str, Any]) -> PageKept | None:
-    """A page as JSON holds it; None where it is of another format."""
+    """Return the page in JSON; None if it is of another format."""
     own = dict(told)
     try:
         if own.pop("format") != FORMAT:
@@ -128,7 +129,7 @@ _TYPES = {str: (str,), int: (int,), float: (int, float), bool: (bool,)}
 
 
 def _checked(kept: _Kept) -> _Kept:
-    """What was kept, if its fields are of the sorts that they are kept as.
+    """Check that the fields of a stored object have their declared types; return the object.
 
     Raises
     ------
@@ -142,12 +143,12 @@ def _checked(kept: _Kept) -> _Kept:
 
 
 def page_as_json(page: PageKept) -> dict[str, Any]:
-    """A page as JSON holds it."""
+    """Return a page as JSON."""
     return {"format": FORMAT, **asdict(page)}
 
 
 def page_kept(out: Path, name: str) -> PageKept | None:
-    """What is kept of a page; None where that is nothing, or of another format."""
+    """Return the stored result of a page; None if there is none, or if it is of another format."""
     try:
         told = read_json(out / FOLDER / f"{name}.json")
     except BadInput:
@@ -159,7 +160,7 @@ def page_kept(out: Path, name: str) -> PageKept | None:
 
 
 def files_kept(out: Path) -> list[FileKept]:
-    """The files that were scanned before.
+    """Return the files that were scanned before.
 
     Raises
     ------
@@ -190,7 +191,7 @@ def put_files(out: Path, files: Iterable[FileKept]) -> None:
 
 
 def joined(before: Iterable[FileKept], now: Iterable[FileKept]) -> list[FileKept]:
-    """The files of before and of now, each once, in the order of their names."""
+    """Return the earlier and the current files, each once, in the order of their names."""
     found = {(one.name, one.digest): one for one in (*before, *now)}
     return [found[key] for key in sorted(found)]
 
@@ -202,14 +203,15 @@ _SAME = 20  #: of 255, by which cells of a copy differ at most
 
 
 def look_of(paper: np.ndarray) -> str:
-    """How dark a page laid flat is, cell by cell, as text: that of a copy is nearly the same, however it was turned."""
+    """Return the darkness of a flattened page, cell by cell, as text: nearly the same for a copy of the page
+    in any orientation."""
     high, wide = (n // _CELL * _CELL for n in paper.shape)
     cells = paper[:high, :wide].reshape(high // _CELL, _CELL, wide // _CELL, _CELL).mean(axis=(1, 3))
     return b64encode(zlib.compress((cells // 4 * 4).astype(np.uint8).tobytes(), 9)).decode()
 
 
 def with_copies(pages: Iterable[Scanned]) -> list[Scanned]:
-    """The pages, of which those are told as copies that look like an earlier one of the same sheet."""
+    """Return the pages, with those marked as copies that look like an earlier page of the same sheet."""
     met: dict[tuple[str, int], list[tuple[np.ndarray, PageKept]]] = {}
     found = []
     for one in pages:
@@ -229,7 +231,7 @@ def _is_alike(cells: np.ndarray, others: np.ndarray) -> bool:
 
 
 def _says_the_same(one: PageKept, other: PageKept) -> bool:
-    """Whether no field of a page is read otherwise on another, where both are sure."""
+    """Return True if two pages agree in every field of which both are certain."""
     sure = ((a, b) for a, b in zip(one.fields, other.fields, strict=False) if not (a.waits or b.waits))
     return all(a.text == b.text for a, b in sure)
 

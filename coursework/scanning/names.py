@@ -101,7 +101,7 @@ def other_name(
 
 
 def _ink_about(paper: np.ndarray, place: Box) -> np.ndarray | None:
-    """The ink where a name stands and a little around, 0 to 1; None where the page ends there."""
+    """Return the ink at the place of the name and a little around, 0 to 1; None if it exceeds the page."""
     reach, scale = _REACH / _SCALE, 10
     top, left = round((place.y - reach) * scale), round((place.x - reach) * scale)
     bottom, right = (round((v + reach) * scale) + scale for v in (place.y + place.height, place.right))
@@ -115,7 +115,7 @@ def _ink_about(paper: np.ndarray, place: Box) -> np.ndarray | None:
 
 
 def _best(seen: np.ndarray, strip: np.ndarray) -> tuple[float, tuple[int, int]]:
-    """How well a strip is seen at the place where it is seen best, by the correlation of their ink."""
+    """Return the greatest correlation of a strip's ink with the picture, and its place."""
     inked = np.flatnonzero(strip.max(axis=0) > 0.3)
     right = min(strip.shape[1], (inked[-1] if inked.size else 0) + 2 * _REACH)
     most = opencv().matchTemplate(
@@ -128,7 +128,8 @@ def _best(seen: np.ndarray, strip: np.ndarray) -> tuple[float, tuple[int, int]]:
 
 
 def _leaning(seen: np.ndarray, owner: np.ndarray, other: np.ndarray, at: tuple[int, int]) -> float:
-    """What is seen where one name has ink and the other has none: 1 is all the other's, -1 all the owner's."""
+    """Return a value from -1 (all the owner's) to 1 (all the other's) for the ink at which the two names
+    differ."""
     row, column = at
     here = seen[row : row + owner.shape[0], column : column + owner.shape[1]]
     here = np.clip(here / max(1e-6, float(np.quantile(here, 0.995))), 0, 1)

@@ -45,8 +45,8 @@ _CELL = (90, 70)  #: pixels of a box that is handed to the reader
 
 @dataclass(frozen=True)
 class Reading:
-    """What a field says: its ``text``, the least ``confidence`` of its boxes, the word of why it waits, if it does, and
-    the ``cases`` that are ticked.
+    """Reading of a field: its ``text``, the least ``confidence`` of its boxes, the reason for which it waits
+    for a person, if any, and the ticked ``cases``.
 
     The text of what waits is what it looks like, for a person to confirm.
     """
@@ -70,7 +70,7 @@ class _Row:
 
 
 def number(page: Straight, field: Field, reader: Reader, least: float = LEAST) -> Reading:
-    """What a field for a number says."""
+    """Return the reading of a field for a number."""
     if field.free is not None and not is_bare(page, field.free, 0.7):
         return Reading("", 0.0, "free")
     boxes = [*field.digits, *field.decimals]
@@ -86,14 +86,14 @@ def number(page: Straight, field: Field, reader: Reader, least: float = LEAST) -
 
 
 def _is_bare(page: Straight, box: Box, stroke: float) -> bool:
-    """Whether a box is empty for certain, of short strokes too: what is lost of a sign is the whole of it."""
+    """Return True if a box is certainly empty, even of short strokes, since the whole of a sign may be one."""
     return is_bare(page, box) and not has_stroke(page, box, stroke)
 
 
 def _written(
     page: Straight, field: Field, reader: Reader, least: float, bare: dict[Box, bool], unit: str
 ) -> Reading:
-    """What a row says that is not empty."""
+    """Return the reading of a row that is not empty."""
     rows = [[*field.digits, *field.decimals], list(field.power)]
     found: dict[Box, tuple[int, float]] = {}
     told = "digit" if any(runs_through(page, box) for box, empty in bare.items() if not empty) else ""
@@ -135,7 +135,7 @@ def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader
 
 
 def _has_bar(pictures: Sequence[np.ndarray], digits: Sequence[int]) -> bool:
-    """Whether what looks like a one between two digits leans as the bar of a fraction does: ``1/3`` is not 113."""
+    """Return True if a one between two digits leans like the bar of a fraction: ``1/3`` is not 113."""
     between = zip(digits, digits[1:], digits[2:], strict=False)
     return any(
         one == 1 and min(before, after) >= 0 and _leans(pictures[k])
@@ -144,7 +144,7 @@ def _has_bar(pictures: Sequence[np.ndarray], digits: Sequence[int]) -> bool:
 
 
 def _leans(picture: np.ndarray) -> bool:
-    """Whether ink is one straight stroke that leans to the right."""
+    """Return True if the ink is one straight stroke that leans to the right."""
     y, x = np.nonzero(255 - picture > STRONG)
     if len(x) < SCALE:
         return False
@@ -155,7 +155,7 @@ def _leans(picture: np.ndarray) -> bool:
 
 
 def _framed(picture: np.ndarray) -> np.ndarray:
-    """A box at the size that all have; the rest is paper."""
+    """Return a box at the common size, padded with paper."""
     high, wide = _CELL
     cell = np.full(_CELL, 255, np.uint8)
     piece = picture[:high, :wide]
@@ -164,7 +164,8 @@ def _framed(picture: np.ndarray) -> np.ndarray:
 
 
 def _sign(page: Straight, box: Box | None, bare: dict[Box, bool]) -> str:
-    """``-`` where a box for a sign holds one level stroke, nothing where it is empty, ``?`` otherwise."""
+    """Return ``-`` for one level stroke in the box of a sign, an empty text for an empty box, ``?``
+    otherwise."""
     if box is None or bare[box]:
         return ""
     (picture,), _ = cells(page, [box])
@@ -179,7 +180,7 @@ def _sign(page: Straight, box: Box | None, bare: dict[Box, bool]) -> str:
 
 
 def _against_rules(row: _Row) -> str:
-    """The word of the first rule that a row breaks; none if it keeps them all."""
+    """Return the key of the first rule that a row breaks; empty if there is none."""
     broken = (
         ("sign", "?" in (row.sign, row.power_sign)),
         ("unit", row.unit not in (EMPTY, TICKED)),
@@ -195,18 +196,18 @@ def _any(boxes: Sequence[int]) -> bool:
 
 
 def _gap(boxes: Sequence[int]) -> bool:
-    """Whether an empty box stands before a digit."""
+    """Return True if an empty box precedes a digit."""
     filled = [digit >= 0 for digit in boxes]
     return filled != sorted(filled, reverse=True)
 
 
 def _stands_together(boxes: Sequence[int]) -> bool:
-    """Whether digits fill the first boxes, or the last ones, without a gap."""
+    """Return True if the digits fill the first boxes, or the last ones, without a gap."""
     return not _gap(boxes) or not _gap(boxes[::-1])
 
 
 def _text(row: _Row, unit: str) -> str:
-    """The number as it is typed."""
+    """Return the number as it is typed."""
 
     def joined(boxes: Sequence[int]) -> str:
         return "".join(str(digit) for digit in boxes if digit >= 0)

@@ -1,4 +1,5 @@
-"""Where the printed boxes lie on a page laid flat: their light outlines are looked for some millimetres around.
+"""Positions of the printed boxes on a flattened page: their light outlines are searched some millimetres
+around.
 
 A perspective by four marks leaves what a curved or folded page adds. Boxes near each other move together, and so do the
 lines at a corner of a large one: each group is looked for on its own, a smooth surface goes through what was found, and a
@@ -36,15 +37,15 @@ Group: TypeAlias = tuple[tuple[float, float, float, float], ...]
 
 @dataclass(frozen=True)
 class Shifts:
-    """How far what is printed lies off its place: ``centres`` (n, 2) and ``offs`` (n, 2), mm; ``seen`` the share of
-    groups whose outlines were found."""
+    """Displacements of the print from its place: ``centres`` (n, 2) and ``offs`` (n, 2), mm; ``seen`` is the
+    share of groups whose outlines were found."""
 
     centres: np.ndarray
     offs: np.ndarray
     seen: float
 
     def at(self, x: float, y: float) -> tuple[float, float]:
-        """The shift at a point of the page, mm: that of the nearest group."""
+        """Return the displacement at a point of the page, mm: that of the nearest group."""
         if not len(self.centres):
             return 0.0, 0.0
         nearest = int(np.argmin(np.hypot(*(self.centres - (x, y)).T)))
@@ -57,7 +58,8 @@ class Shifts:
         return float(np.abs(self.offs).max(initial=0.0))
 
     def bent(self, picture: np.ndarray, anchors: Sequence[tuple[float, float]], scale: int) -> np.ndarray:
-        """A page laid flat by the shifts, those between bent as a thin plate; ``anchors``, mm, do not move."""
+        """Return a flattened page corrected by the displacements, interpolated as a thin plate; ``anchors``,
+        mm, do not move."""
         from scipy.interpolate import RBFInterpolator
 
         cv2 = opencv()
@@ -79,7 +81,7 @@ class Shifts:
 
 
 def outline_shifts(ink: np.ndarray, page: AnswerPage, scale: int) -> Shifts:
-    """The shifts of a page whose ``ink`` (255 paper) has ``scale`` pixels a millimetre."""
+    """Return the displacements of a page whose ``ink`` (255 paper) has ``scale`` pixels per millimetre."""
     groups = [group for field in page.fields for group in _groups(field)]
     groups += _pieces(page.guide)
     if not groups:
@@ -101,7 +103,8 @@ def _each(found: Iterable[tuple[np.ndarray, float]]) -> tuple[np.ndarray, np.nda
 
 
 def _groups(field: Field) -> Iterator[Group]:
-    """What moves together of a field: boxes near each other, and the corners of large boxes."""
+    """Yield the groups of outlines of a field that move together: adjacent boxes, and the corners of large
+    boxes."""
     row = [box for box in (field.sign, *field.digits, *field.decimals, field.power_sign, *field.power) if box]
     row += [box for _, box in field.ticks] + [box for box in (field.unit,) if box]
     large = {
@@ -113,7 +116,7 @@ def _groups(field: Field) -> Iterator[Group]:
 
 
 def _pieces(row: Sequence[Box]) -> Iterator[Group]:
-    """The outlines of boxes in a row, parted where they reach too far."""
+    """Yield the outlines of boxes in a row, divided where they extend too far."""
     piece: list[Box] = []
     for box in row:
         if piece and max(span_of([*piece, box]).width, span_of([*piece, box]).height) > _WIDEST:
@@ -130,7 +133,7 @@ def _sides(box: Box) -> Group:
 
 
 def _corners(box: Box) -> Iterator[Group]:
-    """The lines that meet at each corner of a large box, as far as they move together."""
+    """Yield the lines that meet at each corner of a large box, as far as they move together."""
     x0, y0, x1, y1 = box.x, box.y, box.x + box.width, box.y + box.height
     wide, high = min(_ARM, box.width / 2), min(_ARM, box.height / 2)
     for x, left in ((x0, x0), (x1, x1 - wide)):
@@ -139,7 +142,7 @@ def _corners(box: Box) -> Iterator[Group]:
 
 
 def span_of(boxes: Sequence[Box], around: float = 0.0) -> Box:
-    """The least box about boxes, and ``around`` mm more."""
+    """Return the smallest box around boxes, enlarged by ``around`` mm."""
     left, top = min(b.x for b in boxes) - around, min(b.y for b in boxes) - around
     right, bottom = max(b.x + b.width for b in boxes), max(b.y + b.height for b in boxes)
     return Box(left, top, right + around - left, bottom + around - top)
@@ -167,7 +170,8 @@ def _found(
     about: Sequence[float],
     reach: Sequence[float],
 ) -> tuple[np.ndarray, float]:
-    """The shift, mm, near ``about``, by which the outlines of a group are best seen, and the share of them that is."""
+    """Return the displacement near ``about``, mm, at which the most of a group's outlines is visible, and
+    their visible share."""
     cv2 = opencv()
     x, y = round(reach[0] * scale), round(reach[1] * scale)
     left, top = np.array(group).reshape(-1, 2).min(axis=0)
@@ -185,7 +189,8 @@ def _found(
 
 
 def _masks(group: Group, left: float, top: float, scale: int) -> tuple[np.ndarray, np.ndarray]:
-    """Where the upright and the level lines of a group run, 3 pixels wide, short of where they meet."""
+    """Return the masks of the upright and the level lines of a group, 3 pixels wide, without their
+    intersections."""
     ends = np.round((np.array(group) - (left, top, left, top)) * scale).astype(int)
     high, wide = ends[:, 3].max() + 3, ends[:, 2].max() + 3
     upright, level = np.zeros((high, wide), np.uint8), np.zeros((high, wide), np.uint8)
@@ -200,7 +205,8 @@ def _masks(group: Group, left: float, top: float, scale: int) -> tuple[np.ndarra
 def _window(
     line: np.ndarray, left: int, top: int, shape: tuple[int, ...], reach: tuple[int, int] = (0, 0)
 ) -> np.ndarray:
-    """A piece of a picture, larger than a mask by ``reach`` on each side; nothing lies beyond the picture."""
+    """Return a part of a picture, larger than a mask by ``reach`` on each side; it is padded beyond the
+    picture."""
     high, wide = shape[0] + 2 * reach[1], shape[1] + 2 * reach[0]
     padded = np.zeros((high, wide), line.dtype)
     t, l = max(top, 0), max(left, 0)
@@ -210,7 +216,7 @@ def _window(
 
 
 def _share(lines: Sequence[np.ndarray], masks: Sequence[np.ndarray], left: int, top: int) -> float:
-    """The share of the outlines' length that is darker than what lies beside it."""
+    """Return the share of the outlines' length that is darker than its surroundings."""
     seen = asked = 0
     for line, mask in zip(lines, masks, strict=True):
         piece = _window(line, left, top, mask.shape)
@@ -220,7 +226,8 @@ def _share(lines: Sequence[np.ndarray], masks: Sequence[np.ndarray], left: int, 
 
 
 def _smooth(centres: np.ndarray, offs: np.ndarray, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A smooth surface through the shifts that were seen, at all centres, and which of them lie on it."""
+    """Return a smooth surface through the found displacements, at all centres, and the groups that agree with
+    it."""
     kept, surface = seen, np.zeros_like(offs)
     for _ in range(4):
         if not kept.any():
@@ -232,7 +239,8 @@ def _smooth(centres: np.ndarray, offs: np.ndarray, seen: np.ndarray) -> tuple[np
 
 
 def _surface(at: np.ndarray, known: np.ndarray, offs: np.ndarray) -> np.ndarray:
-    """A smooth surface through what is known, at ``at``: of as high a degree as that holds, at most the second."""
+    """Return a smooth surface through the known points, at ``at``: of the second degree at most, of a lower
+    one for few points."""
     degree = 2 if len(known) >= 9 else 1 if len(known) >= 4 else 0
 
     def terms(points: np.ndarray) -> np.ndarray:

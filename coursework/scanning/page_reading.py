@@ -1,4 +1,4 @@
-"""Pages of one file, read and kept: what a process does while others read other pages."""
+"""Reading of the pages of one file, in one of several processes."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Papers(Mapping[str, Sequence[AnswerPage]]):
 
     @cached_property
     def students(self) -> tuple[str, ...]:
-        """Who has a paper."""
+        """Students with a paper."""
         return tuple(sorted({paper.student for paper in self.papers.values() if paper.student}))
 
     def _pages(self, code: str) -> tuple[AnswerPage, ...]:
@@ -94,7 +94,7 @@ class Papers(Mapping[str, Sequence[AnswerPage]]):
         return len(self.papers)
 
     def _variant(self, code: str, place: int) -> Variant:
-        """The variant of an exercise of a paper."""
+        """Return the variant of an exercise of a paper."""
         record = self.papers[code].records[place]
         return self.course[record["exercise"]].from_record(record)
 
@@ -105,7 +105,7 @@ def _papers(root: str, issued: str, stamp: str) -> Papers:
 
 
 def count_pages(path: str) -> tuple[int, str]:
-    """How many pages a file has; or none, and why."""
+    """Return the number of pages of a file; 0 and the reason if it cannot be read."""
     from coursework.scanning.pictures import page_count
 
     try:
@@ -127,7 +127,7 @@ def read_pages(desk: Desk, pages: Pages) -> int:
 def _read(
     path: Path, number: int, name: str, papers: Papers, least: float
 ) -> tuple[PageKept, dict[str, bytes]]:
-    """What a page is, and its pictures by their files."""
+    """Return the result of a page, and its pictures by their files."""
     from coursework.scanning.digits import read_digits
     from coursework.scanning.pages import read_page
     from coursework.scanning.pictures import opencv, picture_at
@@ -171,7 +171,7 @@ def _read(
 
 
 def _is_of_another(grey: np.ndarray, page: AnswerPage, papers: Papers, code: str) -> bool:
-    """Whether another name of the class than that of the paper is printed on a page."""
+    """Return True if the name printed on a page is that of another student than the paper's."""
     from coursework.scanning.names import other_name
 
     paper = papers.papers[code]
@@ -181,13 +181,13 @@ def _is_of_another(grey: np.ndarray, page: AnswerPage, papers: Papers, code: str
 
 
 def _code(text: str) -> str:
-    """The paper's code of what a QR code says."""
+    """Return the code of the paper from the text of a QR code."""
     pieces = text.split(" ")
     return pieces[1] if len(pieces) == 3 else ""
 
 
 def _text(field: Field, text: str, cases: Sequence[str], papers: Papers, code: str) -> str:
-    """What was read as students write it."""
+    """Return a reading in the form in which students write it."""
     if field.what != "ticks" or not cases:
         return text
     variant = papers.variant(code, field.place)
@@ -204,7 +204,7 @@ def _kept(field: Field, text: str, confidence: float, waits: str, crop: str) -> 
 
 
 def typed_page(papers: Papers, code: str, number: int, least: float) -> PageKept:
-    """A page that a person types as a whole: it is known, and nothing of it could be read."""
+    """Return a page that a person types as a whole: it is identified, and nothing of it could be read."""
     page = papers[code][number - 1]
     fields = tuple(_kept(field, "", 0.0, "page", "") for field in page.fields if field.part)
     return PageKept(ANSWERS, "not straight", code, number, fields, least=least)
@@ -214,7 +214,7 @@ def typed_page(papers: Papers, code: str, number: int, least: float) -> PageKept
 
 
 def _is_bare(grey: np.ndarray) -> bool:
-    """Whether a picture shows paper and nothing on it; what is dark all over shows no paper."""
+    """Return True if a picture shows blank paper; a picture that is dark all over shows no paper."""
     inner = grey[
         grey.shape[0] // 40 : -(grey.shape[0] // 40) or None,
         grey.shape[1] // 40 : -(grey.shape[1] // 40) or None,
@@ -224,7 +224,7 @@ def _is_bare(grey: np.ndarray) -> bool:
 
 
 def _jpeg(grey: np.ndarray, height: int) -> bytes:
-    """A picture of at most so many pixels' height."""
+    """Return a picture as JPEG, of a limited height in pixels."""
     from coursework.scanning.pictures import opencv
 
     cv2 = opencv()
@@ -235,7 +235,7 @@ def _jpeg(grey: np.ndarray, height: int) -> bytes:
 
 
 def _png(grey: np.ndarray) -> bytes:
-    """A crop, 16 levels of grey: enough to see pencil, and half as large."""
+    """Return a crop as PNG in 16 levels of grey: enough for pencil, and half the size."""
     from coursework.scanning.pictures import opencv
 
     cv2 = opencv()
@@ -244,7 +244,7 @@ def _png(grey: np.ndarray) -> bytes:
 
 
 def cut(picture: bytes, field: FieldKept) -> bytes:
-    """A field cut from the picture that is kept of its page, which is straight, with a margin about it."""
+    """Return a field cut from the stored picture of its page, which is flattened, with a margin."""
     from coursework.scanning.pictures import opencv
 
     cv2 = opencv()

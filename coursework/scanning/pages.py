@@ -34,9 +34,10 @@ WAITS = (
 
 @dataclass(frozen=True)
 class FieldRead:
-    """What one field says: its ``text`` (empty for a blank answer), the least ``confidence`` of its boxes; and where a
-    person must look, the word of why it ``waits`` (of :data:`WAITS`) and the ``crop``, grey, 10 pixels a mm: then
-    the text is only what it looks like. ``cases`` are the cases ticked, of a choice."""
+    """Reading of one field: its ``text`` (empty for a blank answer) and the least ``confidence`` of its
+    boxes. If a person must look, ``waits`` is the key of the reason (of :data:`WAITS`), ``crop`` is the
+    picture, grey, 10 pixels per mm, and the text is only the likeliest reading. ``cases`` are the ticked
+    choices."""
 
     field: Field
     text: str
@@ -48,8 +49,8 @@ class FieldRead:
 
 @dataclass(frozen=True)
 class PageRead:
-    """What a picture shows: ``found`` is a word of :data:`FOUND`; ``code`` the text of its code, if one was read;
-    ``fields`` what is read of ``page``; ``grey`` the page, laid flat where it could be."""
+    """Result of a picture: ``found`` is a word of :data:`FOUND`; ``code`` is the text of its code, if one was
+    read; ``fields`` are the readings of ``page``; ``grey`` is the page, flattened if possible."""
 
     file: str
     number: int
@@ -63,7 +64,7 @@ class PageRead:
 def read_page(
     picture: Picture, papers: Mapping[str, Sequence[AnswerPage]], reader: Reader, least: float = LEAST
 ) -> PageRead:
-    """What a picture says, beside the answer pages of each paper by its code.
+    """Return the reading of a picture, compared with the answer pages of each paper by its code.
 
     ``reader`` reads digits; what is read of a box with less confidence than ``least`` waits for a person.
     """
@@ -113,12 +114,12 @@ def _is_blank(one: FieldRead) -> bool:
 
 
 def _gone_astray(page: Straight, one: FieldRead) -> FieldRead:
-    """A blank field of a page on which something is written elsewhere: its answer may be that."""
+    """Return the reading of a blank field on a page with writing elsewhere, which may be its answer."""
     return replace(one, confidence=0.0, waits="elsewhere", crop=cropped(page, one.field))
 
 
 def read_field(page: Straight, field: Field, reader: Reader, least: float = LEAST) -> FieldRead:
-    """What a field of a page laid flat says."""
+    """Return the reading of a field on a flattened page."""
     if field.what == "ticks":
         said = _ticks(page, field)
     elif field.what == "number":
@@ -130,7 +131,7 @@ def read_field(page: Straight, field: Field, reader: Reader, least: float = LEAS
 
 
 def _ticks(page: Straight, field: Field) -> Reading:
-    """What boxes to tick say: one of them, or several where several may be ticked, but none with others."""
+    """Return the reading of tick boxes: one choice, or several if allowed, but none together with others."""
     said = {case: tick(page, box) for case, box in field.ticks}
     cases = tuple(case for case, word in said.items() if word == TICKED)
     waits = (
@@ -145,12 +146,12 @@ def _ticks(page: Straight, field: Field) -> Reading:
 
 
 def cropped(page: Straight, field: Field) -> np.ndarray:
-    """What a person looks at: the field's place, to scale, with some paper around."""
+    """Return the picture of a field for a person: its place, to scale, with a margin."""
     return page.cut(span_of([field.whole], 2.0), of=page.paper).copy()
 
 
 def encoded(crop: np.ndarray) -> bytes:
-    """A picture as PNG."""
+    """Return a picture as PNG."""
     cv2 = opencv()
     return bytes(cv2.imencode(".png", crop)[1])
 

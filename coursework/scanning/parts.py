@@ -10,7 +10,7 @@ from coursework.scanning.page_reading import Papers
 
 
 class Joins:
-    """How answers of several pieces are written, by what their parts are."""
+    """Composition of answers from several coordinates, by the kinds of their questions."""
 
     def __init__(self, papers: Papers, asked: Mapping[str, PaperAsked]):
         self._papers = papers
@@ -20,7 +20,7 @@ class Joins:
                 self._places[str(record["exercise"]), int(record["seed"])] = code, place
 
     def part_of(self, part: tuple[str, int, str]) -> tuple[Any, Any]:
-        """The variant and the part."""
+        """Return the variant and the question."""
         variant = self._papers.variant(*self._places[part[:2]])
         return variant, next(p for p in variant.parts if p.id == part[2])
 
@@ -37,7 +37,8 @@ class Joins:
         return own.unit == "mm" and len(own.sort.coordinates(own, variant)) == 2
 
     def joined(self, part: tuple[str, int, str], texts: Sequence[str]) -> str:
-        """The texts of several coordinates as one; nothing where nothing is written. A unit that is ticked goes for all."""
+        """Return the texts of several coordinates as one answer; empty if none is written. A ticked unit
+        applies to all of them."""
         if not any(text.strip() for text in texts):
             return ""
         variant, asked = self.part_of(part)

@@ -44,7 +44,7 @@ class BadPicture(BadInput):
 
 @dataclass(frozen=True)
 class Picture:
-    """One page as it came: ``grey`` is ``(height, width)``, 0 black to 255 white; ``page`` counts from 1."""
+    """Page of a file: ``grey`` is ``(height, width)``, 0 black to 255 white; ``page`` counts from 1."""
 
     file: str
     page: int
@@ -53,7 +53,7 @@ class Picture:
 
 @cache
 def opencv() -> Any:
-    """OpenCV, told before it is loaded how large a picture may be.
+    """Return OpenCV; the limit on the size of a picture is set before it is loaded.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def opencv() -> Any:
 
 
 def pictures(path: Path) -> Iterator[Picture]:
-    """The pages of a file, in its order, one in memory at a time.
+    """Yield the pages of a file, in order, one in memory at a time.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def _of_pdf(path: Path) -> Iterator[Picture]:
 
 
 def _drawn(pdfium: Any, document: Any, number: int, path: Path) -> np.ndarray:
-    """A page of a PDF, drawn at 300 dots an inch, or at fewer where that would be larger than a page can be."""
+    """Return a page of a PDF, rendered at 300 dots per inch, or at fewer if it would exceed the largest page."""
     try:
         page = document[number]
         width, height = page.get_width(), page.get_height()
@@ -155,7 +155,7 @@ def _pages_of_image(cv2: Any, path: Path) -> int:
 
 
 def _decoded(cv2: Any, path: Path, number: int) -> np.ndarray:
-    """A page of an image, turned as its camera says it was held."""
+    """Return a page of an image, rotated by its orientation tag."""
     try:
         if number or path.suffix.lower() in (".tif", ".tiff"):
             _, found = cv2.imreadmulti(str(path), number, 1, flags=cv2.IMREAD_GRAYSCALE)
@@ -177,7 +177,7 @@ def _decoded(cv2: Any, path: Path, number: int) -> np.ndarray:
 
 
 def _single(cv2: Any, path: Path) -> Any:
-    """A picture of one page; what is transparent of a PNG lies on white paper."""
+    """Return a picture of one page; a transparent PNG is laid on white paper."""
     if path.suffix.lower() != ".png" or not _may_be_transparent(path):
         return cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
     found = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
@@ -189,21 +189,22 @@ def _single(cv2: Any, path: Path) -> Any:
 
 
 def _may_be_transparent(path: Path) -> bool:
-    """Whether the header of a PNG tells a channel for it."""
+    """Return True if the header of a PNG states an alpha channel."""
     with path.open("rb") as file:
         head = file.read(26)
     return head[:4] == b"\x89PNG" and head[25:] in (b"\x04", b"\x06")
 
 
 def is_two_toned(grey: NDArray[np.uint8]) -> bool:
-    """Whether a picture is in black and white, of dots too: a grey one has more grey about its ink than ink."""
+    """Return True if a picture is black and white, including halftones: a grey one has more grey around its
+    ink than ink."""
     some = grey[::2, ::2]
     black, white = np.count_nonzero(some <= _BLACK), np.count_nonzero(some >= _WHITE)
     return bool(some.size - black - white < black)
 
 
 def page_count(path: Path) -> int:
-    """How many pages a file has.
+    """Return the number of pages of a file.
 
     Raises
     ------
@@ -231,7 +232,7 @@ def _pages(path: Path) -> int:
 
 
 def picture_at(path: Path, number: int) -> Picture:
-    """One page of a file, from 1 on.
+    """Return one page of a file, counted from 1.
 
     Raises
     ------
@@ -253,7 +254,8 @@ def _opened(path: Path) -> Any:
 
 
 def without_streaks(grey: np.ndarray) -> np.ndarray:
-    """A picture without the lines that dirt on a scanner's glass draws along a whole page; ink under them stays.
+    """Return a picture without the lines that dirt on a scanner's glass draws along a whole page; ink under
+    them remains.
 
     A line is some pixels wide, and as much darker than what is beside it all along the picture.
     """

@@ -1,4 +1,5 @@
-"""What waits for a person, as a folder: ``queue.json``, and ``index.html``, one page that needs nothing but a browser."""
+"""Queue of the cards that wait for a person, as a folder: ``queue.json``, and ``index.html``, a page that
+needs only a browser."""
 
 from __future__ import annotations
 
@@ -40,7 +41,7 @@ Cut = Callable[[Path, str, FieldKept, int], str]
 
 @dataclass(frozen=True)
 class Queue:
-    """What waits, with what is needed to show it."""
+    """Cards that wait for a person, with the data to show them."""
 
     papers: Papers
     asked: Mapping[str, PaperAsked]
@@ -79,7 +80,7 @@ class Queue:
         )
 
     def group(self, card: Card) -> dict[str, Any]:
-        """What a card is about, in every language."""
+        """Return the question of a card, in every language."""
         if card.exercise in (PAGE, NAME):
             sort = "pages" if card.exercise == PAGE else "names"
             return {
@@ -136,7 +137,7 @@ def write_queue(queue: Queue, cut: Cut) -> None:
 
 
 def _shown(queue: Queue, card: Card, cut: Cut) -> dict[str, Any]:
-    """A card as the page has it; files are told from the folder of the page."""
+    """Return a card for the page, with files relative to the folder of the page."""
     sort = {PAGE: "pages", NAME: "names"}.get(card.exercise, "question")
     crops = [cut(queue.out, said.page, said.field, said.index) for said in card.said]
     pages = [picture_of(name) for name in card.pages]
@@ -161,7 +162,7 @@ def _shown(queue: Queue, card: Card, cut: Cut) -> dict[str, Any]:
 
 
 def place_of_card(card: Card) -> list[str]:
-    """The first columns of a line of ``typed.csv``."""
+    """Return the first columns of a line of ``typed.csv``."""
     if card.exercise == PAGE:
         return ["", PAGE, "", card.part, ""]
     if card.exercise == NAME:
@@ -176,7 +177,8 @@ def place_of_card(card: Card) -> list[str]:
 
 
 def _drawing(queue: Queue, card: Card, cut: Cut) -> dict[str, Any] | None:
-    """The paper that was drawn on, of a point in millimetres on it, which can be clicked there."""
+    """Return the paper of a drawing, for a point in millimetres that a person can click; None for other
+    cards."""
     said = queue.found.drawn.get((card.paper, card.exercise, card.seed))
     if said is None or not queue.joins.is_drawn((card.exercise, card.seed, card.part)):
         return None
@@ -192,7 +194,8 @@ def _drawing(queue: Queue, card: Card, cut: Cut) -> dict[str, Any] | None:
 
 
 def page(queue: Queue, told: Mapping[str, Any]) -> str:
-    """The page on which people type: it holds its pictures, unless they are too many, and runs without a server."""
+    """Return the page on which people type: it embeds its pictures, unless they are too many, and needs no
+    server."""
     folder = queue.papers.course.folder
     embedded = dict(_embedded(queue.out / FOLDER, told["cards"]))
     cards = [_with_pictures(card, embedded) for card in told["cards"]]
@@ -216,7 +219,8 @@ def page(queue: Queue, told: Mapping[str, Any]) -> str:
 
 
 def _embedded(folder: Path, cards: list[dict[str, Any]]) -> Iterator[tuple[str, str]]:
-    """The pictures that the page holds, by their files; none of whole pages, which lie beside it."""
+    """Yield the pictures to embed in the page, with their files; pictures of whole pages remain separate
+    files."""
     files = dict.fromkeys(
         file
         for card in cards
@@ -237,7 +241,7 @@ def _with_pictures(card: Mapping[str, Any], embedded: Mapping[str, str]) -> dict
 
 
 def _papers(queue: Queue) -> Iterator[dict[str, Any]]:
-    """The papers that a page may be of."""
+    """Yield the papers to which a page may belong."""
     sizes = {queue.papers.papers[code].size for code in queue.asked} or {"a4"}
     several = len({paper.records[0]["exercise"] for paper in queue.papers.papers.values()}) > 1
     for code, paper in queue.papers.papers.items():
@@ -251,8 +255,8 @@ def _papers(queue: Queue) -> Iterator[dict[str, Any]]:
 
 
 def _joins(queue: Queue) -> Iterator[dict[str, Any]]:
-    """How the answers of which something waits are put together when nothing does: a pattern with a letter of its own in the
-    place of each coordinate, and another where the printed unit goes for all."""
+    """Yield the rules by which the page composes pending answers: a pattern with a letter for each
+    coordinate, and another in which the printed unit applies to all."""
     for one in queue.found.pending:
         exercise, seed, part = one.part
         places = list(_PLACES[: len(one.pieces)])

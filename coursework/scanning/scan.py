@@ -78,7 +78,7 @@ _OTHER = "a sheet of something else that was issued"
 
 @dataclass
 class ScanBook:
-    """What the job found, counted; the rest is in the folder."""
+    """Counts of a scan job; its results are in the folder."""
 
     pages: int = 0
     read_now: int = 0
@@ -207,7 +207,7 @@ def _read(
 
 
 def _chunks(desk: Desk, papers: Papers, path: str, digest: str, count: int) -> Iterator[Pages]:
-    """The pages of a file that are to be read, a few at a time."""
+    """Yield the pages of a file that are to be read, a few at a time."""
     first = 0
     for number in range(1, count + 2):
         is_wanted = number <= count and _is_to_be_read(desk, papers, page_id(digest, number))
@@ -218,7 +218,7 @@ def _chunks(desk: Desk, papers: Papers, path: str, digest: str, count: int) -> I
 
 
 def _is_to_be_read(desk: Desk, papers: Papers, name: str) -> bool:
-    """Whether nothing is kept of a page, or what was kept may be otherwise now."""
+    """Return True if there is no stored result of a page, or if it may be different now."""
     page = page_kept(Path(desk.out), name)
     if page is None or page.least != desk.least:
         return True
@@ -285,7 +285,8 @@ def write_read(
 
 
 def as_told(one: Scanned, papers: Papers, typed: Sequence[Typed], least: float) -> Scanned:
-    """A page as it is now: of another issue, or what a person said that it is."""
+    """Return a page in its current state: refused if it is of another issue, or replaced by a person's
+    statement."""
     page = one.page
     if page.what == ANSWERS and page.code not in papers:
         return replace(one, page=PageKept(REFUSED, _OTHER, page.code))
@@ -303,7 +304,7 @@ def as_told(one: Scanned, papers: Papers, typed: Sequence[Typed], least: float) 
 
 
 def papers_asked(papers: Papers, pages: Sequence[Scanned]) -> dict[str, PaperAsked]:
-    """The papers of which some page was scanned, in the order in which they were issued."""
+    """Return the papers of which some page was scanned, in the order of issue."""
     met = {one.page.code for one in pages if one.page.what == ANSWERS}
     return {code: _asked(papers, code) for code in papers if code in met}
 
@@ -321,7 +322,7 @@ def _asked(papers: Papers, code: str) -> PaperAsked:
 def together(
     papers: Papers, asked: Mapping[str, PaperAsked], pages: Sequence[Scanned], typed: Sequence[Typed]
 ) -> Gathered:
-    """What pages and people say together."""
+    """Combine the content of pages and typed texts."""
     return gather(pages, asked, typed, Joins(papers, asked))
 
 
@@ -339,12 +340,12 @@ def _write_answers(table: Table, found: Gathered, pages: Sequence[Scanned]) -> N
 
 
 def answer_text(one: Answer) -> str:
-    """An answer as it is marked: of one that a person marks from its picture, where that is."""
+    """Return an answer as it is marked: for one marked from its picture, the place of the picture."""
     return "; ".join(s.field.crop or picture_of(s.page) for s in one.pictures) or one.answer
 
 
 def _sources(pages: Sequence[Scanned]) -> dict[str, str]:
-    """Where each page stands: the first file that holds it."""
+    """Return the place of each page: the first file that contains it."""
     found: dict[str, str] = {}
     for one in pages:
         found.setdefault(one.id, f"{one.file.name} p. {one.number}")
@@ -404,13 +405,13 @@ def _write_missing(
 
 
 def _sheet(paper: AnswerPaper) -> tuple[str, int, tuple[tuple[str, int], ...]]:
-    """Which paper it is, on whatever size it was printed."""
+    """Return the identity of a paper, whatever its printed size."""
     return paper.student, paper.sitting, tuple((str(r["exercise"]), int(r["seed"])) for r in paper.records)
 
 
 def _cut(out: Path, name: str, field_: FieldKept, place: int) -> str:
-    """The file of a field's picture, cut now where that was not done when its page was read; the whole page where it is
-    not straight."""
+    """Return the file of a field's picture; cut it now if it does not exist. For a page that is not flat, the
+    picture of the whole page."""
     if field_.crop:
         return field_.crop
     page = page_kept(out, name)

@@ -1,4 +1,5 @@
-"""What is scanned: PDFs and pictures, alone, in folders or in archives; each by its name and what it holds."""
+"""Sources of scans: PDFs and pictures, alone, in folders or in archives, each identified by its name and its
+content."""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ _KEPT = 16  #: letters of a digest that tell files apart
 
 
 class Scan(NamedTuple):
-    """A file that may hold pages."""
+    """File that may contain pages."""
 
     name: str  #: below the folder or archive that was named, or its own
     digest: str  #: of its bytes; of its name where it cannot be read
@@ -28,7 +29,8 @@ class Scan(NamedTuple):
 
 
 def scans(paths: Iterable[Path], unpacked: Path) -> list[Scan]:
-    """The files of what is named, in an order that does not hang on where they lie; archives are opened in ``unpacked``.
+    """Return the files of the given paths, in an order that does not depend on their folders; archives are
+    extracted in ``unpacked``.
 
     Raises
     ------
@@ -63,7 +65,7 @@ def _is_hidden(path: Path, below: Path) -> bool:
 
 
 def _text(name: str) -> str:
-    """A name as it can be written, whatever bytes it is of."""
+    """Return a name as valid text, whatever its bytes."""
     return "".join(c if c.isprintable() else "\ufffd" for c in os.fsencode(name).decode("utf-8", "replace"))
 
 
@@ -94,12 +96,13 @@ def _file(path: Path, name: str, unpacked: Path, folder: Path | None = None) -> 
 
 
 def _refused(name: str, path: Path, why: str) -> Scan:
-    """A file of which no page can be read; what is in it does not tell it apart."""
+    """Return a file of which no page can be read, identified by its name and its fault instead of its
+    content."""
     return Scan(name, hashlib.sha256(f"{name}\0{why}".encode()).hexdigest()[:_KEPT], path, why)
 
 
 def _archive(path: Path, name: str, digest: str, unpacked: Path) -> Iterator[Scan]:
-    """The files of an archive; an archive in it stays closed."""
+    """Yield the files of an archive; nested archives are not opened."""
     folder = unpacked / digest
     try:
         unpack(path, folder, _UNZIPPED)

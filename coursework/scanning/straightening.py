@@ -47,12 +47,13 @@ class Straight:
     noise: float
 
     def placed(self, box: Box) -> Box:
-        """Where a box of the layout lies on this picture, mm."""
+        """Return the position of a box of the layout on this picture, mm."""
         dx, dy = self.shifts.at(box.x + box.width / 2, box.y + box.height / 2)
         return replace(box, x=box.x + dx, y=box.y + dy)
 
     def cut(self, box: Box, inset: float = 0.0, *, of: np.ndarray | None = None) -> np.ndarray:
-        """What lies in a box of the layout, ``inset`` mm within its outline, from ``ink`` unless told."""
+        """Return the picture of a box of the layout, ``inset`` mm within its outline, from ``ink`` by
+        default."""
         source = self.ink if of is None else of
         at = self.placed(box)
         top, bottom = (_pixel(v, source.shape[0]) for v in (at.y + inset, at.y + at.height - inset))
@@ -65,7 +66,7 @@ def _pixel(mm: float, most: int) -> int:
 
 
 def straightened(grey: np.ndarray, code: Code, page: AnswerPage) -> Straight:
-    """A page laid flat.
+    """Return the flattened page.
 
     Raises
     ------
@@ -107,7 +108,8 @@ def _corners(box: Box) -> np.ndarray:
 
 
 def _similarity(pixels: np.ndarray, mm: np.ndarray) -> tuple[complex, complex, float]:
-    """The turn and stretch ``a``, the displacement ``b`` of ``mm = a pixel + b`` as complex numbers, and pixels a mm."""
+    """Return the rotation and scale ``a``, the displacement ``b`` of ``mm = a pixel + b`` as complex numbers,
+    and pixels per mm."""
     p, q = pixels @ (1, 1j), mm @ (1, 1j)
     centred = p - p.mean()
     a = np.vdot(centred, q - q.mean()) / np.vdot(centred, centred).real
@@ -135,7 +137,8 @@ def _dark_squares(grey: np.ndarray, per_mm: float) -> np.ndarray:
 def _centre_of_square(
     cv2: Any, outline: np.ndarray, side: float, shape: tuple[int, ...]
 ) -> tuple[float, float] | None:
-    """The centre of an outline that is a solid square, seen at an angle, that the picture's edge does not cut."""
+    """Return the centre of an outline that is a solid square in perspective and inside the picture; None for
+    any other."""
     x, y, w, h = cv2.boundingRect(outline)
     if x == 0 or y == 0 or x + w == shape[1] or y + h == shape[0]:
         return None
@@ -165,7 +168,7 @@ def _candidates(spots: np.ndarray, across: tuple[complex, complex], page: Answer
 
 
 def _four_marks(cv2: Any, candidates: list[np.ndarray], code: Code, page: AnswerPage) -> np.ndarray | None:
-    """The perspective of the four candidates that place the code best; none if none places it well."""
+    """Return the perspective of the four candidates that places the code best; None if none places it well."""
     best, least = None, _CODE_OFF
     for four in product(*candidates):
         spots = np.array(four, np.float32)
@@ -179,14 +182,15 @@ def _four_marks(cv2: Any, candidates: list[np.ndarray], code: Code, page: Answer
 
 
 def _turns_right(spots: np.ndarray) -> bool:
-    """Whether the points go round as printed, and bulge outwards everywhere."""
+    """Return True if the points run in their printed direction and form a convex polygon."""
     along = np.roll(spots, -1, axis=0) - spots
     after = np.roll(along, -1, axis=0)
     return bool((along[:, 0] * after[:, 1] - along[:, 1] * after[:, 0] > 0).all())
 
 
 def _code_off(matrix: np.ndarray, code: Code, page: AnswerPage) -> float:
-    """How far, in mm, a perspective places the corners of the code from where they are printed."""
+    """Return the greatest distance, mm, between the corners of the code under a perspective and their printed
+    places."""
     return float(np.abs(_mapped(matrix, code.corners) - _corners(page.code)).max())
 
 
@@ -197,7 +201,8 @@ def _mapped(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def _three_marks(cv2: Any, candidates: list[np.ndarray], code: Code, page: AnswerPage) -> np.ndarray | None:
-    """The perspective of three marks and the corners of the code that leaves the least; none if it leaves much."""
+    """Return the perspective of three marks and the corners of the code with the least error; None if it is
+    large."""
     best, least = None, _CODE_OFF_OF_THREE
     for missing in range(4):
         kept = [k for k in range(4) if k != missing]
@@ -214,7 +219,7 @@ def _three_marks(cv2: Any, candidates: list[np.ndarray], code: Code, page: Answe
 
 
 def _flat(grey: np.ndarray, matrix: np.ndarray, page: AnswerPage) -> np.ndarray:
-    """The picture by a perspective, 10 pixels a mm; what lies beyond it is white."""
+    """Return the picture under a perspective, 10 pixels per mm, padded with white."""
     cv2 = opencv()
     centre = np.linalg.inv(matrix) @ (page.width / 2, page.height / 2, 1)
     per_mm = _pixels_a_mm(matrix, centre[:2] / centre[2])
@@ -237,7 +242,8 @@ def _pixels_a_mm(matrix: np.ndarray, at: np.ndarray) -> float:
 
 
 def _evenly_lit(paper: np.ndarray) -> tuple[np.ndarray, float]:
-    """The page beside the light of the paper around, 255 where it is bare, and the spread of what is bare."""
+    """Return the page relative to the brightness of the surrounding paper, 255 for bare paper, and the spread
+    of bare paper."""
     cv2 = opencv()
     height, width = paper.shape
     small = cv2.resize(paper, (width // 5, height // 5), interpolation=cv2.INTER_AREA)

@@ -1,4 +1,4 @@
-"""What a pen left in and around a box: strong and faint ink, in pieces that hang together."""
+"""Strokes of a pen in and around a box: strong and faint ink, in connected components."""
 
 from __future__ import annotations
 
@@ -54,12 +54,12 @@ def darkness(page: Straight, box: Box, inset: float = 0.0) -> np.ndarray:
 
 
 def faint_limit(page: Straight) -> float:
-    """The darkness from which something may be ink on this page: above the noise of its paper."""
+    """Return the darkness above which something may be ink on this page: above the noise of its paper."""
     return max(FAINT, 6 * page.noise)
 
 
 def is_bare(page: Straight, box: Box, inset: float = 0.9) -> bool:
-    """Whether a box is empty for certain: nothing in it but dust, and nothing faint."""
+    """Return True if a box is certainly empty: it contains only dust, and nothing faint."""
     dark = darkness(page, box, inset)
     if not dark.size:
         return False
@@ -74,7 +74,8 @@ def is_bare(page: Straight, box: Box, inset: float = 0.9) -> bool:
 
 
 def has_stroke(page: Straight, box: Box, length: float) -> bool:
-    """Whether something in a box is as long or high as this, mm: a thin or pale stroke, where dust would be round."""
+    """Return True if something in a box is as long or high as ``length``, mm: a thin or pale stroke, since
+    dust is round."""
     dark = darkness(page, box, 0.9)
     for limit in (STRONG, faint_limit(page)):
         found = pieces(dark > limit)
@@ -85,7 +86,8 @@ def has_stroke(page: Straight, box: Box, length: float) -> bool:
 
 
 def runs_through(page: Straight, box: Box) -> bool:
-    """Whether something runs through a box from above it to below, as the edge of a shadow or of a stain and no digit does."""
+    """Return True if something runs through a box from above it to below, like the edge of a shadow or of a
+    stain, and unlike a digit."""
     near, far = _BEYOND
     least = _THIN_STROKE * SCALE**2
     tops = (box.y - far, box.bottom + near)
@@ -94,9 +96,8 @@ def runs_through(page: Straight, box: Box) -> bool:
 
 
 def cuts_a_corner(page: Straight, box: Box) -> bool:
-    """Whether what is in a box runs on above or below it and beyond a side, as such an edge does, and a digit with a neighbour
-    that it touches may.
-    """
+    """Return True if ink in a box extends above or below it and beyond a side, like such an edge; a digit
+    that touches its neighbour may do so too."""
     near, far = _BEYOND
     least, rim = _THIN_STROKE * SCALE**2, round((far - near) / 2 * SCALE)  # a dark outline is broad
     found = pieces(darkness(page, box, -far) > faint_limit(page))
@@ -112,7 +113,7 @@ def cuts_a_corner(page: Straight, box: Box) -> bool:
 
 
 def has_dark_outline(page: Straight, box: Box) -> bool:
-    """Whether the outline of a box came out dark itself, as a scan in black and white may make it."""
+    """Return True if the outline of a box is dark itself, as in some black-and-white scans."""
     dark = darkness(page, box, -0.25)
     if min(dark.shape, default=0) < 12:
         return False
@@ -123,8 +124,8 @@ def has_dark_outline(page: Straight, box: Box) -> bool:
 def row_ink(
     page: Straight, boxes: Sequence[Box], around: float = 1.5, within: Box | None = None
 ) -> tuple[np.ndarray, Box]:
-    """The ink (255 paper) of boxes in a row and what they span, ``around`` mm more, or of what they lie within; outlines
-    that are dark are wiped."""
+    """Return the ink (255 paper) of the boxes in a row, and their span: ``around`` mm more, or the given
+    area; dark outlines are erased."""
     span = within or span_of(boxes, around)
     ink = page.cut(span).copy()
     for box in boxes:
@@ -142,7 +143,7 @@ def _wipe(ink: np.ndarray, box: Box, span: Box) -> None:
 
 
 def part_of(picture: np.ndarray, box: Box, span: Box, inset: float = 0.0) -> np.ndarray:
-    """The view of a box on the picture of a span of boxes."""
+    """Return the view of a box on the picture of a span of boxes."""
     left, top = box.x - span.x + inset, box.y - span.y + inset
     right, bottom = left + box.width - 2 * inset, top + box.height - 2 * inset
     x0, y0, x1, y1 = (max(round(v * SCALE), 0) for v in (left, top, right, bottom))
@@ -150,10 +151,11 @@ def part_of(picture: np.ndarray, box: Box, span: Box, inset: float = 0.0) -> np.
 
 
 def cells(page: Straight, boxes: Sequence[Box]) -> tuple[list[np.ndarray], str]:
-    """What is written in each box of a row, its own ink alone: pictures of the boxes, 255 paper.
+    """Return pictures of the boxes of a row, each with its own ink alone, 255 paper; and the fault of ink
+    that lies in several boxes.
 
-    A stroke that leaves its box is cut off at the outline; where it ends in a neighbour it is wiped there. Ink that
-    lies in several boxes alike is told: ``struck`` where it runs on across boxes, ``joined`` where it joins two.
+    A stroke that leaves its box is cut off at the outline, and erased from the box in which it ends. The fault is
+    ``struck`` if ink runs across several boxes, ``joined`` if it joins two of them.
     """
     ink, span = row_ink(page, boxes)
     found = pieces(255 - ink > STRONG)
@@ -172,7 +174,7 @@ def cells(page: Straight, boxes: Sequence[Box]) -> tuple[list[np.ndarray], str]:
 
 
 def _across(found: Pieces, shares: np.ndarray, boxes: Sequence[Box]) -> str:
-    """What is wrong with ink that lies in several boxes: more than a millimetre of a stroke in a second one."""
+    """Return the fault of ink in several boxes: more than a millimetre of a stroke in a second one."""
     unit = SCALE**2
     pitch = min((b.x - a.x for a, b in pairwise(boxes)), default=boxes[0].width)
     wide = found.boxes[1:, 2] > 1.9 * pitch * SCALE

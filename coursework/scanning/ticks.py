@@ -1,4 +1,4 @@
-"""Boxes to tick: empty, ticked, or filled wholly, which takes a tick back; what is neither is told, not guessed."""
+"""Tick boxes: empty, ticked, or filled, which withdraws a tick; an unclear box is reported, not guessed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _BEYOND = 5.0  #: mm that a tick may run on outside of its box
 
 
 def tick(page: Straight, box: Box) -> str:
-    """What a box says: ``empty``, ``ticked``, ``taken back`` or ``unsure``."""
+    """Return the state of a box: ``empty``, ``ticked``, ``taken back`` or ``unsure``."""
     if is_bare(page, box, _INSET):
         return EMPTY
     dark = darkness(page, box, _INSET)
@@ -50,13 +50,14 @@ def _by_cover(mask: np.ndarray) -> str:
 
 
 def _farthest_from(mask: np.ndarray) -> float:
-    """How far, in mm, a place of a box is from ink at most: a cross leaves room at the sides, a hatching none."""
+    """Return the greatest distance, mm, of a point in a box from ink: a cross leaves room at the sides,
+    hatching none."""
     cv2 = opencv()
     return float(cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, 5).max()) / SCALE
 
 
 def _runs_on(page: Straight, box: Box) -> bool:
-    """Whether the ink of a box is part of a stroke that goes far beyond it."""
+    """Return True if the ink of a box is part of a stroke that extends far beyond it."""
     if has_dark_outline(page, box):
         return False
     around = darkness(page, box, -_BEYOND - 1.5) > STRONG

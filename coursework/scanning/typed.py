@@ -1,4 +1,4 @@
-"""What people typed where nothing could be read: ``typed.csv``, kept and added to, never lost."""
+"""Texts typed by people for unreadable answers: ``typed.csv``, to which each run adds."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NAME, PAGE = "(name)", "(page)"  #: in the place of an exercise: whose a paper i
 
 
 class Typed(NamedTuple):
-    """What somebody typed in the place of one answer, or of one coordinate of it."""
+    """Text typed for one answer, or for one of its coordinates."""
 
     student: str
     exercise: str
@@ -37,7 +37,7 @@ class Typed(NamedTuple):
 
 
 def read_typed(path: Path) -> list[Typed]:
-    """What a file says was typed.
+    """Return the typed texts in a file.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def _typed(header: Sequence[str], cells: Sequence[str]) -> Typed:
 
 
 def merged(before: Iterable[Typed], more: Iterable[Typed]) -> list[Typed]:
-    """What was typed before and what is typed now, which counts where both say something; in an order of their own."""
+    """Return the earlier and the new typed texts, sorted by place; a new one replaces an earlier one."""
     found = {one.place: one for one in (*before, *more)}
     return [found[place] for place in sorted(found)]
 
