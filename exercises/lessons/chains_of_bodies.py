@@ -24,11 +24,10 @@ from coursework.figures import (
 from coursework.figures.perspective import in_perspective
 
 from ._joint_graphs import bodies, joint
+from ._panels import moved
 
-_SHELF, _LARGER = (
-    20.0,
-    1.45,
-)  #: between two joints of the gallery, mm, and how much larger they are drawn than in a chain
+_APART = 21.0  #: between two joints of the gallery, mm
+_LARGER = 1.1  #: how much larger they are drawn than in a chain
 _BETA = 35.0  #: between the shafts of the universal joint, degrees
 _TURN = tuple(range(0, 360, 10))
 
@@ -69,20 +68,35 @@ def wrench_at_two_points():
     )
 
 
-def _gallery(*names):
-    rows = [{"joint": name, "along": "z", "point": (0.0, _SHELF * k, 0.0)} for k, name in enumerate(names)]
-    small = in_perspective(rows, tall=60.0)
-    return Figure(*small.elements, scale=_LARGER * small.fixed_scale)
+def _gallery(letters, *names, plan=()):
+    """Symbols in a row, the letter of each below it, and below that its symbol in a plane where there is one."""
+    found = []
+    for number, (letter, name) in enumerate(zip(letters, names, strict=True)):
+        alone = in_perspective([{"joint": name, "along": "z", "point": (0.0, 0.0, 0.0)}])
+        base = [e for e in alone.elements if isinstance(e, vector)] if not number else []
+        symbol = [e for e in alone.elements if not isinstance(e, (vector, point))]
+        below = plan[number](-19j) if number < len(plan) else []
+        found += moved([*base, *symbol, note(-11j, f"({letter})"), *below], complex(_APART * number))
+    return Figure(*found, scale=_LARGER)
+
+
+def _pin_in_plane(p):
+    return [link(p - 6, p), link(p, p + 6), pin(p)]
+
+
+def _slide_in_plane(p):
+    return [rail(p - 7, p + 7), slider(p, 0.0)]
 
 
 def joints_of_few_freedoms():
-    """From one to two freedoms, each with its axis upwards."""
-    return _gallery("revolute", "prismatic", "helical", "cylindrical", "spherical_pin")
+    """From one to two freedoms, each with its axis upwards; two of them are joints of plane mechanisms."""
+    names = ("revolute", "prismatic", "helical", "cylindrical", "spherical_pin")
+    return _gallery("abcde", *names, plan=(_pin_in_plane, _slide_in_plane))
 
 
 def joints_of_more_freedoms():
     """From three to five freedoms."""
-    return _gallery("spherical", "planar", "annular", "line_contact", "point_contact")
+    return _gallery("fghij", "spherical", "planar", "annular", "line_contact", "point_contact")
 
 
 def parallel_graph():

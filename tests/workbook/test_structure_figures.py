@@ -1,7 +1,8 @@
-"""The figures of the first three lessons show mechanisms that close, move as rigid bodies and are what they are called."""
+"""The figures of lessons show mechanisms that close, move as rigid bodies and are what they are called."""
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -10,7 +11,9 @@ from tables import each_row
 
 import coursework
 from coursework.figures.elements import bar, pin, point
-from coursework.figures.marks import circle, line
+from coursework.figures.marks import circle, line, note
+from coursework.language.words import languages
+from coursework.solids import FREEDOMS
 from coursework.structure.grashof import linkage_type
 from coursework.structure.library import LIBRARY
 
@@ -158,3 +161,26 @@ def _depth(corners, outline):
             along = np.clip(((z - p) * side.conj()).real / np.maximum(abs(side) ** 2, 1e-12), 0, 1)
             deepest = max(deepest, abs(p + along * side - z).min())
     return deepest
+
+
+@pytest.mark.parametrize("lang", languages())
+def test_each_joint_that_is_drawn_has_its_letter_its_name_and_its_freedoms_in_the_table(lang):
+    """The table has the joints in the order of the figures, by the same letters."""
+    drawn, rows = {}, {}
+    chains = FOLDER.lesson_module("chains_of_bodies")
+    gallery = chains._gallery
+    chains._gallery = lambda letters, *names, **more: (
+        drawn.update(zip(letters, names, strict=True)) or gallery(letters, *names, **more)
+    )
+    try:
+        figures = chains.joints_of_few_freedoms(), chains.joints_of_more_freedoms()
+    finally:
+        chains._gallery = gallery
+    notes = [e.label for figure in figures for e in figure.elements if isinstance(e, note)]
+    assert notes == [f"({letter})" for letter in drawn]
+    text = (FOLDER.root / f"exercises/lessons/chains_of_bodies.{lang}.md").read_text("utf-8")
+    for letter, name, free in re.findall(r"^\| \((\w)\) \| ([^|]+) \| ([^|]+) \|", text, re.MULTILINE):
+        assert name
+        free = re.sub("(with|avec).*", "", free)
+        rows[letter] = len(re.findall(r"\\omega_\w|v_\w", free))
+    assert rows == {letter: FREEDOMS[joint] for letter, joint in drawn.items()}
