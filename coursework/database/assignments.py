@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC, datetime
+from functools import cache
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Select, bindparam, insert, select, update
+from sqlalchemy import BindParameter, ColumnElement, Connection, Select, bindparam, insert, select, update
 
 from coursework.database.outdated import outdate, outdate_all, outdate_rows
 from coursework.database.people import put_people
@@ -237,7 +238,7 @@ def _put_dealt(
 # ---------------------------------------------------------------------- reading
 
 
-def _dealt(number: int) -> Select[Any]:
+def _dealt(number: int | BindParameter[int]) -> Select[Any]:
     columns = (*dealt.c, variant.c.exercise, variant.c.seed, variant.c.letter)
     joined = dealt.join(variant)
     return (
@@ -269,7 +270,7 @@ def issued_content(
     items: list[dict[str, Any]] = []
     columns = about.columns
     if person_id is not None:
-        items = _items(connection, number, dealt.c.person_id == person_id)
+        items = _items_of(connection, number, person_id)
         if items and not about.is_pool:
             theirs = {item["student"] for item in items}
             columns = {name: own for name, own in columns.items() if name in theirs}
@@ -287,6 +288,30 @@ def issued_content(
         **({"students": columns} if columns else {}),
         "issued": items or _items(connection, number),
     }
+
+
+def sheet_content(
+    connection: Connection, number: int, person_id: int, stated: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the content of ``issued.json`` for one person, without the columns of the roster.
+
+    ``stated`` is its statement of the assignment, which the caller has already.
+    """
+    items = _items_of(connection, number, person_id)
+    told = {"assignment": stated} if stated else {}
+    return {"format": ISSUED_FORMAT, "roster": True, **told, "issued": items}
+
+
+@cache
+def _items_query() -> Select[Any]:
+    """Return the query of :func:`_items_of`, cached."""
+    found = _dealt(bindparam("number")).where(dealt.c.person_id == bindparam("person"))
+    return found.add_columns(variant.c.record)
+
+
+def _items_of(connection: Connection, number: int, person_id: int) -> list[dict[str, Any]]:
+    told = {"number": number, "person": person_id}
+    return [_issued_item(row, row.record) for row in connection.execute(_items_query(), told)]
 
 
 def _items(connection: Connection, number: int, *whose: ColumnElement[bool]) -> list[dict[str, Any]]:

@@ -7,12 +7,27 @@ from base64 import b32encode
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
+from functools import cache
 from hashlib import sha256
 from heapq import merge
 from operator import itemgetter
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, distinct, func, insert, select, tuple_, update
+from sqlalchemy import (
+    BindParameter,
+    CompoundSelect,
+    Connection,
+    Select,
+    bindparam,
+    distinct,
+    func,
+    insert,
+    literal_column,
+    null,
+    select,
+    tuple_,
+    update,
+)
 
 from coursework.database.assignments import issued_of
 from coursework.database.outdated import outdate, outdate_rows
@@ -123,23 +138,32 @@ def _replace(connection: Connection, assignment_id: int, number: int, source: st
 def next_number(connection: Connection, assignment_id: int, person_id: int, student: str) -> int:
     """Return the number of a person's next attempt: one more than the greatest so far, on the site or
     elsewhere."""
-    of_theirs = delivery.c.assignment_id == assignment_id, delivery.c.person_id == person_id
-    tries = connection.execute(select(func.max(delivery.c.number)).where(*of_theirs)).scalar() or 0
-    elsewhere = (
-        select(answer.c.origin)
-        .join(delivery)
-        .where(
-            delivery.c.assignment_id == assignment_id,
-            delivery.c.person_id.is_(None),
-            answer.c.student == student,
-        )
-    )
-    found = [max(1, (origin or {}).get("sitting", 1)) for origin in connection.execute(elsewhere).scalars()]
-    named = marking.c.assignment_id == assignment_id, marking.c.student == student
-    known = connection.execute(select(func.max(marking.c.sitting)).where(*named)).scalar() or 0
+    told = {"assignment": assignment_id, "person": person_id, "student": student}
     return 1 + max(
-        (tries, known, *found)
-    )  # what came under another spelling of the name is known once it is marked
+        sitting if is_known else max(1, (origin or {}).get("sitting", 1))
+        for is_known, sitting, origin in connection.execute(_sittings_query(), told)
+    )
+
+
+@cache
+def _sittings_query() -> CompoundSelect[Any]:
+    """Return the query of :func:`next_number`, cached: the attempts in files, on the site, and those that are marked.
+
+    An attempt under another spelling of the name is known once it is marked.
+    """
+    of_it: BindParameter[int] = bindparam("assignment")
+    student: BindParameter[str] = bindparam("student")
+    in_files = (
+        select(literal_column("0").label("is_known"), literal_column("0").label("sitting"), answer.c.origin)
+        .join(delivery)
+        .where(delivery.c.assignment_id == of_it, delivery.c.person_id.is_(None), answer.c.student == student)
+    )
+    theirs = delivery.c.assignment_id == of_it, delivery.c.person_id == bindparam("person")
+    named = marking.c.assignment_id == of_it, marking.c.student == student
+    return in_files.union_all(
+        select(literal_column("1"), func.coalesce(func.max(delivery.c.number), 0), null()).where(*theirs),
+        select(literal_column("1"), func.coalesce(func.max(marking.c.sitting), 0), null()).where(*named),
+    )
 
 
 def delivery_alike(connection: Connection, assignment_id: int, digest: str) -> Delivery:
@@ -178,10 +202,42 @@ def _put_rows(connection: Connection, number: int, rows: Sequence[Row | Rejected
 
 def deliveries(connection: Connection, assignment_id: int, person_id: int | None = None) -> list[Delivery]:
     """Return the submissions for an assignment, in order; of one person alone, if given."""
-    found = select(delivery).where(delivery.c.assignment_id == assignment_id).order_by(delivery.c.id)
-    if person_id is not None:
-        found = found.where(delivery.c.person_id == person_id)
-    return [_delivery(row, is_new=False) for row in connection.execute(found)]
+    told = (
+        {"assignment": assignment_id}
+        if person_id is None
+        else {"assignment": assignment_id, "person": person_id}
+    )
+    found = connection.execute(_deliveries_query(person_id is not None), told)
+    return [_delivery(row, is_new=False) for row in found]
+
+
+@cache
+def _deliveries_query(is_of_one: bool) -> Select[Any]:
+    """Return the query of :func:`deliveries`, cached since many requests execute it."""
+    found = select(delivery).where(delivery.c.assignment_id == bindparam("assignment"))
+    if is_of_one:
+        found = found.where(delivery.c.person_id == bindparam("person"))
+    return found.order_by(delivery.c.id)
+
+
+def answers_of(connection: Connection, delivery_id: int) -> list[list[str]]:
+    """Return exercise, seed, part and answer of each question of a submission, in order."""
+    found = connection.execute(_answers_query(), {"delivery": delivery_id})
+    return [[*row[:3], str(_as_came(row.answer) or "")] for row in found]
+
+
+@cache
+def _answers_query() -> Select[Any]:
+    """Return the query of :func:`answers_of`, cached."""
+    columns = answer.c.exercise, answer.c.seed, answer.c.part, answer.c.answer
+    return select(*columns).where(answer.c.delivery_id == bindparam("delivery")).order_by(answer.c.place)
+
+
+@cache
+def _papers_query() -> Select[Any]:
+    """Return the query of a person's papers, cached."""
+    theirs = variant.c.assignment_id == bindparam("assignment"), dealt.c.person_id == bindparam("person")
+    return select(dealt.c.sitting, variant.c.exercise, variant.c.seed).join(variant).where(*theirs)
 
 
 def tries_used(connection: Connection, assignment_id: int, person_id: int, done: Sequence[Delivery]) -> int:
@@ -192,9 +248,8 @@ def tries_used(connection: Connection, assignment_id: int, person_id: int, done:
     """
     if not done:
         return 0
-    theirs = variant.c.assignment_id == assignment_id, dealt.c.person_id == person_id
-    papers = select(dealt.c.sitting, variant.c.exercise, variant.c.seed).join(variant).where(*theirs)
-    issued = [tuple(row) for row in connection.execute(papers)]
+    told = {"assignment": assignment_id, "person": person_id}
+    issued = [tuple(row) for row in connection.execute(_papers_query(), told)]
     last = max((sitting for sitting, *_ in issued), default=1)
     tries = [one.id for one in done if one.number > 0]
     if last == 1:

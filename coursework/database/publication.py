@@ -16,7 +16,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, bindparam, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, func, insert, select, update
 
 from coursework.database.outdated import outdate_all, outdate_person
 from coursework.database.tables import assignment, dealt, delivery, extension, variant
@@ -319,7 +319,7 @@ def places(connection: Connection, person: int, number: int | None = None) -> li
         Place(
             row.id, row.name, row.stated or {}, row.student,
             None if row.published is None else Publication.of(row.published),
-            extension_of(connection, row.id, person),
+            None if row.made is None else Extension(row.ext_closes, row.ext_tries, row.reason, row.by, row.made),
             row.asked or {},
         )
         for row in connection.execute(_places_query(number is not None), told)
@@ -328,20 +328,22 @@ def places(connection: Connection, person: int, number: int | None = None) -> li
 
 @cache
 def _places_query(is_of_one: bool) -> Select[Any]:
-    """Return the query of :func:`places`, cached since many requests execute it."""
+    """Return the query of :func:`places`, cached since many requests execute it, with the person's last extension."""
     theirs = select(variant.c.assignment_id, dealt.c.student).join(variant)
     mine = theirs.where(dealt.c.person_id == bindparam("person")).distinct().subquery()
     one = assignment.c
+    more, last = extension.c, func.max(extension.c.id)
+    own = more.assignment_id == one.id, more.person_id == bindparam("person")
+    given = select(last).where(*own).correlate(assignment).scalar_subquery()
     found = select(one.id, one.name, one.stated, one.published, one.asked, mine.c.student)
-    found = found.join(mine, mine.c.assignment_id == one.id).order_by(one.id.desc())
+    found = found.add_columns(
+        more.closes.label("ext_closes"), more.tries.label("ext_tries"), more.reason, more.by, more.made
+    )
+    found = found.select_from(
+        assignment.join(mine, mine.c.assignment_id == one.id).outerjoin(extension, more.id == given)
+    )
+    found = found.order_by(one.id.desc())
     return found.where(one.id == bindparam("number")) if is_of_one else found
-
-
-def extension_of(connection: Connection, number: int, person: int) -> Extension | None:
-    """Return the last extension of a person; None if there is none."""
-    own = extension.c.assignment_id == number, extension.c.person_id == person
-    row = connection.execute(select(extension).where(*own).order_by(extension.c.id.desc()).limit(1)).first()
-    return None if row is None else Extension(row.closes, row.tries, row.reason, row.by, row.made)
 
 
 def say_sittings(connection: Connection, number: int, counts: str) -> None:

@@ -6,7 +6,7 @@ import json
 import secrets
 from typing import Any
 
-from sqlalchemy import Connection, delete, insert, select
+from sqlalchemy import Connection, Select, delete, insert, select
 
 from coursework.database.tables import setting
 from coursework.errors import BadInput
@@ -61,7 +61,17 @@ def drop_value(connection: Connection, name: str) -> None:
 def course_taken(connection: Connection) -> int:
     """Return the number of times that a course was reloaded after a correction of its files; every process of
     a site continues with the last."""
-    return int(value_of(connection, _COURSE) or 0)
+    return taken_of(connection.execute(taken_query()).scalar())
+
+
+def taken_query() -> Select[Any]:
+    """Return the query of the value that :func:`taken_of` reads, for use in a larger query."""
+    return select(setting.c.value).where(setting.c.name == _COURSE)
+
+
+def taken_of(value: str | None) -> int:
+    """Return the number of reloads of a stored value."""
+    return 0 if value is None else int(json.loads(value) or 0)
 
 
 def take_course(connection: Connection) -> int:

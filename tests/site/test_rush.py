@@ -11,7 +11,7 @@ import pytest
 from postgres_server import running
 from site_assignments import CLOSES, USUAL, code_of, dealt, handed_in, right
 from site_people import HOME, MAX, ZOE, Class, seal_of, signed_in
-from sqlalchemy import func, insert, select
+from sqlalchemy import event, func, insert, select
 from starlette.concurrency import run_in_threadpool
 
 from coursework.database.deliveries import deliveries
@@ -398,3 +398,21 @@ def test_a_receipt_stands_for_what_was_stored_before_anything_is_marked(served):
     assert [one.receipt for one in delivered(served, number)] == [code_of(reply)]
     with served.site.store.reading() as connection:
         assert connection.execute(select(func.count()).select_from(mark)).scalar() == 0
+
+
+def test_a_hand_in_and_its_receipt_take_few_statements(site_class):
+    number, counts = dealt(site_class), []
+    browser, engine = site_class.browser(ZOE), site_class.site.store.engine
+    form = {"_seal": browser.seal, **form_of(site_class, ZOE)}
+
+    def count(connection, cursor, statement, *more):
+        counts[-1] += not statement.startswith("BEGIN")
+
+    event.listen(engine, "before_cursor_execute", count)
+    counts.append(0)
+    reply = browser.post(f"/assignments/{number}/hand-in", data=form)
+    counts.append(0)
+    page = browser.get(reply.headers["location"])
+    assert (reply.status_code, page.status_code) == (303, 200)
+    is_sqlite = engine.dialect.name == "sqlite"  # where no row needs to be locked
+    assert counts == [9 if is_sqlite else 10, 7]

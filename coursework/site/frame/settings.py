@@ -93,9 +93,9 @@ class Site:
             self._taken = take_course(connection)
         self._go_on_with(course)
 
-    def follow(self, connection: Connection) -> None:
-        """Go on with the course that another process took."""
-        taken = course_taken(connection)
+    def follow(self, connection: Connection, taken: int | None = None) -> None:
+        """Go on with the course that another process took; ``taken`` is which, where who calls knows it already."""
+        taken = course_taken(connection) if taken is None else taken
         if taken != self._taken:
             self._taken = taken
             self._go_on_with(self.reopened())

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from coursework.database.deliveries import Delivery
 from coursework.database.drafts import Box, drafts
+from coursework.database.people import hold
 from coursework.database.permissions import Permission
 from coursework.database.prepared import prepared_pieces
 from coursework.database.publication import Phase, places
@@ -29,7 +30,7 @@ from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
 from coursework.site.papers import handing_in, receipts
 from coursework.site.papers.being_marked import being_marked
 from coursework.site.papers.feedback import charged_text, feedback_of
-from coursework.site.papers.handing_in import IN_A_FILE, ON_THE_PAGE, hand_in, pass_dates, sheet_of
+from coursework.site.papers.handing_in import IN_A_FILE, ON_THE_PAGE, pass_dates, sheet_of
 from coursework.site.papers.opening import filled_in, made
 from coursework.site.papers.own_assignment import State, own_assignment, own_sheet, state_of
 from coursework.site.papers.own_paper import OwnPaper, counts, read_lines
@@ -225,22 +226,30 @@ def confirm(visit: Visit) -> Reply:
     """Hand in what was read back, once."""
     if not visit.posted:
         raise Refused("method", 405)
-    place, own = own_sheet(visit)
-    number = visit.form.text("_number")
-    if not re.fullmatch("[1-9][0-9]{0,5}", number):
-        raise Refused("bad_request", 400)
-    texts = own.texts(visit.form)
+    site, who, number = visit.site, visit.who.id, visit.form.text("_number")
     source = IN_A_FILE if visit.form.text("_source") == IN_A_FILE else ON_THE_PAGE
-    made = hand_in(visit.site, place, own, visit.who.id, texts, int(number), visit.at, source)
+    pass_dates(site, int(visit.path["number"]), visit.at)
+    with site.store.begin() as connection:
+        hold(connection, who)
+        place, own = own_sheet(visit, connection)
+        if not re.fullmatch("[1-9][0-9]{0,5}", number):
+            raise Refused("bad_request", 400)
+        texts = own.texts(visit.form)
+        made = handing_in.store(connection, site, place, own, who, texts, int(number), visit.at, source)
+    if made.is_new:
+        handing_in.mark(site, made.delivery.id)
     again = "" if made.is_new else "?again=other" if made.differs else "?again=same"
     return Reply(goto=f"/assignments/{place.id}/receipts/{made.delivery.receipt}{again}")
 
 
 def receipt(visit: Visit) -> Reply:
     """Return the receipt of a submission, with the next steps."""
-    state, own = own_assignment(visit)
-    row = receipts.find(visit, state.place.id, str(visit.path["code"]))
-    told = receipts.told_of(visit, row, answers=True)
+    pass_dates(visit.site, int(visit.path["number"]), visit.at)
+    with visit.site.store.reading() as connection:
+        place, own = own_sheet(visit, connection)
+        state = state_of(visit, place, connection)
+        row = receipts.find(state.done, str(visit.path["code"]))
+        told = receipts.told_of(connection, row, place.name, visit.who.name)
     again = visit.query.get("again", "")
     shown = {(e, s, p): a for e, s, p, a in told["answers"]}
     texts = {

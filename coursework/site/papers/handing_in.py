@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
@@ -18,7 +18,14 @@ from sqlalchemy import Connection, func, select
 from sqlalchemy.exc import DBAPIError
 from sqlalchemy.exc import TimeoutError as NoConnection
 
-from coursework.database.deliveries import Delivery, deliver, deliveries, next_number, rows_of, tries_used
+from coursework.database.deliveries import (
+    Delivery,
+    answers_of,
+    deliver,
+    deliveries,
+    next_number,
+    tries_used,
+)
 from coursework.database.drafts import drafts
 from coursework.database.jobs import MARK, drop_jobs, put_job
 from coursework.database.marking import mark_delivery
@@ -69,28 +76,52 @@ def hand_in(
     """
     with site.store.begin() as connection:
         hold(connection, person_id)
-        done = deliveries(connection, place.id, person_id)
-        before = done[number - 1] if number <= len(done) else None
-        if before is not None:
-            is_same = _holds(connection, place, before, paper, texts)
-            if is_same or before.source != AS_SAVED or not _takes(place, at, site.clock()):
-                return HandedIn(before, False, not is_same)
-        if done and _holds(connection, place, done[-1], paper, texts):
-            return HandedIn(done[-1], False)  # what stands already costs no try
-        fresh, now = _check(connection, place, person_id, at, site.clock(), done)
-        made = _deliver(connection, fresh, paper, person_id, texts, now, source)
-        put_job(connection, MARK, place.id, site.clock(), delivery=made.id)
-    mark(site, made.id)
+        (fresh,) = places(connection, person_id, place.id)
+        found = store(connection, site, fresh, paper, person_id, texts, number, at, source)
+    if found.is_new:
+        mark(site, found.delivery.id)
+    return found
+
+
+def store(
+    connection: Connection,
+    site: Site,
+    place: Place,
+    paper: OwnPaper,
+    person_id: int,
+    texts: Texts,
+    number: int,
+    at: datetime,
+    source: str,
+) -> HandedIn:
+    """Store a submission, in a transaction that locked the person's row before it read place and paper.
+
+    Raises
+    ------
+    Refused
+        It is not open, or no try is left.
+    """
+    done = deliveries(connection, place.id, person_id)
+    before = done[number - 1] if number <= len(done) else None
+    if before is not None:
+        is_same = _holds(connection, before, paper, texts)
+        if is_same or before.source != AS_SAVED or not _takes(place, at, site.clock()):
+            return HandedIn(before, False, not is_same)
+    if done and _holds(connection, done[-1], paper, texts):
+        return HandedIn(done[-1], False)  # what stands already costs no try
+    now = _check(connection, place, person_id, at, site.clock(), done)
+    made = _deliver(connection, place, paper, person_id, texts, now, source)
+    put_job(connection, MARK, place.id, site.clock(), delivery=made.id)
     return HandedIn(made, True)
 
 
-def _holds(connection: Connection, place: Place, made: Delivery, paper: OwnPaper, texts: Texts) -> bool:
-    return content(rows_of(connection, place.id, made.id)) == content_of(paper, texts)
+def _holds(connection: Connection, made: Delivery, paper: OwnPaper, texts: Texts) -> bool:
+    return answers_of(connection, made.id) == content_of(paper, texts)
 
 
 def _takes(place: Place, arrived: datetime, clock: datetime) -> bool:
-    assert place.publication is not None
-    return place.own.phase(place.publication.counted(arrived, clock)).takes
+    said = place.publication
+    return said is not None and place.own.phase(said.counted(arrived, clock)).takes
 
 
 def _check(
@@ -100,21 +131,20 @@ def _check(
     arrived: datetime,
     clock: datetime,
     done: Sequence[Delivery],
-) -> tuple[Place, datetime]:
-    """Return what the publication says this very moment, and the time that counts, where something is taken at it.
+) -> datetime:
+    """Return the time that counts, where the publication says that something is taken at it.
 
     What was rescued as it closed costs no try of who handed in before that and was waiting for the database still.
     """
-    (fresh,) = places(connection, person_id, place.id)
-    if fresh.publication is None:
+    if place.publication is None:
         raise Refused("own", 404)
-    own, now = fresh.own, fresh.publication.counted(arrived, clock)
+    own, now = place.own, place.publication.counted(arrived, clock)
     if not own.phase(now).takes:
         raise Refused("not_open", 409)
     rescued = sum(one.source == AS_SAVED for one in done)
     if own.tries is not None and tries_used(connection, place.id, person_id, done) - rescued >= own.tries:
         raise Refused("no_try_left", 409)
-    return fresh, now
+    return now
 
 
 def _deliver(
@@ -163,12 +193,8 @@ def rows_for(paper: OwnPaper, texts: Texts, number: int, came: datetime, source:
 # ---------------------------------------------------------------------- content
 
 
-def content(rows: Iterable[Any]) -> list[list[str]]:
-    """Return the submitted answers: exercise, seed, part and answer of each question."""
-    return [[r.exercise, r.seed, r.part, str(r.answer or "")] for r in rows if isinstance(r, Row)]
-
-
 def content_of(paper: OwnPaper, texts: Texts) -> list[list[str]]:
+    """Return the answers in the form of :func:`coursework.database.deliveries.answers_of`."""
     return [
         [one.exercise, str(one.seed), one.part, texts.get(name, "")] for name, one in paper.fields.items()
     ]

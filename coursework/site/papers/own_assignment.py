@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -110,28 +109,17 @@ def own_place(visit: Visit, connection: Connection) -> Place:
 
 def own_assignment(visit: Visit) -> tuple[State, OwnPaper]:
     """Return the state of the assignment and the paper; refuse it before it opens."""
-    with _opened(visit) as (connection, place, own):
+    pass_dates(visit.site, int(visit.path["number"]), visit.at)
+    with visit.site.store.reading() as connection:
+        place, own = own_sheet(visit, connection, heads=True)
         return state_of(visit, place, connection), own
 
 
-def own_sheet(visit: Visit) -> tuple[Place, OwnPaper]:
-    """Return the assignment and the paper, without the state: the submission is checked when it is stored."""
-    with _opened(visit) as (_, place, own):
-        return place, own
-
-
-@contextmanager
-def _opened(visit: Visit) -> Iterator[tuple[Connection, Place, OwnPaper]]:
-    pass_dates(visit.site, int(visit.path["number"]), visit.at)
-    site = visit.site
-    with site.store.reading() as connection:
-        place = own_place(visit, connection)
-        assert place.publication is not None
-        if place.own.phase(place.publication.counted(visit.at, site.clock())) is Phase.TO_COME:
-            opens = place.own.opens
-            raise Refused("not_yet", 409, moment_text(opens, visit.lang) if opens else "")
-        yield (
-            connection,
-            place,
-            own_paper(connection, site.course, place, visit.who.id, visit.lang, site.shelf),
-        )
+def own_sheet(visit: Visit, connection: Connection, *, heads: bool = False) -> tuple[Place, OwnPaper]:
+    """Return the assignment and the paper; refuse it before it opens. The heading needs ``heads``."""
+    site, place = visit.site, own_place(visit, connection)
+    assert place.publication is not None
+    if place.own.phase(place.publication.counted(visit.at, site.clock())) is Phase.TO_COME:
+        opens = place.own.opens
+        raise Refused("not_yet", 409, moment_text(opens, visit.lang) if opens else "")
+    return place, own_paper(connection, site.course, place, visit.who.id, visit.lang, site.shelf, heads=heads)

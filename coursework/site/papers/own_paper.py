@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection
 
 from coursework.course.course import Course
-from coursework.database.assignments import issued_content
+from coursework.database.assignments import issued_content, sheet_content
 from coursework.database.prepared import Pieces
 from coursework.database.publication import Place
 from coursework.database.states import page_state
@@ -169,9 +169,17 @@ def own_paper(
     person: int,
     lang: str,
     shelf: Shelf | None = None,
+    *,
+    heads: bool = True,
 ) -> OwnPaper:
-    """Return the paper of a person; its variants are cached in ``shelf``, if given."""
-    content = issued_content(connection, place.id, person)
+    """Return the paper of a person; its variants are cached in ``shelf``, if given.
+
+    Without ``heads`` the roster's columns are not loaded, which its heading needs: of a whole class they are long.
+    """
+    if heads:
+        content = issued_content(connection, place.id, person)
+    else:
+        content = sheet_content(connection, place.id, person, place.stated)
     told = place.asked.get("instructions") or {}
     instructions = {"": told} if isinstance(told, str) else told
     kept = Shelf(_VARIANTS) if shelf is None else shelf

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from datetime import timedelta
 from typing import Any
 
@@ -10,31 +11,30 @@ from sqlalchemy import Connection
 
 from coursework.database.areas import may_for
 from coursework.database.audit import note
-from coursework.database.deliveries import rows_of
+from coursework.database.deliveries import Delivery, answers_of
 from coursework.database.desk import people_of
 from coursework.database.permissions import Permission
 from coursework.language.words import words
 from coursework.site.frame.moments import exact_text, length_text, zone_name
 from coursework.site.frame.visits import Page, Refused, Reply, Visit
-from coursework.site.papers.handing_in import content, digest, receipt_called
+from coursework.site.papers.handing_in import digest, receipt_called
 
 
-def told_of(visit: Visit, row: Any, *, answers: bool) -> dict[str, Any]:
-    """Return the content of a submission's receipt; with the ``answers`` if they may be shown."""
-    with visit.site.store.reading() as connection:
-        handed = content(rows_of(connection, row.assignment_id, row.id))
-    told = {
+def told_of(connection: Connection, row: Any, assignment: str, student: str) -> dict[str, Any]:
+    """Return the content of a submission's receipt."""
+    handed = answers_of(connection, row.id)
+    return {
         "receipt": row.receipt,
-        "assignment": row.assignment,
-        "student": row.student,
+        "assignment": assignment,
+        "student": student,
         "number": row.number,
         "handed_in": row.came.isoformat(timespec="seconds"),
         "late_seconds": row.late,
         "answered": sum(bool(one[3].strip()) for one in handed),
         "asked": len(handed),
         "sha256": digest(handed),
+        "answers": handed,
     }
-    return {**told, "answers": handed} if answers else told
 
 
 def as_text(visit: Visit, told: dict[str, Any], row: Any) -> str:
@@ -55,25 +55,27 @@ def as_text(visit: Visit, told: dict[str, Any], row: Any) -> str:
     return "\n".join(lines)
 
 
-def find(visit: Visit, number: int, code: str) -> Any:
-    """Return the person's own submission with a receipt.
+def find(done: Sequence[Delivery], code: str) -> Delivery:
+    """Return the submission with a receipt among a person's own.
 
     Raises
     ------
     Refused
-        There is none, or it is somebody else's.
+        There is none: it may be somebody else's.
     """
-    with visit.site.store.reading() as connection:
-        row = receipt_called(connection, code, number)
-    if row is None or row.person_id != visit.who.id:
-        raise Refused("own", 404)
-    return row
+    for one in done:
+        if one.receipt and one.receipt == code.strip().upper():
+            return one
+    raise Refused("own", 404)
 
 
 def file(visit: Visit) -> Reply:
     """Return a receipt as a file, as text or as JSON."""
-    row = find(visit, int(visit.path["number"]), str(visit.path["code"]))
-    told = told_of(visit, row, answers=True)
+    with visit.site.store.reading() as connection:
+        row = receipt_called(connection, str(visit.path["code"]), int(visit.path["number"]))
+        if row is None or row.person_id != visit.who.id:
+            raise Refused("own", 404)
+        told = told_of(connection, row, row.assignment, row.student)
     if visit.path["ending"] == "json":
         data = json.dumps(told, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
         return Reply(kind="application/json", data=data, file=f"receipt-{row.receipt}.json")
@@ -93,7 +95,7 @@ def verify(visit: Visit) -> Reply:
             if row is not None and not _is_theirs(visit, connection, row):
                 row = None
             note(connection, visit.at, visit.actor, "receipt looked up", code=code, found=row is not None)
-        told = None if row is None else told_of(visit, row, answers=False)
+            told = None if row is None else told_of(connection, row, row.assignment, row.student)
     names: dict[str, Any] = {"code": code, "row": row, "told": told, "digest": told_digest}
     if row is not None:
         names |= {"came": exact_text(row.came, visit.lang), "zone": zone_name(row.came)}
