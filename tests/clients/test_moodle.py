@@ -82,7 +82,7 @@ def test_every_exercise_is_imported_whole(imported, name, lang):
     assert [q["name"] for q in one.questions] == [item.label[1:-1] for item in one.pool.items]
     for question, item in zip(one.questions, one.pool.items, strict=True):
         judged = [posed for posed in item.questions if posed.kind != COLLECTED]
-        scale = next(n for n in (1, 2, 4) if all((n * p.points).is_integer() for p in item.questions))
+        scale = next(n for n in (1, 2, 4) if all(n * p.points % 1 == 0 for p in item.questions))
         assert float(question["defaultmark"]) == scale * sum(posed.points for posed in judged)
         assert len(question["boxes"]) == len(item.questions)
 

@@ -175,7 +175,7 @@ def test_what_was_kept_before_it_closed_is_said_to_be_kept(class_of_three):
 def test_answers_are_read_back_before_anything_counts(class_of_three):
     number = dealt(class_of_three)
     page = class_of_three.browser(ZOE).fill(
-        f"/assignments/{number}", {"e1-rA": "319,8 cm", "e1-theta4": "twelve", "e2-linkage_type": "<b>&"}
+        f"/assignments/{number}", {"e1-rA": "319,8 cm", "e1-theta4": "about that", "e2-linkage_type": "<b>&"}
     )
     for piece in ("read as 319.8", "cannot be read as a number", "left blank", "&lt;b&gt;&amp;"):
         assert piece in page.text

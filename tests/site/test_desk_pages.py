@@ -21,7 +21,7 @@ from coursework.system.tables import as_written
 @pytest.fixture
 def desk(tmp_path):
     found = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
-    found.hand_in({"Ada": {"rA": found.at_margin("rA", 0.1)}, "Bo": {"rA": "777"}, "Cy": {"rA": "?"}})
+    found.hand_in({"Ada": {"rA": found.at_margin("rA", 0.1)}, "Bo": {"rA": "777"}, "Cy": {"rA": "zz"}})
     return found
 
 

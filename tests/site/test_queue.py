@@ -14,9 +14,9 @@ from coursework.gradebook.rows import Collected, Row
 from coursework.site.desk.class_at_hand import class_now
 
 WRITTEN = {
-    "Ada": {"rA": "je sais pas", "theta4": "?"},
-    "Bo": {"rA": "Je sais  pas", "theta4": "12"},
-    "Cy": {"rA": "voir feuille", "theta4": "?"},
+    "Ada": {"rA": "trop court", "theta4": "zz"},
+    "Bo": {"rA": "Trop  court", "theta4": "12"},
+    "Cy": {"rA": "voir feuille", "theta4": "zz"},
 }
 
 
@@ -122,7 +122,7 @@ def test_a_refused_answer_keeps_its_mark_and_leaves_the_queue(desk):
 
 
 def test_the_same_that_cannot_be_read_elsewhere_goes_along_where_that_is_wanted(desk):
-    desk.hand_in({"Di": {"rA": "?"}})
+    desk.hand_in({"Di": {"rA": "zz"}})
     page = desk.page(TEACHER, "/queue", exercise=EXERCISE, part="theta4")
     assert "and the 1 of other questions" in page.text
     assert told(press(desk, TEACHER, page, "refuse", everywhere="1")) == "0 points given (3)."
@@ -169,7 +169,7 @@ def test_a_press_that_comes_twice_decides_once(desk):
 
 def test_an_answer_that_is_handed_in_anew_waits_anew_where_the_decision_was_of_another_text(desk):
     press(desk, TEACHER, desk.page(TEACHER, "/queue"), "accept")
-    desk.hand_in({"Ada": {"rA": "je sais pas"}, "Bo": {"rA": "no idea"}}, sitting=2)
+    desk.hand_in({"Ada": {"rA": "trop court"}, "Bo": {"rA": "too short"}}, sitting=2)
     found = [one for one in waiting(desk) if one[1] == "rA"]
     assert ("unreadable", "rA", ["Bo"]) in found
     assert not [one for one in found if "Ada" in one[2]]
@@ -213,7 +213,7 @@ def test_a_row_is_not_placed_over_an_answer_that_is_marked(desk):
     place = {"row": name, "do": "place", "from": "queue", "student": "Ada", "question": f"{EXERCISE}/rA"}
     reply = desk.browser(TEACHER).fill(f"/desk/{desk.number}/rejected", place)
     assert "has an answer to question 1.1 already" in reply.text
-    assert marks(desk)["Ada"].answer == "je sais pas"
+    assert marks(desk)["Ada"].answer == "trop court"
 
 
 @pytest.mark.parametrize("lang", ["en", "fr"])

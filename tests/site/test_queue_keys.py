@@ -9,7 +9,7 @@ from coursework.site.desk.class_at_hand import class_now
 
 pytestmark = pytest.mark.e2e
 
-WRITTEN = {"Ada": {"rA": "je sais pas"}, "Bo": {"rA": "je sais pas"}, "Cy": {"rA": "?", "theta4": "??"}}
+WRITTEN = {"Ada": {"rA": "trop court"}, "Bo": {"rA": "trop court"}, "Cy": {"rA": "zz", "theta4": "zzz"}}
 
 
 @pytest.fixture(scope="module")
