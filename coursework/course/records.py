@@ -50,7 +50,7 @@ class Records:
         try:
             given = {n: self._recorded(record["given"], n, version < current) for n in self.spec.given}
             seed = int(record["seed"])
-            asked = {str(part["id"]): float(part["points"]) for part in record["parts"]}
+            asked = {str(part["id"]): _points(part["points"]) for part in record["parts"]}
             orders = {
                 str(part["id"]): tuple(part["choices"]) for part in record["parts"] if "choices" in part
             }
@@ -105,3 +105,8 @@ class Records:
         fits = value in spec.choices if spec.is_choice else isinstance(value, (int, float))
         if not fits or isinstance(value, bool):
             raise BadInput(f"{self.name}: a record gives {name} = {value!r}, which is no value of it")
+
+
+def _points(value: Any) -> float:
+    """Return points as a record has them: a whole number stays one, so that the record is written as it was read."""
+    return value if isinstance(value, int) and not isinstance(value, bool) else float(value)
