@@ -18,6 +18,7 @@ from coursework.language.numbers import plain, settled, significant
 from coursework.marking.explaining import CLOSE
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
+from coursework.marking.usual import NEAR
 from coursework.model import Part
 from coursework.sheets.sheet import Question
 
@@ -231,17 +232,17 @@ def _turned(interval: Interval, part: Part) -> Iterator[Interval]:
 
 
 def _wrong_values(key: Key, part: Part) -> Iterator[tuple[float, float]]:
-    """The values that named mistakes give, then those of slips, each with its half-width."""
+    """Yield the values that named mistakes give, then those of slips, each with the half-width in which marking names them."""
     width = key.envelope.get(part.quantity, 0.0)
     for _, value in key.wrong_ways(part.quantity):
         if isinstance(value, (int, float)) and math.isfinite(value):
-            yield float(value), 0.0 if part.is_exact else max(part.half_width(value), width)
+            yield float(value), 0.0 if part.is_exact else NEAR * max(part.half_width(value), width)
     reference = float(key.reference[part.quantity])
     for slip in key.slips(part):
-        yield slip.made(reference), abs(slip.made(1.0)) * key.half_width(part)
+        yield slip.made(reference), NEAR * abs(slip.made(1.0)) * key.half_width(part)
     for value in key.other_cases(part):
         if isinstance(value, (int, float)) and math.isfinite(value):
-            yield float(value), 0.0 if part.is_exact else max(part.half_width(value), width)
+            yield float(value), 0.0 if part.is_exact else NEAR * max(part.half_width(value), width)
 
 
 def _wrong_interval(
@@ -249,6 +250,8 @@ def _wrong_interval(
 ) -> Interval | None:
     """What is taken for a wrong value; None where our marking does not take it for one that it knows."""
     text = significant(value, digits) if not part.is_exact else plain(value)
+    if len(text.partition(".")[2]) == 3:
+        text += "0"  # three decimals could be thousands
     made = marked_alone(variant, part, text)
     if made.verdict == "correct" or not made.verdict.startswith(("mistake:", "slip:")):
         return None
