@@ -88,8 +88,13 @@ def _dot(u: Any, v: Any) -> Any:
 
 
 _CORE = "coursework.kinematics."
+#: Twins by the names of what they replace.
 _TWINS: dict[str, Any] = {
-    f.__name__: f for f in (third_side, corner, corner_beside, TextbookFourBar, TextbookSliderCrank)
+    "third_side": third_side,
+    "corner": corner,
+    "corner_beside": corner_beside,
+    "FourBar": TextbookFourBar,
+    "SliderCrank": TextbookSliderCrank,
 }
 
 
