@@ -297,6 +297,7 @@ centre = ["6 cm", "0 mm"]
 [[loads]]
 on = "G"
 force = "0,8 kN"
+angle = "180 deg"
 during = "working stroke"
 [friction]
 D = { coefficient = 0.08, radius = "10 mm" }

@@ -368,13 +368,14 @@ def test_an_equation_with_numbers_put_in_is_said_to_be_that(course):
 
 @each_row(
     ("lang", "missing", "scale"),
-    [("fr", "il manque encore : question 6 ou 7", "une échelle est positive"),
-     ("en", "still missing: question 6 or 7", "a scale is positive")],
+    [("fr", "il manque encore : question {} ou {}", "une échelle est positive"),
+     ("en", "still missing: question {} or {}", "a scale is positive")],
 )  # fmt: skip
 def test_what_a_drawing_lacks_and_a_scale_that_is_none_are_told(course, lang, missing, scale):
     said = told(course, "velocity_polygon", 1, lang, kv="10", p="(0;0)")["p"]
     assert said.verdict == "wrong"
-    assert missing in " ".join(said.feedback.split())
+    asked = course["velocity_polygon"].variant(1).part_ids
+    assert missing.format(*(asked.index(i) + 1 for i in "ab")) in " ".join(said.feedback.split())
     for answer in ("0", "-10"):
         assert scale in told(course, "velocity_polygon", 1, lang, kv=answer)["kv"].feedback
     drawn = told(course, "velocity_polygon", 1, lang, kv="-10", p="(0;0)", a="(1;2)", b="(3;4)")

@@ -92,7 +92,7 @@ def test_all_signs_of_an_equation_are_one_error():
     right = variant.quantities(["a", "b", "c"])
     marking = variant.grade({name: -value for name, value in right.items()})
     assert [marking[i].points for i in "abc"] == [0.5, 1.0, 1.0]
-    assert "counted once (question 7)" in marking["b"].feedback
+    assert f"counted once (question {variant.part_ids.index('a') + 1})" in marking["b"].feedback
     # One sign of three is an error of its own.
     alone = variant.grade({**right, "b": -right["b"]})
     assert [alone[i].points for i in "abc"] == [1.0, 0.5, 1.0]
@@ -132,11 +132,9 @@ def test_metres_everywhere_are_one_error():
     assert set(points[1:]) == {1.0}
 
 
-def test_a_right_value_needs_no_scale_and_a_wrong_first_point_leaves_the_pole():
+def test_a_wrong_first_point_leaves_the_pole():
     variant = COURSE["velocity_polygon"].variant(3, "en")
     right = variant.solution()
-    marking = variant.grade({i: right[i] for i in ("omega3", "omega4")})
-    assert {marking[i].verdict for i in ("omega3", "omega4")} == {"correct"}
     x, y = right["a"]
     written = {i: "; ".join(f"{c:.1f}" for c in right[i]) for i in ("p", "b")}
     marking = variant.grade({"kv": right["kv"], **written, "a": f"{x + 20:.1f}; {y + 15:.1f}"})
