@@ -18,7 +18,7 @@ from coursework.errors import BadCourse, nearest, unknown
 
 _FORM = 'NAME = { lesson = "rods", sections = [1, 2] }'
 _SOURCE = "exercises/course.toml: [lessons]"
-PAGES = ("index", "terms")  #: of a book, besides those of its lessons and exercises
+PAGES = ("index", "symbols", "terms")  #: of a book, besides those of its lessons and exercises
 _TITLE = re.compile(r"^# +(.+?) *$", re.MULTILINE)
 _SECTION = re.compile(r"^## +((\d+)\..*?) *$", re.MULTILINE)
 

@@ -98,6 +98,8 @@ def pages(
     shared = _of_book(book) | {"paper": paper, "sheet": {"course": book.title}, "variant": ""}
     shared |= {"files": {page.file for page in found}, "before": None, "after": None}
     made: dict[str, Callable[[], str]] = {"terms.html": partial(_terms, env, book, shared)}
+    more = {"title": words(book.lang)["book"]["symbols"]}
+    made["symbols.html"] = partial(render, env, "book_symbols.html.j2", shared | more)
     for place, page in enumerate(found):
         around = {
             "before": found[place - 1] if place else None,

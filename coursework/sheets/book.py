@@ -6,9 +6,12 @@ As in :mod:`coursework.sheets.sheet`, texts are Markdown with ``$LaTeX$``. Links
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
+
+from coursework.language.words import words
 
 if TYPE_CHECKING:
     from coursework.figures import Figure, Picture
@@ -114,6 +117,16 @@ class BookChapter:
 
 
 @dataclass(frozen=True)
+class SymbolRow:
+    """Symbol of quantities that are asked, what it means, and the exercises in which it means this."""
+
+    symbol: str  #: LaTeX
+    unit: str
+    meaning: str  #: Markdown
+    exercises: tuple[Practised, ...]
+
+
+@dataclass(frozen=True)
 class Book:
     """A course as one book, in a language."""
 
@@ -139,3 +152,43 @@ class Book:
             for entry in lesson.terms:
                 found[entry] = (*found.get(entry, ()), lesson.name)
         return found
+
+    @property
+    def symbols(self) -> tuple[SymbolRow, ...]:
+        """The symbols that questions define, with their meanings, in alphabetical order.
+
+        A question defines its symbol where its first clause has it; in the meaning it is left out. Lengths between
+        points and other expressions are none.
+        """
+        articles = words(self.lang)["book"]["articles"]
+        found: dict[tuple[str, str, str], list[Practised]] = {}
+        for one in self.exercises:
+            for question in one.handout.questions:
+                if question.kind not in _MEASURED or _EXPRESSION.search(question.symbol):
+                    continue
+                if meaning := _meaning(question.prompt, question.symbol, articles):
+                    found.setdefault((question.symbol, question.unit, meaning), []).append(one)
+        ordered = sorted(found, key=lambda row: (_letters(row[0]).casefold(), row))
+        return tuple(SymbolRow(*row, tuple(found[row])) for row in ordered)
+
+
+_MEASURED = ("number", "integer", "angle")  #: the kinds of a quantity
+_EXPRESSION = re.compile(r"[+/=]|(?<!dot) ")  #: a symbol that is none: a sum, a quotient, two points
+_CLAUSE = re.compile(r"^(.*?)(?:[.,;:](?=\s|$)|$)", re.DOTALL)
+_FORMULA = re.compile(r"\s*\$([^$]+)\$")
+
+
+def _letters(symbol: str) -> str:
+    """Return a formula without what two spellings of it differ by, and without the mark of a command."""
+    return re.sub(r"[\\{}\s]", "", symbol)
+
+
+def _meaning(prompt: str, symbol: str, articles: Sequence[str]) -> str:
+    """Return the first clause without its symbol and its article, or nothing where it has no such symbol."""
+    clause = _CLAUSE.match(" ".join(prompt.split()))
+    for formula in _FORMULA.finditer(clause[1] if clause else ""):
+        if clause and _letters(formula[1]) == _letters(symbol):
+            told = (clause[1][: formula.start()] + clause[1][formula.end() :]).strip()
+            told = next((told.removeprefix(one) for one in articles if told.startswith(one)), told)
+            return told[:1].upper() + told[1:]
+    return ""

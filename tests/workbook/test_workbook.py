@@ -17,7 +17,10 @@ from pdf_text import page_texts
 import coursework
 from coursework.cli import run
 from coursework.errors import BadCourse, BadInput, UnknownName
+from coursework.language.words import languages
 from coursework.rendering.renderer import renderer_of
+from coursework.sheets.book import Book, BookChapter, Practised, Section
+from coursework.sheets.handout import handout
 from coursework.workbook.binding import bound
 from coursework.workbook.lessons import faults, lesson_text
 from coursework.workbook.notebooks import lesson_notebook
@@ -194,6 +197,22 @@ def test_the_same_course_language_and_seed_give_the_same_bytes(small):
     assert other["pages/rods.html"] == first["pages/rods.html"]
 
 
+def test_the_list_of_symbols_has_the_same_symbols_in_every_language(course):
+    """Over all exercises: a symbol that one language's first clause lacks is missing from its list."""
+    listed = []
+    for lang in languages():
+        asked = [
+            Practised(str(k), handout(course[name].variant(3, lang)), None)
+            for k, name in enumerate(course.folder.names)
+        ]
+        book = Book(lang, "", 0, (BookChapter(1, "", (Section(None, tuple(asked)),)),), True)
+        assert all(row.meaning[0].isupper() for row in book.symbols)
+        listed.append({(row.symbol, one.handout.exercise) for row in book.symbols for one in row.exercises})
+    first, second = listed
+    assert first ^ second == set()
+    assert len(first) > len(course.folder.names)
+
+
 class _Pages(HTMLParser):
     """The places that a page leads to, and those that it has."""
 
@@ -214,7 +233,7 @@ class _Pages(HTMLParser):
 def test_every_link_of_the_pages_leads_to_a_place_that_is_there(small, solutions, place):
     asked = {"solved": solutions == "end", "apart": solutions == "apart"}
     found = {path: _Pages(text.decode()) for path, text in made(small, formats=["html"], **asked).items()}
-    assert {f"pages/{one}.html" for one in ("index", "terms", "rods", "crank_pin")} <= set(found)
+    assert {f"pages/{one}.html" for one in ("index", "symbols", "terms", "rods", "crank_pin")} <= set(found)
     solved = [path for path in found if "solutions/" in path]
     assert solved == ([f"{place}/crank_pin.html"] if place else [])
     for path, page in found.items():
