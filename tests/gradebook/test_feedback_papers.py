@@ -80,7 +80,11 @@ def test_a_paper_has_one_total_and_mark_and_counts_what_was_not_handed_in(tmp_pa
 def test_the_heading_is_the_assignments_in_the_language_of_the_student(tmp_path, issued_file):
     heading = paper(tmp_path, issued_file(), answers("Ada", NAMES[0], 5), "fr").heading
     assert (heading.title, heading.course, heading.date) == ("Devoir 2", "Mechanics 2A", "4 décembre 2026")
-    assert (heading.identity, heading.mark_of, heading.duration) == ((("Numéro d'étudiant", "117"),), "20", "1 h 30")
+    assert (heading.identity, heading.mark_of, heading.duration) == (
+        (("Numéro d'étudiant", "117"),),
+        "20",
+        "1 h 30",
+    )
 
 
 def test_what_to_look_at_next_is_where_most_points_are_lost(tmp_path, issued_file):
