@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from coursework.motion.added import Motor
     from coursework.motion.scene_files import SceneFile
     from coursework.motion.scenes import Scene, SceneTable
-    from coursework.motion.worth import EffectBudget
+    from coursework.motion.worth import EffectBudget, EffectInfluence
 
 # --------------------------------------------------------------------- simulate
 
@@ -208,6 +208,8 @@ def _each_effect_once(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, str]
     last = None
     for row in rows:
         shown = {h: _short_number(v, 3) for h, v in row.items()}
+        if row["time [ms]"] is None:
+            shown["time [ms]"] = _below(row["spread [ms]"])
         if row["effect"] == last:
             shown |= dict.fromkeys(("effect", "time [ms]", "spread [ms]"), "")
         last = row["effect"]
@@ -215,9 +217,13 @@ def _each_effect_once(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, str]
 
 
 def _budget_rows(found: EffectBudget) -> Iterator[dict[str, Any]]:
-    """A row an effect and output."""
+    """Yield a row for each effect and output; without a time where it does not stand out of its spread."""
     for worth in found.worths:
-        time = {"effect": worth.effect, "time [ms]": 1e3 * worth.seconds, "spread [ms]": 1e3 * worth.spread}
+        time = {
+            "effect": worth.effect,
+            "time [ms]": _cost(worth),
+            "spread [ms]": None if worth.needed else 1e3 * worth.spread,
+        }
         if worth.needed or not worth.changes:
             why = worth.needed or "nothing shown without it"
             yield {
@@ -236,6 +242,15 @@ def _budget_rows(found: EffectBudget) -> Iterator[dict[str, Any]]:
             }  # fmt: skip
 
 
+def _cost(worth: EffectInfluence) -> float | None:
+    """Return the milliseconds of an effect; None where they do not stand out of their spread."""
+    return 1e3 * worth.seconds if worth.is_timed else None
+
+
+def _below(spread: float | None) -> str:
+    return "" if spread is None else f"< {_rounded(spread)}"
+
+
 def _write_budget_plot(found: EffectBudget, title: str, stem: Path) -> None:
     """A bar an effect: what leaving it out changes at most, and what it costs."""
     from coursework.figures.charts import bars
@@ -246,7 +261,9 @@ def _write_budget_plot(found: EffectBudget, title: str, stem: Path) -> None:
         most = worth.most
         part = 100 * most.largest_part if most else 0.0
         what = f"{most.output}, " if most and part else ""
-        rows.append((worth.effect, part, f"{_rounded(part)} % ({what}{_rounded(1e3 * worth.seconds)} ms)"))
+        cost = _cost(worth)
+        time = _rounded(cost) if cost is not None else "–" if worth.needed else _below(1e3 * worth.spread)
+        rows.append((worth.effect, part, f"{_rounded(part)} % ({what}{time} ms)"))
     plot = bars(rows, title, "largest change without the effect, % of the output")
     write_whole(stem.parent / f"{stem.name}.svg", plot)
 
@@ -280,7 +297,7 @@ def _short_number(value: Any, digits: int = 5) -> str:
 
     if isinstance(value, float):
         return "" if value != value else significant(value, digits)
-    return str(value)
+    return "" if value is None else str(value)
 
 
 def _drive(exercise: Any, text: str) -> Motor:

@@ -20,7 +20,7 @@ _ROUNDS, _FEWEST, _PATIENCE = (
     3,
     10.0,
 )  #: rounds that are timed; fewer where all of them would take more seconds
-_ROUNDING = 1e-9  #: of the largest output of a unit: what is smaller is rounding
+_ROUNDING = 1e-9  #: of the largest output of a unit, or of an output: what is smaller is rounding
 
 Run = Callable[[Scene], SceneTable]
 
@@ -50,6 +50,11 @@ class EffectInfluence:
     spread: float
     changes: tuple[OutputChange, ...]
     needed: str = ""
+
+    @property
+    def is_timed(self) -> bool:
+        """True if the cost stands out of the spread of its measurements."""
+        return self.seconds > self.spread
 
     @property
     def most(self) -> OutputChange | None:
@@ -184,6 +189,8 @@ def _change(name: str, unit: str, own: np.ndarray, changed: np.ndarray, wraps: b
         apart = np.abs(apart - 360.0 * np.rint(apart / 360.0))
     size = (_largest(own), _rms(own))
     largest, rms = _largest(apart), _rms(apart)
+    if largest <= _ROUNDING * size[0]:
+        largest = rms = 0.0
     parts = [
         change / of if of else float(change > 0) for change, of in zip((largest, rms), size, strict=True)
     ]

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from tables import each_row
 
 from coursework.cli import run
+from coursework.cli.move import _budget_rows, _each_effect_once
 from coursework.errors import BadCourse, UnknownName, WrongValue
 from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import Load
 from coursework.motion.added import BodyMass, SceneData
 from coursework.motion.planning import plan
-from coursework.motion.scenes import Scene
-from coursework.motion.worth import budget
+from coursework.motion.scenes import Scene, SceneTable
+from coursework.motion.worth import EffectBudget, EffectInfluence, _changes, budget
 
 GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "omega2": 5.0, "alpha2": 0.0}
 
@@ -306,6 +308,18 @@ def test_a_budget_says_what_a_scene_could_do_without_and_what_it_lacks(course):
     assert "lacks friction, for which it has data" in said
     assert "gravity is left out, rightly" in said
     assert "without load" not in said
+
+
+def test_a_time_within_its_spread_and_a_rounded_change_are_no_figures():
+    noise, cost = EffectInfluence("load", 1e-5, 4e-4, ()), EffectInfluence("inertia", 2e-3, 4e-4, ())
+    rows = list(_budget_rows(EffectBudget(1e-2, (noise, cost), (), 0.01)))
+    assert [row["time [ms]"] for row in rows] == [None, 2.0]
+    assert [row["time [ms]"] for row in _each_effect_once(rows)] == ["< 0.4", "2"]
+    whole = SceneTable(
+        {"theta": np.array([0.0, 1.0]), "M": np.array([3.0, 4.0])}, {"theta": "deg", "M": "N m"}, ()
+    )
+    other = replace(whole, columns={**whole.columns, "M": whole.columns["M"] * (1 + 1e-15)})
+    assert [change.largest for change in _changes(whole, other)] == [0.0]
 
 
 def test_an_effect_without_data_is_told(course):
