@@ -27,7 +27,7 @@ from coursework.errors import CourseworkError
 from coursework.quantities.graph import Graph
 
 DISTANCES = tuple(10.0**-k for k in range(1, 13))  #: from a place, in parts of the scale of what is moved
-DETERMINANT, VANISHING, TURNS = "determinant", "vanishing", "turns"
+DETERMINANT, VANISHING, GROWING, TURNS = "determinant", "vanishing", "growing", "turns"
 _ANGLE = 100.0  #: degrees: the scale of an angle
 _ALONG = 241  #: points along a line
 _ROWS, _COLUMNS = 33, 91  #: of a plane
@@ -77,10 +77,13 @@ class HardPlace:
         """Return the given values at a distance from the place, in parts of the scale; negative on the other
         side.
 
-        ``aside`` is the offset of the tuned quantity, in parts of its own value: there the solutions come
+        A growing length is as many times the scale as the distance is parts of it. ``aside`` is the offset of the tuned quantity, in parts of its own value: there the solutions come
         near and pass.
         """
-        moved = {self.moved: self.given[self.moved] + distance * self.scale}
+        near = (
+            self.scale / distance if self.kind == GROWING else self.given[self.moved] + distance * self.scale
+        )
+        moved = {self.moved: near}
         tuned = {self.tuned: self.given[self.tuned] * (1 + aside)} if self.tuned else {}
         return {**self.given, **tuned, **moved}
 
@@ -99,7 +102,9 @@ class HardPlace:
 
     @property
     def sides(self) -> tuple[int, ...]:
-        """Sides from which the place can be approached: a vanishing quantity has one."""
+        """Sides from which the place can be approached: a vanishing quantity has one, and a growing one."""
+        if self.kind == GROWING:
+            return (1,)
         if self.kind != VANISHING:
             return (1, -1)
         return (1,) if not self.given[self.moved] else (-1,)
@@ -108,11 +113,17 @@ class HardPlace:
 def hard_places(exercise: CourseExercise, wanted: Sequence[str], most: int = _MOST) -> tuple[HardPlace, ...]:
     """Return the hard places of some quantities, those with the largest loss first.
 
-    None where the formulas cannot be followed, beyond vanishing lengths.
+    None where the formulas cannot be followed, beyond vanishing and growing lengths.
     """
     terrain = Terrain(exercise, wanted)
-    results = [*_turning_points(terrain), *_crossings(terrain), *_vanishing(terrain)]
+    results = [*_turning_points(terrain), *_crossings(terrain), *_vanishing(terrain), *_growing(terrain)]
     return tuple(_ranked(terrain, _merged(terrain, results))[:most])
+
+
+def growing_places(exercise: CourseExercise, wanted: Sequence[str]) -> tuple[HardPlace, ...]:
+    """Return the places where a length outgrows the others."""
+    terrain = Terrain(exercise, wanted)
+    return tuple(_merged(terrain, _growing(terrain)))
 
 
 class Terrain:
@@ -201,7 +212,7 @@ class Terrain:
 
     @property
     def sizes(self) -> tuple[str, ...]:
-        """Quantities that may be far smaller than others of their unit."""
+        """Quantities that may be far smaller, or far larger, than others of their unit."""
         selected = [n for n in self.names if self._is_size(n)]
         units = [self.unit(n) for n in selected]
         return tuple(n for n in selected if units.count(self.unit(n)) > 1)
@@ -585,6 +596,11 @@ def _vanishing(terrain: Terrain) -> list[_Spot]:
     return [_Spot({**base, name: end}, name, (name, VANISHING, 0)) for name, end in ends]
 
 
+def _growing(terrain: Terrain) -> list[_Spot]:
+    """Return the spots of a length that outgrows the others."""
+    return [_Spot(terrain.bases[0], name, (name, GROWING, 0)) for name in terrain.sizes]
+
+
 def _merged(terrain: Terrain, results: Sequence[_Spot]) -> list[HardPlace]:
     """Merge the zeros at one place; of one kind of place, keep the first."""
     by_place: dict[Any, list[_Spot]] = {}
@@ -592,9 +608,9 @@ def _merged(terrain: Terrain, results: Sequence[_Spot]) -> list[HardPlace]:
         where = tuple(
             v if isinstance(v, str) else round(v / _SAME / max(abs(v), 1.0)) for v in zero.given.values()
         )
-        by_place.setdefault((zero.moved, where), []).append(zero)
+        by_place.setdefault((zero.moved, zero.key[1] == GROWING, where), []).append(zero)
     places, sorts = [], set()
-    for (moved, _), zeros in by_place.items():
+    for (moved, _, _), zeros in by_place.items():
         first = zeros[0]
         seen = tuple(dict.fromkeys(z.key[:2] for z in zeros))
         sort = (moved, next((z.tuned for z in zeros if z.tuned), ""), frozenset(z.key for z in zeros))
@@ -630,7 +646,10 @@ def _lost(terrain: Terrain, point: HardPlace) -> float:
         spread = _arrays(given, count)
         step = 1e-3 * _NEAR
         for i, name in enumerate(names):
-            spread[name][i + 1] += step * terrain.scale(name, given)
+            # Beside a far larger length a step in parts of it would be more than the others are.
+            spread[name][i + 1] += step * (
+                abs(given[name]) if point.kind == GROWING else terrain.scale(name, given)
+            )
         for wanted in terrain.wanted:
             try:
                 stable = np.broadcast_to(graph.evaluate((wanted,), spread, terrain.effects)[wanted], (count,))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from coursework.accuracy.conditioning import unavoidable
-from coursework.accuracy.hard_places import VANISHING, HardPlace
+from coursework.accuracy.hard_places import GROWING, VANISHING, HardPlace
 from coursework.accuracy.motion import motion_rows
 from coursework.accuracy.reference import ClosureResidual
 from coursework.accuracy.subject import (
@@ -200,7 +200,7 @@ class _Trial:
             places = together(list(point.approach(point.distances(self.quick))))
             reference = self._reference(places)
             fixed = point.given if point.moved == self.subject.driver else None
-            sizes = dict.fromkeys(scales, 0.0) if point.kind == VANISHING else scales
+            sizes = dict.fromkeys(scales, 0.0) if point.kind in (VANISHING, GROWING) else scales
             least = max(least, unavoidable_of(self.subject, places, reference, sizes))
             for method in ways(self.subject, self.what, fixed):
                 result = compare(self.subject, _computed(method, places), reference, sizes)

@@ -50,7 +50,7 @@ def misses(
     reference = Reference(exercise, wanted)
     for point in hard_places(exercise, reference.wanted, most):
         for aside in ASIDE if point.tuned else ASIDE[:1]:
-            yield from _on_the_way(reference, point, distances, aside)
+            yield from misses_near(reference, point, distances, aside)
     yield from _after_turns(reference)
 
 
@@ -64,9 +64,10 @@ def _after_turns(reference: Reference) -> Iterator[Miss]:
             yield from _along(reference, point, 0.0, [(n, point.at(n)) for n in WHOLE_TURNS])
 
 
-def _on_the_way(
-    reference: Reference, point: HardPlace, distances: Sequence[float], aside: float
+def misses_near(
+    reference: Reference, point: HardPlace, distances: Sequence[float], aside: float = 0.0
 ) -> Iterator[Miss]:
+    """Yield the misses on the approach to one hard place."""
     for side in point.sides:
         way = [(d, point.at(side * d, aside)) for d in distances]
         way = [(d, given) for d, given in way if _has_lengths(reference, given)]

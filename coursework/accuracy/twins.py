@@ -79,6 +79,22 @@ class TextbookSliderCrank:
         return degrees.sqrt(rod**2 - (offset - crank * degrees.sin(_degrees_of(crank_angle))) ** 2)
 
 
+class TextbookSlottedGuide:
+    """Arm from the guide's pivot to the crank pin, as a vector, with its derivatives by the crank angle."""
+
+    def __init__(self, ground: Any, crank: Any, crank_angle: Any) -> None:
+        pin = degrees.polar(crank, _degrees_of(crank_angle))
+        arm = ground + pin
+        self.arm = abs(arm)
+        self.guide_angle = np.radians(degrees.angle(arm))
+        self.guide_ratio = _dot(arm, pin) / self.arm**2
+        self.sliding_ratio = -_cross(arm, pin) / self.arm
+        self.guide_gain = (
+            -(_cross(arm, pin) / self.arm + 2 * self.sliding_ratio * self.guide_ratio) / self.arm
+        )
+        self.sliding_gain = self.arm * self.guide_ratio**2 - _dot(arm, pin) / self.arm
+
+
 def _cross(u: Any, v: Any) -> Any:
     return u.real * v.imag - u.imag * v.real
 
@@ -95,6 +111,7 @@ _TWINS: dict[str, Any] = {
     "corner_beside": corner_beside,
     "FourBar": TextbookFourBar,
     "SliderCrank": TextbookSliderCrank,
+    "SlottedGuidePose": TextbookSlottedGuide,
 }
 
 
@@ -128,6 +145,6 @@ class Twinned:
     def _seen(self, value: Any, package: str) -> Any:
         home = getattr(value, "__module__", None) or ""
         if home.startswith(_CORE):
-            return _TWINS.get(getattr(value, "__name__", ""), value)
+            return TWINS.get(getattr(value, "__name__", ""), value)
         is_own = isinstance(value, FunctionType) and home.partition(".")[0] == package != "coursework"
         return self(value) if is_own else value

@@ -6,8 +6,9 @@ from coursework.degrees import polar
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
 from coursework.marking.drawn_polygons import read_off, scale_for, to_paper
 from coursework.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
-from coursework.solution import Judged, given, judge, mistake
+from coursework.solution import Judged, given, judge, mistake, stable
 
+from ._havens import *
 from ._havens_construction_keep import *
 
 VECTORS = ("v10", "v40", "v14", "v24", "v20", "v30")
@@ -114,6 +115,7 @@ def omega4(kv, l4, rA):
     return kv * l4 / rA
 
 
+@stable(lambda omega1, r2, r3, _lag, kv: omega1 * (r3 + r2 * _lag) / kv)
 def l3(_images, _pose, kv):
     """The arrow of I on paper, positive 90 degrees anticlockwise from O1I."""
     return (_images[5] / (1j * _pose[0])).real / kv

@@ -16,6 +16,7 @@ from coursework.mechanics import Body, Gear, Mechanism, Slide
 from coursework.polygons import Side, crank_v, guide_v, polygon_of_velocities, turning
 from coursework.solution import Moving, given, mistake, stable
 
+from ._havens import *
 from ._havens_planetary_keep import *
 
 UNITS = {"e": "mm"}
@@ -116,6 +117,7 @@ def v_B2_y(v_slide, rA, b, omega4, theta4):
     return v_slide * sin(theta4) + (rA + b) * omega4 * cos(theta4)
 
 
+@stable(lambda omega1, r2, r3, _lag: omega1 * (r3 + r2 * _lag) / r3)
 def omega3(e, omega1, r2, omega2, r3):
     """At I wheel and pinion have the same velocity: e omega1 - r2 omega2 = r3 omega3."""
     return (e * omega1 - r2 * omega2) / r3

@@ -153,7 +153,12 @@ def _rise(linkage):
     return np.sin(linkage.rocker_angle)
 
 
-@stable(lambda r6, omega4, theta5: r6 * omega4 * tan(theta5))
+def _slope(r4, theta4, r5, theta5):
+    """tan(theta5), whose sine vanishes beside a long rod: exact there."""
+    return r4 * sin(theta4) / (r5 * cos(theta5))
+
+
+@stable(lambda r6, omega4, _slope: r6 * omega4 * _slope)
 def r6_dot(r4, omega4, theta4, r5, omega5, theta5):
     return r5 * omega5 * sin(theta5) - r4 * omega4 * sin(theta4)
 
@@ -181,8 +186,8 @@ def alpha5(r4, omega4, alpha4, theta4, r5, omega5, theta5):
 
 
 @stable(
-    lambda r6, r6_dot, omega4, alpha4, omega5, theta5: (
-        (r6_dot * omega4 + r6 * alpha4) * tan(theta5) + r6 * omega4 * omega5 / cos(theta5) ** 2
+    lambda r6, r6_dot, omega4, alpha4, omega5, theta5, _slope: (
+        (r6_dot * omega4 + r6 * alpha4) * _slope + r6 * omega4 * omega5 / cos(theta5) ** 2
     )
 )
 def r6_ddot(r4, omega4, alpha4, theta4, r5, omega5, alpha5, theta5):

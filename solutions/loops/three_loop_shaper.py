@@ -191,6 +191,20 @@ def omega5(r2, omega2, theta2, r6, omega3, theta6, d5, theta5):
     return (r2 * omega2 * cos(theta2 - theta5) + r6 * omega3 * cos(theta6 - theta5)) / d5
 
 
+def _from_D(xD, yD, r2, theta2, theta5):
+    """DA turned back by theta5: its parts along the bar and across it."""
+    x, y = r2 * cos(theta2) - xD, r2 * sin(theta2) - yD
+    return x * cos(theta5) + y * sin(theta5), y * cos(theta5) - x * sin(theta5)
+
+
+def _across(_from_D, r6, theta5, theta6):
+    """r6 sin(theta6 - theta5), by the other side of the triangle where AE is far longer and nearly on the bar."""
+    return np.where(r6 > 10 * np.hypot(*_from_D), -_from_D[1], r6 * sin(theta6 - theta5))[()]
+
+
+@stable(
+    lambda r2, omega2, theta2, omega3, theta5, _across: -r2 * omega2 * sin(theta2 - theta5) - omega3 * _across
+)
 def d5_dot(r2, omega2, theta2, r6, omega3, theta6, theta5):
     """Component of the velocity of E along the bar."""
     return -r2 * omega2 * sin(theta2 - theta5) - r6 * omega3 * sin(theta6 - theta5)
@@ -229,6 +243,20 @@ def alpha5(r2, omega2, theta2, r6, omega3, alpha3, theta6, d5, d5_dot, omega5, t
     ) / d5
 
 
+def _inward(_from_D, r2, omega2, theta2, r6, omega3, theta6, d5, omega5, theta5):
+    """d5 omega5^2 - r6 omega3^2 cos(theta6 - theta5), without the difference of two long lengths."""
+    along, _ = _from_D
+    faster = r2 * omega2 * cos(theta2 - theta5) - omega3 * along  # d5 (omega5 - omega3)
+    together = (omega5 + omega3) * faster + omega3**2 * along
+    apart = d5 * omega5**2 - r6 * omega3**2 * cos(theta6 - theta5)
+    return np.where(r6 > 10 * np.hypot(*_from_D), together, apart)[()]
+
+
+@stable(
+    lambda r2, omega2, theta2, alpha3, theta5, _across, _inward: (
+        _inward - r2 * omega2**2 * cos(theta2 - theta5) - alpha3 * _across
+    )
+)
 def d5_ddot(r2, omega2, theta2, r6, omega3, alpha3, theta6, d5, omega5, theta5):
     """Component of the acceleration of E along the bar, less the centripetal term."""
     return (

@@ -32,6 +32,13 @@ def _lines(_vectors):
     return along, 1j * along
 
 
+@stable(lambda _rates, kv: abs(_rates[1]) / kv)
+def ab(_images, kv):
+    """Measured on the drawing."""
+    v_A, v_B = _images
+    return abs(v_B - v_A) / kv
+
+
 def way(_rates):
     """Of the sliding: +1 away from O4."""
     return np.sign(_rates[1])
