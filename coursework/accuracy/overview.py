@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any
 
 from coursework.accuracy.conditioning import ALLOWED, unavoidable
-from coursework.accuracy.hard_places import VANISHING, HardPlace
+from coursework.accuracy.hard_places import GROWING, VANISHING, HardPlace
 from coursework.accuracy.measuring import (
     checked,
     compare,
@@ -34,7 +34,8 @@ class OverviewLine:
     ``lack`` of the equation that vouches for the reference, in parts of its terms; None where none is stated. At the hard
     places two errors: the solver's and the textbook formula's;
     ``beyond`` is the solver's largest error there over eight times what is unavoidable at the same place, so that more
-    than 1 is a digit that could be kept. ``wrong`` tells of formulas that contradict the stated equations: nothing is
+    than 1 is a digit that could be kept; ``losing`` has this number of each quantity where it is more than 1, and
+    ``asked_losing`` are those of them that the exercise asks for. ``wrong`` tells of formulas that contradict the stated equations: nothing is
     measured then. ``lacking`` are quantities whose formulas cannot be followed in many digits.
     """
 
@@ -52,6 +53,8 @@ class OverviewLine:
     hard_textbook: float | None = None
     hard_textbook_failed: int = 0
     beyond: float = 0.0
+    losing: dict[str, float] = field(default_factory=dict)
+    asked_losing: tuple[str, ...] = ()
     place: dict[str, Any] | None = None
     stable_ns: Times | None = None
     textbook_ns: Times | None = None
@@ -113,18 +116,25 @@ class _Survey:
         )
 
     def _hard(self, scales: dict[str, float]) -> dict[str, Any]:
-        """Return the largest errors over all hard places, and the place where the solver's is largest."""
+        """Return the largest errors over all hard places, the place where the solver's is largest, and the
+        quantities that lose digits."""
         results: dict[str, Any] = {}
+        losing: dict[str, float] = {}
         for point in self.subject.hard:
-            own = self._at(point, dict.fromkeys(scales, 0.0) if point.kind == VANISHING else scales)
+            own = self._at(
+                point, dict.fromkeys(scales, 0.0) if point.kind in (VANISHING, GROWING) else scales
+            )
             if own is None:
                 continue
+            for name, times in own.pop("losing").items():
+                losing[name] = max(times, losing.get(name, 0.0))
             if own["beyond"] > results.get("beyond", -1.0):
                 results["place"] = _place_text(point)
             for name, value in own.items():
                 if value is not None:
                     results[name] = max(results.get(name, 0), value)
-        return results
+        asked = tuple(name for name in self.subject.numbers if name in losing)
+        return {**results, "losing": losing, "asked_losing": asked}
 
     def _at(self, point: HardPlace, scales: dict[str, float]) -> dict[str, Any] | None:
         places = together(list(point.approach(point.distances(self.quick))))
@@ -136,11 +146,13 @@ class _Survey:
         scales = {n: scales[n] for n in names}
         error, _, _ = compare(self.subject, solver, reference, scales)
         of_formula, failed, _ = compare(self.subject, textbook, reference, scales)
+        beyond = self._beyond(places, reference, names, solver)
         return {
             "hard": error,
             "hard_textbook": of_formula,
             "hard_textbook_failed": failed,
-            "beyond": self._beyond(places, reference, names, solver),
+            "beyond": max(beyond.values(), default=0.0),
+            "losing": {name: times for name, times in beyond.items() if times > 1},
         }
 
     def _is_same_case(self, name: str, solver: dict[str, Any], reference: dict[str, list[Any]]) -> bool:
@@ -157,10 +169,10 @@ class _Survey:
 
     def _beyond(
         self, places: Places, reference: dict[str, list[Any]], names: Sequence[str], solver: dict[str, Any]
-    ) -> float:
-        """Return the largest error of the solver, relative to eight times the unavoidable error at the same
-        place."""
-        worst = 0.0
+    ) -> dict[str, float]:
+        """Return the largest error of each quantity by the solver, relative to eight times the unavoidable error
+        at the same place."""
+        worst: dict[str, float] = {}
         for i, point in enumerate(one_by_one(places)):
             doubtful = {}
             for name in names:
@@ -173,7 +185,8 @@ class _Survey:
             least = unavoidable(self.subject.reference, point, values) if doubtful else {}
             for name, error in doubtful.items():
                 size = abs(float(values[name])) or 1.0
-                worst = max(worst, error * size / (ALLOWED * least[name]) if least[name] else math.inf)
+                times = error * size / (ALLOWED * least[name]) if least[name] else math.inf
+                worst[name] = max(times, worst.get(name, 0.0))
         return worst
 
     def _values(self, way: str, places: Places) -> dict[str, Any]:

@@ -7,12 +7,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
-from coursework.accuracy.hard_places import HardPlace
+from coursework.accuracy.hard_places import GROWING, HardPlace
 from coursework.accuracy.measuring import DATA, GENERIC, HARD, Measurement
 from coursework.accuracy.motion import FREE, RUBBING
 from coursework.accuracy.subject import ACCELERATION, MOTION, OTHER, POSITION, RATE, Subject
 from coursework.accuracy.verdicts import Rows, Words, cheapest, enough, halves, listed, paid_after
 from coursework.course.course import Course
+from coursework.course.exercise import CourseExercise
 from coursework.figures.charts import lacking, scatter
 from coursework.language.numbers import significant, unit_text
 from coursework.language.words import words
@@ -173,13 +174,19 @@ def told_place(subject: Subject, point: HardPlace, texts: Words, lang: str) -> s
     tuned = ""
     if point.tuned:
         tuned = texts["hard_tuned"].format(_value(subject, point.tuned, point.given[point.tuned], lang))
-    symbol = subject.exercise.solution.symbols.get(point.quantity) or subject.exercise.symbol(point.quantity)
+    if point.kind == GROWING:
+        return str(texts["hard_growing"].format(symbol_of(subject.exercise, point.moved)))
     return texts["hard_place"].format(
         moved=f"${subject.exercise.symbol(point.moved)}$",
         value=number(point.given[point.moved], unit, lang, 6),
         tuned=tuned,
-        why=texts["kinds"][point.kind].format(f"${symbol}$"),
+        why=texts["kinds"][point.kind].format(symbol_of(subject.exercise, point.quantity)),
     )
+
+
+def symbol_of(exercise: CourseExercise, name: str) -> str:
+    """Return the symbol of a quantity of the statement or of the solution alone, as inline Markdown."""
+    return f"${exercise.solution.symbols.get(name) or exercise.symbol(name)}$"
 
 
 def _paragraphs(sentences: Iterable[str]) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from coursework.accuracy.hard_places import HardPlace
 from coursework.accuracy.overview import OverviewLine
-from coursework.accuracy.page import charts_of, no_charts, number, told_place
+from coursework.accuracy.page import charts_of, no_charts, number, symbol_of, told_place
 from coursework.accuracy.paper import PLAIN, PaperRow, Share, total
 from coursework.accuracy.subject import Subject
 from coursework.accuracy.timing import Times, is_busy
@@ -45,7 +45,7 @@ def _short(
     course: Course, lines: Sequence[OverviewLine], without: Sequence[str], texts: Words, lang: str
 ) -> str:
     right = [line for line in lines if not line.wrong and line.quantities]
-    losing = [_titled(course, line, lang) for line in right if line.beyond > 1]
+    losing = [_titled(course, line, lang) for line in right if line.asked_losing]
     key = "keeps_but" if losing else "keeps_all"
     results = [texts[key].format(count=len(right), kept=len(right) - len(losing), others=", ".join(losing))]
     lost = [line for line in right if line.hard_textbook_failed or _digits(line.hard_textbook) <= _HALF]
@@ -80,7 +80,7 @@ def _digits_table(course: Course, lines: Sequence[OverviewLine], texts: Words, l
             _displayed(line.generic_textbook),
             _displayed(line.hard),
             _displayed(line.hard_textbook, line.hard_textbook_failed),
-            _allowed(line, texts),
+            _allowed(course, line, texts),
             _nanoseconds(line.stable_ns),
             _nanoseconds(line.textbook_ns),
         )
@@ -100,13 +100,17 @@ def _displayed(error: float | None, failed: int = 0) -> str:
     return "–" if error is None or failed else str(_digits(error))
 
 
-def _allowed(line: OverviewLine, texts: Words) -> str:
+def _allowed(course: Course, line: OverviewLine, texts: Words) -> str:
+    """Return whether all digits are kept, and otherwise by which quantity they are lost, asked or not."""
     if not line.places:
         return "–"
     if line.beyond <= 1:
         return str(texts["yes"])
     lost = math.ceil(math.log10(line.beyond)) if math.isfinite(line.beyond) else _MOST_DIGITS
-    return str(texts["loses"].format(lost))
+    exercise = course[line.exercise]
+    names = line.asked_losing or tuple(line.losing)
+    key = "loses" if line.asked_losing else "loses_unasked"
+    return str(texts[key].format(lost, ", ".join(symbol_of(exercise, name) for name in names)))
 
 
 def _nanoseconds(times: Times | None) -> str:

@@ -145,6 +145,6 @@ class Twinned:
     def _seen(self, value: Any, package: str) -> Any:
         home = getattr(value, "__module__", None) or ""
         if home.startswith(_CORE):
-            return TWINS.get(getattr(value, "__name__", ""), value)
+            return _TWINS.get(getattr(value, "__name__", ""), value)
         is_own = isinstance(value, FunctionType) and home.partition(".")[0] == package != "coursework"
         return self(value) if is_own else value

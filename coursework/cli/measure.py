@@ -108,13 +108,14 @@ def _overview(course: Any, quick: bool, lang: str, silent: bool) -> tuple[list, 
             continue
         lines.append(line)
         if not silent:
-            click.echo(_told(line))
+            click.echo(overview_text(line))
     if not silent and without:
         click.echo(f"no numbers to lose digits: {', '.join(without)}")
     return [line.as_json() for line in lines], lambda: overview_report(course, lines, without, lang)
 
 
-def _told(line: Any) -> str:
+def overview_text(line: Any) -> str:
+    """Return the line of an exercise: its errors, their cost, and the quantities that lose digits."""
     if line.wrong:
         return f"{line.exercise:28} {line.wrong}"
 
@@ -125,7 +126,11 @@ def _told(line: Any) -> str:
         return "      –" if value is None else f"{value:7.1e}"
 
     times = f"{1e9 * line.stable_ns.median:8,.0f} ns, textbook {1e9 * line.textbook_ns.median:8,.0f} ns"
-    kept = "all that the data allow" if line.beyond <= 1 else f"{line.beyond:.0e} times what the data explain"
+    kept = "all that the data allow"
+    if line.beyond > 1:
+        lost = ", ".join(f"{name} by {times:.0e}" for name, times in line.losing.items())
+        unasked = "" if line.asked_losing else "; the asked answers keep all that the data allow"
+        kept = f"beyond what the data explain: {lost} times{unasked}"
     hard = (
         f"hard {error(line.hard)} (textbook {error(line.hard_textbook)}), {kept}"
         if line.places

@@ -18,8 +18,10 @@ from coursework.accuracy.measuring import DATA, HARD, measure
 from coursework.accuracy.motion import FREE, RUBBING
 from coursework.accuracy.overview import overview
 from coursework.accuracy.page import report
+from coursework.accuracy.pages import overview_report
 from coursework.accuracy.subject import numbers_of
 from coursework.cli import run
+from coursework.cli.measure import overview_text
 from coursework.errors import BadInput
 from coursework.kinematics.chains import Vector
 from coursework.language.words import languages
@@ -199,6 +201,21 @@ def test_an_exercise_without_numbers_is_told_in_one_line(course, capsys):
         list(measure(course["mobility"]))
     assert run(["accuracy", "mobility"]) == 2
     assert "asks for no number" in capsys.readouterr().err
+
+
+def test_what_loses_digits_is_named_and_whether_it_is_asked(course):
+    """The rod's rate of a small crank loses digits; no answer of the exercise takes it."""
+    line = overview(course["quick_return_whitworth"], quick=True)
+    assert line.losing.keys() == {"omega5"}
+    assert line.asked_losing == ()
+    assert "omega5 by" in overview_text(line)
+    assert "the asked answers keep all that the data allow" in overview_text(line)
+    page = overview_report(course, [line], (), "en")
+    assert "all keep in their answers" in page.sections[0].text
+    assert r"\omega_5$, not asked, loses" in str(page.sections[1].tables[0])
+    asked = replace(line, asked_losing=("omega5",))
+    assert "the asked answers" not in overview_text(asked)
+    assert "Not so yet: " in overview_report(course, [asked], (), "en").sections[0].text
 
 
 def test_two_loops_are_closed_by_elimination():
