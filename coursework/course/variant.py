@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from coursework.course.answer_key import Key, KeyNumbers
     from coursework.figures import Figure, Picture
 
+_SEVERAL_JOINTS = 3  #: cases of a choice that are kinds of joints, from which on all are
+
 
 class Variant:
     """One student's version of an exercise."""
@@ -231,13 +233,16 @@ class Variant:
     def labels(self, part: Part) -> dict[str, list[str]]:
         """What each case of a choice is called, in every language; nothing for another kind."""
         return self.exercise.texts.labels(
-            part.id, part.choices, self.lang, lambda case: self._names(part.id, case)
+            part.id, part.choices, self.lang, lambda case: self._names(part, case)
         )
 
-    def _names(self, part: str, case: str) -> Iterator[str]:
-        """The labels of a case, and each without its article."""
+    def _names(self, part: Part, case: str) -> Iterator[str]:
+        """Yield the labels of a case, each without its article, and other names of a joint among joints."""
         for lang in self._langs:
-            yield (label := self.label(part, case, lang))
+            joints = words(lang)["graph"]["kinds"]
+            if sum(choice in joints for choice in part.choices) >= _SEVERAL_JOINTS:
+                yield from joints.get(case, ())
+            yield (label := self.label(part.id, case, lang))
             if "$" in label:
                 from coursework.markup.markdown import html_words, plain_line
 

@@ -3,6 +3,9 @@
 from strategies import CHOICES
 from tables import each_row
 
+import coursework
+from coursework.language.words import words
+from coursework.marking.answers import read
 from coursework.reading.choices import read_choice
 
 
@@ -248,3 +251,16 @@ def test_no_piece_of_a_label_reads_as_another_choice():
 
 def test_a_head_of_two_choices_chooses_neither():
     assert read_choice("none", {"p": ("none, ever",), "q": ("none (yet)",)}).code == "two_values"
+
+
+@each_row("name", ["serial_joints", "parallel_joints"])
+def test_a_joint_is_known_by_each_name_that_a_graph_takes_for_it(name):
+    """In both languages, whatever the language of the sheet."""
+    course = coursework.open_course()
+    for lang in ("fr", "en"):
+        variant = course[name].variant(0, lang, parts=["equivalent"])
+        (part,) = variant.parts
+        for language in ("fr", "en"):
+            for case, names in words(language)["graph"]["kinds"].items():
+                for joint in names if case in part.choices else ():
+                    assert read(variant, part, joint).values == (case,), (lang, joint)
