@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from coursework import degrees
 from coursework.language.numbers import significant
 from coursework.quantities.formula_code import NoExpression, call, called, expression, put_in, returning
 from coursework.system import python_code
@@ -43,6 +44,7 @@ _FUNCTIONS = {
     "shortest": r"\operatorname{min}",
     "longest": r"\operatorname{max}",
 }
+_OF_DEGREES = ("sin", "cos", "tan")  #: functions of ``coursework.degrees`` that take an angle
 _DIRECTIONS = ("asin", "acos", "atan", "atan2", "angle")  #: functions that give an angle, in degrees
 _PRINTED = {*_FUNCTIONS, "sqrt", "hypot", "abs", "absolute", "where", "stack", "broadcast_arrays"}
 _SUM, _PRODUCT, _UNARY, _POWER, _ATOM = range(5)
@@ -162,6 +164,8 @@ class _Printer:
                 args=[ast.Call(func=ast.Attribute(attr="broadcast_arrays"), args=coordinates)],
             ):
                 return rf"\left({self._listed(coordinates)}\right)", _ATOM
+            case ast.Call(func=ast.Name(id=name), args=[theta], keywords=[]) if self._is_of_degrees(name):
+                return self._call(name, [self._of_a_turn(theta)])
             case ast.Call(args=arguments, keywords=[]):
                 return self._call(called(node), arguments)
         raise UnprintableFormula
@@ -246,6 +250,27 @@ class _Printer:
                 return ast.BinOp(self._in_degrees(left), op, right)
         return node
 
+    def _is_of_degrees(self, name: str) -> bool:
+        return name in _OF_DEGREES and self.helpers.get(name) is getattr(degrees, name)
+
+    def _of_a_turn(self, node: ast.expr) -> ast.expr:
+        """Return the argument of a function of degrees with its constant in degrees, such as the ``180`` of
+        ``180 / n``, where nothing else in it is an angle."""
+        match node:
+            case _ if self._is_angle(node):
+                return node
+            case ast.BinOp(left=left, op=ast.Div() as op, right=right):
+                return ast.BinOp(self._of_a_turn(left), op, right)
+            case ast.BinOp(left=left, op=ast.Mult() as op, right=right):
+                # Of two factors the second is the angle, as in "2 × 180°", unless the first alone is a number.
+                inside = self._of_a_turn(right)
+                if inside is right:
+                    return ast.BinOp(self._of_a_turn(left), op, right)
+                return ast.BinOp(left, op, inside)
+            case ast.Constant() | ast.Name() | ast.UnaryOp(operand=ast.Constant() | ast.Name()):
+                return self._in_degrees(node)
+        return node
+
     # ------------------------------------------------- products, fractions, powers
 
     def _factors(self, node: ast.expr) -> list[ast.expr]:
@@ -274,12 +299,8 @@ class _Printer:
     def _power(self, left: ast.expr, right: ast.expr) -> tuple[str, int]:
         if isinstance(right, ast.Constant) and right.value == 0.5:
             return rf"\sqrt{{{self.latex(left)}}}", _ATOM
-        if (
-            isinstance(left, ast.Call)
-            and isinstance(left.func, ast.Name)
-            and left.func.id in ("sin", "cos", "tan")
-        ):
-            inner = self.latex(left.args[0])
+        if isinstance(left, ast.Call) and isinstance(left.func, ast.Name) and left.func.id in _OF_DEGREES:
+            inner = self.latex(self._of_a_turn(left.args[0]))
             exponent = self.latex(right)
             return rf"{_FUNCTIONS[left.func.id]}^{{{exponent}}}\left({inner}\right)", _POWER
         text, level = self._print(left)

@@ -48,3 +48,9 @@ def test_a_complex_answer_is_told(small_course):
     with pytest.raises(BadCourse, match="v is a complex number"):
         exercise.variant(1).grade({"v": "3"})
     assert exercise.solve(r=2, omega=3, only="v") == {"v": 6j}  # a request may want it
+
+
+def test_a_part_of_a_turn_is_computed_in_degrees_and_printed_so(small_course):
+    exercise = with_v(small_course, "    return r * omega * sin(180 / omega)\n")
+    failures = [f for f in check(exercise, 5).failures if "printed formula" in f]
+    assert failures == []

@@ -67,6 +67,14 @@ def difference_of_squares(a, b):
     return sqrt((a - 2 * b) * (a + 2 * b))
 
 
+def part_of_a_turn(a, b):
+    return b * sin(180 / a) + cos(2 * 60 * a) ** 2
+
+
+def part_of_radians(a, b):
+    return b * np.sin(np.pi / a) + np.cos(2)
+
+
 def _corner(near, other, opposite):
     """The law of cosines."""
     return acos((near**2 + other**2 - opposite**2) / (2 * near * other))
@@ -180,6 +188,18 @@ NUMBERS = {
             difference_of_squares,
             r"\sqrt{a^{\num{2}} - \left(\num{2}\,b\right)^{\num{2}}}",
             r"\sqrt{\num{3}^{\num{2}} - \left(\num{2} \times \left(\num{-4}\right)\right)^{\num{2}}}",
+        ),
+        (
+            part_of_a_turn,
+            r"b\,\sin\left(\frac{\num{180}^{\circ}}{a}\right) + "
+            r"\cos^{\num{2}}\left(\num{2} \times \num{60}^{\circ}\,a\right)",
+            r"\num{-4}\,\sin\left(\frac{\num{180}^{\circ}}{\num{3}}\right) + "
+            r"\cos^{\num{2}}\left(\num{2} \times \num{60}^{\circ} \times \num{3}\right)",
+        ),
+        (
+            part_of_radians,
+            r"b\,\sin\left(\frac{\pi}{a}\right) + \cos\left(\num{2}\right)",
+            r"\num{-4}\,\sin\left(\frac{\pi}{\num{3}}\right) + \cos\left(\num{2}\right)",
         ),
         (
             corner,
