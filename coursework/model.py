@@ -23,6 +23,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, lru_cache
+from numbers import Real
 from typing import Any
 
 from coursework.errors import BadCourse, WrongValue, nearest
@@ -67,6 +68,10 @@ def _bound(value: Bound | None) -> Bound | None:
     return value if callable(value) or value is None else float(value)
 
 
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
 def drawn(
     low: Bound,
     high: Bound,
@@ -87,6 +92,13 @@ def drawn(
     it stands for is in the statement or in the figure. With ids of parts, as in ``shown=("pv_a", "pv_b")``, a sheet
     lists it only where it asks one of them. The record keeps it.
     """
+    for bound in (low, high):
+        if not (callable(bound) or _is_number(bound)):
+            raise WrongValue(
+                f"a bound of drawn(low, high) is a number or a function of quantities declared before; found {bound!r}"
+            )
+    if _is_number(low) and _is_number(high) and low > high:  # type: ignore[operator]
+        raise WrongValue(f"drawn(low, high) takes the smaller bound first; found {low}, {high}")
     if positive is None:
         positive = not callable(low) and low > 0 and unit != "deg"
     exact = Fraction(str(step))
@@ -97,11 +109,28 @@ def drawn(
 
 def fixed(value: float, *, unit: str = "1") -> GivenSpec:
     """Declare a quantity with the same value in every variant; a request may give another."""
+    if not _is_number(value):
+        raise WrongValue(f"fixed(…) takes a number; found {value!r}")
     return GivenSpec(unit, default=value)
 
 
 def chosen(*choices: str, shown: bool | tuple[str, ...] = True) -> GivenSpec:
-    """Declare a quantity drawn among named cases, all equally likely; ``shown`` as in :func:`drawn`."""
+    """Declare a quantity drawn among named cases, all equally likely; ``shown`` as in :func:`drawn`.
+
+    Raises
+    ------
+    WrongValue
+        The cases are not two names or more, all different.
+    """
+    if any(not isinstance(case, str) for case in choices):
+        raise WrongValue(
+            f"the cases of chosen(…) are names in quotes; found {', '.join(map(repr, choices))}: "
+            "numbers are drawn(low, high, step=…)"
+        )
+    if len(set(choices)) < max(2, len(choices)):
+        raise WrongValue(
+            f"chosen(…) takes two cases or more, all different; found {', '.join(map(repr, choices)) or 'none'}"
+        )
     return GivenSpec("1", choices=tuple(choices), shown=shown)
 
 
@@ -420,6 +449,8 @@ class Exercise:
         for name, spec in self.given.items():
             if not _NAME.match(name):
                 raise BadCourse(f"{name!r} is no name for a quantity; use letters, digits and underscores")
+            if not isinstance(spec, GivenSpec):
+                raise BadCourse(f"{name} is given as drawn(…), chosen(…) or fixed(…); found {spec!r}")
             check_unit(f"the unit of {name}", spec.unit)
         for part in self.parts:
             check_unit(f"the unit of part {part.id!r}", part.unit)

@@ -394,17 +394,21 @@ class Folder:
         try:
             return importlib.import_module(dotted)
         except CourseworkError as fault:
-            raise BadCourse(f"{source}: {fault}") from fault
+            raise BadCourse(f"{source}: {_place(fault, self.root)}{fault}") from fault
         except Exception as fault:
             raise BadCourse(f"{source} cannot be used: {_where(fault, self.root)}") from fault
 
 
 def _where(fault: Exception, root: Path) -> str:
     """The fault in one line, with the last line of the course's own code on its way."""
-    said = f"{type(fault).__name__}: {fault}"
     if isinstance(fault, SyntaxError):
         return f"line {fault.lineno}: {fault.msg}"
+    return f"{_place(fault, root)}{type(fault).__name__}: {fault}"
+
+
+def _place(fault: Exception, root: Path) -> str:
+    """Return the last line of the course's own code on a fault's way, as ``line 3: ``; nothing where there is none."""
     import traceback
 
     frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]
-    return f"line {frames[-1].lineno}: {said}" if frames else said
+    return f"line {frames[-1].lineno}: " if frames else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -200,7 +201,7 @@ def test_a_record_is_marked_by_the_values_it_holds_not_by_its_seed(course):
         ("exercises/crank_pin.py", 'points=2', 'points=-2', "points must be positive"),
         ("exercises/crank_pin.py", 'points=2', 'kind="nombre"', "no kind 'nombre'"),
         ("exercises/crank_pin.py", "def pin_off_the_axes(theta)", "def pin_off_the_axes(tetha)", "needs tetha, which is not given; did you mean 'theta'"),
-        ("exercises/crank_pin.py", '"r": drawn(50, 200, step=5, unit="mm")', '"r": drawn(50, 200, unit="furlong")', "exercises/crank_pin.py: the unit of r: no unit 'furlong'; units are"),
+        ("exercises/crank_pin.py", '"r": drawn(50, 200, step=5, unit="mm")', '"r": drawn(50, 200, unit="furlong")', ": the unit of r: no unit 'furlong'; units are"),
         ("exercises/crank_pin.py", 'Part("y", unit="mm")', 'Part("y", unit="furlong")', "the unit of part 'y': no unit 'furlong'"),
         ("solutions/crank_pin.py", "#: Values known", "UNITS = {'x': 'furlong'}\n#:", "solutions/crank_pin.py: UNITS of x: no unit 'furlong'"),
         ("exercises/crank_pin.py", "import polar", "import poler", "poler"),
@@ -226,6 +227,34 @@ def test_an_authors_slip_names_its_file_and_what_would_do(small_course, file, ol
     with pytest.raises((BadCourse, UnknownName)) as caught:
         use(coursework.open_course(small_course))
     assert told in str(caught.value)
+
+
+SLIPS_IN_GIVEN = {
+    "chosen(4, 5)": (30, "the cases of chosen(…) are names in quotes; found 4, 5: numbers are drawn(low, high, step=…)"),
+    "chosen('a')": (30, "chosen(…) takes two cases or more, all different; found 'a'"),
+    "fixed('5')": (30, "fixed(…) takes a number; found '5'"),
+    "drawn('a', 5)": (30, "a bound of drawn(low, high) is a number or a function of quantities declared before; found 'a'"),
+    "drawn(5, 1)": (30, "drawn(low, high) takes the smaller bound first; found 5, 1"),
+    "drawn(1, 5, step=0)": (30, "a step must be positive; found 0"),
+    "5": (28, "r is given as drawn(…), chosen(…) or fixed(…); found 5"),
+}  # fmt: skip
+
+
+def test_what_is_given_wrongly_is_told_with_its_file_and_line(small_course):
+    path = small_course / "exercises" / "crank_pin.py"
+    text = path.read_text("utf-8").replace("Part, drawn", "Part, chosen, drawn, fixed")
+    shutil.rmtree(small_course / "exercises" / "__pycache__", ignore_errors=True)
+    found = {}
+    for given in SLIPS_IN_GIVEN:
+        path.write_text(text.replace('drawn(50, 200, step=5, unit="mm")', given), "utf-8")
+        with pytest.raises(BadCourse) as caught:
+            coursework.open_course(small_course)["crank_pin"]
+        found[given] = str(caught.value)
+    expected = {
+        given: f"exercises/crank_pin.py: line {line}: {fault}"
+        for given, (line, fault) in SLIPS_IN_GIVEN.items()
+    }
+    assert found == expected
 
 
 def use(course):
