@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 NAMED = 3  #: errors that fit one answer; of more than these none is named
+_SHORT = 2  #: names of a formula that may be printed whole: it is a term of one factor
+_LONGEST = 4  #: names of a term that is printed
 NEAR = 0.35  #: half-widths from the value that a usual error gives: among so many errors some are near to anything
 NEAR_DEGREES = 0.1  #: the same of a direction, of which fewer are far apart
 _LEAST = 0.04  #: half-widths within which rounding on the way brings whoever makes an error
@@ -165,27 +168,47 @@ def _contradicts(key: Key, error: UsualError, quantity: str) -> bool:
 
 
 def why(variant: Variant, error: UsualError, quantity: str) -> str:
-    """How an error is told, Markdown: ``the term $r_2^2$ is left out``."""
+    """Return how an error is told, Markdown: ``the term $r_2^2$ is left out``.
+
+    Symbols that stand on no sheet of the exercise are not printed, and of a formula never the whole.
+    """
     table = words(variant.lang)["marking"]["usual"]
+    seen = {*variant.given, *(part.quantity for part in variant.exercise.spec.parts)}
     if error.kind in TAKEN:
         asked = [n for n, p in enumerate(variant.parts, start=1) if p.quantity == error.source]
+        if not asked and error.source not in seen:
+            return str(table["taken_hidden"])
         form = table["taken_asked"] if asked else table["taken"]
         number = asked[0] if asked else 0
         return str(form.format(term=f"${symbol(variant, error.source)}$", number=number))
     node = variant.exercise.solution.graph.textbook.node(error.source)
     found = formula_errors(node.function)[error.place]
-    shown = {
-        name: PrintedName(
-            symbol(variant, name), False, "angle" if variant.exercise.units.get(name) == "deg" else ""
-        )
-        for name in found.formula.names
-    }
-    term = "" if found.about is None else tree_latex(found.about, shown, found.formula.space)
-    form = table[error.kind] if term or found.about is None else table["unnamed"]
-    told = str(form.format(term=f"${term}$"))
+    about = found.about
+    if about is not None and not _may_be_shown(about, found.formula.names, seen):
+        told = str(table["hidden"][error.kind])
+    else:
+        shown = {
+            name: PrintedName(
+                symbol(variant, name), False, "angle" if variant.exercise.units.get(name) == "deg" else ""
+            )
+            for name in found.formula.names
+        }
+        term = "" if about is None else tree_latex(about, shown, found.formula.space)
+        form = table[error.kind] if term or about is None else table["unnamed"]
+        told = str(form.format(term=f"${term}$"))
     if error.source == quantity:
         return told
+    if error.source not in seen:
+        return str(table["elsewhere_hidden"].format(why=told))
     return str(table["elsewhere"].format(where=f"${symbol(variant, error.source)}$", why=told))
+
+
+def _may_be_shown(about: ast.expr, formula: Collection[str], seen: Collection[str]) -> bool:
+    """Return whether a term holds only symbols that the student knows, and not all of a formula of several."""
+    names = {node.id for node in ast.walk(about) if isinstance(node, ast.Name)} & {*formula}
+    return (
+        names <= {*seen} and (len(names) < len(formula) or len(formula) <= _SHORT) and len(names) <= _LONGEST
+    )
 
 
 def whys(variant: Variant, errors: Collection[UsualError], quantity: str) -> tuple[str, bool]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from tables import each_row
@@ -17,6 +19,8 @@ from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse
 from coursework.making.issuing import distinct_variants
+from coursework.marking.feedback import symbol
+from coursework.marking.usual import why
 from coursework.quantities.error_kinds import PRICES
 from coursework.quantities.usual_errors import formula_errors
 
@@ -217,3 +221,35 @@ def test_values_by_the_column_are_those_of_each_alone():
             for error in own.keys() & shared.keys():
                 if np.isfinite(own[error]) and np.isfinite(shared[error]):
                     assert own[error] == pytest.approx(shared[error], rel=1e-6, abs=1e-9), error
+
+
+@pytest.mark.parametrize("name", NUMERIC)
+def test_a_cause_is_told_in_symbols_that_the_student_has_seen(name):
+    """Those of what is given or asked; of any other quantity the symbol stands in no sentence, in either language."""
+    for lang in ("en", "fr"):
+        (variant,) = distinct_variants(COURSE[name], 0, 1, lang, parts=(ALL,))
+        known = {*variant.given, *(part.quantity for part in variant.exercise.spec.parts)}
+        seen = sorted((symbol(variant, quantity) for quantity in known), key=len, reverse=True)
+        names = variant.exercise.solution.graph.names - known
+        unseen = {symbol(variant, name) for name in names} - {*seen}
+        wrong = []
+        for part in variant.parts:
+            if not part.sort.is_scalar or part.judge:
+                continue
+            for error in variant.key.usual_ways(part.quantity)[0]:
+                text = why(variant, error, part.quantity)
+                printed = re.findall(r"\$([^$]*)\$", text)
+                wrong += [(part.id, text) for piece in printed if _holds(piece, seen, unseen)]
+        assert wrong == []
+
+
+def _holds(piece, seen, unseen):
+    """Return whether a formula is an unseen symbol, or holds one of several letters, once the seen ones are taken out."""
+    if piece in unseen:
+        return True
+    for one in seen:
+        piece = piece.replace(one, " ")
+    return any(
+        len(one) > 1 and re.search(rf"(?<![A-Za-z\\]){re.escape(one)}(?![A-Za-z0-9_'^])", piece)
+        for one in unseen
+    )
