@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import importlib.util
 import re
 import shlex
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import click
 import pytest
+from class_of_three import filled, table, write_rows
 from tables import each_row
 
 import coursework
@@ -18,7 +20,6 @@ from coursework.cli import run
 from coursework.cli.commands import commands as cli
 from coursework.course.marking_rules import Rules
 from coursework.errors import BadInput
-from coursework.gradebook.class_marking import _waiting
 from coursework.making.assignment import OPTIONS, read_assignment
 from coursework.markup.mathml import to_mathml
 from coursework.rendering.renderer import renderer_of
@@ -181,23 +182,93 @@ def test_what_check_is_shown_to_print_is_what_it_prints(page, course, tmp_path, 
     assert capsys.readouterr().out == printed
 
 
-def test_the_marks_of_the_first_hour_are_those_that_marking_gives():
-    """Those on the variant whose seed its answers name."""
-    text = (DOCS / "first_hour.md").read_text("utf-8")
-    row = r"^\| (durand|mbaye) \| `(\w+)` \| (.*?) \| (.*?) \| `([\w:]+)` \| ([\d.]+) \| (.*) \|$"
-    told = [tuple(cell.strip("` ") for cell in cells) for cells in re.findall(row, text, re.M)]
-    assert len(told) == 7
-    variant = COURSE["slotted_mechanism"].variant(1, "fr")
-    found = []
-    for student in ("durand", "mbaye"):
-        marks = variant.grade({part: answer for who, part, answer, *_ in told if who == student})
-        found += [
-            (who, part, answer, m.read_as, m.verdict, f"{m.points:g}", m.feedback)
-            for who, part, answer, *_ in told
-            for m in [_waiting(marks[part])]
-            if who == student
-        ]
-    assert found == told
+HOUR = DOCS / "first_hour.md"
+ROW_OF_MARKS = re.compile(
+    r"^\| (\w+) \| `(\w+)` \| (.*?) \| (.*?) \| `([\w:]+)` \| ([\d.]+) \| (.*) \|$", re.M
+)
+
+
+def tables(text: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(text.splitlines()))
+
+
+def sample(start: str) -> str:
+    """The block of the page that begins so."""
+    (found,) = (block for block in blocks(HOUR, "text") if block.startswith(start))
+    return found
+
+
+def hand_in(answers: dict[tuple[str, str], str]) -> None:
+    """A folder of what came back: a notebook of Smith, a table of the others with one name mistyped."""
+    Path("returned").mkdir()
+    rows = [
+        row | {"answer": answers.get((row["student"], row["part"]), row["answer"])}
+        for row in filled(Path("week3"))
+    ]
+    paper = [row for row in rows if row["student"] != "smith"]
+    write_rows(Path("returned/paper.csv"), [*paper, paper[0] | {"student": "durant"}])
+    notebook = Path("week3/handouts/slotted_mechanism/smith.en.ipynb").read_text("utf-8")
+    typed = dict(re.findall(r'^    "(\w+)": "(.*)",$', sample("# Your answers"), re.M))
+    own = [row for row in rows if row["student"] == "smith"]
+    names = re.findall(r'"    \\"(\w+)\\": \\"\\",', notebook)
+    for name, row in zip(names, own, strict=True):
+        answer = typed.pop(name, row["answer"])
+        notebook = notebook.replace(rf'"    \"{name}\": \"\",', rf'"    \"{name}\": \"{answer}\",')
+    assert typed == {}
+    Path("returned/smith.ipynb").write_text(notebook, "utf-8")
+
+
+def test_the_first_hour_prints_and_writes_what_its_commands_do(tmp_path, monkeypatch, capsys):
+    """Of the answers that it does not show, the right ones came back."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LANG", "en_US.UTF-8")
+    Path("class.csv").write_text(sample("student,lang"), "utf-8")
+    accepted = sample("student,exercise,seed,part,points,reason")
+    (change,) = tables(sample("date,"))
+    shown = [tuple(cell.strip("` ") for cell in row) for row in ROW_OF_MARKS.findall(HOUR.read_text("utf-8"))]
+    typed = tables(sample("student,exercise,seed,part,answer"))
+    answers = {(row["student"], row["part"]): row["answer"] for row in [*typed, change]}
+    for block in blocks(HOUR, "console"):
+        command, _, printed = block.removeprefix("$ coursework ").partition("\n")
+        if not block.startswith("$ ") or " check " in block or not printed:
+            continue
+        if command.startswith("grade"):
+            if "--accepted" in command:
+                Path("accepted.csv").write_text(accepted, "utf-8")
+            else:
+                hand_in(answers | {row[:2]: row[2] for row in shown})
+        run(shlex.split(command))
+        assert "".join(capsys.readouterr()) == printed
+        if "--accepted" not in command and command.startswith("grade"):
+            marks = {(row["student"], row["part"]): row for row in table(Path("week3/marks/marks.csv"))}
+    assert {(row["student"], row["seed"], row["part"]) for row in typed} <= {
+        (row["student"], row["seed"], row["part"]) for row in table(Path("week3/answers.csv"))
+    }
+    columns = ("student", "part", "answer", "read_as", "verdict", "points", "feedback")
+    assert len(shown) == 8
+    assert shown == [tuple(marks[row[:2]][name] for name in columns) for row in shown]
+    (changed,) = table(Path("week3/marks/changes.csv"))
+    assert changed | {"date": change["date"]} == change
+    listed = {f"week3/{line.strip().split()[0].rstrip(',')}" for line in sample("week3/").splitlines()[1:]}
+    assert all((tmp_path / name).exists() for name in listed)
+
+
+def test_the_statement_and_the_new_course_that_are_shown_are_those_printed(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LANG", "en_US.UTF-8")
+    assert run(["show", "slotted_mechanism", "--seed", "3", "--lang", "en"]) == 0
+    printed = capsys.readouterr().out
+    pieces = [piece.strip("\n") for piece in sample("Slotted mechanism").split("...\n")]
+    places = [printed.find(piece) for piece in pieces]
+    assert len(pieces) == 3
+    assert -1 not in places
+    assert places == sorted(places)
+    (shown,) = (
+        b for b in blocks(DOCS / "writing.md", "console") if b.startswith("$ coursework new mine\nwrote")
+    )
+    monkeypatch.delenv("LANG")
+    assert run(["new", "mine"]) == 0
+    assert shown.split("\n", 1)[1] == capsys.readouterr().out
 
 
 def test_the_marking_that_is_shown_is_that_of_a_course_that_states_none():
