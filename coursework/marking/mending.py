@@ -18,6 +18,9 @@ from coursework.model import Part
 from coursework.quantities.usual_errors import ALL_DEGREES
 from coursework.reading.reading import Reading
 
+_FAR = 5  #: times a right value from which on the order of magnitude is told
+_LISTED = 7  #: given quantities that a sentence lists
+
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
@@ -64,6 +67,7 @@ def mark_wrong(
         mark = made("partial", share, read_as, say(variant, part, "partial", read=read), matches)
     else:
         mark = made("wrong", 0.0, read_as, _told_wrong(variant, part, read, before), matches)
+        more += _size_remarks(variant, part, value, reference)
     return mark._replace(told=(*mark.told, *more))
 
 
@@ -73,6 +77,19 @@ def _remarks(
     """What its kind tells of an answer that nothing explains, with what fills each sentence."""
     for sentence, told in part.sort.remarks(part, value, reference, variant.lang):
         yield sentence, {"list": told}
+
+
+def _size_remarks(variant: Variant, part: Part, value: Any, reference: Any) -> Iterator[Said]:
+    """Yield what the sign and the order of magnitude of a wrong number tell, of one that is no direction."""
+    sort = part.sort
+    if not sort.is_number or sort.is_exact or sort.turn or not value or not reference:
+        return
+    table = words(variant.lang)["marking"]["size"]
+    if value * reference < 0:
+        yield Said(table["sign"], {})
+    ratio = abs(value / reference)
+    if ratio >= _FAR or ratio <= 1 / _FAR:
+        yield Said(table["large" if ratio > 1 else "small"], {})
 
 
 def _right_share(key: Key, part: Part, value: Any, judged_by: Part) -> float:
@@ -155,6 +172,8 @@ def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said
     earlier = variant.parts[: variant.parts.index(part)]
     asked = _asked_above(variant, part.quantity, {p.quantity for p in earlier})
     asked = [p for p in asked if p in earlier and p.sort.is_called_by_symbol and not p.judge]
+    if part.sort.wrong == "wrong" and not asked and (given := _given_above(variant, part.quantity)):
+        return say(variant, part, "wrong_given", read=read, list=listed(given, variant.lang))
     if part.sort.wrong not in ("wrong", "wrong_place", "wrong_count") or not asked:
         return say(variant, part, part.sort.wrong, read=read)
     to_mend = [p for p in asked if p.quantity not in before.right]
@@ -164,6 +183,14 @@ def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said
     ]
     sentence = "wrong_from" if to_mend else "wrong_from_right"
     return say(variant, part, sentence, read=read, list=listed(told, variant.lang))
+
+
+def _given_above(variant: Variant, quantity: str) -> list[str]:
+    """Return the symbols of the given quantities that one is computed from; none of so many that a list tells nothing."""
+    graph = variant.exercise.solution.graph.textbook
+    above = graph.ancestors((quantity,)) if quantity in graph.names else frozenset()
+    given = [name for name in variant.given if name in above and name != quantity]
+    return [f"${symbol(variant, name)}$" for name in given] if len(given) <= _LISTED else []
 
 
 def _asked_above(variant: Asked, quantity: str, among: set[str]) -> list[Part]:

@@ -18,6 +18,7 @@ from coursework.course.exercise import ALL
 from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse
+from coursework.language.words import words
 from coursework.making.issuing import distinct_variants
 from coursework.marking.feedback import symbol
 from coursework.marking.usual import why
@@ -253,3 +254,28 @@ def _holds(piece, seen, unseen):
         len(one) > 1 and re.search(rf"(?<![A-Za-z\\]){re.escape(one)}(?![A-Za-z0-9_'^])", piece)
         for one in unseen
     )
+
+
+@each_row("lang", ["en", "fr"])
+def test_a_number_that_nothing_explains_is_told_its_sign_and_order_of_magnitude(lang):
+    table, silent, told = words(lang)["marking"], [], 0
+    for name in NUMERIC:
+        variant = COURSE[name].variant(4, lang)
+        for part in variant.parts:
+            if part.judge or part.kind != "number":
+                continue
+            value = variant.solution()[part.quantity]
+            for factor, due in ((71.23, {"large"}), (-0.007123, {"sign", "small"}), (1.37, set())):
+                mark = variant.grade({part.id: f"{factor * value:.6g}"})[part.id]
+                if mark.verdict != "wrong":
+                    continue
+                said = {
+                    key
+                    for key, sentence in table["size"].items()
+                    if sentence.replace("'", "’") in mark.feedback.replace("'", "’")
+                }
+                told += 1
+                if said != due and value:
+                    silent.append((name, part.id, factor, mark.feedback))
+    assert silent == []
+    assert told > 100

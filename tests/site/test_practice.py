@@ -111,7 +111,7 @@ def test_an_answer_says_what_a_notebook_says(zoe, tmp_path, course):
     session = coursework.study(EXERCISE, seed=zoe.variant.seed, folder=tmp_path, lang="en")
     said = str(session.check({"rA": "100", "theta4": "abc"}))
     for part, sentence in (
-        ("rA", "is not the right value. Start again"),
+        ("rA", "is not the right value. It is computed from"),
         ("theta4", "cannot be read as a number"),
     ):
         assert sentence in zoe.told(page, part)
