@@ -27,7 +27,7 @@ from coursework.accuracy.timing import Times, interleaved
 from coursework.accuracy.ways import Values, Way, ways
 from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, BadInput, CourseworkError
-from coursework.system.distribution import add_extra
+from coursework.system.extras import libraries
 
 GENERIC, HARD = "generic", "hard"
 DATA = "data"  #: the family of what the last digits of the data do by themselves
@@ -79,12 +79,7 @@ class Measurement:
 
 def needs_mpmath() -> None:
     """Refuse to measure without mpmath."""
-    try:
-        import mpmath  # noqa: F401
-    except ImportError:
-        raise BadInput(
-            f"accuracy is measured against mpmath, which is not installed: {add_extra('accuracy')}"
-        ) from None
+    libraries(("mpmath",), "accuracy is measured against", "accuracy")
 
 
 def subject_of(exercise: CourseExercise) -> Subject:

@@ -13,6 +13,7 @@ from coursework.cli.database import keeping
 from coursework.cli.options import opened, shared_by_cluster, tell, writes
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted, nearest
+from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
     from coursework.making.assignment import Assignment
@@ -54,15 +55,18 @@ class _Settings:
         return Path(found) if told else self.base / found
 
 
-def check_scan(formats: Sequence[str], *, booklet: bool) -> None:
-    """Refuse answer pages where nothing is printed, or what draws their codes is not at hand."""
-    from coursework.system.extras import library
+def codes_ready() -> None:
+    """Refuse answer pages where what draws their codes is missing."""
+    libraries(("zxingcpp",), "--scan draws codes with", "scan")
 
+
+def check_scan(formats: Sequence[str], *, booklet: bool) -> None:
+    """Refuse answer pages where nothing is printed, or what draws their codes is missing."""
+    codes_ready()
     if "pdf" not in formats and not booklet:
         raise BadInput(
             f"--scan adds answer pages to PDFs, and none is asked (--formats {','.join(formats)}): add pdf, or --booklet"
         )
-    library("zxingcpp", "--scan draws codes with", "scan")
 
 
 def build_assignment(

@@ -13,7 +13,9 @@ from coursework.cli.options import (
     DONE,
     FOUND,
     FilePath,
+    NeedingExtra,
     assignment_option,
+    database_ready,
     json_option,
     opened,
     tell,
@@ -40,10 +42,6 @@ def store_at(context: click.Context, url: str, *, new: bool = False) -> Store:
     BadInput
         There is no such database.
     """
-    from coursework.system.extras import library
-
-    for module in ("sqlalchemy", "alembic"):
-        library(module, "a database needs", "site")
     from coursework.database.store import Store, file_of
 
     file = file_of(url)
@@ -220,7 +218,7 @@ def database() -> None:
 _url_argument = click.argument("url", metavar="URL")
 
 
-@database.command()
+@database.command(cls=NeedingExtra, ready=database_ready)
 @_url_argument
 @json_option
 @click.pass_context
@@ -239,7 +237,7 @@ def show(context: click.Context, url: str, as_json: bool) -> None:
         click.echo("the database holds no assignment")
 
 
-@database.command()
+@database.command(cls=NeedingExtra, ready=database_ready)
 @_url_argument
 @click.argument("student", required=False)
 @click.option("--exercise", default="", help="Of this exercise alone.")
@@ -299,7 +297,7 @@ def _happened(one: Any) -> str:
     return f"{one.kind}{points} by {one.by}{reason}"
 
 
-@database.command("new-key")
+@database.command("new-key", cls=NeedingExtra, ready=database_ready)
 @_url_argument
 @click.pass_context
 def new_key(context: click.Context, url: str) -> None:
@@ -319,7 +317,7 @@ def new_key(context: click.Context, url: str) -> None:
     )
 
 
-@database.command("sign-out")
+@database.command("sign-out", cls=NeedingExtra, ready=database_ready)
 @_url_argument
 @click.argument("login", required=False)
 @click.pass_context
@@ -346,7 +344,7 @@ def sign_out(context: click.Context, url: str, login: str | None) -> None:
     click.echo(f"the sessions of {login} ended")
 
 
-@database.command()
+@database.command(cls=NeedingExtra, ready=database_ready)
 @_url_argument
 @click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))
 @click.pass_context
@@ -360,7 +358,7 @@ def dump(context: click.Context, url: str, folder: Path) -> None:
     click.echo(f"{counted(sum(rows.values()), 'row')} of {counted(len(rows), 'table')} in {folder}")
 
 
-@database.command()
+@database.command(cls=NeedingExtra, ready=database_ready)
 @click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))
 @_url_argument
 @click.pass_context

@@ -13,6 +13,7 @@ from coursework.cli.options import (
     DONE,
     FOUND,
     FilePath,
+    NeedingExtra,
     Whole,
     json_option,
     opened,
@@ -20,6 +21,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import BadInput, counted, nearest
+from coursework.system.extras import libraries
 from coursework.system.limits import MOST_PORT
 
 if TYPE_CHECKING:
@@ -39,11 +41,7 @@ folder_option = click.option(
 
 
 def _ready() -> None:
-    """Say which library is missing before anything is begun."""
-    from coursework.system.extras import library
-
-    for name in _LIBRARIES:
-        library(name, "LTI needs", "lti")
+    libraries(_LIBRARIES, "LTI needs", "lti")
 
 
 @click.group()
@@ -57,7 +55,7 @@ def lti() -> None:
 # --------------------------------------------------------------------- platform
 
 
-@lti.command()
+@lti.command(cls=NeedingExtra, ready=_ready)
 @click.argument("kind", required=False, metavar="[moodle|canvas|other]")
 @click.argument("site", required=False)
 @folder_option
@@ -89,7 +87,6 @@ def platform(
     First, without --client-id, it tells what to fill in on the platform's registration page; the platform then shows the
     client ID and the deployment ID.
     """
-    _ready()
     from dataclasses import replace
 
     from coursework.lti.settings import checked_url, read_settings
@@ -239,7 +236,7 @@ def _checked(settings: Settings, one: Platform) -> str:
 # ------------------------------------------------------------------------- keys
 
 
-@lti.command()
+@lti.command(cls=NeedingExtra, ready=_ready)
 @click.argument("what", default="list", metavar="[list|new|rotate|retire]")
 @click.argument("kid", required=False)
 @folder_option
@@ -250,7 +247,6 @@ def keys(what: str, kid: str | None, folder: Path, as_json: bool) -> None:
     'rotate' makes a key that signs from now on; the one before stays public, since platforms keep keys for a while, until
     'retire KID' takes it away.
     """
-    _ready()
     from coursework.lti.keys import KeyFolder
 
     kept = KeyFolder(folder / "keys")
@@ -284,7 +280,7 @@ def keys(what: str, kid: str | None, folder: Path, as_json: bool) -> None:
 # ------------------------------------------------------------------------ serve
 
 
-@lti.command()
+@lti.command(cls=NeedingExtra, ready=_ready)
 @folder_option
 @click.option("--host", default="127.0.0.1", show_default=True, help="Where to listen.")
 @click.option("--port", type=Whole(1, MOST_PORT), default=8700, show_default=True)
@@ -299,7 +295,6 @@ def serve(
     context: click.Context, folder: Path, host: str, port: int, url: str | None, behind_proxy: bool
 ) -> None:
     """Start the service. It listens on this machine alone unless told, and to others only behind a proxy that speaks https."""
-    _ready()
     import uvicorn
 
     app, address = _application(context, folder, host, port, url, behind_proxy)
@@ -370,13 +365,12 @@ def _application(
 # --------------------------------------------------------------- scores, roster
 
 
-@lti.command()
+@lti.command(cls=NeedingExtra, ready=_ready)
 @folder_option
 @click.option("--send", is_flag=True, help="Try now to send what waits.")
 @json_option
 def scores(folder: Path, send: bool, as_json: bool) -> int:
     """Tell which points have not reached their gradebook, and why; exit status 1 where some wait."""
-    _ready()
     from coursework.lti.storage import Storage
 
     storage = Storage(folder)
@@ -417,7 +411,7 @@ def _send(folder: Path, storage: Any) -> None:
             pass
 
 
-@lti.command()
+@lti.command(cls=NeedingExtra, ready=_ready)
 @click.argument("course_title", required=False, metavar="[COURSE]")
 @folder_option
 @click.option(
@@ -428,7 +422,6 @@ def roster(course_title: str | None, folder: Path, out: Path | None) -> None:
 
     COURSE is its title, or the start of it; without it, the courses are listed that were opened from a platform.
     """
-    _ready()
     import httpx
 
     from coursework.lti.class_list import as_csv
@@ -463,12 +456,11 @@ def roster(course_title: str | None, folder: Path, out: Path | None) -> None:
         click.echo(f"{out}: {counted(text.count(chr(10)) - 1, 'student')}")
 
 
-@lti.command()
+@lti.command(cls=NeedingExtra, ready=_ready)
 @click.argument("person")
 @folder_option
 def forget(person: str, folder: Path) -> None:
     """Take away all that is kept of a person, by the platform's own identifier (lti_user_id of the roster)."""
-    _ready()
     from coursework.lti.storage import Storage
 
     storage = Storage(folder)

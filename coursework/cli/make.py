@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.assignments import build_assignment, check_scan, for_practice, is_assignment
+from coursework.cli.assignments import build_assignment, check_scan, codes_ready, for_practice, is_assignment
 from coursework.cli.database import keeping
 from coursework.cli.options import (
     UNLESS_TOLD,
@@ -24,6 +24,7 @@ from coursework.cli.options import (
     exercises_argument,
     known_formats,
     known_languages,
+    needing_extra,
     opened,
     parts_option,
     seed_option,
@@ -91,6 +92,8 @@ if TYPE_CHECKING:
 @click.option(
     "--scan",
     is_flag=True,
+    is_eager=True,
+    callback=needing_extra(codes_ready),
     help="Answer pages behind the statements, which coursework scan reads; in the PDFs. Print at 100 %, not fitted to the page.",
 )
 @click.option(

@@ -28,6 +28,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, progress_bar
 from coursework.errors import BadInput, counted
+from coursework.system.extras import libraries
 from coursework.system.visible import one_line
 
 if TYPE_CHECKING:
@@ -121,6 +122,8 @@ def grade(
     With --db what comes is kept in a database, with all that came before; only sheets that are new or changed are marked,
     and no files are written unless --out names a folder.
     """
+    if any(path.suffix.lower() == ".parquet" for path in submissions):
+        libraries(("pyarrow",), "Parquet needs", "parquet")
     if issued is not None and issued.is_dir():
         inside = issued / "issued.json"
         would_do = f"did you mean {inside}?" if inside.exists() else "name the issued.json that build wrote"

@@ -53,6 +53,10 @@ def accuracy(
     and time a configuration, beside the textbook formula. With names, every way to compute them: time and
     largest error against fifty digits.
     """
+    if not paper:
+        from coursework.accuracy.measuring import needs_mpmath
+
+        needs_mpmath()
     course = opened(context)
     if out is not None:
         writes(context, out)

@@ -11,6 +11,7 @@ import click
 
 from coursework.cli import completion
 from coursework.errors import BadInput, WrongValue
+from coursework.system.extras import libraries
 from coursework.system.limits import MOST_SEED
 from coursework.system.visible import one_line
 
@@ -43,6 +44,42 @@ def tell_lack_of_charts() -> bool:
 def complain(message: str) -> int:
     click.echo(f"coursework: {' '.join(message.split())}", err=True)
     return BAD
+
+
+class NeedingExtra(click.Command):
+    """Command that needs the libraries of an extra, and complains of them before its arguments.
+
+    ``ready`` raises :class:`~coursework.system.extras.NotAtHand` where one of them is missing.
+    """
+
+    def __init__(self, *args: Any, ready: Callable[[], None], **attributes: Any) -> None:
+        super().__init__(*args, **attributes)
+        self.ready = ready
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if not ctx.resilient_parsing and not {*ctx.help_option_names} & {*args}:
+            self.ready()
+        return super().parse_args(ctx, args)
+
+
+def needing_extra(ready: Callable[[], None]) -> Callable[[click.Context, click.Parameter, Any], Any]:
+    """Return the callback of an eager option that needs the libraries of an extra."""
+
+    def checked(context: click.Context, parameter: click.Parameter, value: Any) -> Any:
+        if value and not context.resilient_parsing:
+            ready()
+        return value
+
+    return checked
+
+
+def database_ready() -> None:
+    """Refuse a database where its libraries are missing."""
+    libraries(("sqlalchemy", "alembic"), "a database needs", "site")
+
+
+def _cluster_ready() -> None:
+    libraries(("distributed",), "--cluster needs", "cluster")
 
 
 class Whole(click.ParamType):
@@ -162,6 +199,8 @@ columns_option = click.option(
 )
 db_option = click.option(
     "--db",
+    is_eager=True,
+    callback=needing_extra(database_ready),
     metavar="URL",
     help="A database: sqlite:///marks.db or its file's name, postgresql+psycopg://user@host/name.",
 )
@@ -173,6 +212,8 @@ assignment_option = click.option(
 )
 cluster_option = click.option(
     "--cluster",
+    is_eager=True,
+    callback=needing_extra(_cluster_ready),
     metavar="ADDRESS",
     help="Share the work: tcp://HOST:8786 of a Dask scheduler, whose workers have this package; or local:N, N workers of this "
     "machine. A scheduler runs what it is sent: only on a network of your own.",

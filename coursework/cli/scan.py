@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from coursework.cli.options import DONE, FOUND, FilePath, decimal_option, opened, writes
+from coursework.cli.options import DONE, FOUND, FilePath, NeedingExtra, decimal_option, opened, writes
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted
+from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
     from coursework.scanning.scan import ScanBook
@@ -18,7 +19,14 @@ if TYPE_CHECKING:
 _TOLD = 10  #: lines of a kind that are told
 
 
-@click.command()
+def _ready() -> None:
+    from coursework.scanning.pictures import opencv
+
+    opencv()
+    libraries(("pypdfium2", "zxingcpp"), "reading scans needs", "scan")
+
+
+@click.command(cls=NeedingExtra, ready=_ready)
 @click.argument("scans", nargs=-1, type=FilePath(path_type=Path))
 @click.option(
     "--issued",

@@ -15,12 +15,15 @@ import click
 
 from coursework.cli.options import (
     FilePath,
+    NeedingExtra,
     Whole,
     exercise_argument,
     lang_option,
+    needing_extra,
     tell,
 )
 from coursework.errors import BadInput, unknown
+from coursework.system.extras import libraries
 from coursework.system.limits import MOST_PORT, MOST_VARIANTS, MOST_WORKERS
 
 if TYPE_CHECKING:
@@ -38,17 +41,17 @@ open_option = click.option("--open/--no-open", "opens", help="Open it in the bro
 
 
 def _ready() -> None:
-    """Say which library is missing before anything is begun."""
-    from coursework.system.extras import library
+    libraries(_LIBRARIES, "the site needs", "site")
 
-    for name in _LIBRARIES:
-        library(name, "the site needs", "site")
+
+def _lti_ready() -> None:
+    libraries(("cryptography", "httpx", "jwt"), "LTI needs", "lti")
 
 
 # ------------------------------------------------------------------------ serve
 
 
-@click.command()
+@click.command(cls=NeedingExtra, ready=_ready)
 @click.option(
     "--db",
     metavar="URL",
@@ -83,6 +86,8 @@ def _ready() -> None:
 )
 @click.option(
     "--lti",
+    is_eager=True,
+    callback=needing_extra(_lti_ready),
     type=FilePath(path_type=Path, exists=True, file_okay=False),
     metavar="FOLDER",
     help="Open to the learning platforms of a folder's platforms.toml, under /lti (see 'coursework lti').",
@@ -97,7 +102,6 @@ def serve(
 
     On this machine alone, without --url, it opens without an account. Ctrl-C ends it.
     """
-    _ready()
     from coursework.site import server
     from coursework.site.frame.settings import Entrance
 
@@ -141,10 +145,6 @@ def _check_lti(folder: Path, url: str) -> None:
     BadInput
         The folder's file is for another address, or cannot be read.
     """
-    from coursework.system.extras import library
-
-    for name in ("cryptography", "httpx", "jwt"):
-        library(name, "LTI needs", "lti")
     from coursework.lti.keys import KeyFolder
     from coursework.site.lti.mount import settings_of
 
@@ -261,7 +261,7 @@ def _say(url: str, where: str, opens: bool) -> None:
 # ---------------------------------------------------------------------- preview
 
 
-@click.command()
+@click.command(cls=NeedingExtra, ready=_ready)
 @exercise_argument
 @click.option("--port", type=Whole(0, MOST_PORT), default=0, help="Any that is free unless told.")
 @click.option(
@@ -275,7 +275,6 @@ def preview(context: click.Context, exercise: str, port: int, variants: int, lan
 
     The page is on this machine alone. Ctrl-C ends it.
     """
-    _ready()
     from coursework.course.folder import course_folder
     from coursework.site import server
     from coursework.site.preview.preview_page import preview as pages

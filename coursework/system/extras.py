@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib import import_module
 from types import ModuleType
 
@@ -32,3 +33,9 @@ def library(module: str, job: str, extra: str) -> ModuleType:
             f"{job} {name}, which is installed and cannot be loaded ({type(fault).__name__}: {said}): "
             f"pip install --upgrade --force-reinstall {name}, or a version that fits the NumPy that is there"
         ) from fault
+
+
+def libraries(modules: Iterable[str], job: str, extra: str) -> None:
+    """Load the libraries that ``job`` needs before anything else of it is begun; see :func:`library`."""
+    for module in modules:
+        library(module, job, extra)
