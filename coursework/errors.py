@@ -92,15 +92,15 @@ def counted(number: int, noun: str) -> str:
 def closest(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that may have been meant, whatever its case and accents; None where none is near.
 
-    Of a name of several words each word must be near one of the other's, so that nobody is offered a namesake; a
-    word of one letter or digit says too little.
+    Of a name of several words, in whatever order, each word must be near another one of the other's, so that nobody is
+    offered a namesake; a word of one letter or digit says too little.
     """
     import difflib
 
     plain: dict[str, list[str]] = {}
     for one in known:
-        plain.setdefault(_unaccented(one), []).append(one)
-    sought = _unaccented(name)
+        plain.setdefault(_in_order(one), []).append(one)
+    sought = _in_order(name)
     near = [sought] if sought in plain else difflib.get_close_matches(sought, plain, n=3, cutoff=_NEAR_SYMBOL)
     found = next((plain[one] for one in near if _words_are_near(sought, one)), [])
     return max(found, key=lambda one: difflib.SequenceMatcher(None, name, one).ratio(), default=None)
@@ -118,14 +118,25 @@ def _unaccented(name: str) -> str:
     return "".join(letter for letter in letters if not unicodedata.combining(letter))
 
 
+def _in_order(name: str) -> str:
+    """Return the words of a name in the order of the alphabet, without case and accents."""
+    return " ".join(sorted(_unaccented(name).split()))
+
+
 def _words_are_near(sought: str, known: str) -> bool:
     import difflib
 
-    words, others = sought.split(), known.split()
+    words, others = sorted(sought.split(), key=lambda word: word not in known.split()), known.split()
     if min(len(words), len(others)) < 2:
         least = _NEAR_SYMBOL if len(sought) <= _SYMBOL else _NEAR
         return difflib.SequenceMatcher(None, sought, known).ratio() >= least
-    return all(len(word) == 1 or difflib.get_close_matches(word, others, n=1, cutoff=_NEAR) for word in words)
+    for word in words:
+        near = difflib.get_close_matches(word, others, n=1, cutoff=_NEAR)
+        if not near and len(word) > 1:
+            return False
+        for one in near:
+            others.remove(one)
+    return True
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

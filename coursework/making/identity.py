@@ -74,10 +74,10 @@ _PRINTED = {
 _APART = (
     *_NUMBER_FIRST,
     *_titles("id number", "numéro d'identification", "numéro", "sis user id"),
+    *NUMBER,
     *EMAIL,
     *_titles("sis login id"),
     *LOGIN,
-    *NUMBER,
 )
 
 Ids = Sequence[tuple[str, str]]  #: what identifies somebody: titles, and what stands there

@@ -57,9 +57,13 @@ def called(name: str, students: Iterable[str]) -> str | None:
 
 
 def namesakes(name: str, students: Iterable[str]) -> list[str]:
-    """The students whom more than this name tells apart: ``Marie Martin (2290)`` for ``marie martin``."""
-    begins = f"{folded(name)} ("
-    return [one for one in students if folded(one).startswith(begins)]
+    """The students whom more than this name tells apart: ``Marie Martin (2290)`` for ``martin marie``."""
+    words = sorted(unaccented(name).split())
+    return [
+        one
+        for one in students
+        if " (" in one and sorted(unaccented(one.rpartition(" (")[0]).split()) == words
+    ]
 
 
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}

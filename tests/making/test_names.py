@@ -4,7 +4,7 @@ from tables import each_row
 
 from coursework.errors import closest
 from coursework.making.identity import printed_columns
-from coursework.making.students import called, file_stems
+from coursework.making.students import called, file_stems, namesakes
 
 CLASS = ("Faure Loïc", "Faure Noémie", "Łukasz Nowak", "Cœur Anaïs", "Ruiz Ana", "Ruíz Ana")
 
@@ -33,6 +33,9 @@ def test_a_name_is_found_whatever_its_case_and_accents_unless_two_have_it(typed,
     [
         ("Faure Loic", CLASS, "Faure Loïc"),
         ("Faure Loic", ["Faure Noémie", "Favre Luc"], None),
+        ("Loic Faure", CLASS, "Faure Loïc"),
+        ("Marie Martin", ["MARTIN Loïc", "MARTIN Zoé"], None),
+        ("Zoe De La Tour", ["De La Tour Noé", "De La Tour Zoé", "De La Tour Aïcha"], "De La Tour Zoé"),
         ("Li Wie", ["Li Wei", "Li Na"], "Li Wei"),
         ("four_bar_postion", ["four_bar_position", "four_bar_motion"], "four_bar_position"),
         ("THETA4", ["theta4", "theta3"], "theta4"),
@@ -66,3 +69,9 @@ def test_file_names_spell_letters_that_are_not_ascii():
 def test_a_sheet_prints_no_raw_title_of_a_column(title, fr, en):
     for lang, printed in ("fr", fr), ("en", en):
         assert printed_columns([title], {title.lower(): "7"}, lang) == ((printed, "7"),)
+
+
+def test_namesakes_are_found_in_whatever_order_and_without_accents():
+    students = ["MARTIN Zoé (22199001)", "MARTIN Zoé (22199002)", "MARTIN Loïc"]
+    assert namesakes("Zoe Martin", students) == namesakes("martin zoé", students) == students[:2]
+    assert namesakes("Martin", students) == []
