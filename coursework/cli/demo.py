@@ -86,7 +86,7 @@ def with_blanks(variant: Variant, key: Key, part: Part, place: int) -> Any:
 
 
 def with_nonsense(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    nonsense = ("?", "je sais pas", "12,,5", "see notebook", "9**9**9")
+    nonsense = ("12,,5", "je sais pas", "trop long", "see notebook", "9**9**9")
     return nonsense[place % len(nonsense)] if place % 4 == 1 else careful(variant, key, part, place)
 
 

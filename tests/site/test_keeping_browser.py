@@ -8,7 +8,6 @@ import pytest
 from site_assignments import ASSIGNMENT, CLOSES, dealt
 from site_browser import chromium, context_of, serious, served, too_wide
 from site_people import MAX, ZOE, Class, signed_in
-from tables import each_row
 
 from coursework.database.drafts import drafts
 from coursework.site.frame.cookies import COOKIE
@@ -170,7 +169,7 @@ def test_signed_out_while_the_line_was_down_nothing_is_lost(device):
     assert device.kept == {device.boxes[0]: "45"}
 
 
-@each_row("place", ["/practice", "/assignments"])
+@pytest.mark.parametrize("place", ["/practice", "/assignments"])
 def test_what_a_page_left_is_sent_from_the_lists(device, place):
     page = device.page()
     device.context.set_offline(True)
