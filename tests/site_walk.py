@@ -197,11 +197,14 @@ def filled(path: str, places: dict) -> str:
 
 
 def text_of(reply) -> str:
-    """What a reply says; of an archive, all that is in it."""
+    """What a reply says; of an archive, all that is in it, the cells of its tables apart as no decimal comma is."""
     if not zipfile.is_zipfile(io.BytesIO(reply.content)):
         return reply.text
     with zipfile.ZipFile(io.BytesIO(reply.content)) as archive:
-        return "\n".join(archive.read(name).decode("utf-8", "replace") for name in archive.namelist())
+        texts = {name: archive.read(name).decode("utf-8", "replace") for name in archive.namelist()}
+    return "\n".join(
+        text.replace(",", ", ") if name.endswith(".csv") else text for name, text in texts.items()
+    )
 
 
 class Scripts(HTMLParser):

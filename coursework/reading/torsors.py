@@ -406,7 +406,6 @@ _LETTERS = re.compile(r"[^\W\d_]+")
 _SYMBOL = re.compile(rf"(?:[a-z]|{_GREEK})[xyz]?", re.I)
 _TABLE = re.compile(r"[\[({;|\n&]|\\\\")  #: what makes a table of cells
 _DASHES = ("", "-", "--", ".", "/")
-_BLANKS_ALONE = re.compile(r"[^,;|\n&()\[\]{}]*")
 
 
 def _named_components(text: str, form: Form) -> set[str] | None:
@@ -418,8 +417,6 @@ def _named_components(text: str, form: Form) -> set[str] | None:
         return None
     pieces = [piece for piece in re.split(r"\s*[,;|\n]\s*|\s+(?:et|and)\s+|\s+", plain) if piece]
     places = [component_place(piece, form) for piece in pieces]
-    if plain == "X" == text.strip() or (places in ([0, 1, 2], [3, 4, 5]) and _BLANKS_ALONE.fullmatch(text)):
-        raise Stop("wrong_torsor", text)  # a cross, or the head of a table
     known = [place for place in places if place is not None]
     return {form.names[place] for place in known} if known and len(known) == len(pieces) else None
 

@@ -81,8 +81,9 @@ def test_no_part_of_any_exercise_reads_what_answers_nothing(every_kind):
         for name, variant, part in asked(course)
         for text in TEXTS
         if (reading := read(variant, part, text)).status == "read"
+        and (part.kind, text) != ("wrench_pattern", "X")
     ]
-    assert found == []
+    assert found == []  # a wrench's X is a component, and no cross
 
 
 @each_row(

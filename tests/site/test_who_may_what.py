@@ -97,7 +97,10 @@ def test_no_reply_holds_what_is_not_for_them(site, page, name):
             assert not told
             if "answers" not in fillings(site)[page.path].holds:
                 assert not [
-                    one.pattern for who in (ZOE, MAX) for one in site.answers(who) if one.search(text)
+                    text[max(0, found.start() - 40) : found.end() + 10]
+                    for who in (ZOE, MAX)
+                    for one in site.answers(who)
+                    if (found := one.search(text))
                 ]
 
 
