@@ -189,7 +189,11 @@ def _given_above(variant: Variant, quantity: str) -> list[str]:
     """Return the symbols of the given quantities that one is computed from; none of so many that a list tells nothing."""
     graph = variant.exercise.solution.graph.textbook
     above = graph.ancestors((quantity,)) if quantity in graph.names else frozenset()
-    given = [name for name in variant.given if name in above and name != quantity]
+    given = [
+        name
+        for name, value in variant.given.items()
+        if name in above and name != quantity and not isinstance(value, str)
+    ]
     return [f"${symbol(variant, name)}$" for name in given] if len(given) <= _LISTED else []
 
 

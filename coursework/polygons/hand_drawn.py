@@ -6,7 +6,8 @@ anywhere, and the scale may be any. Directions are absolute: a sheet that is tur
 What is judged is the construction, as somebody would with ruler and set-square: each vector by what must hold of
 it **from the student's own points**. A known vector has its length, its direction and its sense, and hangs on its
 point; one in proportion to another is judged by the student's own; a line of known direction passes through its point; a point found by two lines lies on both. So an error
-costs the vector that it is made on, and nothing of what is drawn rightly from there.
+costs the vector that it is made on, and nothing of what is drawn rightly from there. A point in its true place is
+right, too, whatever the points before it are.
 
 Each point may be off by ``tolerance`` mm, so a vector by twice that at its end, and a line by twice that across.
 A direction is thus right to :math:`\arcsin(2\,\mathrm{tolerance} / \mathrm{length})`: 1.1 degrees for 100 mm, 6 for
@@ -82,7 +83,9 @@ class JudgedDrawing:
 
     def follows(self, point: str) -> bool:
         """Return whether the point is right only relative to an earlier point that is wrong."""
-        return self.is_right(point) and any(q in self.faults for q in ancestors(self.polygon, point))
+        if not any(q in self.faults for q in ancestors(self.polygon, point)) or not self.is_right(point):
+            return False
+        return not _is_in_place(point, self.points, self.polygon, self.scale, 2 * self.tolerance)
 
     def length_fault(self, start: str, end: str, measured: float) -> str:
         """Return the fault of a length measured on paper, mm: ``""`` for none, ``own``, ``length``.
@@ -164,10 +167,18 @@ def judge_drawing(
                 here, points, width
             )
             ideal[point], fault = _crossing(point, sides, here, points, polygon, used, width, on_drawn)
-        if fault:
+        if fault and not _is_in_place(point, points, polygon, used, width):
             faults[point] = fault
     legible = polygon.size / used >= LEAST_MM * tolerance
     return JudgedDrawing(polygon, points, used, faults, legible, fits, tolerance, ideal)
+
+
+def _is_in_place(
+    point: str, drawn: Mapping[str, complex], polygon: Polygon, scale: float, width: float
+) -> bool:
+    """Return whether a point is drawn where it belongs from the student's pole."""
+    right = drawn[polygon.pole] + (polygon.points[point] - polygon.points[polygon.pole]) / scale
+    return point in drawn and abs(drawn[point] - right) <= width
 
 
 def vector_fault(drawn: complex, right: complex, width: float) -> str:

@@ -90,12 +90,26 @@ def test_a_fault_in_a_known_vector_is_named_and_costs_nothing_after_it(name, kin
             if abs(polygon.hangs[point][0].value) / scale < 12:
                 continue
             wrong, _ = moved(polygon, right, point, FAULTS[kind])
-            found = judge_drawing(polygon, drawn_on(polygon, wrong, scale, point), scale)
+            own = drawn_on(polygon, wrong, scale, point)
+            found = judge_drawing(polygon, own, scale)
             assert set(found.faults) == {point}
             fault = found.faults[point]
             assert kind in {f.kind for f in fault.explanations}
             assert fault.side == polygon.hangs[point][0]
-            assert found.follows("b")
+            assert found.follows("b") == (abs(own["b"] - right["b"]) > 2 * TOLERANCE_MM)
+
+
+@every_polygon
+@pytest.mark.parametrize("kind", FAULTS)
+def test_points_in_their_true_places_are_right_beside_a_fault_in_a_known_vector(name, kind):
+    """They may follow from the wrong point, or stand where they belong: both are right."""
+    for polygon in polygons(name, range(20)):
+        scale = polygon.size / 100
+        right = on_paper(polygon, scale, 20 + 30j)
+        for point, sides in polygon.hangs.items():
+            if len(sides) == 1 and abs(sides[0].value) / scale >= 12:
+                wrong, _ = moved(polygon, right, point, FAULTS[kind])
+                assert set(judge_drawing(polygon, wrong, scale).faults) == {point}
 
 
 @every_polygon
