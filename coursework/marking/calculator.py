@@ -48,7 +48,7 @@ def values_in_radians(key: Key, quantity: str, own: Mapping[str, Any]) -> list[f
 def fitting(key: Key, part: Part, reading: Reading, value: float) -> int | None:
     """The first of an answer's readings that is this value, if any is; of a direction the number: 0.2 radians are not 1°."""
     reference = key.reference[part.quantity]
-    width = key.half_width(part) * (min(abs(value / reference), 1.0) if reference else 1.0)
+    width = key.half_width(part) * (abs(value / reference) if reference else 1.0)
     if part.sort.turn and abs(value) <= 2 * math.pi:
         width = _SHARE * abs(value)
     for place, answer in enumerate(reading.values):

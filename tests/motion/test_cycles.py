@@ -130,7 +130,7 @@ def test_a_point_of_that_name_is_drawn_where_the_solution_says_that_it_is(name):
     for point in labels & moved.points.keys():
         for k, elements in enumerate(moved.frames):
             at = next(e.p for e in elements if getattr(e, "label", "") == point)
-            assert abs(at - moved.points[point].position[k]) < 1e-9 * abs(at)
+            assert abs(at - moved.points[point].position[k]) <= 1e-9 * abs(at)
 
 
 @pytest.mark.parametrize(

@@ -121,6 +121,7 @@ def test_what_was_typed_is_there_when_the_page_is_opened_again(opened):
     box = opened.locator(".card input").first
     box.fill("41 mm")
     box.press("Enter")
+    opened.locator(".card.is-done").wait_for()
     opened.reload()
     assert opened.locator(".card input").first.input_value() == "41 mm"
     assert opened.locator(".card.is-done").count() == 1
