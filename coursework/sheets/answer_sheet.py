@@ -150,7 +150,7 @@ def _remarks(variant: Variant, values: Mapping[str, Any], text: Any) -> dict[str
         graph, about = solution.mistaken(name), [q for q in steps if q in mistake.targets]
         for quantity in about or [q for q in steps if q in solution.reached(name)]:
             try:
-                wrong = graph.evaluate((quantity,), variant.used, variant.effects)[quantity]
+                wrong = plain_scalar(graph.evaluate((quantity,), variant.used, variant.effects)[quantity])
             except CourseworkError:
                 continue
             if not _agrees(wrong, values[quantity], units.get(quantity, "1")):
@@ -177,7 +177,7 @@ def _wrong_text(variant: Variant, name: str, wrong: Any) -> str:
         return quoted(said, variant.lang)
     if isinstance(wrong, (str, tuple)) or np.ndim(wrong) or not np.isfinite(wrong):
         return ""
-    return f"${_value_latex(variant, name, plain_scalar(wrong))}$"
+    return f"${_value_latex(variant, name, wrong)}$"
 
 
 def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
