@@ -14,7 +14,7 @@ from coursework.database.tables import assignment
 from coursework.lti.keys import KeyFolder
 from coursework.lti.settings import Settings
 from coursework.site.application import application
-from coursework.site.desk.class_at_hand import class_now
+from coursework.site.desk.class_cache import class_now
 from coursework.site.desk.class_page import rows
 from coursework.site.lti.mount import mounted
 

@@ -26,7 +26,7 @@ def signed_in(store, person):
 
 def seal_of(site, cookie):
     """A CSRF token that goes with a cookie."""
-    return Cookies(site.secret).seal(Session(cookie))
+    return Cookies(site.secret).csrf_token(Session(cookie))
 
 
 class Browser(TestClient):

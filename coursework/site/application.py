@@ -8,7 +8,8 @@ from contextlib import asynccontextmanager, nullcontext
 from anyio.to_thread import current_default_thread_limiter
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
-from starlette.routing import BaseRoute, Mount, Route
+from starlette.routing import BaseRoute, Mount
+from starlette.routing import Route as StarletteRoute
 
 from coursework.site.desk import (
     class_page,
@@ -23,10 +24,10 @@ from coursework.site.desk import (
     student_page,
 )
 from coursework.site.frame.arrivals import Arrivals
-from coursework.site.frame.door import Door
-from coursework.site.frame.lanes import PAGES_AT_ONCE
+from coursework.site.frame.middleware import Middleware
+from coursework.site.frame.requests import Route
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Page
+from coursework.site.frame.threads import PAGES_AT_ONCE
 from coursework.site.lti import connecting, links_page
 from coursework.site.papers import assignments
 from coursework.site.people import accounts, home, people_page, privacy, scrubbing
@@ -36,48 +37,50 @@ from coursework.site.warming import begin_warming
 from coursework.system.headers import Guarded
 
 #: Every address of the site, a file's after another's.
-PAGES: tuple[Page, ...] = (
-    *home.PAGES,
-    *practice_page.PAGES,
-    *progress_page.PAGES,
-    *accounts.PAGES,
-    *people_page.PAGES,
-    *privacy.PAGES,
-    *overview.PAGES,
-    *links_page.PAGES,
-    *connecting.PAGES,
-    *queue.PAGES,
-    *assignments.PAGES,
-    *publishing.PAGES,
-    *printing.PAGES,
-    *class_page.PAGES,
-    *student_page.PAGES,
-    *question_page.PAGES,
-    *files.PAGES,
-    *rejected_rows.PAGES,
-    *scans.PAGES,
-    *regrading.PAGES,
+ROUTES: tuple[Route, ...] = (
+    *home.ROUTES,
+    *practice_page.ROUTES,
+    *progress_page.ROUTES,
+    *accounts.ROUTES,
+    *people_page.ROUTES,
+    *privacy.ROUTES,
+    *overview.ROUTES,
+    *links_page.ROUTES,
+    *connecting.ROUTES,
+    *queue.ROUTES,
+    *assignments.ROUTES,
+    *publishing.ROUTES,
+    *printing.ROUTES,
+    *class_page.ROUTES,
+    *student_page.ROUTES,
+    *question_page.ROUTES,
+    *files.ROUTES,
+    *rejected_rows.ROUTES,
+    *scans.ROUTES,
+    *regrading.ROUTES,
 )
 
 
 def application(site: Site, lti: Starlette | None = None) -> Starlette:
     """Return the ASGI application of the site; ``lti`` is the service for learning platforms, by default that
     of the site's folder."""
-    door = Door(site)
+    middleware = Middleware(site)
     lti = lti or _lti(site)
     routes: list[BaseRoute] = [
-        Route(
-            page.path,
-            door.answering(page),
-            methods=["GET", "POST"] if page.posts else ["GET"],
-            name=page.path,
+        StarletteRoute(
+            route.path,
+            middleware.endpoint(route),
+            methods=["GET", "POST"] if route.takes_forms else ["GET"],
+            name=route.path,
         )
-        for page in PAGES
+        for route in ROUTES
     ]
     if lti is not None:
         routes.append(Mount("/lti", app=lti))
     app = Starlette(
-        routes=routes, exception_handlers={HTTPException: door.lost}, lifespan=lambda app: _beside(site, lti)
+        routes=routes,
+        exception_handlers={HTTPException: middleware.lost},
+        lifespan=lambda app: _beside(site, lti),
     )
     app.add_middleware(Guarded, is_secure=lambda: site.is_secure)
     app.router.redirect_slashes = False  # it would lead to whatever host a request names

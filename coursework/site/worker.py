@@ -33,8 +33,8 @@ from coursework.database.marking import mark_delivery
 from coursework.database.publication import Publication
 from coursework.database.tables import assignment, extension
 from coursework.errors import CourseworkError
+from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.settings import Site
-from coursework.site.frame.shelf import Shelf
 from coursework.site.papers.handing_in import close_passed, rescue
 from coursework.site.papers.opening import prepare, prepare_soon
 
@@ -57,7 +57,7 @@ class Worker:
 
     def __init__(self, site: Site, name: str):
         self.site, self.name = site, name
-        self._variants = Shelf(_VARIANTS)
+        self._variants = LRUCache(_VARIANTS)
 
     def run(self) -> None:
         """Work until the process is told to terminate."""

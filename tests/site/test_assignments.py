@@ -14,7 +14,7 @@ from site_people import MAX, TEACHER, ZOE
 from coursework.database.deliveries import deliveries
 from coursework.database.publication import Extension, Publication, extend, publish, published, say_sittings
 from coursework.database.standing import graded
-from coursework.site.desk.class_at_hand import class_now
+from coursework.site.desk.class_cache import class_now
 from coursework.site.papers import handing_in
 
 SECOND = timedelta(seconds=1)

@@ -25,7 +25,7 @@ from coursework.lti import service
 from coursework.lti.host import Reply
 from coursework.lti.service import AT_ONCE as LINKS_AT_ONCE
 from coursework.lti.service import LARGEST, PROCESSOR
-from coursework.site.application import PAGES
+from coursework.site.application import ROUTES
 from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS
 from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON
@@ -35,7 +35,7 @@ from coursework.system.allowances import Allowances
 from coursework.system.places import Crowded, Places
 from coursework.system.processes import Exceeded, Means, confined, processor_time
 
-STUDENTS = [page for page in PAGES if page.posts and not is_of_staff(page.needs)]
+STUDENTS = [page for page in ROUTES if page.takes_forms and not is_of_staff(page.permission)]
 PATIENCE = 60  #: seconds; a test that waits so long has failed
 HEADER = "student,exercise,seed,part,answer\n"
 
@@ -55,7 +55,7 @@ def test_each_page_that_takes_something_of_a_student_states_its_budget():
 def test_no_budget_of_students_is_more_than_is_stated():
     """Bytes of a body; with files, seconds of a processor and memory of who reads them."""
     for page in STUDENTS:
-        budget = page.means
+        budget = page.request_budget
         if not budget.files:
             assert budget.largest <= 256 * KILOBYTE, page.path
             continue
@@ -92,7 +92,7 @@ def test_what_is_over_a_budget_is_refused_by_its_head_alone(site):
         for page in STUDENTS:
             address = filled(page.path, fillings(site)[page.path].own)
             for kind in ("application/x-www-form-urlencoded", "multipart/form-data; boundary=x"):
-                reply = answered(url, head(site, url, address, page.means.largest + 1, kind))
+                reply = answered(url, head(site, url, address, page.request_budget.largest + 1, kind))
                 told[page.path, kind] = reply.split()[1]
     assert {place: status for place, status in told.items() if status != b"413"} == {}
 
@@ -115,7 +115,7 @@ def test_the_worst_body_within_a_budget_takes_little_memory(site):
     over = []
     for page in STUDENTS:
         address = filled(page.path, fillings(site)[page.path].own)
-        for kind, body in bodies(page.means):
+        for kind, body in bodies(page.request_budget):
             browser = site.browser(ZOE)
             headers = {"content-type": kind, "x-seal": browser.seal}
             browser.post(address, content=body, headers=headers)
@@ -172,7 +172,7 @@ def test_each_page_of_a_student_is_counted_by_what_it_takes_of_a_processor(site,
     monkeypatch.setattr(
         site.site.limits, "took", lambda kind, person, seconds: took.append((kind, person, seconds))
     )
-    pages = [page for page in PAGES if not is_of_staff(page.needs)]
+    pages = [page for page in ROUTES if not is_of_staff(page.permission)]
     for page in pages:
         site.browser(ZOE).get(filled(page.path, fillings(site)[page.path].own))
     assert [kind for kind, _, _ in took] == [page.limit for page in pages]
@@ -501,6 +501,8 @@ def test_too_many_that_wait_are_refused_and_who_gives_up_takes_no_place():
 
 
 def test_handing_in_waits_for_nothing_else_of_the_same_person():
-    others = {page.means.name for page in PAGES if page.means is not HAND_IN}
+    others = {page.request_budget.name for page in ROUTES if page.request_budget is not HAND_IN}
     assert HAND_IN.name not in others
-    assert [page.path for page in PAGES if page.means is HAND_IN] == ["/assignments/{number:int}/hand-in"]
+    assert [page.path for page in ROUTES if page.request_budget is HAND_IN] == [
+        "/assignments/{number:int}/hand-in"
+    ]

@@ -13,7 +13,7 @@ from site_people import TEACHER
 from coursework.database.desk import Stamp, people_of, stamp
 from coursework.database.erasing import erase
 from coursework.database.publication import say_sittings
-from coursework.site.desk.class_at_hand import class_now
+from coursework.site.desk.class_cache import class_now
 from coursework.site.desk.question_cards import asked
 from coursework.system.tables import as_written
 

@@ -17,7 +17,7 @@ from coursework.database.people import put_account, put_person
 from coursework.database.permissions import Area
 from coursework.database.tables import person, scanned
 from coursework.gradebook.rows import Rejected, Row
-from coursework.site.application import PAGES
+from coursework.site.application import ROUTES
 
 PAUL, CARA, NINA, OLAF, IVY = "Paul", "Cara", "Nina", "Olaf", "Ivy"
 #: Who asks, with role and areas: ``mine`` is the assignment of both students, ``other`` that of Max alone.
@@ -134,7 +134,7 @@ def site(tmp_path_factory):
 
 
 def test_the_table_has_every_page():
-    assert {page.path: page.posts for page in PAGES} == {
+    assert {page.path: page.takes_forms for page in ROUTES} == {
         path: post is not None for path, (_, post) in WHO.items()
     }
 
@@ -150,7 +150,7 @@ def is_let_in(reply):
 def test_each_role_has_the_pages_of_the_table_and_no_others(site):
     """What an assistant may do, they may where they assist alone."""
     wrong = []
-    for page in PAGES:
+    for page in ROUTES:
         told = fillings(site)[page.path]
         shown, taken = WHO[page.path]
         of_class = page.path.startswith(("/desk/{assignment", "/desk/assignments/{number"))
@@ -199,7 +199,7 @@ def told_of(site, text):
 
 def test_no_page_shows_an_assistant_a_student_of_another_group(site):
     found = []
-    for page in PAGES:
+    for page in ROUTES:
         if not page.path.startswith("/desk"):
             continue
         told = fillings(site)[page.path]

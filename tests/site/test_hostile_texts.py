@@ -89,7 +89,7 @@ class Hostile(Class):
 
     def cards(self):
         """Each card of the queue."""
-        from coursework.site.desk.class_at_hand import class_now
+        from coursework.site.desk.class_cache import class_now
 
         found = [
             *class_now(self.site, self.number).open,

@@ -6,7 +6,7 @@ from site_browser import chromium, context_of, cut_in_print, low, serious, serve
 from site_lived import NO_PAGES, Lived, shown
 from tables import each_row
 
-from coursework.site.application import PAGES
+from coursework.site.application import ROUTES
 
 pytestmark = pytest.mark.e2e
 
@@ -68,7 +68,7 @@ def looked_at(lived, lang, size, chosen):
 
 def test_every_address_is_looked_at_or_is_no_page(lived):
     seen = {one.path for one in shown(lived[0])}
-    assert seen | NO_PAGES == {page.path for page in PAGES}
+    assert seen | NO_PAGES == {page.path for page in ROUTES}
     assert not seen & NO_PAGES
 
 

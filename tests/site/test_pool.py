@@ -5,8 +5,8 @@ from threading import Event
 from site_people import ZOE, Class
 
 from coursework.database.pool import Pooled, put_pooled
+from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.pool import Pool
-from coursework.site.frame.shelf import Shelf
 from coursework.site.warming import warm
 
 NAME = "grashof"
@@ -66,7 +66,7 @@ def test_what_is_made_ready_changes_no_page(tmp_path):
 def test_a_course_that_is_taken_anew_is_read_anew(class_of_three):
     site = class_of_three.site
     class_of_three.browser(ZOE).get("/practice")
-    before = site.shelf
+    before = site.cache
     site.take(site.course)
-    assert isinstance(site.shelf, Shelf)
-    assert site.shelf is not before
+    assert isinstance(site.cache, LRUCache)
+    assert site.cache is not before

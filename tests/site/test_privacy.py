@@ -239,12 +239,12 @@ def test_logs_hold_no_answer_no_name_and_no_invitation(site, caplog):
     caplog.set_level(logging.DEBUG)
     from site_walk import filled, fillings
 
-    from coursework.site.application import PAGES
+    from coursework.site.application import ROUTES
 
     secrets = ("planted-4711", ZOE, "zoé", str(SEEDS[ZOE]), site.token)
     for name in (None, ZOE, TEACHER):
         browser = site.browser(name)
-        for page in PAGES:
+        for page in ROUTES:
             if page.path in ("/sign-out", "/language"):
                 continue
             address = filled(page.path, fillings(site)[page.path].own)

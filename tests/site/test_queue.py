@@ -11,7 +11,7 @@ from coursework.database.deliveries import deliver
 from coursework.database.desk import people_of
 from coursework.database.standing import graded
 from coursework.gradebook.rows import Collected, Row
-from coursework.site.desk.class_at_hand import class_now
+from coursework.site.desk.class_cache import class_now
 
 WRITTEN = {
     "Ada": {"rA": "trop court", "theta4": "zz"},

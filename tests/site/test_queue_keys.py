@@ -5,7 +5,7 @@ from desk_class import DeskClass
 from site_browser import chromium, context_of, serious, served, too_wide
 from site_people import TEACHER
 
-from coursework.site.desk.class_at_hand import class_now
+from coursework.site.desk.class_cache import class_now
 
 pytestmark = pytest.mark.e2e
 

@@ -21,7 +21,7 @@ from coursework.database.scans import pages_scanned
 from coursework.database.tables import person
 from coursework.making.answer_papers import answer_papers
 from coursework.site.desk import scan_jobs
-from coursework.site.desk.class_at_hand import class_now
+from coursework.site.desk.class_cache import class_now
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ import coursework
 from coursework.course.secrecy import Secret
 from coursework.database.assignments import issued_content
 from coursework.database.tables import assignment
-from coursework.site.application import PAGES
+from coursework.site.application import ROUTES
 from coursework.site.worker import Worker
 
 COURSE = coursework.open_course()
@@ -90,11 +90,11 @@ def test_no_address_tells_a_paper_before_it_opens(class_of_three):
     codes = {e: str(code) for e, code in class_of_three.issued.issued_to(ZOE).items()}
     zoe, told = class_of_three.browser(ZOE), []
     known = {"number": number, "assignment": number, "person": class_of_three.ids[ZOE], "exercise": "grashof"}
-    for page in PAGES:
+    for page in ROUTES:
         for file in ("paper.pdf", "notebook.ipynb", "issued.json"):
             address = re.sub(r"{(\w+)[^}]*}", lambda place, f=file: str(known.get(place[1], f)), page.path)
             replies = [zoe.get(address)]
-            if page.posts and not page.path.startswith("/sign-"):
+            if page.takes_forms and not page.path.startswith("/sign-"):
                 replies.append(zoe.fill(address))
             for reply in replies:
                 parts = b"\n".join(parts_of(reply.content))

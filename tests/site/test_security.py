@@ -11,7 +11,7 @@ from starlette.testclient import TestClient
 
 import coursework
 from coursework.database.accounts import account_of, set_secret
-from coursework.site.application import PAGES, application
+from coursework.site.application import ROUTES, application
 from coursework.site.people import passwords
 
 SECURE = "https://mechanics.example.org"
@@ -77,7 +77,7 @@ def test_browsers_come_back_by_https_alone(browser):
 
 
 def test_every_text_says_its_letters_and_no_reply_is_for_other_origins(site):
-    for page in PAGES:
+    for page in ROUTES:
         for name in (None, ZOE, TEACHER):
             reply = site.browser(name).get(
                 filled(page.path, fillings(site)[page.path].own),
@@ -92,9 +92,9 @@ def test_every_text_says_its_letters_and_no_reply_is_for_other_origins(site):
 
 def test_no_other_method_is_answered(site):
     browser = site.browser(TEACHER)
-    for page in PAGES:
+    for page in ROUTES:
         address = filled(page.path, fillings(site)[page.path].own)
-        others = ("PUT", "DELETE", "PATCH", "OPTIONS", "CONNECT", "PROPFIND") if page in PAGES[:2] else ()
+        others = ("PUT", "DELETE", "PATCH", "OPTIONS", "CONNECT", "PROPFIND") if page in ROUTES[:2] else ()
         for method in ("TRACE", *others):
             reply = browser.request(method, address)
             assert reply.status_code == 405, (method, page.path)

@@ -8,11 +8,11 @@ from site_walk import MAX, TEACHER, ZOE, Filled, Scripts, filled, fillings, text
 from tables import each_row
 
 from coursework.database.permissions import Permission, is_of_staff
-from coursework.site.application import PAGES
+from coursework.site.application import ROUTES
 
-every_page = pytest.mark.parametrize("page", PAGES, ids=[page.path for page in PAGES])
+every_page = pytest.mark.parametrize("page", ROUTES, ids=[page.path for page in ROUTES])
 posting = pytest.mark.parametrize(
-    "page", [p for p in PAGES if p.posts], ids=[p.path for p in PAGES if p.posts]
+    "page", [p for p in ROUTES if p.takes_forms], ids=[p.path for p in ROUTES if p.takes_forms]
 )
 BROKEN = 500
 
@@ -32,13 +32,13 @@ def address_of(site, page, *, others=False):
 
 
 def test_every_address_is_listed_once():
-    assert len({page.path for page in PAGES}) == len(PAGES)
+    assert len({page.path for page in ROUTES}) == len(ROUTES)
 
 
 def test_every_page_falls_under_a_limit(site):
-    for page in PAGES:
+    for page in ROUTES:
         site.site.limits.asked(page.limit, 1, "192.0.2.1")
-        assert 0 < page.means.largest <= 64 * 1024 * 1024
+        assert 0 < page.request_budget.largest <= 64 * 1024 * 1024
 
 
 # ----------------------------------------------------------------------- who may
@@ -47,7 +47,7 @@ def test_every_page_falls_under_a_limit(site):
 @every_page
 def test_nobody_sees_only_what_is_public(site, page):
     reply = site.browser().get(address_of(site, page))
-    if page.needs is Permission.PUBLIC:
+    if page.permission is Permission.PUBLIC:
         assert reply.status_code < BROKEN
     else:
         assert (reply.status_code, reply.headers["location"].partition("?")[0]) == (303, "/sign-in")
@@ -57,7 +57,7 @@ def test_nobody_sees_only_what_is_public(site, page):
 @every_page
 def test_a_student_sees_no_page_of_the_staff(site, page):
     reply = site.browser(ZOE).get(address_of(site, page))
-    if is_of_staff(page.needs):
+    if is_of_staff(page.permission):
         assert reply.status_code == 403
         assert site.browser(ZOE).fill(address_of(site, page)).status_code in (403, 405)
     else:
@@ -67,11 +67,11 @@ def test_a_student_sees_no_page_of_the_staff(site, page):
 
 @every_page
 def test_a_student_sees_nothing_of_another(site, page):
-    if page.needs is not Permission.OWN or fillings(site)[page.path].others is None:
+    if page.permission is not Permission.OWN or fillings(site)[page.path].others is None:
         return
     theirs = address_of(site, page, others=True)
     assert site.browser(ZOE).get(theirs).status_code in (403, 404, 405)
-    if page.posts:
+    if page.takes_forms:
         assert site.browser(ZOE).fill(theirs).status_code in (403, 404)
 
 
@@ -131,7 +131,7 @@ def test_no_link_signs_anybody_in_or_out(site, page, name):
 @posting
 @each_row("name", [ZOE, TEACHER])
 def test_no_form_is_taken_without_its_seal(site, page, name):
-    if is_of_staff(page.needs) and name == ZOE:
+    if is_of_staff(page.permission) and name == ZOE:
         return
     address, browser = address_of(site, page), site.browser(name)
     seal, others = browser.seal, site.browser(MAX).seal

@@ -16,9 +16,9 @@ from coursework.language.numbers import localise
 from coursework.making.students import folded
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_at_hand import ClassNow, assignment_of, class_now, class_page_of
+from coursework.site.desk.class_cache import ClassNow, assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import sign_of
-from coursework.site.frame.visits import Page, Reply, Visit
+from coursework.site.frame.requests import Request, Response, Route
 
 SORTS = ("name", "total", "waits", "late", "tries")
 
@@ -108,38 +108,42 @@ def _row(
 # ------------------------------------------------------------------------- pages
 
 
-def class_page(visit: Visit) -> Reply:
+def class_page(request: Request) -> Response:
     """Return the table of the class."""
-    now = class_now(visit.site, assignment_of(visit))
+    now = class_now(request.site, assignment_of(request))
     found = rows(now)
-    sort, sought = visit.query.get("sort", ""), visit.query.get("find", "").strip()
+    sort, sought = request.query_params.get("sort", ""), request.query_params.get("find", "").strip()
     shown = sorted((one for one in found if _is_found(one, sought)), key=_sorting(now, sort))
     return class_page_of(
-        visit, now, "site_desk_class", "class", rows=shown, all_rows=len(found), sort=sort, sought=sought,
+        request, now, "site_desk_class", "class", rows=shown, all_rows=len(found), sort=sort, sought=sought,
         handed_in=sum(one.handed_in for one in found), has_mark=bool((now.issued.assignment or {}).get("mark")),
-        has_late=any(one.late for one in found), means=_means(now, found), **_words(visit),
+        has_late=any(one.late for one in found), means=_means(now, found), **_words(request),
     )  # fmt: skip
 
 
-def news(visit: Visit) -> Reply:
+def news(request: Request) -> Response:
     """Return the rows that changed since a stamp; an empty response if none did."""
-    now = class_now(visit.site, assignment_of(visit))
-    before = Stamp.read(visit.query.get("stamp", ""))
+    now = class_now(request.site, assignment_of(request))
+    before = Stamp.read(request.query_params.get("stamp", ""))
     if before == now.stamp:
-        return Reply(status=204)
+        return Response(status_code=204)
     found = rows(now)
-    if before is None or before.rules != now.stamp.rules or str(len(found)) != visit.query.get("rows"):
-        return Reply(goto=f"/desk/{now.about.id}")
-    with visit.site.store.reading() as connection:
+    if (
+        before is None
+        or before.rules != now.stamp.rules
+        or str(len(found)) != request.query_params.get("rows")
+    ):
+        return Response(redirect=f"/desk/{now.about.id}")
+    with request.site.store.reading() as connection:
         changed = students_since(connection, now.about.id, before)
-    return visit.page(
+    return request.render(
         "_desk_news", now=now, rows=[one for one in found if one.student in changed], all_rows=len(found),
         handed_in=sum(one.handed_in for one in found), has_mark=bool((now.issued.assignment or {}).get("mark")),
-        has_late=visit.query.get("late") == "1" or any(one.late for one in found), **_words(visit),
+        has_late=request.query_params.get("late") == "1" or any(one.late for one in found), **_words(request),
     )  # fmt: skip
 
 
-def _words(visit: Visit) -> dict[str, Any]:
+def _words(request: Request) -> dict[str, Any]:
     """Return the functions that format the cells of a table, with a cache since a table has thousands of
     cells."""
     verdicts: dict[str, str] = {}
@@ -147,15 +151,15 @@ def _words(visit: Visit) -> dict[str, Any]:
 
     def word(verdict: str) -> str:
         if verdict not in verdicts:
-            verdicts[verdict] = verdict_word(verdict, visit.lang)
+            verdicts[verdict] = verdict_word(verdict, request.lang)
         return verdicts[verdict]
 
     def number(value: float) -> str:
         if value not in numbers:
-            numbers[value] = localise(f"{round(value, 4):g}", visit.lang)
+            numbers[value] = localise(f"{round(value, 4):g}", request.lang)
         return numbers[value]
 
-    return {"word": word, "number": number, "decimal": lambda text: localise(text, visit.lang)}
+    return {"word": word, "number": number, "decimal": lambda text: localise(text, request.lang)}
 
 
 def _is_found(row: Row, sought: str) -> bool:
@@ -189,7 +193,7 @@ def _means(now: ClassNow, found: Sequence[Row]) -> list[str]:
     return told
 
 
-PAGES = (
-    Page("/desk/{assignment:int}", class_page, Permission.MARKS_READ),
-    Page("/desk/{assignment:int}/news", news, Permission.MARKS_READ),
+ROUTES = (
+    Route("/desk/{assignment:int}", class_page, Permission.MARKS_READ),
+    Route("/desk/{assignment:int}/news", news, Permission.MARKS_READ),
 )

@@ -27,10 +27,10 @@ from coursework.gradebook.rows import Rejected, Row, Seen
 from coursework.gradebook.submissions import find, read_file
 from coursework.making.issued import COLUMNS
 from coursework.making.roster import roster_and_notes
-from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
 from coursework.site.frame.budgets import DESK_FILES, read_apart
-from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
+from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
 from coursework.system.unzipping import is_zip, unpack
 from coursework.system.zips import zipped
@@ -45,19 +45,21 @@ _DELIVERIES = ("came", "source", "number", "late", "receipt")
 # --------------------------------------------------------------------------- in
 
 
-def files_page(visit: Visit, told: Sequence[str] = (), filled: Filled | None = None, name: str = "") -> Reply:
+def files_page(
+    request: Request, told: Sequence[str] = (), filled: Filled | None = None, name: str = ""
+) -> Response:
     """Return the page of uploads and downloads."""
-    now = class_now(visit.site, assignment_of(visit))
-    with visit.site.store.reading() as connection:
+    now = class_now(request.site, assignment_of(request))
+    with request.site.store.reading() as connection:
         came = deliveries(connection, now.about.id)
-    files = [(moment(one.came, visit.lang), one) for one in came if not one.number]
+    files = [(moment(one.came, request.lang), one) for one in came if not one.number]
     return class_page_of(
-        visit, now, "site_desk_files", "files", told=list(told), files=files[::-1][:50], rejected=now.rejected,
-        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_TABLES), filled=_filled(visit, filled, name),
+        request, now, "site_desk_files", "files", told=list(told), files=files[::-1][:50], rejected=now.rejected,
+        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_TABLES), filled=_filled(request, filled, name),
     )  # fmt: skip
 
 
-def answers_in(visit: Visit) -> Reply:
+def answers_in(request: Request) -> Response:
     """Store uploaded answers, and mark the new ones.
 
     Raises
@@ -65,26 +67,32 @@ def answers_in(visit: Visit) -> Reply:
     BadInput
         Nothing was sent, or an archive holds more than it may.
     """
-    number = class_now(visit.site, assignment_of(visit)).about.id
-    sent = [one for one in visit.form.files.get("answers", ()) if one.data]
-    said = visit.said["files"]
+    number = class_now(request.site, assignment_of(request)).about.id
+    sent = [one for one in request.form.files.get("answers", ()) if one.data]
+    said = request.words["files"]
     if not sent:
         raise BadInput(said["none_sent"])
-    rows = _rows(sent, said["too_many"].format(MOST_ROWS), visit.said["refused"]["too_much"])
+    rows = _rows(sent, said["too_many"].format(MOST_ROWS), request.words["refused"]["too_much"])
     answers = sum(isinstance(one, Row) for one in rows)
     source = ", ".join(file_name(one) for one in sent)[:500]
-    with visit.site.store.begin() as connection:
-        came = deliver(connection, number, rows, source=source, came=visit.at)
+    with request.site.store.begin() as connection:
+        came = deliver(connection, number, rows, source=source, came=request.received_at)
         note(
-            connection, visit.at, by_whom(visit), "answers", assignment=number, rows=len(rows), source=source
+            connection,
+            request.received_at,
+            by_whom(request),
+            "answers",
+            assignment=number,
+            rows=len(rows),
+            source=source,
         )
     if not came.is_new:
-        return files_page(visit, [said["again"].format(moment(came.came, visit.lang))])
-    marked = mark_delivery(visit.site.course, visit.site.store, came.id)
-    now = class_now(visit.site, number)
+        return files_page(request, [said["again"].format(moment(came.came, request.lang))])
+    marked = mark_delivery(request.site.course, request.site.store, came.id)
+    now = class_now(request.site, number)
     sources = {one.source for one in rows if not isinstance(one, Seen)}
     lost = sum(one.row.source in sources for one in now.rejected)
-    return files_page(visit, [said["came"].format(answers, marked.marked, lost)])
+    return files_page(request, [said["came"].format(answers, marked.marked, lost)])
 
 
 def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[Row | Rejected | Seen]:
@@ -143,7 +151,7 @@ def _called(row: Row | Rejected | Seen, folder: Path) -> Row | Rejected | Seen:
     return row._replace(source=own(row.source))
 
 
-def roster_in(visit: Visit) -> Reply:
+def roster_in(request: Request) -> Response:
     """Store the columns of a roster; report the students on it to whom nothing was issued.
 
     Raises
@@ -151,9 +159,9 @@ def roster_in(visit: Visit) -> Reply:
     BadInput
         The file is no roster.
     """
-    now = class_now(visit.site, assignment_of(visit))
-    said = visit.said["files"]
-    sent = next((one for one in visit.form.files.get("roster", ()) if one.data), None)
+    now = class_now(request.site, assignment_of(request))
+    said = request.words["files"]
+    sent = next((one for one in request.form.files.get("roster", ()) if one.data), None)
     if sent is None:
         raise BadInput(said["none_sent"])
     told: list[str] = []
@@ -161,22 +169,31 @@ def roster_in(visit: Visit) -> Reply:
         path = Path(made) / file_name(sent)
         path.write_bytes(sent.data)
         try:
-            students, told = read_apart(DESK_FILES, visit.said["refused"]["too_much"], roster_and_notes, path)
+            students, told = read_apart(
+                DESK_FILES, request.words["refused"]["too_much"], roster_and_notes, path
+            )
         except BadInput as fault:
             raise BadInput(str(fault).replace(f"{made}/", "")) from fault
     known = {one.name: now.issued.student(one.name, tuple(one.columns.items())) for one in students}
     columns = {name: dict(one.columns) for one in students if (name := known[one.name]) and one.columns}
-    with visit.site.store.begin() as connection:
+    with request.site.store.begin() as connection:
         content = issued_content(connection, now.about.id)
         content["students"] = {**content.get("students", {}), **_merged(content.get("students", {}), columns)}
         put_issued(connection, content, now.about.name)
-        note(connection, visit.at, by_whom(visit), "roster", assignment=now.about.id, students=len(columns))
+        note(
+            connection,
+            request.received_at,
+            by_whom(request),
+            "roster",
+            assignment=now.about.id,
+            students=len(columns),
+        )
     strangers = [one.name for one in students if not known[one.name]]
     told = [note.replace(f"{made}/", "") for note in told]
     told.insert(0, said["roster_came"].format(len(students) - len(strangers), len(students)))
     if strangers:
         told.append(said["roster_strangers"].format(_list(strangers)))
-    return files_page(visit, told)
+    return files_page(request, told)
 
 
 def _merged(
@@ -192,48 +209,48 @@ def _list(names: Sequence[str]) -> str:
 # -------------------------------------------------------------------------- out
 
 
-def _spreadsheet(visit: Visit) -> Spreadsheet:
+def _spreadsheet(request: Request) -> Spreadsheet:
     """Return the spreadsheet format of tables: that of the query, or else that of the language."""
-    told = visit.query.get("decimal", "comma" if visit.lang == "fr" else "point")
+    told = request.query_params.get("decimal", "comma" if request.lang == "fr" else "point")
     return SPREADSHEETS.get(told, SPREADSHEETS["point"])
 
 
-def _marks(visit: Visit, now: ClassNow) -> bytes:
+def _marks(request: Request, now: ClassNow) -> bytes:
     submitted = any(one.submitted for one in now.graded.values())
     rows = (row for one in now.graded.values() for row in marks_rows(one))
-    return csv_file(rows, marks_columns(now.issued, submitted=submitted), _spreadsheet(visit))
+    return csv_file(rows, marks_columns(now.issued, submitted=submitted), _spreadsheet(request))
 
 
-def _summary(visit: Visit, now: ClassNow) -> bytes:
+def _summary(request: Request, now: ClassNow) -> bytes:
     return csv_file(
-        summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)), _spreadsheet(visit)
+        summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)), _spreadsheet(request)
     )
 
 
-def _rejected(visit: Visit, now: ClassNow) -> bytes:
-    return csv_file(rejected_rows(now.book.rejected), REJECTED_COLUMNS, _spreadsheet(visit))
+def _rejected(request: Request, now: ClassNow) -> bytes:
+    return csv_file(rejected_rows(now.book.rejected), REJECTED_COLUMNS, _spreadsheet(request))
 
 
-def _decided(visit: Visit, now: ClassNow) -> bytes:
-    with visit.site.store.reading() as connection:
+def _decided(request: Request, now: ClassNow) -> bytes:
+    with request.site.store.reading() as connection:
         made = decisions_of(connection, now.about.id)
     rows = ({**one._asdict(), "made": one.made.isoformat(timespec="seconds")} for one in made)
     return csv_file(
         ({c: "" if row[c] is None else row[c] for c in _DECISIONS} for row in rows),
         _DECISIONS,
-        _spreadsheet(visit),
+        _spreadsheet(request),
     )
 
 
-def _issued(visit: Visit, now: ClassNow) -> bytes:
-    with visit.site.store.reading() as connection:
+def _issued(request: Request, now: ClassNow) -> bytes:
+    with request.site.store.reading() as connection:
         # Who only marks needs no secret, and draws no paper that is to come.
-        may_draw = visit.who.may(Permission.ASSIGNMENTS_PUBLISH, now.about.id, "")
+        may_draw = request.user.may(Permission.ASSIGNMENTS_PUBLISH, now.about.id, "")
         return json_text(issued_content(connection, now.about.id, secret=may_draw)).encode()
 
 
-def _answers(visit: Visit, now: ClassNow) -> bytes:
-    with visit.site.store.reading() as connection:
+def _answers(request: Request, now: ClassNow) -> bytes:
+    with request.site.store.reading() as connection:
         rows = [one for one in rows_of(connection, now.about.id) if isinstance(one, Row)]
     columns = (*COLUMNS, "sitting", "submitted", "source")
     told = ({**as_texts(one), "source": one.source, **_origin(one)} for one in rows)
@@ -246,14 +263,14 @@ def _origin(row: Row) -> dict[str, str]:
     return {"sitting": str(row.origin.sitting or ""), "submitted": row.origin.submitted}
 
 
-def _came(visit: Visit, now: ClassNow) -> bytes:
-    with visit.site.store.reading() as connection:
+def _came(request: Request, now: ClassNow) -> bytes:
+    with request.site.store.reading() as connection:
         rows = [one._asdict() for one in deliveries(connection, now.about.id)]
     return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
 
 
 #: What can be had, by its file's name.
-_TABLES: Mapping[str, Callable[[Visit, ClassNow], bytes]] = {
+_TABLES: Mapping[str, Callable[[Request, ClassNow], bytes]] = {
     "marks.csv": _marks,
     "summary.csv": _summary,
     "rejected.csv": _rejected,
@@ -263,32 +280,34 @@ _TABLES: Mapping[str, Callable[[Visit, ClassNow], bytes]] = {
 }
 
 
-def table(visit: Visit) -> Reply:
+def table(request: Request) -> Response:
     """Return one table, or all of them in an archive."""
-    now = class_now(visit.site, assignment_of(visit))
-    name = str(visit.path["file"])
+    now = class_now(request.site, assignment_of(request))
+    name = str(request.path_params["file"])
     if name == "archive.zip":
-        files = {own: make(visit, now) for own, make in _TABLES.items()} | {
-            "deliveries.csv": _came(visit, now)
+        files = {own: make(request, now) for own, make in _TABLES.items()} | {
+            "deliveries.csv": _came(request, now)
         }
-        return Reply(kind="application/zip", data=zipped(files), file=f"{_safe(now.about.name)}.zip")
+        return Response(
+            media_type="application/zip", content=zipped(files), filename=f"{_safe(now.about.name)}.zip"
+        )
     if name not in _TABLES:
-        raise Refused("page", 404)
+        raise HTTPException("page", 404)
     kind = "application/json" if name.endswith(".json") else "text/csv; charset=utf-8"
-    return Reply(kind=kind, data=_TABLES[name](visit, now), file=name)
+    return Response(media_type=kind, content=_TABLES[name](request, now), filename=name)
 
 
 def _safe(name: str) -> str:
     return "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "-" for c in name) or "assignment"
 
 
-def feedback(visit: Visit) -> Reply:
+def feedback(request: Request) -> Response:
     """Return the feedback of a student, or of all students in an archive."""
-    now = class_now(visit.site, assignment_of(visit))
-    only = visit.query.get("student", "")
+    now = class_now(request.site, assignment_of(request))
+    only = request.query_params.get("student", "")
     shown = [one for one in now.graded.values() if not only or one.student == only]
     if not shown:
-        raise BadInput(visit.said["class"]["nothing"])
+        raise BadInput(request.words["class"]["nothing"])
     with TemporaryDirectory(prefix="coursework-") as made:
         folder = Path(made) / "feedback"
         book = now.book if not only else _of_one(now, only)
@@ -297,10 +316,14 @@ def feedback(visit: Visit) -> Reply:
     if only and files:
         name, data = next(iter(files.items()))
         if len(files) == 1:
-            return Reply(
-                kind="application/pdf", data=data, file=f"feedback-{_safe(name.removesuffix('.pdf'))}.pdf"
+            return Response(
+                media_type="application/pdf",
+                content=data,
+                filename=f"feedback-{_safe(name.removesuffix('.pdf'))}.pdf",
             )
-    return Reply(kind="application/zip", data=zipped(files), file=f"feedback-{_safe(now.about.name)}.zip")
+    return Response(
+        media_type="application/zip", content=zipped(files), filename=f"feedback-{_safe(now.about.name)}.zip"
+    )
 
 
 def _of_one(now: ClassNow, student: str) -> Any:
@@ -316,7 +339,7 @@ def _of_one(now: ClassNow, student: str) -> Any:
 # -------------------------------------------------------------------- gradebooks
 
 
-def gradebook(visit: Visit) -> Reply:
+def gradebook(request: Request) -> Response:
     """Return a platform's exported gradebook with the marks filled in.
 
     Raises
@@ -324,8 +347,8 @@ def gradebook(visit: Visit) -> Reply:
     BadInput
         Nothing was sent, or it cannot be filled; nothing is written then.
     """
-    now = class_now(visit.site, assignment_of(visit))
-    said, form = visit.said["files"], visit.form
+    now = class_now(request.site, assignment_of(request))
+    said, form = request.words["files"], request.form
     sent = next((one for one in form.files.get("template", ()) if one.data), None)
     if sent is None:
         raise BadInput(said["none_sent"])
@@ -343,7 +366,7 @@ def gradebook(visit: Visit) -> Reply:
             scored = class_points(folder / "summary.csv", score if score in SCORES else "points")
             most = form.text("most").strip().replace(",", ".")
             filled = read_apart(
-                DESK_FILES, visit.said["refused"]["too_much"], _filled_in, platform.name, path, form.text("item").strip(), scored,
+                DESK_FILES, request.words["refused"]["too_much"], _filled_in, platform.name, path, form.text("item").strip(), scored,
                 float(most) if most else None, bool(form.text("zeros")),
             )  # fmt: skip
         except ValueError as fault:
@@ -354,7 +377,7 @@ def gradebook(visit: Visit) -> Reply:
     for what in ("strangers", "unclear", "absent", "kept"):
         if names := getattr(filled, what):
             told.append(said[what].format(len(names), _list(names)))
-    return files_page(visit, told, filled, file_name(sent))
+    return files_page(request, told, filled, file_name(sent))
 
 
 def _filled_in(
@@ -363,39 +386,39 @@ def _filled_in(
     return fill(platform_gradebook(platform), path, item, scored, most=most, zeros=zeros)
 
 
-def _filled(visit: Visit, filled: Filled | None, name: str) -> Mapping[str, str] | None:
+def _filled(request: Request, filled: Filled | None, name: str) -> Mapping[str, str] | None:
     """Return a filled gradebook as a data URL."""
     if filled is None:
         return None
     return {"name": name, "data": f"data:text/csv;base64,{base64.b64encode(filled.data).decode()}"}
 
 
-PAGES = (
-    Page("/desk/{assignment:int}/files", files_page, Permission.MARKS_EXPORT),
-    Page(
+ROUTES = (
+    Route("/desk/{assignment:int}/files", files_page, Permission.MARKS_EXPORT),
+    Route(
         "/desk/{assignment:int}/answers",
         answers_in,
         Permission.FILES_BRING,
-        posts=True,
+        takes_forms=True,
         limit="upload",
         budget=DESK_FILES,
     ),
-    Page(
+    Route(
         "/desk/{assignment:int}/roster",
         roster_in,
         Permission.FILES_BRING,
-        posts=True,
+        takes_forms=True,
         limit="upload",
         budget=DESK_FILES,
     ),
-    Page(
+    Route(
         "/desk/{assignment:int}/gradebook",
         gradebook,
         Permission.MARKS_EXPORT,
-        posts=True,
+        takes_forms=True,
         limit="upload",
         budget=DESK_FILES,
     ),
-    Page("/desk/{assignment:int}/feedback", feedback, Permission.MARKS_EXPORT),
-    Page("/desk/{assignment:int}/files/{file}", table, Permission.MARKS_EXPORT),
+    Route("/desk/{assignment:int}/feedback", feedback, Permission.MARKS_EXPORT),
+    Route("/desk/{assignment:int}/files/{file}", table, Permission.MARKS_EXPORT),
 )

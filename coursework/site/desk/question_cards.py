@@ -25,8 +25,8 @@ from coursework.model import Part
 from coursework.sheets.answer_sheet import answer_text
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Handout, Question
-from coursework.site.frame.moments import moment_text
-from coursework.site.frame.visits import Visit
+from coursework.site.frame.requests import Request
+from coursework.site.frame.times import moment_text
 
 _HALF = 1.0  #: points from which a part is given by halves; a smaller one by its half
 _STEPS = 12  #: buttons of points at most
@@ -141,12 +141,12 @@ def moment(at: datetime, lang: str) -> str:
     return moment_text(at.replace(second=0, microsecond=0), lang)
 
 
-def decided_words(visit: Visit, made: Any) -> str:
+def decided_words(request: Request, made: Any) -> str:
     """Return a line on a decision: its kind, its author and its time."""
-    said = visit.said["queue"]["made"]
-    points = localise(f"{made.points or 0:g}", visit.lang)
-    told = str(said[made.kind]).format(by=made.by, at=moment(made.made, visit.lang), points=points)
-    return f"{told} {quoted(made.reason, visit.lang)}" if made.reason else told
+    said = request.words["queue"]["made"]
+    points = localise(f"{made.points or 0:g}", request.lang)
+    told = str(said[made.kind]).format(by=made.by, at=moment(made.made, request.lang), points=points)
+    return f"{told} {quoted(made.reason, request.lang)}" if made.reason else told
 
 
 def raw_texts(marks: Sequence[Mark]) -> tuple[str, ...]:

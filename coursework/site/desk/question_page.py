@@ -12,9 +12,9 @@ from coursework.gradebook.waiting import written
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.renderer import renderer_of
-from coursework.site.desk.class_at_hand import ClassNow, assignment_of, class_now, class_page_of
+from coursework.site.desk.class_cache import ClassNow, assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import asked, sign_of
-from coursework.site.frame.visits import Page, Refused, Reply, Visit
+from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.statistics.captions import Names
 from coursework.statistics.measures import PartStatistics, Statistics, measure
 from coursework.statistics.of_class import marks_of_class
@@ -41,23 +41,23 @@ class Asked:
     words: str = ""
 
 
-def questions(visit: Visit) -> Reply:
+def questions(request: Request) -> Response:
     """Return the page of the questions, in the order of the sheets or the hardest first."""
-    now = class_now(visit.site, assignment_of(visit))
+    now = class_now(request.site, assignment_of(request))
     told = statistics_of(now)
-    names = Names(now.course, told, visit.lang)
+    names = Names(now.course, told, request.lang)
     known = {(one.exercise, one.part): one for one in told.parts}
     asked_for = [Asked(*one, now.number(*one), known.get(one)) for one in now.questions]
     listed = [replace(one, words=names.question(one)) for one in asked_for]
-    if visit.query.get("sort") == "hard":
+    if request.query_params.get("sort") == "hard":
         listed.sort(key=lambda one: one.told.mean if one.told and one.told.marked else 2.0)
     return class_page_of(
-        visit,
+        request,
         now,
         "site_desk_questions",
         "questions",
         listed=listed,
-        sort=visit.query.get("sort", ""),
+        sort=request.query_params.get("sort", ""),
         told=told,
     )
 
@@ -74,15 +74,15 @@ class Written:
     matches: tuple[str, ...]
 
 
-def question(visit: Visit) -> Reply:
+def question(request: Request) -> Response:
     """Return the page of one question: its figures, its mistakes, and the answers, the most frequent first."""
-    now = class_now(visit.site, assignment_of(visit))
-    exercise, part = visit.query.get("exercise", ""), visit.query.get("part", "")
+    now = class_now(request.site, assignment_of(request))
+    exercise, part = request.query_params.get("exercise", ""), request.query_params.get("part", "")
     if (exercise, part) not in now.questions:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     told = statistics_of(now)
     own = next((one for one in told.parts if (one.exercise, one.part) == (exercise, part)), None)
-    names = Names(now.course, told, visit.lang)
+    names = Names(now.course, told, request.lang)
     mistakes = [
         (one, names.says(one) or one.name)
         for one in told.mistakes
@@ -91,55 +91,57 @@ def question(visit: Visit) -> Reply:
     sheet = next(
         (one for one in now.machine.values() if one.exercise == exercise and part in one.lines), None
     )
-    shown = None if sheet is None else asked(now.course, now.issued, sheet, part, visit.lang)
-    only = visit.query.get("verdict", "")
-    answers = _answers(visit, now, exercise, part)
+    shown = None if sheet is None else asked(now.course, now.issued, sheet, part, request.lang)
+    only = request.query_params.get("verdict", "")
+    answers = _answers(request, now, exercise, part)
     return class_page_of(
-        visit, now, "site_desk_question", "questions", exercise=exercise, part=part, own=own, mistakes=mistakes,
+        request, now, "site_desk_question", "questions", exercise=exercise, part=part, own=own, mistakes=mistakes,
         shown=shown, number=now.number(exercise, part), only=only,
         answers=[one for one in answers if not only or only in one.matches][:_ANSWERS], count=len(answers),
         waiting=sum((one.group.exercise, one.group.part) == (exercise, part) for one in now.open.values()),
-        examples=_EXAMPLES, verdicts=_verdicts(visit, own),
+        examples=_EXAMPLES, verdicts=_verdicts(request, own),
     )  # fmt: skip
 
 
-def _answers(visit: Visit, now: ClassNow, exercise: str, part: str) -> list[Written]:
+def _answers(request: Request, now: ClassNow, exercise: str, part: str) -> list[Written]:
     found: dict[tuple[str, str], list[tuple[str, Mark]]] = {}
     for one in now.graded.values():
         mark = one.lines.get(part) if one.exercise == exercise else None
         if mark is not None and mark.verdict != "missing" and one.sitting == now.results[one.student].sitting:
             found.setdefault((mark.verdict, written(mark)), []).append((one.student, mark))
-    listed = [_written(visit, own) for own in found.values()]
+    listed = [_written(request, own) for own in found.values()]
     return sorted(listed, key=lambda one: (-len(one.students), one.sign == "full", one.text))
 
 
-def _written(visit: Visit, own: list[tuple[str, Mark]]) -> Written:
+def _written(request: Request, own: list[tuple[str, Mark]]) -> Written:
     mark = own[0][1]
     return Written(
-        mark.answer, verdict_word(mark.verdict, visit.lang), sign_of(mark), mark.says,
+        mark.answer, verdict_word(mark.verdict, request.lang), sign_of(mark), mark.says,
         tuple(dict.fromkeys(student for student, _ in own)), (mark.verdict.partition(":")[0], mark.verdict),
     )  # fmt: skip
 
 
-def _verdicts(visit: Visit, own: PartStatistics | None) -> list[tuple[str, str, int]]:
+def _verdicts(request: Request, own: PartStatistics | None) -> list[tuple[str, str, int]]:
     """Return the verdicts that occur among the answers: name, word, count."""
     counts: Mapping[str, int] = Counter() if own is None else own.counts
-    return [(name, verdict_word(name, visit.lang), count) for name, count in counts.items() if count]
+    return [(name, verdict_word(name, request.lang), count) for name, count in counts.items() if count]
 
 
-def statistics(visit: Visit) -> Reply:
+def statistics(request: Request) -> Response:
     """Return the report of the statistics as a page, or as a PDF."""
-    now = class_now(visit.site, assignment_of(visit))
-    told = report(now.course, statistics_of(now), visit.lang)
+    now = class_now(request.site, assignment_of(request))
+    told = report(now.course, statistics_of(now), request.lang)
     renderer = renderer_of(now.course.folder)
-    if visit.address.endswith(".pdf"):
-        return Reply(kind="application/pdf", data=renderer.report_pdf(told), file="report.pdf")
-    return Reply(renderer.report_html(told))
+    if request.path.endswith(".pdf"):
+        return Response(
+            media_type="application/pdf", content=renderer.report_pdf(told), filename="report.pdf"
+        )
+    return Response(renderer.report_html(told))
 
 
-PAGES = (
-    Page("/desk/{assignment:int}/questions", questions, Permission.MARKS_READ),
-    Page("/desk/{assignment:int}/question", question, Permission.MARKS_READ),
-    Page("/desk/{assignment:int}/report", statistics, Permission.MARKS_READ),
-    Page("/desk/{assignment:int}/report.pdf", statistics, Permission.MARKS_READ),
+ROUTES = (
+    Route("/desk/{assignment:int}/questions", questions, Permission.MARKS_READ),
+    Route("/desk/{assignment:int}/question", question, Permission.MARKS_READ),
+    Route("/desk/{assignment:int}/report", statistics, Permission.MARKS_READ),
+    Route("/desk/{assignment:int}/report.pdf", statistics, Permission.MARKS_READ),
 )

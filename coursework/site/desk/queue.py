@@ -17,7 +17,7 @@ from coursework.errors import BadInput
 from coursework.gradebook.accepted import points_of
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, Group, Waits, written
 from coursework.language.numbers import localise, significant
-from coursework.site.desk.class_at_hand import (
+from coursework.site.desk.class_cache import (
     ClassNow,
     Open,
     RejectedRow,
@@ -27,7 +27,7 @@ from coursework.site.desk.class_at_hand import (
     class_page_of,
 )
 from coursework.site.desk.question_cards import Asked, asked, decided_words, raw_texts, steps
-from coursework.site.frame.visits import Page, Refused, Reply, Visit
+from coursework.site.frame.requests import HTTPException, Request, Response, Route
 
 REJECTED = "rejected"
 LONGEST = 2000  #: characters of a comment
@@ -109,22 +109,22 @@ class Card:
 
     @property
     def scans(self) -> tuple[tuple[str, str], ...]:
-        """Page and field of the pictures that an answer on paper is."""
+        """Route and field of the pictures that an answer on paper is."""
         told = [_SCAN.fullmatch(one) for one in str(self.first.mark.answer).split("; ")]
         return tuple((one[1], one[2]) for one in told if one)
 
 
-def card_of(visit: Visit, now: ClassNow, item: Item) -> Card:
+def card_of(request: Request, now: ClassNow, item: Item) -> Card:
     """Return the card of a group, decided or not."""
     assert item.group is not None
     group = item.group
     waits = now.open[group.id].members if group.id in now.open else ()
     made = [(one, now.decisions.standing(one.sheet, one.mark)) for one in group.members]
     first = (waits or group.members)[0]
-    margin = "" if first.margin is None else localise(significant(first.margin, 2), visit.lang)
+    margin = "" if first.margin is None else localise(significant(first.margin, 2), request.lang)
     return Card(
-        item, asked(now.course, now.issued, first.sheet, group.part, visit.lang), first, waits,
-        tuple((one.student, decided_words(visit, done)) for one, done in made if done is not None), now.number(group.exercise, group.part), margin,
+        item, asked(now.course, now.issued, first.sheet, group.part, request.lang), first, waits,
+        tuple((one.student, decided_words(request, done)) for one, done in made if done is not None), now.number(group.exercise, group.part), margin,
         raw_texts([one.mark for one in group.members]), steps(first.mark.out_of),
         sum(len(one.members) for one in _alike(now, group)),
     )  # fmt: skip
@@ -142,47 +142,47 @@ def _alike(now: ClassNow, group: Group) -> list[Open]:
 # --------------------------------------------------------------------------- pages
 
 
-def queue(visit: Visit) -> Reply:
+def queue(request: Request) -> Response:
     """Return the requested card, or else the first."""
-    filters = Filters.of(visit.query)
-    now = class_now(visit.site, assignment_of(visit))
-    return shown_card(visit, now, filters, visit.query.get("at", ""))
+    filters = Filters.of(request.query_params)
+    now = class_now(request.site, assignment_of(request))
+    return shown_card(request, now, filters, request.query_params.get("at", ""))
 
 
-def decided(visit: Visit) -> Reply:
+def decided(request: Request) -> Response:
     """Decide what the form says, and show the next card."""
-    filters = Filters.of({k: visit.form.text(k) for k in ("why", "exercise", "part")})
-    now = class_now(visit.site, assignment_of(visit))
-    asked_for = visit.form.text("do")
+    filters = Filters.of({k: request.form.text(k) for k in ("why", "exercise", "part")})
+    now = class_now(request.site, assignment_of(request))
+    asked_for = request.form.text("do")
     if asked_for == "undo":
-        return _undone(visit, now, filters)
-    name = visit.form.text("group")
+        return _undone(request, now, filters)
+    name = request.form.text("group")
     group = next((one for one in now.groups if one.id == name), None)
     if group is None:
-        return shown_card(visit, now, filters, "", told=visit.said["queue"]["anew"])
+        return shown_card(request, now, filters, "", told=request.words["queue"]["anew"])
     before = [one.id for one in _around(now, filters)]
     try:
-        told = _decide(visit, now, group, asked_for)
+        told = _decide(request, now, group, asked_for)
     except BadInput as fault:
-        return shown_card(visit, now, filters, name, told=str(fault))
-    later = class_now(visit.site, now.about.id)
-    return shown_card(visit, later, filters, _after(before, name, later, filters), told=told)
+        return shown_card(request, now, filters, name, told=str(fault))
+    later = class_now(request.site, now.about.id)
+    return shown_card(request, later, filters, _after(before, name, later, filters), told=told)
 
 
-def queue_page(visit: Visit) -> Reply:
-    return decided(visit) if visit.posted else queue(visit)
+def queue_page(request: Request) -> Response:
+    return decided(request) if request.is_post else queue(request)
 
 
-def watch(visit: Visit) -> Reply:
+def watch(request: Request) -> Response:
     """Return a message if somebody else has decided on a card meanwhile; otherwise an empty response."""
-    now = class_now(visit.site, assignment_of(visit))
-    name = visit.query.get("group", "")
+    now = class_now(request.site, assignment_of(request))
+    name = request.query_params.get("group", "")
     group = next((one for one in now.groups if one.id == name), None)
     if group is None or name in now.open:
-        return Reply(status=204)
+        return Response(status_code=204)
     made = now.decisions.standing(group.first.sheet, group.first.mark)
-    told = visit.said["queue"]["taken"].format(made.by, 1) if made else ""
-    return visit.page("_desk_told", told=told)
+    told = request.words["queue"]["taken"].format(made.by, 1) if made else ""
+    return request.render("_desk_told", told=told)
 
 
 def _around(now: ClassNow, filters: Filters) -> list[Item]:
@@ -198,15 +198,15 @@ def _after(before: Sequence[str], name: str, now: ClassNow, filters: Filters) ->
     return ""
 
 
-def shown_card(visit: Visit, now: ClassNow, filters: Filters, at: str, told: str = "") -> Reply:
+def shown_card(request: Request, now: ClassNow, filters: Filters, at: str, told: str = "") -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
     shown = items(now, filters)
     place = next((k for k, one in enumerate(shown) if one.id == at), None)
     item = shown[place or 0] if shown else None
     if place is None and at:
         item = _closed(now, at) or item
-        told = told or _by_whom_told(visit, now, at)
-    card = card_of(visit, now, item) if item is not None and item.group is not None else None
+        told = told or _by_whom_told(request, now, at)
+    card = card_of(request, now, item) if item is not None and item.group is not None else None
     number = next((k for k, one in enumerate(shown) if item is not None and one.id == item.id), 0)
     names: dict[str, Any] = {
         "filters": filters,
@@ -221,13 +221,13 @@ def shown_card(visit: Visit, now: ClassNow, filters: Filters, at: str, told: str
         "counts": _counts(now),
         "done": _done(now),
         "since": now.stamp.decisions[1],
-        "can_undo": _can_undo(visit, now),
+        "can_undo": _can_undo(request, now),
         "by_question": _by_question(now, filters),
         "place_url": f"/desk/{now.about.id}/queue",
     }
-    if visit.is_piece:
-        return visit.page("_desk_queue_piece", now=now, swapped=True, **names)
-    return class_page_of(visit, now, "site_desk_queue", "queue", **names)
+    if request.is_fragment:
+        return request.render("_desk_queue_piece", now=now, swapped=True, **names)
+    return class_page_of(request, now, "site_desk_queue", "queue", **names)
 
 
 def _closed(now: ClassNow, name: str) -> Item | None:
@@ -238,13 +238,13 @@ def _closed(now: ClassNow, name: str) -> Item | None:
     return Item(group.id, group.why, group.exercise, group.part, len(group.members), group)
 
 
-def _by_whom_told(visit: Visit, now: ClassNow, name: str) -> str:
+def _by_whom_told(request: Request, now: ClassNow, name: str) -> str:
     item = _closed(now, name)
     if item is None or item.group is None:
-        return str(visit.said["queue"]["anew"])
+        return str(request.words["queue"]["anew"])
     first = item.group.first
     made = now.decisions.standing(first.sheet, first.mark)
-    return str(visit.said["queue"]["taken"]).format(made.by, len(item.group.members)) if made else ""
+    return str(request.words["queue"]["taken"]).format(made.by, len(item.group.members)) if made else ""
 
 
 def _counts(now: ClassNow) -> list[tuple[str, int]]:
@@ -259,11 +259,11 @@ def _done(now: ClassNow) -> int:
     return sum(now.is_decided(one) for group in now.groups for one in group.members)
 
 
-def _can_undo(visit: Visit, now: ClassNow) -> bool:
+def _can_undo(request: Request, now: ClassNow) -> bool:
     if not now.stamp.decisions[0]:
         return False
-    with visit.site.store.reading() as connection:
-        return bool(undoable(connection, now.about.id, by_whom(visit)))
+    with request.site.store.reading() as connection:
+        return bool(undoable(connection, now.about.id, by_whom(request)))
 
 
 def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, int]]:
@@ -278,33 +278,43 @@ def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, i
 # ------------------------------------------------------------------------ deciding
 
 
-def _decide(visit: Visit, now: ClassNow, group: Group, asked_for: str) -> str:
+def _decide(request: Request, now: ClassNow, group: Group, asked_for: str) -> str:
     """Keep the decision on those whom nobody decided on meanwhile; says what was done."""
-    kind, points = _asked_kind(asked_for, visit, group)
-    members = list(_chosen(visit, now, group))
-    if visit.form.text("everywhere") and not points:
+    kind, points = _asked_kind(asked_for, request, group)
+    members = list(_chosen(request, now, group))
+    if request.form.text("everywhere") and not points:
         members += [one for other in _alike(now, group) for one in other.members]
-    since = visit.form.text("since")
-    with visit.site.store.begin() as connection:
+    since = request.form.text("since")
+    with request.site.store.begin() as connection:
         taken = _taken(
             decided_since(
                 connection, now.about.id, int(since) if since.isdecimal() and len(since) < 16 else 0
             )
         )
         free = [one for one in members if _key(one) not in taken]
-        comment = visit.form.text("comment").strip()[:LONGEST]
-        decide(connection, now.about.id, map(_place, free), kind, points, comment, by_whom(visit))
+        comment = request.form.text("comment").strip()[:LONGEST]
+        decide(connection, now.about.id, map(_place, free), kind, points, comment, by_whom(request))
         about = {"assignment": now.about.id, "exercise": group.exercise, "part": group.part, "kind": kind}
         if free:
-            note(connection, visit.at, by_whom(visit), "decision", count=len(free), points=points, **about)
+            note(
+                connection,
+                request.received_at,
+                by_whom(request),
+                "decision",
+                count=len(free),
+                points=points,
+                **about,
+            )
     others = [taken[_key(one)].by for one in members if _key(one) in taken]
-    return _told(visit, kind, points, len(free), others)
+    return _told(request, kind, points, len(free), others)
 
 
-def _told(visit: Visit, kind: str, points: float | None, count: int, others: Sequence[str]) -> str:
+def _told(request: Request, kind: str, points: float | None, count: int, others: Sequence[str]) -> str:
     """Return the message on a decision, with the number of answers that somebody else had already decided."""
-    said = visit.said["queue"]
-    told = str(said["decided"][kind]).format(count, localise(f"{points or 0:g}", visit.lang)) if count else ""
+    said = request.words["queue"]
+    told = (
+        str(said["decided"][kind]).format(count, localise(f"{points or 0:g}", request.lang)) if count else ""
+    )
     return f"{told} {said['taken'].format(others[0], len(others))}".strip() if others else told
 
 
@@ -312,22 +322,22 @@ def _key(one: Waits) -> tuple[str, str, str, str]:
     return one.student, one.sheet.exercise, str(one.sheet.seed), one.mark.part
 
 
-def _chosen(visit: Visit, now: ClassNow, group: Group) -> Sequence[Waits]:
+def _chosen(request: Request, now: ClassNow, group: Group) -> Sequence[Waits]:
     """Return the answers that a decision covers: all waiting ones with the same text, or the first alone; for
     a decided card, all of it."""
     waits = now.open[group.id].members if group.id in now.open else group.members
-    if visit.form.text("all"):
+    if request.form.text("all"):
         return waits
-    student = visit.form.text("student")
+    student = request.form.text("student")
     return [one for one in waits if one.student == student] or waits[:1]
 
 
-def _asked_kind(asked_for: str, visit: Visit, group: Group) -> tuple[str, float | None]:
+def _asked_kind(asked_for: str, request: Request, group: Group) -> tuple[str, float | None]:
     """Return the kind of a decision, and its points.
 
     Raises
     ------
-    Refused
+    HTTPException
         It is none.
     BadInput
         Its points are no number.
@@ -336,15 +346,15 @@ def _asked_kind(asked_for: str, visit: Visit, group: Group) -> tuple[str, float 
         return ACCEPTED, None
     if asked_for == "refuse":
         return (GIVEN, 0.0) if group.first.mark.verdict in ("unreadable", "to_mark") else (KEPT, None)
-    told = visit.form.text("points") if asked_for == "points" else asked_for.removeprefix("give:")
+    told = request.form.text("points") if asked_for == "points" else asked_for.removeprefix("give:")
     if asked_for != "points" and not asked_for.startswith("give:"):
-        raise Refused("bad_request", 400)
-    points = points_of(told.strip(), visit.said["queue"]["points"])
+        raise HTTPException("bad_request", 400)
+    points = points_of(told.strip(), request.words["queue"]["points"])
     if points is None:
-        raise BadInput(visit.said["queue"]["no_points"])
+        raise BadInput(request.words["queue"]["no_points"])
     if points > group.first.mark.out_of:
-        most = localise(f"{group.first.mark.out_of:g}", visit.lang)
-        raise BadInput(visit.said["queue"]["too_many"].format(localise(told, visit.lang), most))
+        most = localise(f"{group.first.mark.out_of:g}", request.lang)
+        raise BadInput(request.words["queue"]["too_many"].format(localise(told, request.lang), most))
     return GIVEN, points
 
 
@@ -364,27 +374,34 @@ def _taken(later: Sequence[Made]) -> dict[tuple[str, str, str, str], Made]:
     return found
 
 
-def _undone(visit: Visit, now: ClassNow, filters: Filters) -> Reply:
+def _undone(request: Request, now: ClassNow, filters: Filters) -> Response:
     """Withdraw what was decided last, and show its card."""
-    said = visit.said["queue"]
-    with visit.site.store.begin() as connection:
-        batch = undoable(connection, now.about.id, by_whom(visit))
+    said = request.words["queue"]
+    with request.site.store.begin() as connection:
+        batch = undoable(connection, now.about.id, by_whom(request))
         if batch:
-            decide(connection, now.about.id, map(place_of, batch), WITHDRAWN, None, "", by_whom(visit))
-            note(connection, visit.at, by_whom(visit), "undo", assignment=now.about.id, count=len(batch))
-    later = class_now(visit.site, now.about.id)
+            decide(connection, now.about.id, map(place_of, batch), WITHDRAWN, None, "", by_whom(request))
+            note(
+                connection,
+                request.received_at,
+                by_whom(request),
+                "undo",
+                assignment=now.about.id,
+                count=len(batch),
+            )
+    later = class_now(request.site, now.about.id)
     if not batch:
-        return shown_card(visit, later, filters, visit.form.text("group"), told=said["nothing_to_undo"])
+        return shown_card(request, later, filters, request.form.text("group"), told=said["nothing_to_undo"])
     at = next((one.group.id for one in later.open.values() if _is_of(one.members, batch[0])), "")
     shown = filters if any(one.id == at for one in items(later, filters)) else Filters()
-    return shown_card(visit, later, shown, at, told=said["undone"].format(len(batch)))
+    return shown_card(request, later, shown, at, told=said["undone"].format(len(batch)))
 
 
 def _is_of(members: Sequence[Waits], one: Made) -> bool:
     return any(_key(w) == (one.student, one.exercise, one.seed, one.part) for w in members)
 
 
-PAGES = (
-    Page("/desk/{assignment:int}/queue", queue_page, Permission.MARKS_DECIDE, posts=True),
-    Page("/desk/{assignment:int}/queue/watch", watch, Permission.MARKS_DECIDE),
+ROUTES = (
+    Route("/desk/{assignment:int}/queue", queue_page, Permission.MARKS_DECIDE, takes_forms=True),
+    Route("/desk/{assignment:int}/queue/watch", watch, Permission.MARKS_DECIDE),
 )

@@ -13,9 +13,9 @@ from coursework.database.permissions import Permission
 from coursework.database.states import exercise_state
 from coursework.language.numbers import localise
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.frame.requests import Request, Response, Route
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Page, Reply, Visit
 from coursework.system.tables import SPREADSHEETS, csv_file
 
 _SHOWN = 500  #: changes in the table
@@ -34,23 +34,23 @@ class Row(NamedTuple):
     is_less: bool
 
 
-def regrade(visit: Visit) -> Reply:
+def regrade(request: Request) -> Response:
     """Return the marks that would change; after confirmation, mark again and return the marks that changed."""
-    now = class_now(visit.site, assignment_of(visit))
-    course = _as_it_stands(visit.site, now)
-    done = visit.posted and visit.form.text("do") == "regrade"
+    now = class_now(request.site, assignment_of(request))
+    course = _as_it_stands(request.site, now)
+    done = request.is_post and request.form.text("do") == "regrade"
     if done:
-        told = mark_new(course, visit.site.store, now.about.id)
-        visit.site.take(course)
-        with visit.site.store.begin() as connection:
+        told = mark_new(course, request.site.store, now.about.id)
+        request.site.take(course)
+        with request.site.store.begin() as connection:
             about = {"assignment": now.about.id, "sheets": told.marked, "changes": len(told.changes)}
-            note(connection, visit.at, by_whom(visit), "regrade", **about)
-        now = class_now(visit.site, now.about.id)
+            note(connection, request.received_at, by_whom(request), "regrade", **about)
+        now = class_now(request.site, now.about.id)
     else:
-        told = would_change(course, visit.site.store, now.about.id)
+        told = would_change(course, request.site.store, now.about.id)
     return class_page_of(
-        visit, now, "site_desk_regrade", "regrade", told=told, done=done, is_new=course is not visit.site.course,
-        rows=[_row(visit, now, one) for one in told.changes[:_SHOWN]], questions=_questions(visit, now, told),
+        request, now, "site_desk_regrade", "regrade", told=told, done=done, is_new=course is not request.site.course,
+        rows=[_row(request, now, one) for one in told.changes[:_SHOWN]], questions=_questions(request, now, told),
         students=len({one.student for one in told.changes}),
     )  # fmt: skip
 
@@ -64,22 +64,28 @@ def _as_it_stands(site: Site, now: ClassNow) -> Course[Any]:
     return course if same else fresh
 
 
-def _row(visit: Visit, now: ClassNow, one: Change) -> Row:
-    before, after = (verdict_word(v, visit.lang) if v else "" for v in (one.verdict_before, one.verdict_now))
-    points_before, points_now = (localise(p, visit.lang) for p in (one.points_before, one.points_now))
+def _row(request: Request, now: ClassNow, one: Change) -> Row:
+    before, after = (
+        verdict_word(v, request.lang) if v else "" for v in (one.verdict_before, one.verdict_now)
+    )
+    points_before, points_now = (localise(p, request.lang) for p in (one.points_before, one.points_now))
     is_less = _number(one.points_now) < _number(one.points_before)
     number = now.number(one.exercise, one.part)
     return Row(one.student, number, one.answer, before, after, points_before, points_now, is_less)
 
 
-def _questions(visit: Visit, now: ClassNow, told: MarkedNow) -> list[tuple[str, int, int, str]]:
+def _questions(request: Request, now: ClassNow, told: MarkedNow) -> list[tuple[str, int, int, str]]:
     """By question: its number, how many marks rise, how many fall, and the points that the class gains or loses."""
     found: dict[tuple[str, str], list[float]] = {}
     for one in told.changes:
         gain = _number(one.points_now) - _number(one.points_before)
         found.setdefault((one.exercise, one.part), []).append(gain)
     return [
-        (now.number(*question), *_signs(found[question]), localise(f"{sum(found[question]):+g}", visit.lang))
+        (
+            now.number(*question),
+            *_signs(found[question]),
+            localise(f"{sum(found[question]):+g}", request.lang),
+        )
         for question in now.questions
         if question in found
     ]
@@ -94,16 +100,16 @@ def _number(points: str) -> float:
     return float(points or 0)
 
 
-def changes(visit: Visit) -> Reply:
+def changes(request: Request) -> Response:
     """Return the table of changed marks as a file."""
-    now = class_now(visit.site, assignment_of(visit))
-    told = would_change(_as_it_stands(visit.site, now), visit.site.store, now.about.id)
-    spreadsheet = SPREADSHEETS["comma" if visit.lang == "fr" else "point"]
+    now = class_now(request.site, assignment_of(request))
+    told = would_change(_as_it_stands(request.site, now), request.site.store, now.about.id)
+    spreadsheet = SPREADSHEETS["comma" if request.lang == "fr" else "point"]
     data = csv_file((one.row() for one in told.changes), Change._fields, spreadsheet)
-    return Reply(kind="text/csv; charset=utf-8", data=data, file="changes.csv")
+    return Response(media_type="text/csv; charset=utf-8", content=data, filename="changes.csv")
 
 
-PAGES = (
-    Page("/desk/{assignment:int}/regrade", regrade, Permission.MARKS_REGRADE, posts=True),
-    Page("/desk/{assignment:int}/changes.csv", changes, Permission.MARKS_REGRADE),
+ROUTES = (
+    Route("/desk/{assignment:int}/regrade", regrade, Permission.MARKS_REGRADE, takes_forms=True),
+    Route("/desk/{assignment:int}/changes.csv", changes, Permission.MARKS_REGRADE),
 )

@@ -9,31 +9,31 @@ from coursework.database.marking import mark_delivery
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.rows import Collected, Row
-from coursework.site.desk.class_at_hand import ClassNow, RejectedRow, assignment_of, by_whom, class_now
+from coursework.site.desk.class_cache import ClassNow, RejectedRow, assignment_of, by_whom, class_now
 from coursework.site.desk.files import files_page
 from coursework.site.desk.queue import Filters, shown_card
-from coursework.site.frame.visits import Page, Refused, Reply, Visit
+from coursework.site.frame.requests import HTTPException, Request, Response, Route
 
 _LONGEST = 500  #: characters of a reason
 
 
-def rejected(visit: Visit) -> Reply:
+def rejected(request: Request) -> Response:
     """Decide on a rejected row; back to where it was shown."""
-    now = class_now(visit.site, assignment_of(visit))
-    row = next((one for one in now.rejected if one.id == visit.form.text("row")), None)
+    now = class_now(request.site, assignment_of(request))
+    row = next((one for one in now.rejected if one.id == request.form.text("row")), None)
     if row is None:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     try:
-        told = _decided(visit, now, row)
+        told = _decided(request, now, row)
     except BadInput as fault:
         told = str(fault)
-    if visit.form.text("from") == "queue":
-        filters = Filters.of({k: visit.form.text(k) for k in ("why", "exercise", "part")})
-        return shown_card(visit, class_now(visit.site, now.about.id), filters, "", told)
-    return files_page(visit, [told])
+    if request.form.text("from") == "queue":
+        filters = Filters.of({k: request.form.text(k) for k in ("why", "exercise", "part")})
+        return shown_card(request, class_now(request.site, now.about.id), filters, "", told)
+    return files_page(request, [told])
 
 
-def _decided(visit: Visit, now: ClassNow, row: RejectedRow) -> str:
+def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
     """Apply the action of a form to a rejected row; return the message.
 
     Raises
@@ -41,43 +41,61 @@ def _decided(visit: Visit, now: ClassNow, row: RejectedRow) -> str:
     BadInput
         Nobody and nothing is named, or an answer stands there already.
     """
-    said, asked_for = visit.said["files"], visit.form.text("do")
+    said, asked_for = request.words["files"], request.form.text("do")
     if asked_for == "back":
-        with visit.site.store.begin() as connection:
+        with request.site.store.begin() as connection:
             drop_placing(connection, now.about.id, row.id)
         return str(said["is_back"])
     if row.became is not None:
         return str(said["was_placed" if row.became.delivery_id else "was_aside"]).format(row.became.by)
-    reason = visit.form.text("reason").strip()[:_LONGEST]
+    reason = request.form.text("reason").strip()[:_LONGEST]
     if asked_for == "aside":
-        with visit.site.store.begin() as connection:
-            put_placing(connection, now.about.id, Placed(row.id, None, reason, by_whom(visit), visit.at))
-            note(connection, visit.at, by_whom(visit), "row put aside", assignment=now.about.id, row=row.id)
+        with request.site.store.begin() as connection:
+            put_placing(
+                connection, now.about.id, Placed(row.id, None, reason, by_whom(request), request.received_at)
+            )
+            note(
+                connection,
+                request.received_at,
+                by_whom(request),
+                "row put aside",
+                assignment=now.about.id,
+                row=row.id,
+            )
         return str(said["aside_done"])
     if asked_for != "place":
-        raise Refused("bad_request", 400)
-    answer = _answer(visit, now, row)
-    source = f"{row.row.source} ({said['by_hand'].format(by_whom(visit))})"
-    with visit.site.store.begin() as connection:
+        raise HTTPException("bad_request", 400)
+    answer = _answer(request, now, row)
+    source = f"{row.row.source} ({said['by_hand'].format(by_whom(request))})"
+    with request.site.store.begin() as connection:
         came = deliver(
             connection,
             now.about.id,
             [answer._replace(source=source)],
             source=source,
-            came=visit.at,
+            came=request.received_at,
             in_place=True,
         )
-        put_placing(connection, now.about.id, Placed(row.id, came.id, reason, by_whom(visit), visit.at))
-        note(connection, visit.at, by_whom(visit), "row placed", assignment=now.about.id, row=row.id)
-    mark_delivery(visit.site.course, visit.site.store, came.id)
+        put_placing(
+            connection, now.about.id, Placed(row.id, came.id, reason, by_whom(request), request.received_at)
+        )
+        note(
+            connection,
+            request.received_at,
+            by_whom(request),
+            "row placed",
+            assignment=now.about.id,
+            row=row.id,
+        )
+    mark_delivery(request.site.course, request.site.store, came.id)
     return str(said["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
 
 
-def _answer(visit: Visit, now: ClassNow, row: RejectedRow) -> Row:
+def _answer(request: Request, now: ClassNow, row: RejectedRow) -> Row:
     """Return the answer that a person assigns to a rejected row."""
-    said, issued = visit.said["files"], now.issued
-    student = issued.student(visit.form.text("student"))
-    exercise, _, part = visit.form.text("question").partition("/")
+    said, issued = request.words["files"], now.issued
+    student = issued.student(request.form.text("student"))
+    exercise, _, part = request.form.text("question").partition("/")
     if not student or (exercise, part) not in now.questions:
         raise BadInput(said["place_whose"])
     text = row.row.row.get("answer", "")
@@ -95,4 +113,4 @@ def _answer(visit: Visit, now: ClassNow, row: RejectedRow) -> Row:
     )
 
 
-PAGES = (Page("/desk/{assignment:int}/rejected", rejected, Permission.MARKS_DECIDE, posts=True),)
+ROUTES = (Route("/desk/{assignment:int}/rejected", rejected, Permission.MARKS_DECIDE, takes_forms=True),)

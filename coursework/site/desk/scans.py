@@ -19,11 +19,11 @@ from coursework.scanning.queue import place_of_card
 from coursework.scanning.sources import ENDINGS
 from coursework.scanning.typed import NAME, PAGE
 from coursework.site.desk import scan_jobs
-from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.files import file_name
 from coursework.site.desk.scans_now import ScansNow, hand_over, scans_now
 from coursework.site.frame.budgets import DESK_FILES
-from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
+from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
 
 LONGEST = 4000  #: characters of an answer
 _ID = re.compile(r"[0-9a-f]{16}-\d{4,6}")
@@ -44,23 +44,23 @@ class Shown:
 # ------------------------------------------------------------------------ pages
 
 
-def scans_page(visit: Visit, told: str = "") -> Reply:
+def scans_page(request: Request, told: str = "") -> Response:
     """Return the page of scans and their state; store an upload, if a form brings one."""
-    now = class_now(visit.site, assignment_of(visit))
-    if visit.posted:
-        told = _sent(visit, now)
-    job = scan_jobs.job(visit.site, now.about.id)
-    scans = scans_now(visit.site, now.about.id)
-    if visit.posted and visit.form.text("do") == "hand over":
-        told = visit.said["scans"]["handed_over"].format(hand_over(visit.site, now.about.id, scans))
+    now = class_now(request.site, assignment_of(request))
+    if request.is_post:
+        told = _sent(request, now)
+    job = scan_jobs.job(request.site, now.about.id)
+    scans = scans_now(request.site, now.about.id)
+    if request.is_post and request.form.text("do") == "hand over":
+        told = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, scans))
     absent = _absent(now, scans)
     return class_page_of(
-        visit, now, "site_desk_scans", "scans", told=told, job=job, scans=scans, endings=",".join((*ENDINGS, ".zip")),
+        request, now, "site_desk_scans", "scans", told=told, job=job, scans=scans, endings=",".join((*ENDINGS, ".zip")),
         absent=absent if scans.pages else [],
     )  # fmt: skip
 
 
-def _sent(visit: Visit, now: ClassNow) -> str:
+def _sent(request: Request, now: ClassNow) -> str:
     """Begin to read what was sent.
 
     Raises
@@ -68,12 +68,12 @@ def _sent(visit: Visit, now: ClassNow) -> str:
     BadInput
         Nothing was.
     """
-    if visit.form.text("do") == "hand over":
+    if request.form.text("do") == "hand over":
         return ""
-    sent = [one for one in visit.form.files.get("scans", ()) if one.data]
+    sent = [one for one in request.form.files.get("scans", ()) if one.data]
     if not sent:
-        raise BadInput(visit.said["files"]["none_sent"])
-    scan_jobs.begin(visit.site, now.about.id, _by_names(sent), by_whom(visit))
+        raise BadInput(request.words["files"]["none_sent"])
+    scan_jobs.begin(request.site, now.about.id, _by_names(sent), by_whom(request))
     return ""
 
 
@@ -92,30 +92,30 @@ def _absent(now: ClassNow, scans: ScansNow) -> list[str]:
     return [student for student in now.issued.students if student not in met]
 
 
-def cards_page(visit: Visit) -> Reply:
+def cards_page(request: Request) -> Response:
     """Return one card after another; a form decides on one."""
-    now = class_now(visit.site, assignment_of(visit))
-    scans = scans_now(visit.site, now.about.id)
-    if not visit.posted:
-        return _shown(visit, now, scans, visit.query.get("at", ""))
-    asked_for, id_ = visit.form.text("do"), visit.form.text("card")
+    now = class_now(request.site, assignment_of(request))
+    scans = scans_now(request.site, now.about.id)
+    if not request.is_post:
+        return _shown(request, now, scans, request.query_params.get("at", ""))
+    asked_for, id_ = request.form.text("do"), request.form.text("card")
     before = [card.id for card in scans.cards]
     card = next((one for one in scans.cards if one.id == id_), None)
     if card is None:
-        return _shown(visit, now, scans, "", visit.said["scans"]["taken"])
+        return _shown(request, now, scans, "", request.words["scans"]["taken"])
     if asked_for not in ("confirm", "nothing"):
-        raise Refused("bad_request", 400)
-    told = _typed(visit, now, scans, card, "" if asked_for == "nothing" else _answer(visit, card))
-    later = scans_now(visit.site, now.about.id)
+        raise HTTPException("bad_request", 400)
+    told = _typed(request, now, scans, card, "" if asked_for == "nothing" else _answer(request, card))
+    later = scans_now(request.site, now.about.id)
     if not later.cards:
-        told = visit.said["scans"]["handed_over"].format(hand_over(visit.site, now.about.id, later))
+        told = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, later))
     left = {one.id for one in later.cards}
     place = before.index(id_)
     at = next((one for one in (*before[place:], *before[:place]) if one in left), "")
-    return _shown(visit, class_now(visit.site, now.about.id), later, at, told)
+    return _shown(request, class_now(request.site, now.about.id), later, at, told)
 
 
-def _answer(visit: Visit, card: Card) -> str:
+def _answer(request: Request, card: Card) -> str:
     """Return the typed answer.
 
     Raises
@@ -123,42 +123,50 @@ def _answer(visit: Visit, card: Card) -> str:
     BadInput
         It is no page, or no name, where one is asked.
     """
-    told = visit.form.text("answer").strip()[:LONGEST]
+    told = request.form.text("answer").strip()[:LONGEST]
     if card.exercise == PAGE:
-        return f"{visit.form.text('paper')} {visit.form.text('number').strip() or '1'}"
+        return f"{request.form.text('paper')} {request.form.text('number').strip() or '1'}"
     if card.exercise == NAME and not told:
-        raise BadInput(visit.said["scans"]["no_name"])
+        raise BadInput(request.words["scans"]["no_name"])
     return told
 
 
-def _typed(visit: Visit, now: ClassNow, scans: ScansNow, card: Card, answer: str) -> str:
+def _typed(request: Request, now: ClassNow, scans: ScansNow, card: Card, answer: str) -> str:
     """Keep what was typed; says so."""
     student, exercise, seed, part, coordinate = place_of_card(card)
     row = TypedRow(
-        student, exercise, seed, part, coordinate, answer, " ".join(card.pages), by_whom(visit), visit.at
+        student,
+        exercise,
+        seed,
+        part,
+        coordinate,
+        answer,
+        " ".join(card.pages),
+        by_whom(request),
+        request.received_at,
     )
     code, _, number = answer.partition(" ")
     if exercise == PAGE and answer and not (code in scans.papers.papers and number in _numbers(scans, code)):
-        raise BadInput(visit.said["scans"]["no_page"])
-    with visit.site.store.begin() as connection:
+        raise BadInput(request.words["scans"]["no_page"])
+    with request.site.store.begin() as connection:
         put_typed(connection, now.about.id, [row])
         if exercise == PAGE and answer:
             name_scanned(connection, now.about.id, part, scans.papers.papers[code].student)
         about = {"assignment": now.about.id, "exercise": exercise, "part": part if exercise != PAGE else ""}
-        note(connection, visit.at, by_whom(visit), "scan typed", **about)
-    return str(visit.said["scans"]["kept"])
+        note(connection, request.received_at, by_whom(request), "scan typed", **about)
+    return str(request.words["scans"]["kept"])
 
 
 def _numbers(scans: ScansNow, code: str) -> list[str]:
     return [str(page.number) for page in scans.papers[code]]
 
 
-def _shown(visit: Visit, now: ClassNow, scans: ScansNow, at: str, told: str = "") -> Reply:
+def _shown(request: Request, now: ClassNow, scans: ScansNow, at: str, told: str = "") -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
     cards = scans.cards
     place = next((k for k, one in enumerate(cards) if one.id == at), 0)
     names: dict[str, Any] = {
-        "shown": _as_shown(visit, now, scans, cards[place]) if cards else None,
+        "shown": _as_shown(request, now, scans, cards[place]) if cards else None,
         "place": place + 1,
         "count": len(cards),
         "before": cards[place - 1].id if cards else "",
@@ -168,13 +176,13 @@ def _shown(visit: Visit, now: ClassNow, scans: ScansNow, at: str, told: str = ""
         "place_url": f"/desk/{now.about.id}/scans/queue",
         "papers": [(code, p.student) for code, p in scans.papers.papers.items() if p.size == "a4"],
     }
-    if visit.is_piece:
-        return visit.page("_desk_scan_card", now=now, **names)
-    return class_page_of(visit, now, "site_desk_scan_queue", "scans", **names)
+    if request.is_fragment:
+        return request.render("_desk_scan_card", now=now, **names)
+    return class_page_of(request, now, "site_desk_scan_queue", "scans", **names)
 
 
-def _as_shown(visit: Visit, now: ClassNow, scans: ScansNow, card: Card) -> Shown:
-    said = words(visit.lang, "scan")["waits"]
+def _as_shown(request: Request, now: ClassNow, scans: ScansNow, card: Card) -> Shown:
+    said = words(request.lang, "scan")["waits"]
     base = f"/desk/{now.about.id}/scans"
     pages = tuple(f"{base}/picture?page={name}" for name in card.pages)
     crops = tuple(f"{base}/crop?page={one.page}&field={one.index}" for one in card.said) or pages
@@ -185,53 +193,53 @@ def _as_shown(visit: Visit, now: ClassNow, scans: ScansNow, card: Card) -> Shown
 # --------------------------------------------------------------------- pictures
 
 
-def picture(visit: Visit) -> Reply:
+def picture(request: Request) -> Response:
     """Return the picture of a page."""
-    name, data = _picture(visit)
-    return Reply(kind="image/jpeg", data=data) if name else Reply(status=404)
+    name, data = _picture(request)
+    return Response(media_type="image/jpeg", content=data) if name else Response(status_code=404)
 
 
-def crop(visit: Visit) -> Reply:
+def crop(request: Request) -> Response:
     """Return the picture of a field of a page."""
-    name, data = _picture(visit)
-    scans = scans_now(visit.site, assignment_of(visit))
-    told, page = visit.query.get("field", ""), scans.by_id[name].page
+    name, data = _picture(request)
+    scans = scans_now(request.site, assignment_of(request))
+    told, page = request.query_params.get("field", ""), scans.by_id[name].page
     number = int(told) if told.isascii() and told.isdecimal() and len(told) < 5 else -1
     if not 0 <= number < len(page.fields):
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     if not page.is_straight:
-        return Reply(kind="image/jpeg", data=data)
-    return Reply(kind="image/png", data=cut(data, page.fields[number]))
+        return Response(media_type="image/jpeg", content=data)
+    return Response(media_type="image/png", content=cut(data, page.fields[number]))
 
 
-def _picture(visit: Visit) -> tuple[str, bytes]:
+def _picture(request: Request) -> tuple[str, bytes]:
     """Return the page of this assignment that the address names, and its picture."""
-    number, name = assignment_of(visit), visit.query.get("page", "")
+    number, name = assignment_of(request), request.query_params.get("page", "")
     if _ID.fullmatch(name):
-        with visit.site.store.reading() as connection:
+        with request.site.store.reading() as connection:
             data = picture_scanned(connection, number, name)
         if data:
             return name, data
-    raise Refused("own", 404)
+    raise HTTPException("own", 404)
 
 
-PAGES = (
-    Page(
+ROUTES = (
+    Route(
         "/desk/{assignment:int}/scans",
         scans_page,
         Permission.SCANS_READ,
-        posts=True,
+        takes_forms=True,
         limit="upload",
         budget=DESK_FILES,
-        posting=Permission.SCANS_BRING,
+        form_permission=Permission.SCANS_BRING,
     ),
-    Page(
+    Route(
         "/desk/{assignment:int}/scans/queue",
         cards_page,
         Permission.SCANS_READ,
-        posts=True,
-        posting=Permission.SCANS_TYPE,
+        takes_forms=True,
+        form_permission=Permission.SCANS_TYPE,
     ),
-    Page("/desk/{assignment:int}/scans/picture", picture, Permission.SCANS_READ),
-    Page("/desk/{assignment:int}/scans/crop", crop, Permission.SCANS_READ),
+    Route("/desk/{assignment:int}/scans/picture", picture, Permission.SCANS_READ),
+    Route("/desk/{assignment:int}/scans/crop", crop, Permission.SCANS_READ),
 )

@@ -79,7 +79,7 @@ def scans_now(site: Site, number: int) -> ScansNow:
         content = issued_content(connection, number)
         rows = pages_scanned(connection, number)
         told = typed_rows(connection, number)
-    papers = site.shelf.get(
+    papers = site.cache.get(
         ("papers that are scanned", number, _stamp(content)), lambda: Papers(site.course, content)
     )
     typed = tuple(Typed(*map(str, row[:7])) for row in told)

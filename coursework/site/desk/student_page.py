@@ -24,9 +24,9 @@ from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise
 from coursework.making.students import folded
 from coursework.marking.mark import Mark
-from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import Asked, asked, decided_words, moment, sign_of, steps
-from coursework.site.frame.visits import Page, Refused, Reply, Visit
+from coursework.site.frame.requests import HTTPException, Request, Response, Route
 
 _LONGEST = 2000  #: characters of a comment
 
@@ -65,19 +65,19 @@ class Practised:
     last: str
 
 
-def student_page(visit: Visit) -> Reply:
+def student_page(request: Request) -> Response:
     """Return the page of a student; a form decides on one of the answers."""
-    now = class_now(visit.site, assignment_of(visit))
-    student = _student(visit, now)
+    now = class_now(request.site, assignment_of(request))
+    student = _student(request, now)
     told = ""
-    if visit.posted:
+    if request.is_post:
         try:
-            told = _decided(visit, now, student)
+            told = _decided(request, now, student)
         except BadInput as fault:
             told = str(fault)
-        now = class_now(visit.site, now.about.id)
+        now = class_now(request.site, now.about.id)
     result = now.results[student]
-    with visit.site.store.reading() as connection:
+    with request.site.store.reading() as connection:
         happened = history(connection, now.about.id, student)
         tries = tries_of(connection, now.about.id, student)
         person = people_of(connection, now.about.id).get(student)
@@ -85,25 +85,25 @@ def student_page(visit: Visit) -> Reply:
     by_place: dict[tuple[str, str], list[Happened]] = {}
     for _, exercise, part, one in happened:
         by_place.setdefault((exercise, part), []).append(one)
-    sheets = [_sheet(visit, now, place, by_place) for place in now.machine if place[0] == student]
+    sheets = [_sheet(request, now, place, by_place) for place in now.machine if place[0] == student]
     sheets.sort(key=lambda one: (-one.graded.sitting, now.issued.exercises.index(one.graded.exercise)))
     return class_page_of(
-        visit, now, "site_desk_student", "class", student=student, result=result, told=told,
-        mark=localise(mark_of(now.issued, result.counts, result.out_of), visit.lang), columns=_columns(now, student),
-        tries=[(moment(one.came, visit.lang), one) for one in tries], known=person or 0,
+        request, now, "site_desk_student", "class", student=student, result=result, told=told,
+        mark=localise(mark_of(now.issued, result.counts, result.out_of), request.lang), columns=_columns(now, student),
+        tries=[(moment(one.came, request.lang), one) for one in tries], known=person or 0,
         sittings=[(n, list(own)) for n, own in groupby(sheets, key=lambda one: one.graded.sitting)],
-        practised=[_practised(visit, name, *alone[name]) for name in now.issued.exercises if name in alone],
+        practised=[_practised(request, name, *alone[name]) for name in now.issued.exercises if name in alone],
         rejected=[one for one in now.rejected if one.student == student],
     )  # fmt: skip
 
 
-def _student(visit: Visit, now: ClassNow) -> str:
-    told = visit.form.text("name") if visit.posted else visit.query.get("name", "")
+def _student(request: Request, now: ClassNow) -> str:
+    told = request.form.text("name") if request.is_post else request.query_params.get("name", "")
     if told in now.results:
         return told
     found = {folded(name): name for name in now.results}.get(folded(told))
     if found is None:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     return found
 
 
@@ -113,10 +113,12 @@ def _columns(now: ClassNow, student: str) -> list[tuple[str, str]]:
     return [(titles.get(key, key), value) for key, value in told.items() if value]
 
 
-def _sheet(visit: Visit, now: ClassNow, place: Any, happened: dict[tuple[str, str], list[Happened]]) -> Sheet:
+def _sheet(
+    request: Request, now: ClassNow, place: Any, happened: dict[tuple[str, str], list[Happened]]
+) -> Sheet:
     machine, stands = now.machine[place], now.graded[place]
     lines = [
-        _line(visit, now, machine, stands, part, happened.get((machine.exercise, part), []))
+        _line(request, now, machine, stands, part, happened.get((machine.exercise, part), []))
         for part in machine.lines
     ]
     title = lines[0].asked.handout.title if lines else machine.exercise
@@ -124,29 +126,29 @@ def _sheet(visit: Visit, now: ClassNow, place: Any, happened: dict[tuple[str, st
 
 
 def _line(
-    visit: Visit, now: ClassNow, machine: Graded, stands: Graded, part: str, happened: list[Happened]
+    request: Request, now: ClassNow, machine: Graded, stands: Graded, part: str, happened: list[Happened]
 ) -> Line:
     own = [one for one in happened if one.seed in ("", str(machine.seed))]
     own = [one for one in own if one.sitting in (0, machine.sitting)]
-    told = tuple(_told(visit, one) for one in own)
+    told = tuple(_told(request, one) for one in own)
     mark, in_class = stands.lines[part], now.number(machine.exercise, part)
     number = f"{in_class.partition('.')[0]}.{list(machine.lines).index(part) + 1}"
     return Line(
-        asked(now.course, now.issued, machine, part, visit.lang), number, in_class if in_class != number else "",
+        asked(now.course, now.issued, machine, part, request.lang), number, in_class if in_class != number else "",
         machine.lines[part], mark, sign_of(mark), told,
         now.decisions.standing(machine, machine.lines[part]) is not None, steps(mark.out_of),
     )  # fmt: skip
 
 
-def _told(visit: Visit, one: Happened) -> str:
+def _told(request: Request, one: Happened) -> str:
     """Return a line of the history."""
     if one.kind == "marked":
         from coursework.rendering.feedback import verdict_word
 
-        said = visit.said["class"]["marked"]
-        at = moment(one.at, visit.lang)
-        return str(said).format(verdict_word(one.verdict, visit.lang), f"{one.points or 0:g}", at)
-    return decided_words(visit, _Made(one))
+        said = request.words["class"]["marked"]
+        at = moment(one.at, request.lang)
+        return str(said).format(verdict_word(one.verdict, request.lang), f"{one.points or 0:g}", at)
+    return decided_words(request, _Made(one))
 
 
 class _Made:
@@ -162,13 +164,13 @@ class _Made:
         )
 
 
-def _practised(visit: Visit, name: str, variants: int, last: datetime | None) -> Practised:
-    exercise = visit.site.course[name]
-    lang = visit.lang if visit.lang in exercise.languages else exercise.languages[0]
-    return Practised(exercise.title(lang), variants, moment(last, visit.lang) if last else "")
+def _practised(request: Request, name: str, variants: int, last: datetime | None) -> Practised:
+    exercise = request.site.course[name]
+    lang = request.lang if request.lang in exercise.languages else exercise.languages[0]
+    return Practised(exercise.title(lang), variants, moment(last, request.lang) if last else "")
 
 
-def _decided(visit: Visit, now: ClassNow, student: str) -> str:
+def _decided(request: Request, now: ClassNow, student: str) -> str:
     """Decide on one answer, or take back what was decided.
 
     Raises
@@ -176,7 +178,7 @@ def _decided(visit: Visit, now: ClassNow, student: str) -> str:
     BadInput
         The points are no number, or more than there are.
     """
-    form, said = visit.form, visit.said["queue"]
+    form, said = request.form, request.words["queue"]
     exercise, seed, part = form.text("exercise"), form.text("seed"), form.text("part")
     sheet = next(
         (
@@ -188,10 +190,10 @@ def _decided(visit: Visit, now: ClassNow, student: str) -> str:
         None,
     )
     if sheet is None or part not in sheet.lines:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     kind, points = _kind(form.text("do"), form.text("points"), sheet.lines[part], said)
     place = Place(student, exercise, seed, part, sheet.lines[part].answer)
-    with visit.site.store.begin() as connection:
+    with request.site.store.begin() as connection:
         decide(
             connection,
             now.about.id,
@@ -199,10 +201,10 @@ def _decided(visit: Visit, now: ClassNow, student: str) -> str:
             kind,
             points,
             form.text("comment").strip()[:_LONGEST],
-            by_whom(visit),
+            by_whom(request),
         )
         note(
-            connection, visit.at, by_whom(visit), "decision", assignment=now.about.id, exercise=exercise, part=part,
+            connection, request.received_at, by_whom(request), "decision", assignment=now.about.id, exercise=exercise, part=part,
             kind=kind, points=points, count=1,
         )  # fmt: skip
     return str(said["decided"][kind]).format(1, f"{points or 0:g}")
@@ -218,16 +220,16 @@ def _kind(asked_for: str, points: str, mark: Mark, said: Any) -> tuple[str, floa
         return GIVEN, given
     kinds = {"accept": ACCEPTED, "keep": KEPT, "withdraw": WITHDRAWN}
     if asked_for not in kinds:
-        raise Refused("bad_request", 400)
+        raise HTTPException("bad_request", 400)
     return kinds[asked_for], None
 
 
-PAGES = (
-    Page(
+ROUTES = (
+    Route(
         "/desk/{assignment:int}/student",
         student_page,
         Permission.MARKS_READ,
-        posts=True,
-        posting=Permission.MARKS_DECIDE,
+        takes_forms=True,
+        form_permission=Permission.MARKS_DECIDE,
     ),
 )

@@ -55,16 +55,16 @@ class Cookies:
 
     # --------------------------------------------------------------- CSRF tokens
 
-    def seal(self, session: Session) -> str:
+    def csrf_token(self, session: Session) -> str:
         """Return a CSRF token of a session. It is another text each time, so that the length of a compressed page gives nothing of
         it away."""
         mask = secrets.token_bytes(_HALF)
         return (mask + _mixed(mask, self._own(session))).hex()
 
-    def fits(self, session: Session, seal: str) -> bool:
+    def fits(self, session: Session, token: str) -> bool:
         """Return True for a CSRF token of the session."""
         try:
-            told = bytes.fromhex(seal)
+            told = bytes.fromhex(token)
         except ValueError:
             return False
         if len(told) != 2 * _HALF:

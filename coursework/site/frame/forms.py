@@ -10,12 +10,12 @@ from types import MappingProxyType
 from typing import Any
 
 from starlette.datastructures import UploadFile
-from starlette.exceptions import HTTPException
+from starlette.exceptions import HTTPException as StarletteException
 from starlette.formparsers import FormParser, MultiPartException, MultiPartParser
 from starlette.requests import Request
 
 from coursework.site.frame.budgets import KILOBYTE, MEGABYTE, Budget
-from coursework.site.frame.visits import Form, Refused, Upload
+from coursework.site.frame.requests import Form, HTTPException, Upload
 
 _TYPED = 1024 * 1024  #: bytes of a form without files, and of a field beside files
 _SECONDS, _RATE = 30.0, 20_000  #: that a form may take: at once, and bytes a second
@@ -27,7 +27,7 @@ async def read_form(request: Request, budget: Budget) -> Form:
 
     Raises
     ------
-    Refused
+    HTTPException
         It is larger than its budget, does not say how large it is, takes too long, or cannot be read.
     """
     size = _size(request)
@@ -36,23 +36,23 @@ async def read_form(request: Request, budget: Budget) -> Form:
     kind = _kind(request)
     most = min(budget.largest, _TYPED) if kind == _PLAIN else budget.largest
     if size > most:
-        raise Refused("too_large", 413, shown_size(most))
+        raise HTTPException("too_large", 413, shown_size(most))
     try:
         async with asyncio.timeout(_SECONDS + size / _RATE):
             return await _read(request, kind, budget)
     except TimeoutError:
-        raise Refused("too_slow", 408) from None
-    except (MultiPartException, HTTPException, ValueError):
-        raise Refused("bad_request", 400) from None
+        raise HTTPException("too_slow", 408) from None
+    except (MultiPartException, StarletteException, ValueError):
+        raise HTTPException("bad_request", 400) from None
 
 
 def _size(request: Request) -> int:
     """Return the stated length of the body; a chunked body is refused, since its length is unknown."""
     told = request.headers.get("content-length", "")
     if "transfer-encoding" in request.headers:
-        raise Refused("bad_request", 411)
+        raise HTTPException("bad_request", 411)
     if not (told.isascii() and told.isdecimal()) or len(told) > 15:
-        raise Refused("bad_request", 411)
+        raise HTTPException("bad_request", 411)
     return int(told)
 
 
@@ -65,7 +65,7 @@ def _kind(request: Request) -> str:
         "utf-8",
         "UTF-8",
     ):
-        raise Refused("bad_request", 415)
+        raise HTTPException("bad_request", 415)
     return told.get_content_type()
 
 
@@ -99,7 +99,7 @@ class _Parts(MultiPartParser):
     def on_part_data(self, data: bytes, start: int, end: int) -> None:
         self._so_far += end - start
         if self._most and self._so_far > self._most:
-            raise Refused("too_large", 413, shown_size(self._most))
+            raise HTTPException("too_large", 413, shown_size(self._most))
         super().on_part_data(data, start, end)
 
 
@@ -113,7 +113,7 @@ async def _form(items: Sequence[tuple[str, Any]], most: int) -> Form:
         else:
             texts.setdefault(clean(name), []).append(clean(str(value)))
     if len(items) > most:
-        raise Refused("bad_request", 400)
+        raise HTTPException("bad_request", 400)
     return Form(texts, files)
 
 

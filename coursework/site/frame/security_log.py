@@ -9,7 +9,7 @@ import logging
 
 from starlette.requests import Request
 
-from coursework.site.frame.visits import Refused
+from coursework.site.frame.requests import HTTPException
 from coursework.system.allowances import network
 
 LOG = logging.getLogger("coursework.security")
@@ -28,9 +28,9 @@ _BY_STATUS = {
 _BY_SENTENCE = {"form": "forged form", "own": "no permission", "role": "no permission"}
 
 
-def event_of(why: Refused) -> str:
+def event_of(why: HTTPException) -> str:
     """Return what a refusal is called in the log; "" for one that concerns no security."""
-    return _BY_SENTENCE.get(why.sentence) or _BY_STATUS.get(why.status, "")
+    return _BY_SENTENCE.get(why.sentence) or _BY_STATUS.get(why.status_code, "")
 
 
 def happened(request: Request, event: str, person: int = 0) -> None:

@@ -20,9 +20,9 @@ from coursework.database.settings import course_taken, secret, take_course
 from coursework.database.store import Store
 from coursework.site.frame.clock import SteadyClock
 from coursework.site.frame.limits import Limits
+from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.pages import Pages
 from coursework.site.frame.pool import Pool
-from coursework.site.frame.shelf import Shelf
 from coursework.system.places import Places
 
 _VARIANTS = (
@@ -49,7 +49,7 @@ class Site:
     entrance: Entrance = Entrance.LOCAL
     url: str = "http://127.0.0.1:8000"
     clock: Clock = None  # type: ignore[assignment]  #: one that follows no leap, unless told
-    shelf: Shelf = field(default_factory=lambda: Shelf(_VARIANTS))
+    cache: LRUCache = field(default_factory=lambda: LRUCache(_VARIANTS))
     limits: Limits = field(default_factory=Limits)
     places: Places = field(default_factory=Places)
     lti: Path | None = None  #: folder of the platforms from which links lead here
@@ -74,7 +74,7 @@ class Site:
 
     def ahead(self, key: Hashable, work: Callable[[], object]) -> None:
         """Do something beside the requests that somebody will soon ask for; once."""
-        self.shelf.get(("ahead", key), lambda: self._aside.submit(work))
+        self.cache.get(("ahead", key), lambda: self._aside.submit(work))
 
     @cached_property
     def _aside(self) -> ThreadPoolExecutor:
@@ -105,7 +105,7 @@ class Site:
         return Course(course_folder(self.course.folder.root), Variant)
 
     def _go_on_with(self, course: Course[Any]) -> None:
-        self.course, self.shelf = course, Shelf(_VARIANTS)
+        self.course, self.cache = course, LRUCache(_VARIANTS)
         self.__dict__.pop("pages", None)
 
     @property
@@ -129,4 +129,4 @@ class Site:
         """
         one = self.course[exercise]
         spoken = lang if lang in one.languages else one.languages[0]
-        return self.shelf.get((exercise, seed, spoken), lambda: one.variant(seed, spoken))
+        return self.cache.get((exercise, seed, spoken), lambda: one.variant(seed, spoken))

@@ -14,9 +14,9 @@ from coursework.language.words import words
 from coursework.lti.host import Visit
 from coursework.lti.storage import Waiting
 from coursework.site.desk import class_page
-from coursework.site.desk.class_at_hand import ClassNow
-from coursework.site.frame.moments import moment_text
+from coursework.site.desk.class_cache import ClassNow
 from coursework.site.frame.settings import Site
+from coursework.site.frame.times import moment_text
 from coursework.site.lti.scores import marked_in, number_text, standing
 
 

@@ -14,8 +14,8 @@ from coursework.database.identities import tie
 from coursework.database.permissions import Permission
 from coursework.site.frame.attempts import Attempt
 from coursework.site.frame.budgets import PLAIN
+from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Page, Refused, Reply, Visit
 from coursework.site.people import guessing, passwords
 
 if TYPE_CHECKING:
@@ -36,55 +36,57 @@ def address(site: Site, launch: Launch, person: int) -> str:
     return f"{site.url}/connect/{_signed(site).dumps(told)}"
 
 
-def connect(visit: Visit) -> Reply:
+def connect(request: Request) -> Response:
     """Answer the page that ties an account of a platform to who is signed in, once they enter their password again."""
-    issuer, subject, name = _told(visit)
+    issuer, subject, name = _told(request)
     platform = urlsplit(issuer).hostname or issuer
-    with visit.site.store.reading() as connection:
-        mine = account_of(connection, visit.who.id)
-    if mine is None or not mine.secret or visit.who.is_staff:
-        raise Refused("role", 403)
-    missed = visit.posted and not passwords.fits(mine.secret, visit.form.text("now"))
+    with request.site.store.reading() as connection:
+        mine = account_of(connection, request.user.id)
+    if mine is None or not mine.secret or request.user.is_staff:
+        raise HTTPException("role", 403)
+    missed = request.is_post and not passwords.fits(mine.secret, request.form.text("now"))
     if missed:
-        guessing.missed(visit, mine.login)
-    elif visit.posted:
-        guessing.fitted(visit, mine.login)
-        _tie(visit, issuer, subject, platform)
-        return Reply(goto="/account")
+        guessing.missed(request, mine.login)
+    elif request.is_post:
+        guessing.fitted(request, mine.login)
+        _tie(request, issuer, subject, platform)
+        return Response(redirect="/account")
     told = {"platform": platform, "name": name or subject, "login": mine.login, "missed": missed}
-    return visit.page("site_connect", 422 if missed else 200, **told)
+    return request.render("site_connect", 422 if missed else 200, **told)
 
 
-def _told(visit: Visit) -> tuple[str, str, str]:
+def _told(request: Request) -> tuple[str, str, str]:
     try:
-        issuer, subject, name, person = _signed(visit.site).loads(str(visit.path["token"]), max_age=_SECONDS)
+        issuer, subject, name, person = _signed(request.site).loads(
+            str(request.path_params["token"]), max_age=_SECONDS
+        )
     except (BadSignature, ValueError, TypeError):
-        raise Refused("connect_over", 410) from None
-    if person != visit.who.id:
-        raise Refused("connect_other", 403)
+        raise HTTPException("connect_over", 410) from None
+    if person != request.user.id:
+        raise HTTPException("connect_other", 403)
     return str(issuer), str(subject), str(name)
 
 
-def _tie(visit: Visit, issuer: str, subject: str, platform: str) -> None:
-    with visit.site.store.begin() as connection:
-        if not tie(connection, visit.who.id, issuer, subject):
-            raise Refused("connect_over", 410)
-        about = {"person": visit.who.id, "platform": platform, "how": "password"}
-        note(connection, visit.at, visit.actor, "connected a platform", **about)
+def _tie(request: Request, issuer: str, subject: str, platform: str) -> None:
+    with request.site.store.begin() as connection:
+        if not tie(connection, request.user.id, issuer, subject):
+            raise HTTPException("connect_over", 410)
+        about = {"person": request.user.id, "platform": platform, "how": "password"}
+        note(connection, request.received_at, request.actor, "connected a platform", **about)
 
 
-def _attempt(visit: Visit) -> Attempt:
-    with visit.site.store.reading() as connection:
-        mine = account_of(connection, visit.who.id)
-    return guessing.attempt_of(visit, mine.login) if mine is not None else Attempt()
+def _attempt(request: Request) -> Attempt:
+    with request.site.store.reading() as connection:
+        mine = account_of(connection, request.user.id)
+    return guessing.attempt_of(request, mine.login) if mine is not None else Attempt()
 
 
-PAGES = (
-    Page(
+ROUTES = (
+    Route(
         "/connect/{token}",
         connect,
         Permission.OWN,
-        posts=True,
+        takes_forms=True,
         limit="sign_in",
         budget=PLAIN,
         attempt=_attempt,

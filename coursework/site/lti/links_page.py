@@ -9,29 +9,29 @@ from sqlalchemy import Connection, select
 from coursework.database.permissions import Permission
 from coursework.database.tables import identity, person
 from coursework.lti.storage import Storage
-from coursework.site.frame.visits import Page, Reply, Visit
+from coursework.site.frame.requests import Request, Response, Route
 from coursework.site.lti.scores import number_text
 
 
-def waiting(visit: Visit) -> Reply:
+def waiting(request: Request) -> Response:
     """Return the scores that wait to be sent, and the number of those that arrived."""
-    if visit.site.lti is None:
-        return visit.page("site_lti", is_on=False, rows=[], arrived=0)
-    every = list(Storage(visit.site.lti).scores().values())
-    with visit.site.store.reading() as connection:
+    if request.site.lti is None:
+        return request.render("site_lti", is_on=False, rows=[], arrived=0)
+    every = list(Storage(request.site.lti).scores().values())
+    with request.site.store.reading() as connection:
         names = _names(connection)
     rows: list[dict[str, Any]] = [
         {
             "link": one.title or one.link,
             "name": names.get(one.person, one.person),
-            "points": f"{number_text(one.score.given, visit.lang)} / {number_text(one.score.maximum, visit.lang)}",
+            "points": f"{number_text(one.score.given, request.lang)} / {number_text(one.score.maximum, request.lang)}",
             "failures": one.failures,
             "why": one.said,
         }
         for one in every
         if one.due is not None
     ]
-    return visit.page("site_lti", is_on=True, rows=rows, arrived=len(every) - len(rows))
+    return request.render("site_lti", is_on=True, rows=rows, arrived=len(every) - len(rows))
 
 
 def _names(connection: Connection) -> dict[str, str]:
@@ -41,4 +41,4 @@ def _names(connection: Connection) -> dict[str, str]:
     return {row.subject: row.name for row in connection.execute(found)}
 
 
-PAGES = (Page("/desk/lti", waiting, Permission.PLATFORMS_READ),)
+ROUTES = (Route("/desk/lti", waiting, Permission.PLATFORMS_READ),)

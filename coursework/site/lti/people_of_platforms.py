@@ -18,8 +18,8 @@ from coursework.making.dealing import deal
 from coursework.making.issued import issued_content as content_of
 from coursework.making.roster import Student
 from coursework.making.students import folded
+from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Refused
 from coursework.site.lti import connecting
 from coursework.site.publication.dealings import holders
 
@@ -61,12 +61,12 @@ def _put(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
 
     Raises
     ------
-    Refused
+    HTTPException
         The one person has a password, which is to be entered once.
     """
     found = fitting(connection, launch.issuer, launch.email, launch.number)
     if len(found) == 1 and has_password(connection, found[0].id):
-        raise Refused("connect", 403, connecting.address(site, launch, found[0].id))
+        raise HTTPException("connect", 403, connecting.address(site, launch, found[0].id))
     if len(found) == 1:
         number, how = found[0].id, "roster"
     else:
@@ -90,7 +90,7 @@ def _new(connection: Connection, launch: Launch) -> Student:
         one = Student(launch.name, columns=columns)
         if all(columns.values()) and person_by_who(connection, one.who) is None:
             return one
-    raise Refused("own", 404)
+    raise HTTPException("own", 404)
 
 
 # ------------------------------------------------------------------------- dealing
@@ -101,7 +101,7 @@ def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> N
 
     Raises
     ------
-    Refused
+    HTTPException
         It was issued without a file that says what to deal, or others are dealt to all the time.
     """
     for _ in range(_ROUNDS):
@@ -110,7 +110,7 @@ def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> N
             stood = stamp(connection, number).dealt
             about = connection.execute(select(assignment).where(assignment.c.id == number)).one()
         if about.asked is None:
-            raise Refused("not_dealt", 409)
+            raise HTTPException("not_dealt", 409)
         asked = assignment_of(about.name, about.asked, site.course)
         everybody = holders(before)
         own = _student(known, launch, _spoken(site, asked, lang), {folded(one.name) for one in everybody})
@@ -124,7 +124,7 @@ def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> N
                 told = {"assignment": about.name, "students": 1, "person": known.id}
                 note(connection, site.clock(), platform_name(launch), "late ones added", **told)
                 return
-    raise Refused("busy", 503, _AGAIN)
+    raise HTTPException("busy", 503, _AGAIN)
 
 
 def _spoken(site: Site, asked: Assignment, lang: str) -> str:

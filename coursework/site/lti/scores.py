@@ -34,7 +34,7 @@ from coursework.lti.storage import Score, Storage
 from coursework.lti.wanted import Wanted
 from coursework.making.issued import Issued
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_at_hand import ClassNow, class_now
+from coursework.site.desk.class_cache import ClassNow, class_now
 from coursework.site.frame.settings import Site
 from coursework.site.papers.handing_in import pass_dates
 from coursework.site.papers.own_assignment import State

@@ -30,13 +30,13 @@ from coursework.lti.services import Member, NotServed
 from coursework.lti.storage import Score, Storage
 from coursework.lti.wanted import Wanted
 from coursework.making.students import folded
-from coursework.site.desk.class_at_hand import called, class_now
+from coursework.site.desk.class_cache import called, class_now
 from coursework.site.frame.arrivals import arrived
-from coursework.site.frame.moments import exact_text, moment_text
+from coursework.site.frame.requests import Form as SiteForm
+from coursework.site.frame.requests import HTTPException, Person
+from coursework.site.frame.requests import Request as SiteRequest
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Form as SiteForm
-from coursework.site.frame.visits import Person, Refused
-from coursework.site.frame.visits import Visit as SiteVisit
+from coursework.site.frame.times import exact_text, moment_text
 from coursework.site.lti import people_of_platforms
 from coursework.site.lti.class_in_frame import class_rows, rules_rows
 from coursework.site.lti.scores import assignment_number, score_of
@@ -120,12 +120,12 @@ class SiteHost:
             raise LtiRefused("unknown_choice", 404, "no such assignment")
         try:
             return work(number)
-        except Refused as why:
+        except HTTPException as why:
             return self._refused(visit, why)
         except BadInput as fault:
-            return self._refused(visit, Refused("mistaken", 422, str(fault)))
+            return self._refused(visit, HTTPException("mistaken", 422, str(fault)))
 
-    def _refused(self, visit: Visit, why: Refused) -> Reply:
+    def _refused(self, visit: Visit, why: HTTPException) -> Reply:
         said = words(visit.lang, "site")
         sentence = said["lti"]["refused"].get(why.sentence) or said["refused"][why.sentence]
         names = {
@@ -134,40 +134,40 @@ class SiteHost:
         }  # fmt: skip
         if why.sentence == "connect":
             names |= {"connect": str(why.parts[0]), "connect_word": said["connect"]["title"]}
-        return Reply(self.pages.page("lti_message", visit.lang, names), why.status)
+        return Reply(self.pages.page("lti_message", visit.lang, names), why.status_code)
 
     def _shown(self, visit: Visit, number: int) -> Reply:
         if visit.launch.role is not Role.STUDENT:
             return self._class(visit, number)
         if visit.path:
             raise LtiRefused("page", 404, "a student")
-        own_visit = self._visit(visit, number, SiteForm())
-        state, own = own_assignment(own_visit)
+        site_request = self._site_request(visit, number, SiteForm())
+        state, own = own_assignment(site_request)
         if state.done and not ("again" in visit.query and state.may_hand_in):
-            return self._became(visit, own_visit, state, own)
+            return self._became(visit, site_request, state, own)
         if not state.may_hand_in:
-            raise Refused("closed", 409)
+            raise HTTPException("closed", 409)
         texts = self._handed_in(state, own) if state.done else {}
         return Reply(self._sheet(visit, state, own, texts))
 
     # ------------------------------------------------------------------- a student
 
-    def _visit(self, visit: Visit, number: int, form: SiteForm) -> SiteVisit:
+    def _site_request(self, visit: Visit, number: int, form: SiteForm) -> SiteRequest:
         """Return the site's request of the launch's person, after a paper has been assigned to them.
 
         Raises
         ------
-        Refused
+        HTTPException
             It is not published, not open, or there is nothing to be dealt.
         """
         site, launch = self._site, visit.launch
         with site.store.reading() as connection:
             if published(connection, number) is None:
-                raise Refused("own", 404)
+                raise HTTPException("own", 404)
         known = people_of_platforms.comer(site, launch, visit.lang)
         self._deal(visit, number, known)
         person = Person(known.id, known.name, "student", visit.lang)
-        return SiteVisit(
+        return SiteRequest(
             site,
             person,
             visit.lang,
@@ -175,7 +175,7 @@ class SiteHost:
             visit.home,
             {"number": number},
             form=form,
-            posted=bool(form.texts),
+            is_post=bool(form.texts),
         )
 
     def _deal(self, visit: Visit, number: int, known: Any) -> None:
@@ -185,9 +185,9 @@ class SiteHost:
                 return
         phase = said.phase(said.now(self._site.clock()))
         if phase is Phase.TO_COME:
-            raise Refused("not_yet", 409, moment_text(said.opens, visit.lang) if said.opens else "")
+            raise HTTPException("not_yet", 409, moment_text(said.opens, visit.lang) if said.opens else "")
         if not phase.takes:
-            raise Refused("closed", 409)
+            raise HTTPException("closed", 409)
         people_of_platforms.deal_to(self._site, number, known, visit.launch, visit.lang)
 
     def _sheet(
@@ -241,28 +241,28 @@ class SiteHost:
             found.append(str(said["counts_best" if counts == _BEST else "counts_last"]))
         return [" ".join(found)]
 
-    def _became(self, visit: Visit, own_visit: SiteVisit, state: State, own: OwnPaper) -> Reply:
+    def _became(self, visit: Visit, site_request: SiteRequest, state: State, own: OwnPaper) -> Reply:
         """Return the feedback on the last submission if it is released; otherwise a confirmation."""
         said, last = words(visit.lang)["lti"], state.done[-1]
         came = said["try_number"].format(last.number, exact_text(last.came, visit.lang))
-        receipt = own_visit.said["lti"]["receipt"].format(last.receipt)
+        receipt = site_request.words["lti"]["receipt"].format(last.receipt)
         more = [(f"{visit.home}?again=1", said["again"])] if state.may_hand_in else []
-        waits = being_marked(own_visit, last.id) if state.tells("feedback") else None
+        waits = being_marked(site_request, last.id) if state.tells("feedback") else None
         if state.tells("feedback") and waits is None:
-            told, notes = feedback_of(own_visit, state, own, last)
+            told, notes = feedback_of(site_request, state, own, last)
             notes = [f"{came}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
             form = Surrounding("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
             return Reply(self.pages.feedback(told, form, alone=False))
         notes = [
             f"{came}.",
             receipt,
-            waits.says if waits else feedback_from(own_visit, state),
+            waits.says if waits else feedback_from(site_request, state),
             *self._rules(visit, state),
             self._sent(visit, state),
         ]
         names = {
             "title": state.title, "notes": [one for one in notes if one], "more": more, "leave": visit.launch.return_url,
-            "handed_in": own_visit.said["lti"]["handed_in"],
+            "handed_in": site_request.words["lti"]["handed_in"],
         }  # fmt: skip
         return Reply(self.pages.page("lti_site_handed_in", visit.lang, names))
 
@@ -281,9 +281,9 @@ class SiteHost:
         """Hand in what a form brings: once, whatever comes twice."""
         if visit.launch.role is not Role.STUDENT or visit.path:
             raise LtiRefused("page", 404, "nothing is handed in there")
-        own_visit = self._visit(visit, number, SiteForm(form))
-        state, own = own_assignment(own_visit)
-        texts, place = own.texts(own_visit.form), _number(form)
+        site_request = self._site_request(visit, number, SiteForm(form))
+        state, own = own_assignment(site_request)
+        texts, place = own.texts(site_request.form), _number(form)
         if place <= len(state.done):
             return Reply(goto=visit.home)  # the same form once more
         if not any(text.strip() for text in texts.values()):
@@ -292,7 +292,16 @@ class SiteHost:
         unread = _unread(visit, own, texts)
         if unread and not form.get("_as_it_is"):
             return Reply(self._sheet(visit, state, own, texts, unread=unread), 422)
-        hand_in(self._site, state.place, own, own_visit.who.id, texts, place, own_visit.at, FROM_A_PLATFORM)
+        hand_in(
+            self._site,
+            state.place,
+            own,
+            site_request.user.id,
+            texts,
+            place,
+            site_request.received_at,
+            FROM_A_PLATFORM,
+        )
         return Reply(goto=visit.home)
 
     # ------------------------------------------------------------------------ class

@@ -6,8 +6,8 @@ from datetime import timedelta
 from typing import NamedTuple
 
 from coursework.database.jobs import before, job_of
-from coursework.site.frame.moments import length_text
-from coursework.site.frame.visits import Visit
+from coursework.site.frame.requests import Request
+from coursework.site.frame.times import length_text
 
 _SOON, _EACH, _LONGEST = (
     3.0,
@@ -23,16 +23,16 @@ class Marking(NamedTuple):
     seconds: int  #: until the page looks again; 0 where that is of no use
 
 
-def being_marked(visit: Visit, delivery: int) -> Marking | None:
+def being_marked(request: Request, delivery: int) -> Marking | None:
     """Return the message for a submission that waits for its marks; None if it is marked."""
-    said = visit.said["assignments"]
-    with visit.site.store.reading() as connection:
+    said = request.words["assignments"]
+    with request.site.store.reading() as connection:
         one = job_of(connection, delivery)
-        if one is None or not visit.site.has_worker:
+        if one is None or not request.site.has_worker:
             return None
         if one.fault:
             return Marking(str(said["not_marked"]), 0)
         seconds = round(min(_LONGEST, _SOON + _EACH * before(connection, one)))
     return Marking(
-        str(said["being_marked"]).format(length_text(timedelta(seconds=seconds), visit.lang)), seconds
+        str(said["being_marked"]).format(length_text(timedelta(seconds=seconds), request.lang)), seconds
     )

@@ -15,26 +15,26 @@ from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise, plain
 from coursework.making.issued import Issued
 from coursework.sheets.paper import FeedbackPaper
-from coursework.site.frame.moments import length_text
-from coursework.site.frame.visits import Visit
+from coursework.site.frame.requests import Request
+from coursework.site.frame.times import length_text
 from coursework.site.papers.own_assignment import State
 from coursework.site.papers.own_paper import OwnPaper
 
 
 def feedback_of(
-    visit: Visit, state: State, own: OwnPaper, chosen: Delivery
+    request: Request, state: State, own: OwnPaper, chosen: Delivery
 ) -> tuple[FeedbackPaper, list[str]]:
     """Return the feedback on a submission, and the notes above it: for a late one, the penalty."""
-    mark_delivery(visit.site.course, visit.site.store, chosen.id)
-    with visit.site.store.reading() as connection:
+    mark_delivery(request.site.course, request.site.store, chosen.id)
+    with request.site.store.reading() as connection:
         sheets = [
             one for one in graded(connection, state.place.id, own.student) if one.sitting == chosen.number
         ]
-        content = issued_content(connection, state.place.id, visit.who.id)
+        content = issued_content(connection, state.place.id, request.user.id)
     issued = Issued(_allowed(content, state), state.place.name)
     telling = Telling(solutions=_shows_solutions(issued, state))
-    told = feedback_paper(visit.site.course, issued, own.student, sheets, visit.lang, telling=telling)
-    return told, _charged(visit, state, issued, told, chosen)
+    told = feedback_paper(request.site.course, issued, own.student, sheets, request.lang, telling=telling)
+    return told, _charged(request, state, issued, told, chosen)
 
 
 def _allowed(content: dict[str, Any], state: State) -> dict[str, Any]:
@@ -59,20 +59,22 @@ def _shows_solutions(issued: Issued, state: State) -> bool:
     return not stated.get("solutions_after") or shows_solutions(issued, Form(today=today))
 
 
-def _charged(visit: Visit, state: State, issued: Issued, told: FeedbackPaper, chosen: Delivery) -> list[str]:
+def _charged(
+    request: Request, state: State, issued: Issued, told: FeedbackPaper, chosen: Delivery
+) -> list[str]:
     """Return notes on the penalty for lateness, which is separate from the marks of the answers."""
     if not chosen.late:
         return []
-    said = visit.said["assignments"]
-    late = length_text(timedelta(seconds=chosen.late), visit.lang)
+    said = request.words["assignments"]
+    late = length_text(timedelta(seconds=chosen.late), request.lang)
     share = state.place.own.charged(min(chosen.late, state.place.own.late_seconds(chosen.came)))
     if not share:
         return [said["was_late"].format(late)]
     left = round(told.points * (1 - share), 9)
-    points, out_of = _number(left, visit.lang), _number(told.out_of, visit.lang)
-    found = [said["was_charged"].format(late, charged_text(share, visit.lang), points, out_of)]
+    points, out_of = _number(left, request.lang), _number(told.out_of, request.lang)
+    found = [said["was_charged"].format(late, charged_text(share, request.lang), points, out_of)]
     if mark := mark_of(issued, left, told.out_of):
-        found.append(said["charged_mark"].format(localise(mark, visit.lang)))
+        found.append(said["charged_mark"].format(localise(mark, request.lang)))
     return found
 
 

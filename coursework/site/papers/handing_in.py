@@ -36,8 +36,8 @@ from coursework.database.tables import dealt, delivery, draft, person, variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.rows import Collected, Row
 from coursework.site.frame.clock import is_steady
+from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Refused
 from coursework.site.papers.own_paper import OwnPaper, Texts, own_paper
 
 LOG = logging.getLogger("coursework.site")
@@ -71,7 +71,7 @@ def hand_in(
 
     Raises
     ------
-    Refused
+    HTTPException
         It is not open, or no try is left.
     """
     with site.store.begin() as connection:
@@ -98,7 +98,7 @@ def store(
 
     Raises
     ------
-    Refused
+    HTTPException
         It is not open, or no try is left.
     """
     done = deliveries(connection, place.id, person_id)
@@ -137,13 +137,13 @@ def _check(
     What was rescued as it closed costs no try of who handed in before that and was waiting for the database still.
     """
     if place.publication is None:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     own, now = place.own, place.publication.counted(arrived, clock)
     if not own.phase(now).takes:
-        raise Refused("not_open", 409)
+        raise HTTPException("not_open", 409)
     rescued = sum(one.source == AS_SAVED for one in done)
     if own.tries is not None and tries_used(connection, place.id, person_id, done) - rescued >= own.tries:
-        raise Refused("no_try_left", 409)
+        raise HTTPException("no_try_left", 409)
     return now
 
 

@@ -16,9 +16,9 @@ from coursework.database.prepared import Pieces, prepare_later, prepared_state, 
 from coursework.database.publication import Phase, is_over, places
 from coursework.database.tables import person
 from coursework.errors import BadInput
-from coursework.site.frame.keeping import held
+from coursework.site.frame.drafts import held
+from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.settings import Site
-from coursework.site.frame.shelf import Shelf
 from coursework.site.papers.own_paper import OwnPaper, Texts, own_paper
 
 _BOX = re.compile(r"<(?:input|textarea)\b[^>]*>")
@@ -45,7 +45,7 @@ def prepare_soon(site: Site, connection: Connection, number: int, person_id: int
         prepare_later(connection, number, site.clock(), person_id)
 
 
-def prepare(site: Site, number: int, person_id: int, at: datetime, shelf: Shelf | None = None) -> int:
+def prepare(site: Site, number: int, person_id: int, at: datetime, cache: LRUCache | None = None) -> int:
     """Make the page of a person's paper, where it is published and not closed, and return how many were made.
 
     It is made in the person's language; in each of the site's where nobody knows theirs.
@@ -59,7 +59,7 @@ def prepare(site: Site, number: int, person_id: int, at: datetime, shelf: Shelf 
                 return count
             if place.own.phase(place.publication.now(at)) is Phase.CLOSED:
                 return count
-            own = own_paper(connection, site.course, place, person_id, lang, shelf)
+            own = own_paper(connection, site.course, place, person_id, lang, cache)
             stands = prepared_state(connection, number, person_id, lang)
         if stands != own.state:
             made(site, number, person_id, own, keeps=True)

@@ -12,8 +12,8 @@ from coursework.database.deliveries import Delivery, deliveries, tries_used
 from coursework.database.publication import Phase, Place, extensions, last_end, places
 from coursework.language.numbers import localise, plain
 from coursework.making.assignment import text_in
-from coursework.site.frame.moments import length_text, moment_text
-from coursework.site.frame.visits import Refused, Visit
+from coursework.site.frame.requests import HTTPException, Request
+from coursework.site.frame.times import length_text, moment_text
 from coursework.site.papers.handing_in import pass_dates
 from coursework.site.papers.own_paper import OwnPaper, own_paper
 
@@ -76,50 +76,52 @@ class State:
         return "" if ends is None else length_text(ends - self.now, self.lang)
 
 
-def state_of(visit: Visit, place: Place, connection: Connection) -> State:
+def state_of(request: Request, place: Place, connection: Connection) -> State:
     assert place.publication is not None
-    done = deliveries(connection, place.id, visit.who.id)
+    done = deliveries(connection, place.id, request.user.id)
     ends = last_end(place.publication, list(extensions(connection, place.id).values()))
-    used = tries_used(connection, place.id, visit.who.id, done)
-    now = place.publication.counted(visit.at, visit.site.clock())
-    return State(place, visit.lang, now, done, ends, used)
+    used = tries_used(connection, place.id, request.user.id, done)
+    now = place.publication.counted(request.received_at, request.site.clock())
+    return State(place, request.lang, now, done, ends, used)
 
 
-def to_hand_in(visit: Visit) -> list[State]:
+def to_hand_in(request: Request) -> list[State]:
     """Return the assignments that a person may submit now and has not submitted yet."""
-    with visit.site.store.reading() as connection:
-        published = [one for one in places(connection, visit.who.id) if one.publication is not None]
-        found = [state_of(visit, one, connection) for one in published]
+    with request.site.store.reading() as connection:
+        published = [one for one in places(connection, request.user.id) if one.publication is not None]
+        found = [state_of(request, one, connection) for one in published]
     return [one for one in found if one.may_hand_in and not one.done]
 
 
-def own_place(visit: Visit, connection: Connection) -> Place:
+def own_place(request: Request, connection: Connection) -> Place:
     """Return the requested assignment, if it is published and the person was issued a paper of it.
 
     Raises
     ------
-    Refused
+    HTTPException
         There is none such: nobody is told which of it is wanting.
     """
-    found = places(connection, visit.who.id, int(visit.path["number"]))
+    found = places(connection, request.user.id, int(request.path_params["number"]))
     if len(found) != 1 or found[0].publication is None:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     return found[0]
 
 
-def own_assignment(visit: Visit) -> tuple[State, OwnPaper]:
+def own_assignment(request: Request) -> tuple[State, OwnPaper]:
     """Return the state of the assignment and the paper; refuse it before it opens."""
-    pass_dates(visit.site, int(visit.path["number"]), visit.at)
-    with visit.site.store.reading() as connection:
-        place, own = own_sheet(visit, connection, heads=True)
-        return state_of(visit, place, connection), own
+    pass_dates(request.site, int(request.path_params["number"]), request.received_at)
+    with request.site.store.reading() as connection:
+        place, own = own_sheet(request, connection, heads=True)
+        return state_of(request, place, connection), own
 
 
-def own_sheet(visit: Visit, connection: Connection, *, heads: bool = False) -> tuple[Place, OwnPaper]:
+def own_sheet(request: Request, connection: Connection, *, heads: bool = False) -> tuple[Place, OwnPaper]:
     """Return the assignment and the paper; refuse it before it opens. The heading needs ``heads``."""
-    site, place = visit.site, own_place(visit, connection)
+    site, place = request.site, own_place(request, connection)
     assert place.publication is not None
-    if place.own.phase(place.publication.counted(visit.at, site.clock())) is Phase.TO_COME:
+    if place.own.phase(place.publication.counted(request.received_at, site.clock())) is Phase.TO_COME:
         opens = place.own.opens
-        raise Refused("not_yet", 409, moment_text(opens, visit.lang) if opens else "")
-    return place, own_paper(connection, site.course, place, visit.who.id, visit.lang, site.shelf, heads=heads)
+        raise HTTPException("not_yet", 409, moment_text(opens, request.lang) if opens else "")
+    return place, own_paper(
+        connection, site.course, place, request.user.id, request.lang, site.cache, heads=heads
+    )

@@ -23,9 +23,9 @@ from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.sheets.paper import FeedbackPaper, Heading, Paper
-from coursework.site.frame.keeping import LONGEST
-from coursework.site.frame.shelf import Shelf
-from coursework.site.frame.visits import Form, Refused
+from coursework.site.frame.drafts import LONGEST
+from coursework.site.frame.lru_cache import LRUCache
+from coursework.site.frame.requests import Form, HTTPException
 from coursework.site.papers.read_back import ReadBack, read_back
 
 _VARIANTS = 100  #: of one paper
@@ -60,7 +60,7 @@ class OwnPaper:
     student: str
     lang: str
     instructions: Mapping[str, str]
-    shelf: Shelf = field(default_factory=lambda: Shelf(_VARIANTS))  #: where its variants are at hand
+    cache: LRUCache = field(default_factory=lambda: LRUCache(_VARIANTS))  #: where its variants are at hand
 
     @cached_property
     def issued(self) -> Issued:
@@ -92,7 +92,7 @@ class OwnPaper:
     def _variant(self, exercise: str, seed: int) -> Any:
         one, record = self.course[exercise], self.issued.record_of(self.student, exercise, seed)
         whole = {**record, "lang": self._spoken(exercise)}
-        return self.shelf.get(("issued", dumps(whole, sort_keys=True)), lambda: one.from_record(whole))
+        return self.cache.get(("issued", dumps(whole, sort_keys=True)), lambda: one.from_record(whole))
 
     def _spoken(self, exercise: str) -> str:
         """Return the language of an exercise on this paper."""
@@ -141,14 +141,14 @@ class OwnPaper:
 
         Raises
         ------
-        Refused
+        HTTPException
             A field is no box of the paper, or holds more than anybody types.
         """
         if strange := [name for name in form.texts if name not in self.fields and not name.startswith("_")]:
-            raise Refused("bad_request", 400, len(strange))
+            raise HTTPException("bad_request", 400, len(strange))
         found = {name: ", ".join(form.texts.get(name, ())) for name in self.fields}
         if any(len(text) > LONGEST for text in found.values()):
-            raise Refused("too_large", 413, LONGEST)
+            raise HTTPException("too_large", 413, LONGEST)
         return found
 
     def pieces(self) -> Pieces:
@@ -168,11 +168,11 @@ def own_paper(
     place: Place,
     person: int,
     lang: str,
-    shelf: Shelf | None = None,
+    cache: LRUCache | None = None,
     *,
     heads: bool = True,
 ) -> OwnPaper:
-    """Return the paper of a person; its variants are cached in ``shelf``, if given.
+    """Return the paper of a person; its variants are cached in ``cache``, if given.
 
     Without ``heads`` the roster's columns are not loaded, which its heading needs: of a whole class they are long.
     """
@@ -182,7 +182,7 @@ def own_paper(
         content = sheet_content(connection, place.id, person, place.stated)
     told = place.asked.get("instructions") or {}
     instructions = {"": told} if isinstance(told, str) else told
-    kept = Shelf(_VARIANTS) if shelf is None else shelf
+    kept = LRUCache(_VARIANTS) if cache is None else cache
     return OwnPaper(course, content, place.student, lang, instructions, kept)
 
 

@@ -9,7 +9,7 @@ from sqlalchemy import Connection
 
 from coursework.database.permissions import Permission
 from coursework.database.publication import Phase, places
-from coursework.site.frame.visits import Visit
+from coursework.site.frame.requests import Request
 from coursework.site.papers.own_assignment import state_of
 
 
@@ -25,12 +25,14 @@ def all_told(number: int) -> Told:
     return Told()
 
 
-def told_to(connection: Connection, visit: Visit) -> Callable[[int], Told]:
+def told_to(connection: Connection, request: Request) -> Callable[[int], Told]:
     """Return the function that gives the released content of an assignment to the current user; nothing of an
     unpublished one."""
-    if visit.who.may(Permission.ASSIGNMENTS_READ):
+    if request.user.may(Permission.ASSIGNMENTS_READ):
         return all_told
-    states = [state_of(visit, one, connection) for one in places(connection, visit.who.id) if one.publication]
+    states = [
+        state_of(request, one, connection) for one in places(connection, request.user.id) if one.publication
+    ]
     # A mark's sentence may say what is right.
     known = {
         one.place.id: Told(one.phase is not Phase.TO_COME, one.tells("feedback") and one.tells("answers"))

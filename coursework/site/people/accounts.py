@@ -29,9 +29,9 @@ from coursework.lti.storage import Storage
 from coursework.site.frame.attempts import Attempt
 from coursework.site.frame.budgets import PLAIN
 from coursework.site.frame.devices import Devices
-from coursework.site.frame.moments import moment_text
+from coursework.site.frame.requests import HTTPException, Request, Response, Route, local
 from coursework.site.frame.settings import Entrance, Site
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, local
+from coursework.site.frame.times import moment_text
 from coursework.site.people import guessing, passwords
 
 DAYS = 21  #: that an invitation holds
@@ -46,48 +46,50 @@ def as_login(text: str) -> str:
 # ----------------------------------------------------------------------- sign in
 
 
-def sign_in(visit: Visit) -> Reply:
+def sign_in(request: Request) -> Response:
     """Sign in with a login and a password; the response does not tell which of the two is wrong."""
-    if visit.site.entrance is not Entrance.ACCOUNTS:
-        return _without_account(visit)
-    after = local(visit.form.text("after") or visit.query.get("after", ""))
-    if not visit.posted:
-        return Reply(goto=after) if visit.person else _sign_in_page(visit, after)
-    login, password = as_login(visit.form.text("login")), visit.form.text("password")
-    with visit.site.store.reading() as connection:
+    if request.site.entrance is not Entrance.ACCOUNTS:
+        return _without_account(request)
+    after = local(request.form.text("after") or request.query_params.get("after", ""))
+    if not request.is_post:
+        return Response(redirect=after) if request.person else _sign_in_page(request, after)
+    login, password = as_login(request.form.text("login")), request.form.text("password")
+    with request.site.store.reading() as connection:
         found = account_by_login(connection, login)
     if not passwords.fits(found.secret if found else "", password) or found is None:
-        waits = guessing.missed(visit, login)
-        return _sign_in_page(visit, after, login=visit.form.text("login"), missed=True, waits=waits)
-    guessing.fitted(visit, login)
+        waits = guessing.missed(request, login)
+        return _sign_in_page(request, after, login=request.form.text("login"), missed=True, waits=waits)
+    guessing.fitted(request, login)
     if passwords.is_dated(found.secret):
-        with visit.site.store.begin() as connection:
+        with request.site.store.begin() as connection:
             set_secret(connection, found.id, passwords.kept(password))
-    device = Devices(visit.site.secret).after_sign_in(visit.device, login)
-    return Reply(goto=after, signed_in=found.person_id, device=device)
+    device = Devices(request.site.secret).after_sign_in(request.device, login)
+    return Response(redirect=after, signed_in=found.person_id, device=device)
 
 
-def sign_in_attempt(visit: Visit) -> Attempt:
+def sign_in_attempt(request: Request) -> Attempt:
     """Return what a form of the sign-in page is counted by."""
-    if visit.site.entrance is not Entrance.ACCOUNTS:
+    if request.site.entrance is not Entrance.ACCOUNTS:
         return Attempt()
-    return guessing.attempt_of(visit, as_login(visit.form.text("login")))
+    return guessing.attempt_of(request, as_login(request.form.text("login")))
 
 
-def _without_account(visit: Visit) -> Reply:
-    if visit.site.entrance is Entrance.DEMO:
-        return Reply(goto="/who")
-    return Reply(goto="/")  # on one's own machine everybody is signed in
+def _without_account(request: Request) -> Response:
+    if request.site.entrance is Entrance.DEMO:
+        return Response(redirect="/who")
+    return Response(redirect="/")  # on one's own machine everybody is signed in
 
 
-def _sign_in_page(visit: Visit, after: str, login: str = "", missed: bool = False, waits: int = 0) -> Reply:
+def _sign_in_page(
+    request: Request, after: str, login: str = "", missed: bool = False, waits: int = 0
+) -> Response:
     told = {"after": after, "login": login, "missed": missed, "waits": waits}
-    return visit.page("site_sign_in", 401 if missed else 200, **told)
+    return request.render("site_sign_in", 401 if missed else 200, **told)
 
 
-def sign_out(visit: Visit) -> Reply:
+def sign_out(request: Request) -> Response:
     """By a form alone: no link of another page signs anybody out."""
-    return Reply(goto="/", signed_in=0) if visit.posted else Reply(goto="/")
+    return Response(redirect="/", signed_in=0) if request.is_post else Response(redirect="/")
 
 
 # ------------------------------------------------------------------- invitations
@@ -112,36 +114,36 @@ def digest_of(end: str) -> str:
     return hashlib.sha256(end.encode()).hexdigest()
 
 
-def invitation(visit: Visit) -> Reply:
+def invitation(request: Request) -> Response:
     """Accept an invitation, with the choice of a password: once, and before it expires."""
-    end = digest_of(str(visit.path["token"]))
-    with visit.site.store.reading() as connection:
-        found = account_invited(connection, end, visit.at)
+    end = digest_of(str(request.path_params["token"]))
+    with request.site.store.reading() as connection:
+        found = account_invited(connection, end, request.received_at)
     if found is None:
-        raise Refused("invitation", 410)
-    if not visit.posted:
-        return _invitation_page(visit, found)
-    secret, wrong = _chosen(visit, found)
+        raise HTTPException("invitation", 410)
+    if not request.is_post:
+        return _invitation_page(request, found)
+    secret, wrong = _chosen(request, found)
     if wrong:
-        return _invitation_page(visit, found, 422, wrong=wrong)
-    with visit.site.store.begin() as connection:
-        person = take_up(connection, end, secret, visit.at)
+        return _invitation_page(request, found, 422, wrong=wrong)
+    with request.site.store.begin() as connection:
+        person = take_up(connection, end, secret, request.received_at)
         if person is None:
-            raise Refused("invitation", 410)
+            raise HTTPException("invitation", 410)
         end_sessions(connection, person)
-        by = Actor(found.name, person, visit.came_from)
-        note(connection, visit.at, by, "invitation taken up", person=person)
-    device = Devices(visit.site.secret).after_sign_in(visit.device, found.login)
-    return Reply(goto="/", signed_in=person, device=device)
+        by = Actor(found.name, person, request.client_address)
+        note(connection, request.received_at, by, "invitation taken up", person=person)
+    device = Devices(request.site.secret).after_sign_in(request.device, found.login)
+    return Response(redirect="/", signed_in=person, device=device)
 
 
-def _invitation_page(visit: Visit, mine: Any, status: int = 200, **told: Any) -> Reply:
-    return visit.page("site_invitation", status, mine=mine, shortest=passwords.SHORTEST, **told)
+def _invitation_page(request: Request, mine: Any, status: int = 200, **told: Any) -> Response:
+    return request.render("site_invitation", status, mine=mine, shortest=passwords.SHORTEST, **told)
 
 
-def _chosen(visit: Visit, mine: Any) -> tuple[str, str]:
+def _chosen(request: Request, mine: Any) -> tuple[str, str]:
     """Return the hash of the chosen password, or the reason for which it is refused."""
-    password, again = visit.form.text("password"), visit.form.text("again")
+    password, again = request.form.text("password"), request.form.text("again")
     wrong = passwords.weakness(password, mine.login, mine.name) or ("again" if password != again else "")
     return ("", wrong) if wrong else (passwords.kept(password), "")
 
@@ -149,78 +151,78 @@ def _chosen(visit: Visit, mine: Any) -> tuple[str, str]:
 # ---------------------------------------------------------------------- account
 
 
-def account(visit: Visit) -> Reply:
+def account(request: Request) -> Response:
     """Answer the page of one's own account: the password, and the sessions, which can be ended each and all."""
-    with visit.site.store.reading() as connection:
-        mine = account_of(connection, visit.who.id)
-    if not visit.posted:
-        return _account_page(visit, mine)
-    if visit.form.text("do") == "everywhere":
-        with visit.site.store.begin() as connection:
-            end_sessions(connection, visit.who.id)
-            called = known_as(connection, visit.who.id)
-        if visit.site.lti is not None:
+    with request.site.store.reading() as connection:
+        mine = account_of(connection, request.user.id)
+    if not request.is_post:
+        return _account_page(request, mine)
+    if request.form.text("do") == "everywhere":
+        with request.site.store.begin() as connection:
+            end_sessions(connection, request.user.id)
+            called = known_as(connection, request.user.id)
+        if request.site.lti is not None:
             for issuer, subject in called:
-                Storage(visit.site.lti).end_sessions(subject, issuer)
-        return Reply(goto="/", signed_in=0)
-    if "session" in visit.form.texts:
-        return _end_one(visit)
-    return _other_password(visit, mine)
+                Storage(request.site.lti).end_sessions(subject, issuer)
+        return Response(redirect="/", signed_in=0)
+    if "session" in request.form.texts:
+        return _end_one(request)
+    return _other_password(request, mine)
 
 
-def account_attempt(visit: Visit) -> Attempt:
+def account_attempt(request: Request) -> Attempt:
     """Return what a form with the present password is counted by."""
-    if "now" not in visit.form.texts:
+    if "now" not in request.form.texts:
         return Attempt()
-    with visit.site.store.reading() as connection:
-        mine = account_of(connection, visit.who.id)
-    return guessing.attempt_of(visit, mine.login) if mine is not None else Attempt()
+    with request.site.store.reading() as connection:
+        mine = account_of(connection, request.user.id)
+    return guessing.attempt_of(request, mine.login) if mine is not None else Attempt()
 
 
-def _end_one(visit: Visit) -> Reply:
+def _end_one(request: Request) -> Response:
     """End one of one's own sessions; the present one is signed out."""
-    number = visit.form.text("session")
+    number = request.form.text("session")
     if not (number.isascii() and number.isdecimal() and len(number) < 10):
-        raise Refused("bad_request", 422)
-    if int(number) == visit.session:
-        return Reply(goto="/", signed_in=0)
-    with visit.site.store.begin() as connection:
+        raise HTTPException("bad_request", 422)
+    if int(number) == request.session:
+        return Response(redirect="/", signed_in=0)
+    with request.site.store.begin() as connection:
         end_session(
-            connection, int(number), visit.who.id
+            connection, int(number), request.user.id
         )  # one that ended meanwhile is as the person wants it
-    return Reply(goto="/account")
+    return Response(redirect="/account")
 
 
-def _account_page(visit: Visit, mine: Any, status: int = 200, **told: Any) -> Reply:
-    if visit.query.get("changed") and status == 200:
+def _account_page(request: Request, mine: Any, status: int = 200, **told: Any) -> Response:
+    if request.query_params.get("changed") and status == 200:
         told["changed"] = True
-    has_password = bool(mine and mine.secret) and visit.site.entrance is Entrance.ACCOUNTS
-    with visit.site.store.reading() as connection:
-        sessions = sessions_of(connection, visit.who.id, datetime.now(UTC))
-        happened = noted(connection, _HAPPENED, what=OF_ACCOUNTS, subject=visit.who.id)
+    has_password = bool(mine and mine.secret) and request.site.entrance is Entrance.ACCOUNTS
+    with request.site.store.reading() as connection:
+        sessions = sessions_of(connection, request.user.id, datetime.now(UTC))
+        happened = noted(connection, _HAPPENED, what=OF_ACCOUNTS, subject=request.user.id)
     shown = [
-        (one, moment_text(one.seen, visit.lang), moment_text(one.created, visit.lang)) for one in sessions
+        (one, moment_text(one.seen, request.lang), moment_text(one.created, request.lang)) for one in sessions
     ]
-    return visit.page(
+    return request.render(
         "site_account", status, mine=mine, has_password=has_password, sessions=shown, shortest=passwords.SHORTEST,
         happened=happened, **told,
     )  # fmt: skip
 
 
-def _other_password(visit: Visit, mine: Any) -> Reply:
+def _other_password(request: Request, mine: Any) -> Response:
     if mine is None or not mine.secret:
-        raise Refused("page", 404)
-    if not passwords.fits(mine.secret, visit.form.text("now")):
-        guessing.missed(visit, mine.login)
-        return _account_page(visit, mine, 422, wrong="now")
-    secret, wrong = _chosen(visit, mine)
+        raise HTTPException("page", 404)
+    if not passwords.fits(mine.secret, request.form.text("now")):
+        guessing.missed(request, mine.login)
+        return _account_page(request, mine, 422, wrong="now")
+    secret, wrong = _chosen(request, mine)
     if wrong:
-        return _account_page(visit, mine, 422, wrong=wrong)
-    with visit.site.store.begin() as connection:
+        return _account_page(request, mine, 422, wrong=wrong)
+    with request.site.store.begin() as connection:
         set_secret(connection, mine.id, secret)
-        end_sessions(connection, visit.who.id)
-        note(connection, visit.at, visit.actor, "password changed", person=visit.who.id)
-    return Reply(goto="/account?changed=1", signed_in=visit.who.id)
+        end_sessions(connection, request.user.id)
+        note(connection, request.received_at, request.actor, "password changed", person=request.user.id)
+    return Response(redirect="/account?changed=1", signed_in=request.user.id)
 
 
 # ----------------------------------------------------------------- by command
@@ -284,23 +286,25 @@ def check_administrator(site: Site) -> None:
     )
 
 
-PAGES = (
-    Page(
+ROUTES = (
+    Route(
         "/sign-in",
         sign_in,
         Permission.PUBLIC,
-        posts=True,
+        takes_forms=True,
         limit="sign_in",
         budget=PLAIN,
         attempt=sign_in_attempt,
     ),
-    Page("/sign-out", sign_out, Permission.OWN, posts=True, budget=PLAIN),
-    Page("/invitation/{token}", invitation, Permission.PUBLIC, posts=True, limit="sign_in", budget=PLAIN),
-    Page(
+    Route("/sign-out", sign_out, Permission.OWN, takes_forms=True, budget=PLAIN),
+    Route(
+        "/invitation/{token}", invitation, Permission.PUBLIC, takes_forms=True, limit="sign_in", budget=PLAIN
+    ),
+    Route(
         "/account",
         account,
         Permission.OWN,
-        posts=True,
+        takes_forms=True,
         limit="sign_in",
         budget=PLAIN,
         attempt=account_attempt,

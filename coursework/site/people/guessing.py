@@ -7,17 +7,17 @@ from datetime import UTC, datetime
 from coursework.database.failures import add_failure, failures_of, forget_failures
 from coursework.site.frame.attempts import Attempt, Track
 from coursework.site.frame.devices import Devices
-from coursework.site.frame.visits import Visit
+from coursework.site.frame.requests import Request
 from coursework.system.allowances import network
 
 
-def tracks_of(visit: Visit, login: str) -> tuple[Track, ...]:
+def tracks_of(request: Request, login: str) -> tuple[Track, ...]:
     """Return what an attempt counts for: the browser alone where it signed in as this login before.
 
     A class behind one address mistypes less than the network is free to.
     """
-    devices, here = Devices(visit.site.secret), network(visit.came_from)
-    device = devices.known(visit.device, login)
+    devices, here = Devices(request.site.secret), network(request.client_address)
+    device = devices.known(request.device, login)
     if device:
         return (Track(devices.digest("device", device, login), 5, 20.0, 3),)
     return (
@@ -27,27 +27,27 @@ def tracks_of(visit: Visit, login: str) -> tuple[Track, ...]:
     )
 
 
-def attempt_of(visit: Visit, login: str) -> Attempt:
+def attempt_of(request: Request, login: str) -> Attempt:
     """Return an attempt to sign in, with the failures before it."""
-    tracks = tracks_of(visit, login)
-    with visit.site.store.reading() as connection:
+    tracks = tracks_of(request, login)
+    with request.site.store.reading() as connection:
         return Attempt(tracks, failures_of(connection, [one.key for one in tracks], datetime.now(UTC)))
 
 
-def missed(visit: Visit, login: str) -> int:
+def missed(request: Request, login: str) -> int:
     """Count a password that did not fit; returns the seconds that the next one waits."""
-    tracks, now = tracks_of(visit, login), datetime.now(UTC)
-    with visit.site.store.begin() as connection:
+    tracks, now = tracks_of(request, login), datetime.now(UTC)
+    with request.site.store.begin() as connection:
         add_failure(connection, [one.key for one in tracks], now)
         counts = failures_of(connection, [one.key for one in tracks], now)
     return int(max(one.seconds(counts.get(one.key, 0)) for one in tracks))
 
 
-def fitted(visit: Visit, login: str) -> None:
+def fitted(request: Request, login: str) -> None:
     """Forget what was mistyped from here before a password did fit; what others tried elsewhere stays counted."""
-    own = [tracks_of(visit, login)[0].key]
-    with visit.site.store.reading() as connection:
+    own = [tracks_of(request, login)[0].key]
+    with request.site.store.reading() as connection:
         if not failures_of(connection, own, datetime.now(UTC)):
             return
-    with visit.site.store.begin() as connection:
+    with request.site.store.begin() as connection:
         forget_failures(connection, own)

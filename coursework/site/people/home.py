@@ -8,54 +8,54 @@ from coursework.database.people import people, person_by_who, put_account, put_p
 from coursework.database.permissions import ADMINISTRATOR, Permission
 from coursework.site.frame.budgets import PLAIN
 from coursework.site.frame.limits import FREE
+from coursework.site.frame.requests import HTTPException, Request, Response, Route, local
 from coursework.site.frame.settings import Entrance, Site
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, local
 
 _YEAR = 365 * 24 * 3600
 
 
-def first(visit: Visit) -> Reply:
+def first(request: Request) -> Response:
     """Redirect to the first page of the current user."""
-    if visit.person is None:
-        return Reply(goto=door_to(visit))
-    return Reply(goto="/desk" if visit.person.may(Permission.DESK) else "/practice")
+    if request.person is None:
+        return Response(redirect=door_to(request))
+    return Response(redirect="/desk" if request.person.may(Permission.DESK) else "/practice")
 
 
-def door_to(visit: Visit) -> str:
+def door_to(request: Request) -> str:
     """Return the address of the sign-in page, with the requested page as its target."""
-    if visit.site.entrance is Entrance.DEMO:
+    if request.site.entrance is Entrance.DEMO:
         return "/who"
-    return "/sign-in" if visit.address == "/" else f"/sign-in?after={quote(visit.address, safe='/')}"
+    return "/sign-in" if request.path == "/" else f"/sign-in?after={quote(request.path, safe='/')}"
 
 
-def shared_file(visit: Visit) -> Reply:
-    found = visit.site.pages.static(str(visit.path["name"]))
+def shared_file(request: Request) -> Response:
+    found = request.site.pages.static(str(request.path_params["name"]))
     if found is None:
-        raise Refused("page", 404)
-    return Reply(kind=found[0], data=found[1], keep=_YEAR)
+        raise HTTPException("page", 404)
+    return Response(media_type=found[0], content=found[1], max_age=_YEAR)
 
 
-def choose_person(visit: Visit) -> Reply:
+def choose_person(request: Request) -> Response:
     """Choose the current user, in a demonstration alone."""
-    if visit.site.entrance is not Entrance.DEMO:
-        raise Refused("page", 404)
-    with visit.site.store.reading() as connection:
+    if request.site.entrance is not Entrance.DEMO:
+        raise HTTPException("page", 404)
+    with request.site.store.reading() as connection:
         known = people(connection)
-    if visit.posted:
-        chosen = next((one for one in known if str(one.id) == visit.form.text("person")), None)
+    if request.is_post:
+        chosen = next((one for one in known if str(one.id) == request.form.text("person")), None)
         if chosen is None:
-            raise Refused("own", 404)
-        return Reply(goto="/", signed_in=chosen.id)
-    return visit.page("site_who", people=known)
+            raise HTTPException("own", 404)
+        return Response(redirect="/", signed_in=chosen.id)
+    return request.render("site_who", people=known)
 
 
-def choose_language(visit: Visit) -> Reply:
+def choose_language(request: Request) -> Response:
     """Switch to the next language; redirect to the page before."""
-    if not visit.posted:
-        return Reply(goto="/")
-    known = visit.site.languages
-    after = known[(known.index(visit.lang) + 1) % len(known)]
-    return Reply(goto=local(visit.form.text("back")), lang=after)
+    if not request.is_post:
+        return Response(redirect="/")
+    known = request.site.languages
+    after = known[(known.index(request.lang) + 1) % len(known)]
+    return Response(redirect=local(request.form.text("back")), lang=after)
 
 
 def owner(site: Site) -> int:
@@ -70,9 +70,9 @@ def owner(site: Site) -> int:
     return person
 
 
-PAGES = (
-    Page("/", first, Permission.PUBLIC),
-    Page("/static/{name}", shared_file, Permission.PUBLIC, limit=FREE),
-    Page("/language", choose_language, Permission.PUBLIC, posts=True, budget=PLAIN),
-    Page("/who", choose_person, Permission.PUBLIC, posts=True, budget=PLAIN),
+ROUTES = (
+    Route("/", first, Permission.PUBLIC),
+    Route("/static/{name}", shared_file, Permission.PUBLIC, limit=FREE),
+    Route("/language", choose_language, Permission.PUBLIC, takes_forms=True, budget=PLAIN),
+    Route("/who", choose_person, Permission.PUBLIC, takes_forms=True, budget=PLAIN),
 )

@@ -20,9 +20,9 @@ from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Ar
 from coursework.lti.storage import Storage
 from coursework.making.identity import EMAIL, LOGIN, plain
 from coursework.making.roster import Student, read_roster
-from coursework.site.desk.class_at_hand import called
+from coursework.site.desk.class_cache import called
 from coursework.site.frame.budgets import DESK_FILE, read_apart
-from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
+from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
 from coursework.site.people.accounts import DAYS, as_login, invited
 from coursework.system.tables import csv_file
 
@@ -51,37 +51,39 @@ class Link(NamedTuple):
 # ------------------------------------------------------------------------- table
 
 
-def everybody(visit: Visit) -> Reply:
+def everybody(request: Request) -> Response:
     """Return the people of the site; forms of the page invite some of them."""
-    if visit.posted:
-        return _invite(visit)
-    with visit.site.store.reading() as connection:
-        lines = _lines(visit, connection)
-    may_invite = {role: may(visit.who, to_invite(role)) for role in ROLES}
-    return visit.page(
-        "site_people", lines=lines, added=_count(visit.query.get("added", "")), may_invite=may_invite,
-        staff_roles=_staff_roles(visit), left=bool(visit.query.get("left")),
+    if request.is_post:
+        return _invite(request)
+    with request.site.store.reading() as connection:
+        lines = _lines(request, connection)
+    may_invite = {role: may(request.user, to_invite(role)) for role in ROLES}
+    return request.render(
+        "site_people", lines=lines, added=_count(request.query_params.get("added", "")), may_invite=may_invite,
+        staff_roles=_staff_roles(request), left=bool(request.query_params.get("left")),
     )  # fmt: skip
 
 
-def _staff_roles(visit: Visit) -> list[str]:
+def _staff_roles(request: Request) -> list[str]:
     """Return the roles that new staff can be given."""
-    return [role for role in ROLES if role in STAFF] if visit.who.may(Permission.PEOPLE_INVITE_STAFF) else []
+    return (
+        [role for role in ROLES if role in STAFF] if request.user.may(Permission.PEOPLE_INVITE_STAFF) else []
+    )
 
 
-def _lines(visit: Visit, connection: Connection) -> list[Line]:
+def _lines(request: Request, connection: Connection) -> list[Line]:
     mine = accounts(connection)
     return [
-        _line(visit, one, mine.get(one.id)) for one in {one.id: one for one in people(connection)}.values()
+        _line(request, one, mine.get(one.id)) for one in {one.id: one for one in people(connection)}.values()
     ]
 
 
-def _line(visit: Visit, one: Any, account: Any) -> Line:
+def _line(request: Request, one: Any, account: Any) -> Line:
     if account is None:
         return Line(one.id, one.name, login_of(one), STUDENT, "none")
     waits = account.invited_until is not None
     state = "joined" if account.secret else "none" if not waits else "invited"
-    if state == "invited" and account.invited_until < visit.at:
+    if state == "invited" and account.invited_until < request.received_at:
         state = "over"
     return Line(one.id, one.name, account.login, account.role, state, True)
 
@@ -94,41 +96,43 @@ def login_of(person: Any) -> str:
     return as_login(found or person.who)
 
 
-def _invite(visit: Visit) -> Reply:
-    wanted = set(visit.form.texts.get("person", ()))
-    with visit.site.store.begin() as connection:
-        lines = _lines(visit, connection)
-        if visit.form.text("do").startswith("all"):
+def _invite(request: Request) -> Response:
+    wanted = set(request.form.texts.get("person", ()))
+    with request.site.store.begin() as connection:
+        lines = _lines(request, connection)
+        if request.form.text("do").startswith("all"):
             wanted = {
                 str(one.id)
                 for one in lines
-                if one.state in ("none", "over") and may(visit.who, to_invite(one.role))
+                if one.state in ("none", "over") and may(request.user, to_invite(one.role))
             }
-        links = [_link(visit, connection, one) for one in lines if str(one.id) in wanted]
-    if visit.form.text("do").endswith("file"):
-        return Reply(kind="text/csv; charset=utf-8", data=_as_csv(links), file="invitations.csv")
-    return visit.page("site_links", links=links, days=DAYS)
+        links = [_link(request, connection, one) for one in lines if str(one.id) in wanted]
+    if request.form.text("do").endswith("file"):
+        return Response(
+            media_type="text/csv; charset=utf-8", content=_as_csv(links), filename="invitations.csv"
+        )
+    return request.render("site_links", links=links, days=DAYS)
 
 
-def _link(visit: Visit, connection: Connection, one: Line) -> Link:
+def _link(request: Request, connection: Connection, one: Line) -> Link:
     """Make a link for somebody whom the person who asks may invite; every link of the site's pages is made here.
 
     Raises
     ------
-    Refused
+    HTTPException
         They may not, or the login is somebody else's.
     """
-    visit.require(to_invite(one.role))
+    request.require(to_invite(one.role))
     _check_login(connection, one.login, one.id)
-    address = invited(visit.site, connection, one.id, one.login, one.role)
-    note(connection, visit.at, visit.actor, "invited", person=one.id, role=one.role)
+    address = invited(request.site, connection, one.id, one.login, one.role)
+    note(connection, request.received_at, request.actor, "invited", person=one.id, role=one.role)
     return Link(one.name, one.login, address)
 
 
 def _check_login(connection: Connection, login: str, person: int) -> None:
     taken = account_by_login(connection, login)
     if taken is not None and taken.person_id != person:
-        raise Refused("login_taken", 409, login)
+        raise HTTPException("login_taken", 409, login)
 
 
 def _as_csv(links: Sequence[Link]) -> bytes:
@@ -139,80 +143,82 @@ def _as_csv(links: Sequence[Link]) -> bytes:
 # --------------------------------------------------------------------- new people
 
 
-def add(visit: Visit) -> Reply:
+def add(request: Request) -> Response:
     """Add the people of a roster, or one person by name and login, as students."""
-    uploads = visit.form.files.get("roster", ())
-    students = _of_roster(visit, uploads[0]) if uploads else [_of_fields(visit)]
-    with visit.site.store.begin() as connection:
+    uploads = request.form.files.get("roster", ())
+    students = _of_roster(request, uploads[0]) if uploads else [_of_fields(request)]
+    with request.site.store.begin() as connection:
         before = {one.id for one in people(connection)}
-        ids = [_put(visit, connection, one) for one in students]
+        ids = [_put(request, connection, one) for one in students]
         new = sorted(set(ids) - before)
-        note(connection, visit.at, visit.actor, "people added", people=new)
-    return Reply(goto=f"/desk/people?added={len(new)}")
+        note(connection, request.received_at, request.actor, "people added", people=new)
+    return Response(redirect=f"/desk/people?added={len(new)}")
 
 
-def _put(visit: Visit, connection: Connection, one: Student) -> int:
+def _put(request: Request, connection: Connection, one: Student) -> int:
     """Add somebody, or take in what a roster says of somebody who is known; a roster renames nobody of the staff.
 
     Raises
     ------
-    Refused
+    HTTPException
         It names somebody of the staff, of whom the person who asks may change nothing.
     """
     known = person_by_who(connection, one.who)
     if known is not None and (known.role or STUDENT) in STAFF:
-        visit.require(Permission.PEOPLE_ROLES)
+        request.require(Permission.PEOPLE_ROLES)
     return put_person(connection, one.who, one.name, one.lang, one.columns)
 
 
-def _of_roster(visit: Visit, upload: Upload) -> list[Student]:
+def _of_roster(request: Request, upload: Upload) -> list[Student]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "roster.csv"
         path.write_bytes(upload.data)
-        students: list[Student] = read_apart(DESK_FILE, visit.said["refused"]["too_much"], read_roster, path)
+        students: list[Student] = read_apart(
+            DESK_FILE, request.words["refused"]["too_much"], read_roster, path
+        )
         return students
 
 
-def _of_fields(visit: Visit) -> Student:
-    name, login = " ".join(visit.form.text("name").split())[:200], as_login(visit.form.text("login"))
+def _of_fields(request: Request) -> Student:
+    name, login = " ".join(request.form.text("name").split())[:200], as_login(request.form.text("login"))
     if not name or not login:
-        raise Refused("bad_request", 422)
+        raise HTTPException("bad_request", 422)
     return Student(name, "", {"email" if "@" in login else "login": login})
 
 
-def add_staff(visit: Visit) -> Reply:
+def add_staff(request: Request) -> Response:
     """Add somebody of the staff by name and login, with the link by which they come in."""
-    _posted(visit)
-    one, role = _of_fields(visit), visit.form.text("role")
+    _posted(request)
+    one, role = _of_fields(request), request.form.text("role")
     if role not in STAFF:
-        raise Refused("bad_request", 422)
-    with visit.site.store.begin() as connection:
-        person = _put(visit, connection, one)
-        note(connection, visit.at, visit.actor, "people added", people=[person])
+        raise HTTPException("bad_request", 422)
+    with request.site.store.begin() as connection:
+        person = _put(request, connection, one)
+        note(connection, request.received_at, request.actor, "people added", people=[person])
         known = accounts(connection).get(person)
         if known is not None:
-            raise Refused("login_taken", 409, known.login)
+            raise HTTPException("login_taken", 409, known.login)
         line = Line(person, one.name, login_of(person_by_id(connection, person)), role, "none")
-        link = _link(visit, connection, line)
-    return visit.page("site_links", links=[link], days=DAYS)
+        link = _link(request, connection, line)
+    return request.render("site_links", links=[link], days=DAYS)
 
 
 # ------------------------------------------------------------------------ a person
 
 
-def one_person(visit: Visit) -> Reply:
+def one_person(request: Request) -> Response:
     """Return the page of a person: the account, the role, and the available actions."""
-    with visit.site.store.reading() as connection:
-        one = somebody(visit, connection)
-        line = _line(visit, one, accounts(connection).get(one.id))
+    with request.site.store.reading() as connection:
+        one = somebody(request, connection)
+        line = _line(request, one, accounts(connection).get(one.id))
         last = is_last_administrator(connection, one.id)
         areas = areas_of(connection, one.id)
         groups = groups_known(connection)
-        assignments = [(about.id, called(about, visit.lang)) for about in listed(connection)]
+        assignments = [(about.id, called(about, request.lang)) for about in listed(connection)]
         ties = _ties(connection, one.id)
-    return visit.page(
+    return request.render(
         "site_person", line=line, last=last, columns=one.columns or {}, roles=ROLES,
-        may_invite=may(visit.who, to_invite(line.role)), groups={**groups, **_gone(areas, groups)},
+        may_invite=may(request.user, to_invite(line.role)), groups={**groups, **_gone(areas, groups)},
         assignments=assignments, areas=areas, any=_ANY, ties=ties,
     )  # fmt: skip
 
@@ -232,60 +238,69 @@ def _ties(connection: Connection, person: int) -> list[tuple[Any, str]]:
     ]
 
 
-def separate_tie(visit: Visit) -> Reply:
+def separate_tie(request: Request) -> Response:
     """Separate an account of a platform from a person, and end its sessions."""
-    _posted(visit)
-    with visit.site.store.begin() as connection:
-        one = somebody(visit, connection)
-        gone = separate(connection, one.id, number(visit.form.text("tie")))
+    _posted(request)
+    with request.site.store.begin() as connection:
+        one = somebody(request, connection)
+        gone = separate(connection, one.id, number(request.form.text("tie")))
         if gone is None:
-            raise Refused("own", 404)
+            raise HTTPException("own", 404)
         about = {"person": one.id, "platform": urlsplit(gone[0]).hostname or gone[0]}
-        note(connection, visit.at, visit.actor, "separated from a platform", **about)
-    if visit.site.lti is not None:
-        Storage(visit.site.lti).end_sessions(gone[1], gone[0])
-    return Reply(goto=f"/desk/people/{one.id}")
+        note(connection, request.received_at, request.actor, "separated from a platform", **about)
+    if request.site.lti is not None:
+        Storage(request.site.lti).end_sessions(gone[1], gone[0])
+    return Response(redirect=f"/desk/people/{one.id}")
 
 
-def invite_one(visit: Visit) -> Reply:
+def invite_one(request: Request) -> Response:
     """Make a link by which one person chooses a password."""
-    _posted(visit)
-    with visit.site.store.begin() as connection:
-        one = somebody(visit, connection)
-        link = _link(visit, connection, _line(visit, one, accounts(connection).get(one.id)))
-    return visit.page("site_links", links=[link], days=DAYS)
+    _posted(request)
+    with request.site.store.begin() as connection:
+        one = somebody(request, connection)
+        link = _link(request, connection, _line(request, one, accounts(connection).get(one.id)))
+    return request.render("site_links", links=[link], days=DAYS)
 
 
-def change_role(visit: Visit) -> Reply:
+def change_role(request: Request) -> Response:
     """Give a person another role, and an assistant the groups and assignments that are ticked."""
-    _posted(visit)
-    role = visit.form.text("role")
-    with visit.site.store.begin() as connection:
-        one = somebody(visit, connection)
-        line = _line(visit, one, accounts(connection).get(one.id))
+    _posted(request)
+    role = request.form.text("role")
+    with request.site.store.begin() as connection:
+        one = somebody(request, connection)
+        line = _line(request, one, accounts(connection).get(one.id))
         if role not in ROLES or not line.has_account:
-            raise Refused("bad_request", 422)
+            raise HTTPException("bad_request", 422)
         if role != line.role and is_last_administrator(connection, line.id):
-            raise Refused("last_administrator", 409)
+            raise HTTPException("last_administrator", 409)
         needs_link = set_role(connection, line.id, role)
-        areas = _areas_of_form(visit, connection) if role == ASSISTANT else []
+        areas = _areas_of_form(request, connection) if role == ASSISTANT else []
         put_areas(connection, line.id, areas)
         about = {"areas": "; ".join(map(_told, areas)) or "–"} if role == ASSISTANT else {}
-        note(connection, visit.at, visit.actor, "role", person=line.id, before=line.role, role=role, **about)
-        link = _link(visit, connection, line._replace(role=role)) if needs_link else None
+        note(
+            connection,
+            request.received_at,
+            request.actor,
+            "role",
+            person=line.id,
+            before=line.role,
+            role=role,
+            **about,
+        )
+        link = _link(request, connection, line._replace(role=role)) if needs_link else None
     if link is not None:
-        return visit.page("site_links", links=[link], days=DAYS, chooses_anew=True)
-    return Reply(goto=f"/desk/people/{line.id}")
+        return request.render("site_links", links=[link], days=DAYS, chooses_anew=True)
+    return Response(redirect=f"/desk/people/{line.id}")
 
 
-def _areas_of_form(visit: Visit, connection: Connection) -> list[Area]:
+def _areas_of_form(request: Request, connection: Connection) -> list[Area]:
     """Return the areas that a form selects: each group in each assignment; none if one of the two lists is
     empty."""
     known, groups = {str(one.id): one.id for one in listed(connection)}, groups_known(connection)
-    numbers = visit.form.texts.get("assignment", ())
-    named = visit.form.texts.get("group", ())
+    numbers = request.form.texts.get("assignment", ())
+    named = request.form.texts.get("group", ())
     where = [None] if _ANY in numbers else [known[one] for one in numbers if one in known]
-    before = {area.group for area in areas_of(connection, number(str(visit.path["person"])))}
+    before = {area.group for area in areas_of(connection, number(str(request.path_params["person"])))}
     whose = [None] if _ANY in named else [one for one in named if one in groups or one in before]
     return [Area(assignment, group) for assignment in where for group in whose]
 
@@ -295,17 +310,17 @@ def _told(area: Area) -> str:
     return f"{area.assignment or _ANY} / {_ANY if area.group is None else area.group}"
 
 
-def somebody(visit: Visit, connection: Connection) -> Any:
+def somebody(request: Request, connection: Connection) -> Any:
     """Return the person whom the address names.
 
     Raises
     ------
-    Refused
+    HTTPException
         There is none.
     """
-    found = person_by_id(connection, number(str(visit.path["person"])))
+    found = person_by_id(connection, number(str(request.path_params["person"])))
     if found is None:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     return found
 
 
@@ -318,26 +333,26 @@ def _count(text: str) -> int | None:
     return number(text) if text else None
 
 
-def _posted(visit: Visit) -> None:
-    if not visit.posted:
-        raise Refused("method", 405)
+def _posted(request: Request) -> None:
+    if not request.is_post:
+        raise HTTPException("method", 405)
 
 
-PAGES = (
-    Page(
-        "/desk/people", everybody, Permission.PEOPLE_READ, posts=True,
-        posting=Permission.PEOPLE_INVITE_STUDENTS, noted="links taken",
+ROUTES = (
+    Route(
+        "/desk/people", everybody, Permission.PEOPLE_READ, takes_forms=True,
+        form_permission=Permission.PEOPLE_INVITE_STUDENTS, audit_event="links taken",
     ),
-    Page("/desk/people/add", add, Permission.PEOPLE_ADD, posts=True, limit="upload", budget=DESK_FILE),
-    Page("/desk/people/add-staff", add_staff, Permission.PEOPLE_INVITE_STAFF, posts=True),
-    Page("/desk/people/{person}", one_person, Permission.PEOPLE_READ),
-    Page(
-        "/desk/people/{person}/invitation", invite_one, Permission.PEOPLE_INVITE_STUDENTS, posts=True,
-        of_staff=Permission.PEOPLE_INVITE_STAFF,
+    Route("/desk/people/add", add, Permission.PEOPLE_ADD, takes_forms=True, limit="upload", budget=DESK_FILE),
+    Route("/desk/people/add-staff", add_staff, Permission.PEOPLE_INVITE_STAFF, takes_forms=True),
+    Route("/desk/people/{person}", one_person, Permission.PEOPLE_READ),
+    Route(
+        "/desk/people/{person}/invitation", invite_one, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True,
+        staff_permission=Permission.PEOPLE_INVITE_STAFF,
     ),
-    Page(
-        "/desk/people/{person}/separate", separate_tie, Permission.PEOPLE_INVITE_STUDENTS, posts=True,
-        of_staff=Permission.PEOPLE_INVITE_STAFF,
+    Route(
+        "/desk/people/{person}/separate", separate_tie, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True,
+        staff_permission=Permission.PEOPLE_INVITE_STAFF,
     ),
-    Page("/desk/people/{person}/role", change_role, Permission.PEOPLE_ROLES, posts=True),
+    Route("/desk/people/{person}/role", change_role, Permission.PEOPLE_ROLES, takes_forms=True),
 )  # fmt: skip

@@ -22,7 +22,7 @@ from coursework.database.permissions import Permission
 from coursework.language.words import words
 from coursework.lti.storage import Storage
 from coursework.making.students import file_stems
-from coursework.site.frame.visits import Page, Refused, Reply, Visit
+from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.site.papers.telling import Told, all_told, told_to
 from coursework.site.people import scrubbing
 from coursework.site.people.people_page import number, somebody
@@ -37,26 +37,28 @@ Rows = Sequence[Mapping[str, Any]]
 # ---------------------------------------------------------------- what is kept
 
 
-def own_data(visit: Visit) -> Reply:
+def own_data(request: Request) -> Response:
     """Return all stored data of the current user; content that is not released yet is only mentioned."""
-    with visit.site.store.reading() as connection:
-        return _given(visit, connection, visit.who.id, told_to(connection, visit))
+    with request.site.store.reading() as connection:
+        return _given(request, connection, request.user.id, told_to(connection, request))
 
 
-def their_data(visit: Visit) -> Reply:
+def their_data(request: Request) -> Response:
     """Return all stored data of a person, for staff."""
-    with visit.site.store.reading() as connection:
-        one = somebody(visit, connection)
-        return _given(visit, connection, one.id, all_told)
+    with request.site.store.reading() as connection:
+        one = somebody(request, connection)
+        return _given(request, connection, one.id, all_told)
 
 
-def _given(visit: Visit, connection: Connection, person: int, told: Callable[[int], Told]) -> Reply:
+def _given(request: Request, connection: Connection, person: int, told: Callable[[int], Told]) -> Response:
     who = whose(connection, person)
     if who is None:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     tables = _withheld(belongings(connection, who), told)
     name = next(iter(file_stems([who.name or "me"])))
-    return Reply(kind="application/zip", data=_zip(visit, tables, who.name), file=f"{name}.zip")
+    return Response(
+        media_type="application/zip", content=_zip(request, tables, who.name), filename=f"{name}.zip"
+    )
 
 
 def _withheld(tables: Mapping[str, Rows], told: Callable[[int], Told]) -> dict[str, Rows]:
@@ -71,12 +73,12 @@ def _withheld(tables: Mapping[str, Rows], told: Callable[[int], Told]) -> dict[s
     return {**tables, **seen}
 
 
-def _zip(visit: Visit, tables: Mapping[str, Rows], name: str) -> bytes:
+def _zip(request: Request, tables: Mapping[str, Rows], name: str) -> bytes:
     found = io.BytesIO()
     with zipfile.ZipFile(found, "w", zipfile.ZIP_DEFLATED) as archive:
-        for lang in visit.site.languages:
+        for lang in request.site.languages:
             archive.writestr(
-                _READ_ME.get(lang, f"README.{lang}.txt"), _explained(tables, lang, name, visit.at)
+                _READ_ME.get(lang, f"README.{lang}.txt"), _explained(tables, lang, name, request.received_at)
             )
         for table, rows in tables.items():
             if rows:
@@ -104,51 +106,51 @@ def _cell(value: Any) -> Any:
 # -------------------------------------------------------------------- erasing
 
 
-def erase_person(visit: Visit) -> Reply:
+def erase_person(request: Request) -> Response:
     """Take somebody away, when their name is typed once more."""
-    with visit.site.store.reading() as connection:
-        one = somebody(visit, connection)
+    with request.site.store.reading() as connection:
+        one = somebody(request, connection)
         who = whose(connection, one.id)
         if is_last_administrator(connection, one.id):
-            raise Refused("last_administrator", 409)
+            raise HTTPException("last_administrator", 409)
         kept = (
             {table: len(rows) for table, rows in belongings(connection, who).items() if rows} if who else {}
         )
-    typed = " ".join(visit.form.text("name").split())
-    if not visit.posted or typed != one.name:
-        return visit.page(
+    typed = " ".join(request.form.text("name").split())
+    if not request.is_post or typed != one.name:
+        return request.render(
             "site_erase",
-            422 if visit.posted else 200,
+            422 if request.is_post else 200,
             one=one,
             kept=kept,
-            mistyped=visit.posted,
-            tables=visit.said["data"]["tables"],
+            mistyped=request.is_post,
+            tables=request.words["data"]["tables"],
         )
-    with visit.site.store.begin() as connection:
+    with request.site.store.begin() as connection:
         if is_last_administrator(connection, one.id):
-            raise Refused("last_administrator", 409)
+            raise HTTPException("last_administrator", 409)
         called = known_as(connection, one.id)
         gone = erase(connection, one.id)
-        by = Actor("", 0, visit.came_from) if one.id == visit.who.id else visit.actor
-        note(connection, visit.at, by, "erased", person=one.id, rows=sum(gone.values()))
-    if visit.site.lti is not None:
+        by = Actor("", 0, request.client_address) if one.id == request.user.id else request.actor
+        note(connection, request.received_at, by, "erased", person=one.id, rows=sum(gone.values()))
+    if request.site.lti is not None:
         for issuer, subject in called:
-            Storage(visit.site.lti).forget(subject, issuer)
-    if not scrubbing.scrub(visit.site):
-        scrubbing.scrub_until_done(visit.site)
-        return Reply(goto="/desk/people?left=1")
-    return Reply(goto="/desk/people")
+            Storage(request.site.lti).forget(subject, issuer)
+    if not scrubbing.scrub(request.site):
+        scrubbing.scrub_until_done(request.site)
+        return Response(redirect="/desk/people?left=1")
+    return Response(redirect="/desk/people")
 
 
 # ---------------------------------------------------------------------- audit
 
 
-def audit(visit: Visit) -> Reply:
+def audit(request: Request) -> Response:
     """Return the audit, the latest entries first, a hundred lines a page; of one person or of one kind, if
     the query names it."""
-    asked = {name: visit.query.get(name, "").strip()[:200] for name in ("by", "what", "of")}
-    before, subject = number(visit.query.get("before", "")), number(asked["of"])
-    with visit.site.store.reading() as connection:
+    asked = {name: request.query_params.get(name, "").strip()[:200] for name in ("by", "what", "of")}
+    before, subject = number(request.query_params.get("before", "")), number(asked["of"])
+    with request.site.store.reading() as connection:
         lines = noted(
             connection, _LINES, before, by=asked["by"], what=[asked["what"]] if asked["what"] else [],
             subject=subject or None,
@@ -158,7 +160,7 @@ def audit(visit: Visit) -> Reply:
     shown = [(one, _about(one, names)) for one in lines]
     of = names[subject][0] if subject in names else ""
     more = urlencode({**asked, "before": lines[-1].id}) if len(lines) == _LINES else ""
-    return visit.page("site_audit", lines=shown, more=more, asked=asked, kinds=known, of=of)
+    return request.render("site_audit", lines=shown, more=more, asked=asked, kinds=known, of=of)
 
 
 def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:
@@ -172,11 +174,15 @@ def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:
     return ", ".join([*called, *rest])
 
 
-PAGES: tuple[Page, ...] = (
-    Page("/account/data", own_data, Permission.OWN, limit="upload"),
-    Page(
-        "/desk/people/{person}/data", their_data, Permission.PEOPLE_EXPORT, limit="upload", noted="data given"
+ROUTES: tuple[Route, ...] = (
+    Route("/account/data", own_data, Permission.OWN, limit="upload"),
+    Route(
+        "/desk/people/{person}/data",
+        their_data,
+        Permission.PEOPLE_EXPORT,
+        limit="upload",
+        audit_event="data given",
     ),
-    Page("/desk/people/{person}/erase", erase_person, Permission.PEOPLE_ERASE, posts=True),
-    Page("/desk/audit", audit, Permission.AUDIT_READ),
+    Route("/desk/people/{person}/erase", erase_person, Permission.PEOPLE_ERASE, takes_forms=True),
+    Route("/desk/audit", audit, Permission.AUDIT_READ),
 )

@@ -11,7 +11,7 @@ from coursework.selfstudy.mastery import RIGHT
 from coursework.selfstudy.progress import ANSWER, EXAMPLE, Progress, date_of
 
 if TYPE_CHECKING:
-    from coursework.site.frame.visits import Visit
+    from coursework.site.frame.requests import Request
 
 
 class Begun(NamedTuple):
@@ -27,19 +27,19 @@ class Begun(NamedTuple):
         return f"/practice/{self.exercise}/{self.seed}"
 
 
-def begun(visit: Visit, progress: Progress, exercise: str = "") -> Iterator[Begun]:
+def begun(request: Request, progress: Progress, exercise: str = "") -> Iterator[Begun]:
     """Yield the variants to continue with, of one exercise if given."""
-    for name, seed in _touched(visit, progress, exercise):
-        if name not in visit.site.course or not visit.site.pool.holds(name, seed):
+    for name, seed in _touched(request, progress, exercise):
+        if name not in request.site.course or not request.site.pool.holds(name, seed):
             continue
-        found = _standing(visit, progress, name, seed)
+        found = _standing(request, progress, name, seed)
         if found is not None and found.right < found.asked:
             yield found
 
 
-def _touched(visit: Visit, progress: Progress, exercise: str) -> list[tuple[str, int]]:
-    with visit.site.store.reading() as connection:
-        typed = sheets(connection, visit.who.id, f"practice/{exercise}/" if exercise else "practice/")
+def _touched(request: Request, progress: Progress, exercise: str) -> list[tuple[str, int]]:
+    with request.site.store.reading() as connection:
+        typed = sheets(connection, request.user.id, f"practice/{exercise}/" if exercise else "practice/")
     when: dict[tuple[str, int], datetime] = {}
     for sheet, changed in typed.items():
         _, name, seed = sheet.split("/")
@@ -51,12 +51,12 @@ def _touched(visit: Visit, progress: Progress, exercise: str) -> list[tuple[str,
     return sorted(when, key=lambda place: when[place], reverse=True)
 
 
-def _standing(visit: Visit, progress: Progress, exercise: str, seed: int) -> Begun | None:
+def _standing(request: Request, progress: Progress, exercise: str, seed: int) -> Begun | None:
     """Return the progress on a variant; None if it was shown with its solution."""
     mine = [e for e in progress.of(exercise) if e["seed"] == seed]
     if any(e["what"] == EXAMPLE for e in mine):
         return None
     last = {e["part"]: e.get("verdict") for e in mine if e["what"] == ANSWER}
-    variant = visit.site.variant(exercise, seed, visit.lang)
+    variant = request.site.variant(exercise, seed, request.lang)
     asked = [part.id for part in variant.parts if not part.sort.is_open]
     return Begun(exercise, seed, sum(last.get(name) in RIGHT for name in asked), len(asked))

@@ -19,8 +19,8 @@ from coursework.selfstudy.progress import Progress
 from coursework.workbook.binding import chapters_of
 
 if TYPE_CHECKING:
+    from coursework.site.frame.requests import Request
     from coursework.site.frame.settings import Site
-    from coursework.site.frame.visits import Visit
 
 
 class Placed(NamedTuple):
@@ -56,24 +56,24 @@ class Chaptered(NamedTuple):
         return sum(one.state != "new" for one in self.exercises)
 
 
-def contents(visit: Visit, progress: Progress) -> list[Chaptered]:
+def contents(request: Request, progress: Progress) -> list[Chaptered]:
     """Return the chapters in the workbook's order, with the person's progress."""
     stands = {one.exercise: one for one in standings(progress)}
     return [
-        chapter._replace(groups=tuple(_standing(visit, group, stands) for group in chapter.groups))
-        for chapter in titles(visit.site, visit.lang)
+        chapter._replace(groups=tuple(_standing(request, group, stands) for group in chapter.groups))
+        for chapter in titles(request.site, request.lang)
     ]
 
 
-def _standing(visit: Visit, group: Grouped, stands: Mapping[str, ExerciseProgress]) -> Grouped:
-    placed = tuple(_placed(visit, one, stands.get(one.name)) for one in group.exercises)
+def _standing(request: Request, group: Grouped, stands: Mapping[str, ExerciseProgress]) -> Grouped:
+    placed = tuple(_placed(request, one, stands.get(one.name)) for one in group.exercises)
     return group._replace(exercises=placed)
 
 
 def titles(site: Site, lang: str) -> tuple[Chaptered, ...]:
     """Return the chapters without anybody's progress, from a cache, since they depend on the course's files
     alone."""
-    found: tuple[Chaptered, ...] = site.shelf.get(("contents", lang), lambda: _titles(site, lang))
+    found: tuple[Chaptered, ...] = site.cache.get(("contents", lang), lambda: _titles(site, lang))
     return found
 
 
@@ -96,15 +96,15 @@ def _group(site: Site, section: Section, lang: str) -> Grouped:
     return Grouped(title, bool(section.lesson), tuple(placed))
 
 
-def _placed(visit: Visit, new: Placed, stand: ExerciseProgress | None) -> Placed:
+def _placed(request: Request, new: Placed, stand: ExerciseProgress | None) -> Placed:
     if stand is None:
         return new
-    name, title, said = new.name, new.title, visit.said["practice"]["states"]
+    name, title, said = new.name, new.title, request.words["practice"]["states"]
     counts = {"right": stand.right, "of": stand.tried, "variants": stand.variants}
-    if stand.due is not None and stand.due <= visit.at.date():
+    if stand.due is not None and stand.due <= request.received_at.date():
         return Placed(name, title, "due", said["due"].format(**counts))
     if stand.due is not None:
-        day = told_date(stand.due, visit.lang)
+        day = told_date(stand.due, request.lang)
         return Placed(name, title, "again", said["again"].format(**counts, day=day))
     state = "done" if stand.tried and stand.right == stand.tried else "begun"
     return Placed(name, title, state, said[state].format(**counts))
@@ -123,16 +123,16 @@ class Next(NamedTuple):
     is_new: bool  #: nothing of the exercise was begun
 
 
-def next_of(visit: Visit, progress: Progress) -> Next | None:
+def next_of(request: Request, progress: Progress) -> Next | None:
     """Return the next step for today; None in a course without exercises."""
-    site = visit.site
-    order = site.shelf.get("study order", lambda: site.course.folder.study_order)
-    advice: Advice | None = next_step(site.course, progress, visit.at.date(), order)
+    site = request.site
+    order = site.cache.get("study order", lambda: site.course.folder.study_order)
+    advice: Advice | None = next_step(site.course, progress, request.received_at.date(), order)
     if advice is None:
         return None
-    said = told_advice(visit.site.course, advice, visit.lang, called)
+    said = told_advice(request.site.course, advice, request.lang, called)
     return Next(
         advice.exercise,
-        Markup(markdown.html_inline(said, visit.lang)),
+        Markup(markdown.html_inline(said, request.lang)),
         advice.exercise not in progress.exercises,
     )

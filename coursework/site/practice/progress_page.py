@@ -12,32 +12,32 @@ from coursework.selfstudy.advice import told_skills
 from coursework.selfstudy.progress import LaterVersion, TooLong, read_brought
 from coursework.selfstudy.store import FILE
 from coursework.site.frame.budgets import PROGRESS_FILE, read_apart
-from coursework.site.frame.visits import Page, Reply, Visit
+from coursework.site.frame.requests import Request, Response, Route
 from coursework.site.practice.contents import called, contents, next_of
 
 _MOST = 6_000  #: entries of a file that is brought
 _MOST_KEPT = 30_000  #: entries of a person, with those that are brought
 
 
-def progress(visit: Visit) -> Reply:
+def progress(request: Request) -> Response:
     """Return the page of the person's progress; a form uploads a file, whose entries are added."""
-    kept = PersonProgress(visit.site.store, visit.who.id, visit.site.clock)
-    brought = _brought(visit, kept) if visit.posted else None
-    skills = told_skills(visit.site.course, kept.progress, visit.lang, called)
-    begun = [c for c in contents(visit, kept.progress) if c.begun]
-    return visit.page(
+    kept = PersonProgress(request.site.store, request.user.id, request.site.clock)
+    brought = _brought(request, kept) if request.is_post else None
+    skills = told_skills(request.site.course, kept.progress, request.lang, called)
+    begun = [c for c in contents(request, kept.progress) if c.begun]
+    return request.render(
         "site_progress",
-        title=visit.said["progress"]["title"],
+        title=request.words["progress"]["title"],
         chapters=begun,
         entries=len(kept.progress),
-        skills=Markup(markdown.to_html(skills, visit.lang)) if skills else "",
-        next=next_of(visit, kept.progress),
+        skills=Markup(markdown.to_html(skills, request.lang)) if skills else "",
+        next=next_of(request, kept.progress),
         brought=brought,
         file_name=FILE,
     )
 
 
-def _brought(visit: Visit, kept: PersonProgress) -> int:
+def _brought(request: Request, kept: PersonProgress) -> int:
     """Add the entries of a file; return the number of new ones. Their answers are not marked, since that
     would test answers to a class's variants.
 
@@ -46,12 +46,12 @@ def _brought(visit: Visit, kept: PersonProgress) -> int:
     BadInput
         It is none of progress, of a later version, or far too long.
     """
-    said = visit.said["progress"]
-    found = next(iter(visit.form.files.get("file", ())), None)
+    said = request.words["progress"]
+    found = next(iter(request.form.files.get("file", ())), None)
     if found is None:
         raise BadInput(said["no_file"])
     fault, theirs = read_apart(
-        PROGRESS_FILE, visit.said["refused"]["too_much"], read_brought, found.data, _MOST
+        PROGRESS_FILE, request.words["refused"]["too_much"], read_brought, found.data, _MOST
     )
     if fault is LaterVersion:
         raise BadInput(said["later"].format(found.name))
@@ -67,13 +67,13 @@ def _brought(visit: Visit, kept: PersonProgress) -> int:
     return len(kept.progress) - before
 
 
-def file(visit: Visit) -> Reply:
+def file(request: Request) -> Response:
     """Return the whole progress, in the format of notebooks."""
-    kept = PersonProgress(visit.site.store, visit.who.id, visit.site.clock).progress
-    return Reply(kind="application/json", data=kept.text().encode(), file=FILE)
+    kept = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
+    return Response(media_type="application/json", content=kept.text().encode(), filename=FILE)
 
 
-PAGES = (
-    Page("/progress", progress, Permission.OWN, posts=True, budget=PROGRESS_FILE),
-    Page(f"/progress/{FILE}", file, Permission.OWN),
+ROUTES = (
+    Route("/progress", progress, Permission.OWN, takes_forms=True, budget=PROGRESS_FILE),
+    Route(f"/progress/{FILE}", file, Permission.OWN),
 )

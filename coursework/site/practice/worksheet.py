@@ -28,14 +28,14 @@ from coursework.selfstudy.reading_back import read_back
 from coursework.selfstudy.store import ExerciseStore, is_blank
 from coursework.selfstudy.theory import theory
 from coursework.sheets.handout import handout
-from coursework.site.frame.keeping import LONGEST, keep_form, keeper
-from coursework.site.frame.visits import Refused
+from coursework.site.frame.drafts import LONGEST, keep_form, keeper
+from coursework.site.frame.requests import HTTPException
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
     from coursework.marking.mark import Mark
     from coursework.model import Part
-    from coursework.site.frame.visits import Visit
+    from coursework.site.frame.requests import Request
 
 OWN = "a-"  #: before the names of boxes, which no other field of the form has
 _ASKS = re.compile(r'<a href="#(hint|reveal)-([^"]+)">(.*?)</a>')
@@ -65,29 +65,29 @@ class Worksheet:
 
     Raises
     ------
-    Refused
+    HTTPException
         There is no such exercise, or it is no variant to practise: those of classes stay theirs.
     BadInput
         The solutions are not in this copy of the course.
     """
 
-    def __init__(self, visit: Visit, exercise: str, seed: str):
-        self.visit, site = visit, visit.site
+    def __init__(self, request: Request, exercise: str, seed: str):
+        self.request, site = request, request.site
         if exercise not in site.course or not re.fullmatch(r"0|[1-9][0-9]{0,15}", seed):
-            raise Refused("page", 404)
-        if not visit.who.may(Permission.PRACTICE_ANY) and not site.pool.holds(exercise, int(seed)):
-            raise Refused("own", 404)
+            raise HTTPException("page", 404)
+        if not request.user.may(Permission.PRACTICE_ANY) and not site.pool.holds(exercise, int(seed)):
+            raise HTTPException("own", 404)
         if not site.course.folder.has_solutions:
-            raise BadInput(words(visit.lang)["study"]["no_solutions"])
+            raise BadInput(words(request.lang)["study"]["no_solutions"])
         self.exercise, self.seed = exercise, int(seed)
-        progress = PersonProgress(site.store, visit.who.id, site.clock, exercise)
+        progress = PersonProgress(site.store, request.user.id, site.clock, exercise)
         self.kept = ExerciseStore(progress, exercise)
         self.variant: Variant = self._asked()
         self.attempt = StudyAttempt(self.variant, self.kept)
 
     def _asked(self) -> Variant:
         """Return the variant; without its theory questions if another variant was begun before."""
-        whole: Variant = self.visit.site.variant(self.exercise, self.seed, self.visit.lang)
+        whole: Variant = self.request.site.variant(self.exercise, self.seed, self.request.lang)
         begun = list(self.kept.progress)
         known = theory(whole.exercise) if begun and begun[0]["seed"] != self.seed else frozenset()
         known -= {e["part"] for e in begun if e["seed"] == self.seed}
@@ -95,7 +95,7 @@ class Worksheet:
             return whole
         key = ("without", self.exercise, self.seed, whole.lang, known)
         left = [part for part in whole.parts if part.id not in known]
-        return self.visit.site.shelf.get(key, lambda: whole.asking(left))
+        return self.request.site.cache.get(key, lambda: whole.asking(left))
 
     # ------------------------------------------------------------------ addresses
 
@@ -119,24 +119,24 @@ class Worksheet:
 
         Raises
         ------
-        Refused
+        HTTPException
             It is not asked here.
         """
         if name not in self.parts:
-            raise Refused("bad_request", 400)
+            raise HTTPException("bad_request", 400)
         return self.parts[name]
 
     @cached_property
     def typed(self) -> dict[str, str]:
         """Texts of a form, by part; empty for a blank box, and if nothing is ticked."""
-        texts = self.visit.form.texts
+        texts = self.request.form.texts
         return {name: ", ".join(texts.get(OWN + name, ()))[:LONGEST] for name in self.parts}
 
     @cached_property
     def drafts(self) -> dict[str, Box]:
         """Drafts by part."""
-        with self.visit.site.store.reading() as connection:
-            return drafts(connection, self.visit.who.id, self.name)
+        with self.request.site.store.reading() as connection:
+            return drafts(connection, self.request.user.id, self.name)
 
     def stands(self) -> dict[str, str]:
         """Content of each box: the draft, or else the last answer, in the form that the box uses."""
@@ -151,7 +151,7 @@ class Worksheet:
 
     def keep_typed(self, versions: str) -> dict[str, Box]:
         """Keep what a form without script brings; gives the boxes that another page wrote to since."""
-        self.drafts, others = keep_form(self.visit, self.name, self.typed, self.stands(), versions)
+        self.drafts, others = keep_form(self.request, self.name, self.typed, self.stands(), versions)
         return others
 
     # -------------------------------------------------------------------- what is said
@@ -178,7 +178,7 @@ class Worksheet:
 
     def read_as(self, name: str, text: str) -> Markup:
         """Return the reading of a box as HTML; empty for a blank box, and for one without text."""
-        part, said = self.parts[name], self.visit.said["practice"]
+        part, said = self.parts[name], self.request.words["practice"]
         if part.choices or is_blank(text):
             return Markup("")
         is_read, readings = read_back(self.variant, part, text)
@@ -193,13 +193,13 @@ class Worksheet:
 
         Raises
         ------
-        Refused
+        HTTPException
             There is nothing of that name here.
         """
         try:
             quantity = hints.quantity_of(self.variant, name)
         except CourseworkError:
-            raise Refused("bad_request", 400) from None
+            raise HTTPException("bad_request", 400) from None
         seen = self.attempt.hints_seen(name) if most is None else most
         texts = self.attempt.hints(name, lambda other: self._asks("hint", other))
         lang, solution = self.variant.lang, ""
@@ -237,7 +237,7 @@ class Worksheet:
 
     def _asks(self, what: str, name: str) -> str:
         """Return a link in Markdown that :meth:`_with_buttons` turns into a button."""
-        return f"[{self.visit.said['practice'][f'{what}_call']}](#{what}-{name})"
+        return f"[{self.request.words['practice'][f'{what}_call']}](#{what}-{name})"
 
     def _with_buttons(self, html: str, under: str) -> Markup:
         def button(found: re.Match[str]) -> str:
@@ -267,7 +267,7 @@ class Worksheet:
     def _options(self, one: predictions.Prediction) -> list[tuple[str, str]]:
         """Return the options of a prediction, each with its label."""
         if one.kind != "guess":
-            told = self.visit.said["practice"]["options"][one.kind]
+            told = self.request.words["practice"]["options"][one.kind]
             return list(zip(told["values"], told["names"], strict=True))
         part, letters = self.parts[one.id], self.variant.letters(self.parts[one.id])
         lang = self.variant.lang
@@ -324,7 +324,7 @@ class Worksheet:
         """Return the names for the page's template."""
         shown = views.context(handout(self.variant))
         results = self.results(checked, stands)
-        said = self.visit.said["practice"]["keeping"]
+        said = self.request.words["practice"]["keeping"]
         return {
             **shown,
             "own": OWN,
@@ -341,12 +341,12 @@ class Worksheet:
             "is_shown": self.attempt.is_example,
             "moves": self.variant.exercise.is_animated,
             "lessons": self._lessons(),
-            "form": keeper(self.visit, f"{self.address}/draft", self.name, self.drafts, OWN, **said),
+            "form": keeper(self.request, f"{self.address}/draft", self.name, self.drafts, OWN, **said),
         }
 
     def _lessons(self) -> Sequence[Lesson]:
         one, lang = self.variant.exercise, self.variant.lang
-        found: Sequence[Lesson] = self.visit.site.shelf.get(
+        found: Sequence[Lesson] = self.request.site.cache.get(
             ("lessons", self.exercise, lang), lambda: taught_by(one.folder, self.exercise, lang)
         )
         return found

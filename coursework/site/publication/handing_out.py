@@ -23,7 +23,7 @@ from coursework.making.assignment import FILES, OPTIONS, Assignment, assignment_
 from coursework.making.issued import Issued
 from coursework.making.roster import Student, read_roster
 from coursework.site.frame.budgets import DESK_FILE, read_apart
-from coursework.site.frame.visits import Upload, Visit
+from coursework.site.frame.requests import Request, Upload
 from coursework.site.publication.dealings import Wanted
 
 _LONGEST = 80  #: characters of a name
@@ -44,7 +44,7 @@ class Shelf(NamedTuple):
     exercises: tuple[tuple[str, str], ...]
 
 
-def read(visit: Visit) -> HandOut:
+def read(request: Request) -> HandOut:
     """Return the assignment that the form states.
 
     Raises
@@ -52,65 +52,65 @@ def read(visit: Visit) -> HandOut:
     BadInput
         It says what makes no sense, or what there is already.
     """
-    said = visit.said["publishing"]["faults"]
-    if sent := _sent(visit, "issued"):
-        return _issued(visit, sent)
-    name, table, source = _asked(visit)
-    _check_new(visit, name)
-    asked = assignment_of(name, table, visit.site.course, source)
-    students = roster(visit)
+    said = request.words["publishing"]["faults"]
+    if sent := _sent(request, "issued"):
+        return _issued(request, sent)
+    name, table, source = _asked(request)
+    _check_new(request, name)
+    asked = assignment_of(name, table, request.site.course, source)
+    students = roster(request)
     if not students:
         raise BadInput(said["nobody"])
-    return HandOut(name, Wanted(name, table, students, spoken(visit, asked)))
+    return HandOut(name, Wanted(name, table, students, spoken(request, asked)))
 
 
-def spoken(visit: Visit, asked: Assignment) -> str:
+def spoken(request: Request, asked: Assignment) -> str:
     """Return the reader's language if all the exercises have it, or else the course's default."""
-    all_have = all(visit.lang in visit.site.course[name].languages for name in asked.names)
-    return visit.lang if all_have else visit.site.languages[0]
+    all_have = all(request.lang in request.site.course[name].languages for name in asked.names)
+    return request.lang if all_have else request.site.languages[0]
 
 
-def _sent(visit: Visit, field: str) -> Upload | None:
-    return next((one for one in visit.form.files.get(field, ()) if one.data), None)
+def _sent(request: Request, field: str) -> Upload | None:
+    return next((one for one in request.form.files.get(field, ()) if one.data), None)
 
 
-def _issued(visit: Visit, sent: Upload) -> HandOut:
+def _issued(request: Request, sent: Upload) -> HandOut:
     issued = Issued.of(sent.data, "issued.json")
-    name = str((issued.assignment or {}).get("name") or _name(visit.form.text("name")))
+    name = str((issued.assignment or {}).get("name") or _name(request.form.text("name")))
     if not name:
-        raise BadInput(visit.said["publishing"]["faults"]["name"])
+        raise BadInput(request.words["publishing"]["faults"]["name"])
     for (exercise, _), record in issued.records.items():
-        if exercise not in visit.site.course:
-            raise BadInput(visit.said["publishing"]["faults"]["no_exercise"].format(exercise[:80]))
-        visit.site.course[exercise].from_record(record)
+        if exercise not in request.site.course:
+            raise BadInput(request.words["publishing"]["faults"]["no_exercise"].format(exercise[:80]))
+        request.site.course[exercise].from_record(record)
     return HandOut(name, issued=json.loads(sent.data.decode("utf-8")))
 
 
-def _check_new(visit: Visit, name: str) -> None:
-    with visit.site.store.reading() as connection:
+def _check_new(request: Request, name: str) -> None:
+    with request.site.store.reading() as connection:
         if name in names(connection):
-            raise BadInput(visit.said["publishing"]["faults"]["known"].format(name))
+            raise BadInput(request.words["publishing"]["faults"]["known"].format(name))
 
 
 # ------------------------------------------------------------------------ the asked
 
 
-def _asked(visit: Visit) -> tuple[str, dict[str, Any], str]:
+def _asked(request: Request) -> tuple[str, dict[str, Any], str]:
     """Name, table and text of the assignment: of a file, else of what was chosen."""
-    if sent := _sent(visit, "file"):
+    if sent := _sent(request, "file"):
         name = _name(PurePosixPath(sent.name.replace("\\", "/")).stem)
         try:
             source = sent.data.decode("utf-8-sig")
         except UnicodeDecodeError:
-            raise BadInput(visit.said["publishing"]["faults"]["utf8"]) from None
+            raise BadInput(request.words["publishing"]["faults"]["utf8"]) from None
         table = table_of(source, f"{name}.toml")
         return name, _as_json({k: v for k, v in table.items() if k not in {*FILES, *OPTIONS}}), source
-    return _chosen(visit)
+    return _chosen(request)
 
 
-def _chosen(visit: Visit) -> tuple[str, dict[str, Any], str]:
-    form, said = visit.form, visit.said["publishing"]["faults"]
-    title, known = form.text("title").strip()[:200], set(visit.site.course.names)
+def _chosen(request: Request) -> tuple[str, dict[str, Any], str]:
+    form, said = request.form, request.words["publishing"]["faults"]
+    title, known = form.text("title").strip()[:200], set(request.site.course.names)
     name = _name(form.text("name") or title)
     exercises = [one for one in form.texts.get("exercise", ()) if one in known]
     if not name or not title:
@@ -154,7 +154,7 @@ def _as_json(value: Any) -> Any:
 # ------------------------------------------------------------------------- students
 
 
-def roster(visit: Visit) -> list[Student]:
+def roster(request: Request) -> list[Student]:
     """Return the students of the uploaded roster, or else, if the form states so, all who sign in as
     students.
 
@@ -163,23 +163,23 @@ def roster(visit: Visit) -> list[Student]:
     BadInput
         The roster cannot be read.
     """
-    if sent := _sent(visit, "roster"):
+    if sent := _sent(request, "roster"):
         with tempfile.TemporaryDirectory(prefix="coursework-") as folder:
             path = Path(folder) / "roster.csv"
             path.write_bytes(sent.data)
             try:
                 students: list[Student] = read_apart(
-                    DESK_FILE, visit.said["refused"]["too_much"], read_roster, path
+                    DESK_FILE, request.words["refused"]["too_much"], read_roster, path
                 )
                 return students
             except BadInput as fault:
                 raise BadInput(str(fault).replace(str(path), "roster.csv")) from None
-    return students_with_accounts(visit) if visit.form.text("accounts") else []
+    return students_with_accounts(request) if request.form.text("accounts") else []
 
 
-def students_with_accounts(visit: Visit) -> list[Student]:
+def students_with_accounts(request: Request) -> list[Student]:
     """Everybody who signs in as a student, so named that the very same people are meant."""
-    with visit.site.store.reading() as connection:
+    with request.site.store.reading() as connection:
         found = {one.id: one for one in people(connection) if one.role == "student"}.values()
     often = Counter(one.name for one in found)
     return [_student(one, apart=often[one.name] > 1) for one in found]

@@ -48,8 +48,8 @@ from coursework.making.issued import Issued
 from coursework.making.issued import issued_content as content_of
 from coursework.making.roster import Student
 from coursework.site.frame.budgets import DESK_FILE
-from coursework.site.frame.moments import exact_text, field_text, from_field, moment_text, zone_name
-from coursework.site.frame.visits import Form, Page, Refused, Reply, Visit
+from coursework.site.frame.requests import Form, HTTPException, Request, Response, Route
+from coursework.site.frame.times import exact_text, field_text, from_field, moment_text, zone_name
 from coursework.site.papers.opening import prepare_soon
 from coursework.site.papers.own_assignment import State, state_of
 from coursework.site.papers.own_paper import OwnPaper, own_paper
@@ -110,90 +110,90 @@ def _by_number(connection: Connection, counted: Select[Any]) -> dict[int, int]:
     return {row[0]: row[1] for row in connection.execute(counted)}
 
 
-def assignment_here(visit: Visit, connection: Connection) -> Handed:
-    found = handed_out(connection, int(visit.path["number"]))
+def assignment_here(request: Request, connection: Connection) -> Handed:
+    found = handed_out(connection, int(request.path_params["number"]))
     if not found:
-        raise Refused("page", 404)
+        raise HTTPException("page", 404)
     return found[0]
 
 
 # ------------------------------------------------------------------------- lists
 
 
-def listed(visit: Visit) -> Reply:
-    with visit.site.store.reading() as connection:
+def listed(request: Request) -> Response:
+    with request.site.store.reading() as connection:
         found = handed_out(connection)
-    phases = {one.id: _phase(one.publication, visit.at) for one in found}
-    return visit.page("site_publish_list", found=found, phases=phases, lang_of=visit.lang)
+    phases = {one.id: _phase(one.publication, request.received_at) for one in found}
+    return request.render("site_publish_list", found=found, phases=phases, lang_of=request.lang)
 
 
 def _phase(publication: Publication | None, clock: datetime) -> str:
     return "hidden" if publication is None else publication.phase(publication.now(clock)).value
 
 
-def new(visit: Visit) -> Reply:
+def new(request: Request) -> Response:
     """Hand out a new one: a file of an assignment or exercises that are chosen, and a roster; or what ``build`` issued."""
-    if not visit.posted:
-        return _new_page(visit)
+    if not request.is_post:
+        return _new_page(request)
     try:
-        made = handing_out.read(visit)
+        made = handing_out.read(request)
     except BadInput as fault:
-        return _new_page(visit, str(fault), 422)
+        return _new_page(request, str(fault), 422)
     if made.issued is not None:
-        return Reply(goto=f"/desk/assignments/{_take_in(visit, made)}")
+        return Response(redirect=f"/desk/assignments/{_take_in(request, made)}")
     assert made.wanted is not None
-    token = dealings.begin(visit.site, made.wanted, visit.who.name, "assignment dealt")
-    return Reply(goto=f"/desk/assignments/dealing/{token}")
+    token = dealings.begin(request.site, made.wanted, request.user.name, "assignment dealt")
+    return Response(redirect=f"/desk/assignments/dealing/{token}")
 
 
-def _new_page(visit: Visit, problem: str = "", status: int = 200) -> Reply:
-    shelves = handing_out.shelves(visit.site.course, visit.lang)
-    return visit.page(
-        "site_publish_new", status, shelves=shelves, problem=problem, sent=visit.form, most_versions=MOST_VERSIONS,
-        accounts=len(handing_out.students_with_accounts(visit)),
+def _new_page(request: Request, problem: str = "", status: int = 200) -> Response:
+    shelves = handing_out.shelves(request.site.course, request.lang)
+    return request.render(
+        "site_publish_new", status, shelves=shelves, problem=problem, sent=request.form, most_versions=MOST_VERSIONS,
+        accounts=len(handing_out.students_with_accounts(request)),
     )  # fmt: skip
 
 
-def _take_in(visit: Visit, made: handing_out.HandOut) -> int:
+def _take_in(request: Request, made: handing_out.HandOut) -> int:
     """Store an assignment that was issued elsewhere; return its id."""
     assert made.issued is not None
-    with visit.site.store.begin() as connection:
+    with request.site.store.begin() as connection:
         number = put_issued(connection, made.issued, made.name)
-        note(connection, visit.at, visit.who.name, "assignment taken in", assignment=made.name)
+        note(connection, request.received_at, request.user.name, "assignment taken in", assignment=made.name)
     return number
 
 
-def dealing(visit: Visit) -> Reply:
+def dealing(request: Request) -> Response:
     """Return the state of a job; redirect to the assignment when it is done, unless there is a message."""
-    found = dealings.dealing(visit.site, str(visit.path["token"]))
+    found = dealings.dealing(request.site, str(request.path_params["token"]))
     if found is None:
-        raise Refused("page", 404)
+        raise HTTPException("page", 404)
     if found.state == dealings.DONE and not found.told:
-        return Reply(goto=f"/desk/assignments/{found.number}")
-    return visit.page("site_publish_dealing", dealing=found)
+        return Response(redirect=f"/desk/assignments/{found.number}")
+    return request.render("site_publish_dealing", dealing=found)
 
 
 # ------------------------------------------------------------------- one assignment
 
 
-def shown(visit: Visit) -> Reply:
-    with visit.site.store.reading() as connection:
-        one = assignment_here(visit, connection)
-    return _page(visit, one, one.publication or Publication())
+def shown(request: Request) -> Response:
+    with request.site.store.reading() as connection:
+        one = assignment_here(request, connection)
+    return _page(request, one, one.publication or Publication())
 
 
 def _page(
-    visit: Visit, one: Handed, publication: Publication, faults: Sequence[Fault] = (), problem: str = ""
-) -> Reply:
-    with visit.site.store.reading() as connection:
+    request: Request, one: Handed, publication: Publication, faults: Sequence[Fault] = (), problem: str = ""
+) -> Response:
+    with request.site.store.reading() as connection:
         people = holders(connection, one.id)
         more = extensions(connection, one.id)
         noted = _noted(connection, one.name)
-    return visit.page(
+    return request.render(
         "site_publish", 422 if faults or problem else 200, one=one, said_now=publication, faults=faults, problem=problem,
-        people=people, extensions=more, noted=noted, phase=_phase(one.publication, visit.at), zone=zone_name(visit.at),
-        field=field_text, moment=lambda at: "" if at is None else moment_text(at, visit.lang),
-        exact=lambda at: exact_text(at, visit.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
+        people=people, extensions=more, noted=noted, phase=_phase(one.publication, request.received_at), zone=zone_name(request.received_at),
+        field=field_text, moment=lambda at: "" if at is None else moment_text(at, request.lang),
+        exact=lambda at: exact_text(at, request.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
         sittings=SITTINGS, sittings_now=one.stated.get("sittings", SITTINGS[0]), most_tries=MOST_TRIES,
     )  # fmt: skip
 
@@ -236,34 +236,34 @@ def _noted(connection: Connection, name: str) -> list[Any]:
     return own[:_NOTED]
 
 
-def _noting(visit: Visit, connection: Connection, one: Handed, what: str, **about: Any) -> None:
-    note(connection, visit.at, visit.who.name, what, assignment=one.name, **about)
+def _noting(request: Request, connection: Connection, one: Handed, what: str, **about: Any) -> None:
+    note(connection, request.received_at, request.user.name, what, assignment=one.name, **about)
 
 
-def _back(one: Handed) -> Reply:
-    return Reply(goto=f"/desk/assignments/{one.id}")
+def _back(one: Handed) -> Response:
+    return Response(redirect=f"/desk/assignments/{one.id}")
 
 
 # --------------------------------------------------------------------- publishing
 
 
-def put_out(visit: Visit) -> Reply:
+def put_out(request: Request) -> Response:
     """Publish it with what the form says, or say what makes no sense; published again, by the new dates."""
-    _posted(visit)
-    with visit.site.store.reading() as connection:
-        one = assignment_here(visit, connection)
-    publication, faults = publication_of(visit.form)
+    _posted(request)
+    with request.site.store.reading() as connection:
+        one = assignment_here(request, connection)
+    publication, faults = publication_of(request.form)
     faults += publication.faults()
-    sittings = visit.form.text("sittings", SITTINGS[0])
+    sittings = request.form.text("sittings", SITTINGS[0])
     if sittings not in SITTINGS:
         faults.append(Fault("sittings", "choice"))
     if faults:
-        return _page(visit, one, publication, faults)
-    with visit.site.store.begin() as connection:
+        return _page(request, one, publication, faults)
+    with request.site.store.begin() as connection:
         publish(connection, one.id, publication)
         say_sittings(connection, one.id, sittings)
-        prepare_soon(visit.site, connection, one.id)
-        _noting(visit, connection, one, "assignment published", **publication.as_json(), sittings=sittings)
+        prepare_soon(request.site, connection, one.id)
+        _noting(request, connection, one, "assignment published", **publication.as_json(), sittings=sittings)
     return _back(one)
 
 
@@ -312,119 +312,123 @@ def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
     return found, faults
 
 
-def take_back(visit: Visit) -> Reply:
+def take_back(request: Request) -> Response:
     """Unpublish it: no student sees it any more; what was handed in stays."""
-    _posted(visit)
-    with visit.site.store.begin() as connection:
-        one = assignment_here(visit, connection)
+    _posted(request)
+    with request.site.store.begin() as connection:
+        one = assignment_here(request, connection)
         publish(connection, one.id, None)
         drop_prepared(connection, one.id)
-        _noting(visit, connection, one, "assignment unpublished")
+        _noting(request, connection, one, "assignment unpublished")
     return _back(one)
 
 
-def give_more(visit: Visit) -> Reply:
+def give_more(request: Request) -> Response:
     """Give one person an extension, with its reason."""
-    _posted(visit)
-    with visit.site.store.reading() as connection:
-        one = assignment_here(visit, connection)
+    _posted(request)
+    with request.site.store.reading() as connection:
+        one = assignment_here(request, connection)
         holder = next(
-            (h for h in holders(connection, one.id) if str(h.person) == visit.form.text("person")), None
+            (h for h in holders(connection, one.id) if str(h.person) == request.form.text("person")), None
         )
-    said = visit.said["publishing"]["faults"]
-    reason = visit.form.text("reason").strip()[:500]
+    said = request.words["publishing"]["faults"]
+    reason = request.form.text("reason").strip()[:500]
     told, faults = publication_of(
-        Form({"closes": [visit.form.text("closes")], "tries": [visit.form.text("tries")]})
+        Form({"closes": [request.form.text("closes")], "tries": [request.form.text("tries")]})
     )
     if holder is None:
-        return _page(visit, one, one.publication or Publication(), problem=said["who"])
+        return _page(request, one, one.publication or Publication(), problem=said["who"])
     if faults or (told.tries is not None and not 1 <= told.tries <= MOST_TRIES):
-        return _page(visit, one, one.publication or Publication(), problem=said["extension"])
+        return _page(request, one, one.publication or Publication(), problem=said["extension"])
     if not reason:
-        return _page(visit, one, one.publication or Publication(), problem=said["reason"])
-    more = Extension(told.closes, told.tries, reason, visit.who.name, visit.at)
-    with visit.site.store.begin() as connection:
+        return _page(request, one, one.publication or Publication(), problem=said["reason"])
+    more = Extension(told.closes, told.tries, reason, request.user.name, request.received_at)
+    with request.site.store.begin() as connection:
         extend(connection, one.id, holder.person, more)
-        prepare_soon(visit.site, connection, one.id, holder.person)
+        prepare_soon(request.site, connection, one.id, holder.person)
         closes = told.closes.isoformat() if told.closes else ""
-        _noting(visit, connection, one, "extension", student=holder.student, closes=closes, tries=told.tries)
+        _noting(
+            request, connection, one, "extension", student=holder.student, closes=closes, tries=told.tries
+        )
     return _back(one)
 
 
-def _posted(visit: Visit) -> None:
-    if not visit.posted:
-        raise Refused("method", 405)
+def _posted(request: Request) -> None:
+    if not request.is_post:
+        raise HTTPException("method", 405)
 
 
 # ------------------------------------------------------------------- who comes later
 
 
-def add_late(visit: Visit) -> Reply:
+def add_late(request: Request) -> Response:
     """Assign variants to the new students of a longer roster; all other papers remain as they are."""
-    _posted(visit)
-    return _deal_more(visit, handing_out.roster(visit), (), "late ones added")
+    _posted(request)
+    return _deal_more(request, handing_out.roster(request), (), "late ones added")
 
 
-def make_up(visit: Visit) -> Reply:
+def make_up(request: Request) -> Response:
     """Another variant for one person, for a second sitting."""
-    _posted(visit)
-    return _deal_more(visit, [], (visit.form.text("student"),), "make-up dealt")
+    _posted(request)
+    return _deal_more(request, [], (request.form.text("student"),), "make-up dealt")
 
 
-def _deal_more(visit: Visit, students: Sequence[Student], names: Sequence[str], what: str) -> Reply:
-    with visit.site.store.reading() as connection:
-        one = assignment_here(visit, connection)
+def _deal_more(request: Request, students: Sequence[Student], names: Sequence[str], what: str) -> Response:
+    with request.site.store.reading() as connection:
+        one = assignment_here(request, connection)
         content = issued_content(connection, one.id, secret=True)
     if one.asked is None:
         return _page(
-            visit, one, one.publication or Publication(), problem=visit.said["publishing"]["no_file"]
+            request, one, one.publication or Publication(), problem=request.words["publishing"]["no_file"]
         )
     issued = dealings.holders(content)
     known = {student.who for student in issued}
     everybody = [*issued, *(student for student in students if student.who not in known)]
-    wanted = Wanted(one.name, one.asked, everybody, visit.site.languages[0], content, tuple(names))
-    return Reply(goto=f"/desk/assignments/dealing/{dealings.begin(visit.site, wanted, visit.who.name, what)}")
+    wanted = Wanted(one.name, one.asked, everybody, request.site.languages[0], content, tuple(names))
+    return Response(
+        redirect=f"/desk/assignments/dealing/{dealings.begin(request.site, wanted, request.user.name, what)}"
+    )
 
 
 # ------------------------------------------------------------------ as a student sees it
 
 
-def preview(visit: Visit) -> Reply:
+def preview(request: Request) -> Response:
     """Return the page as students will see it, with a variant that is issued to nobody."""
-    with visit.site.store.reading() as connection:
-        one = assignment_here(visit, connection)
+    with request.site.store.reading() as connection:
+        one = assignment_here(request, connection)
         issued = issued_of(connection, one.id)
-    asked = _as_asked(visit, one, issued)
+    asked = _as_asked(request, one, issued)
     made = deal(
-        visit.site.course,
+        request.site.course,
         asked,
-        [Student(visit.said["publishing"]["nobody"])],
-        [handing_out.spoken(visit, asked)],
-        secret=Secret(visit.site.secret[:16]).under("preview"),
+        [Student(request.words["publishing"]["nobody"])],
+        [handing_out.spoken(request, asked)],
+        secret=Secret(request.site.secret[:16]).under("preview"),
     )
     student = made.issues[0].student
     own = OwnPaper(
-        visit.site.course,
+        request.site.course,
         content_of(made.issues, asked),
         student,
-        visit.lang,
+        request.lang,
         asked.instructions,
     )
     said = one.publication or Publication()
     state = State(
         Place(one.id, one.name, asked.stated(), student, said, None),
-        visit.lang,
-        said.now(visit.at),
+        request.lang,
+        said.now(request.received_at),
         (),
         None,
     )
-    return _seen(visit, one, state, own, visit.said["publishing"]["look_preview"])
+    return _seen(request, one, state, own, request.words["publishing"]["look_preview"])
 
 
-def _as_asked(visit: Visit, one: Handed, issued: Issued) -> Assignment:
+def _as_asked(request: Request, one: Handed, issued: Issued) -> Assignment:
     """Return the assignment as its file states it; for one issued elsewhere, as its records state it."""
     if one.asked is not None:
-        return assignment_of(one.name, one.asked, visit.site.course)
+        return assignment_of(one.name, one.asked, request.site.course)
     exercises = []
     for exercise in issued.exercises:
         record = next(record for (name, _), record in issued.records.items() if name == exercise)
@@ -433,68 +437,79 @@ def _as_asked(visit: Visit, one: Handed, issued: Issued) -> Assignment:
     return Assignment(one.name, tuple(exercises), title=dict(one.stated.get("title") or {}))
 
 
-def as_somebody(visit: Visit) -> Reply:
+def as_somebody(request: Request) -> Response:
     """Return the page as a student sees it, read-only; without the student's drafts."""
-    with visit.site.store.begin() as connection:
-        one = assignment_here(visit, connection)
-        person_id = int(visit.path["person"])
+    with request.site.store.begin() as connection:
+        one = assignment_here(request, connection)
+        person_id = int(request.path_params["person"])
         found = places(connection, person_id, one.id)
         if not found:
-            raise Refused("page", 404)
-        _noting(visit, connection, one, "seen as a student", student=found[0].student)
+            raise HTTPException("page", 404)
+        _noting(request, connection, one, "seen as a student", student=found[0].student)
         place = found[0]._replace(publication=found[0].publication or Publication())
-        own = own_paper(connection, visit.site.course, place, person_id, visit.lang)
-        theirs = state_of(replace(visit, person=visit.who._replace(id=person_id)), place, connection)
-    look = visit.said["publishing"]["look_as"].format(place.student)
+        own = own_paper(connection, request.site.course, place, person_id, request.lang)
+        theirs = state_of(replace(request, person=request.user._replace(id=person_id)), place, connection)
+    look = request.words["publishing"]["look_as"].format(place.student)
     if theirs.phase is Phase.TO_COME or one.publication is None:
-        look += " " + visit.said["publishing"]["look_hidden"]
-    return _seen(visit, one, theirs, own, look)
+        look += " " + request.words["publishing"]["look_hidden"]
+    return _seen(request, one, theirs, own, look)
 
 
-def _seen(visit: Visit, one: Handed, state: State, own: OwnPaper, look: str) -> Reply:
+def _seen(request: Request, one: Handed, state: State, own: OwnPaper, look: str) -> Response:
     pieces = own.pieces()
-    return visit.page(
-        "site_assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(visit.at),
+    return request.render(
+        "site_assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(request.received_at),
         back=f"/desk/assignments/{one.id}", paper_head=Markup(pieces.head), paper_body=Markup(pieces.body),
     )  # fmt: skip
 
 
-def issued_file(visit: Visit) -> Reply:
+def issued_file(request: Request) -> Response:
     """Return the content of ``issued.json``, as ``grade`` reads it."""
-    with visit.site.store.reading() as connection:
-        number = assignment_here(visit, connection).id
+    with request.site.store.reading() as connection:
+        number = assignment_here(request, connection).id
         # Who may not publish draws no paper that is to come.
-        may_draw = visit.who.may(Permission.ASSIGNMENTS_PUBLISH, number, "")
+        may_draw = request.user.may(Permission.ASSIGNMENTS_PUBLISH, number, "")
         content = issued_content(connection, number, secret=may_draw)
     data = json.dumps(content, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
-    return Reply(kind="application/json", data=data, file="issued.json")
+    return Response(media_type="application/json", content=data, filename="issued.json")
 
 
-PAGES = (
-    Page("/desk/assignments", listed, Permission.ASSIGNMENTS_READ),
-    Page(
+ROUTES = (
+    Route("/desk/assignments", listed, Permission.ASSIGNMENTS_READ),
+    Route(
         "/desk/assignments/new",
         new,
         Permission.ASSIGNMENTS_PUBLISH,
-        posts=True,
+        takes_forms=True,
         limit="upload",
         budget=DESK_FILE,
     ),
-    Page("/desk/assignments/dealing/{token}", dealing, Permission.ASSIGNMENTS_PUBLISH),
-    Page("/desk/assignments/{number:int}", shown, Permission.ASSIGNMENTS_READ),
-    Page("/desk/assignments/{number:int}/publish", put_out, Permission.ASSIGNMENTS_PUBLISH, posts=True),
-    Page("/desk/assignments/{number:int}/unpublish", take_back, Permission.ASSIGNMENTS_PUBLISH, posts=True),
-    Page("/desk/assignments/{number:int}/extend", give_more, Permission.ASSIGNMENTS_PUBLISH, posts=True),
-    Page(
+    Route("/desk/assignments/dealing/{token}", dealing, Permission.ASSIGNMENTS_PUBLISH),
+    Route("/desk/assignments/{number:int}", shown, Permission.ASSIGNMENTS_READ),
+    Route(
+        "/desk/assignments/{number:int}/publish", put_out, Permission.ASSIGNMENTS_PUBLISH, takes_forms=True
+    ),
+    Route(
+        "/desk/assignments/{number:int}/unpublish",
+        take_back,
+        Permission.ASSIGNMENTS_PUBLISH,
+        takes_forms=True,
+    ),
+    Route(
+        "/desk/assignments/{number:int}/extend", give_more, Permission.ASSIGNMENTS_PUBLISH, takes_forms=True
+    ),
+    Route(
         "/desk/assignments/{number:int}/roster",
         add_late,
         Permission.ASSIGNMENTS_PUBLISH,
-        posts=True,
+        takes_forms=True,
         limit="upload",
         budget=DESK_FILE,
     ),
-    Page("/desk/assignments/{number:int}/make-up", make_up, Permission.ASSIGNMENTS_PUBLISH, posts=True),
-    Page("/desk/assignments/{number:int}/preview", preview, Permission.ASSIGNMENTS_READ),
-    Page("/desk/assignments/{number:int}/as/{person:int}", as_somebody, Permission.ASSIGNMENTS_READ),
-    Page("/desk/assignments/{number:int}/issued.json", issued_file, Permission.ASSIGNMENTS_READ),
+    Route(
+        "/desk/assignments/{number:int}/make-up", make_up, Permission.ASSIGNMENTS_PUBLISH, takes_forms=True
+    ),
+    Route("/desk/assignments/{number:int}/preview", preview, Permission.ASSIGNMENTS_READ),
+    Route("/desk/assignments/{number:int}/as/{person:int}", as_somebody, Permission.ASSIGNMENTS_READ),
+    Route("/desk/assignments/{number:int}/issued.json", issued_file, Permission.ASSIGNMENTS_READ),
 )

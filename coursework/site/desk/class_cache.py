@@ -32,8 +32,8 @@ from coursework.gradebook.waiting import SHOWN_ON_REQUEST, Group, Measure, Waits
 from coursework.making.assignment import text_in
 from coursework.making.issued import Issued
 from coursework.making.students import namesakes
+from coursework.site.frame.requests import HTTPException, Request, Response
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Refused, Reply, Visit
 from coursework.site.papers.handing_in import mark, pass_dates
 
 _MARKING = timedelta(minutes=1)  #: after which nobody marks a hand-in any more who began to
@@ -270,7 +270,7 @@ def class_now(site: Site, assignment_id: int) -> ClassNow:
 
     Raises
     ------
-    Refused
+    HTTPException
         There is no such assignment.
     """
     pass_dates(site, assignment_id, site.clock())
@@ -290,7 +290,7 @@ def _as_it_stands(site: Site, assignment_id: int) -> ClassNow:
     with kept.lock, site.store.reading() as connection:
         about = next(iter(listed(connection, assignment_id)), None)
         if about is None:
-            raise Refused("own", 404)
+            raise HTTPException("own", 404)
         at = stamp(connection, assignment_id)
         now = kept.now
         if (
@@ -359,28 +359,28 @@ def _measured(
     return dict(zip(numbers, measures(course, issued, graded), strict=True))
 
 
-def assignment_of(visit: Visit) -> int:
+def assignment_of(request: Request) -> int:
     """Return the id of the assignment that the address names.
 
     Raises
     ------
-    Refused
+    HTTPException
         None: it is no number.
     """
-    told = str(visit.path.get("assignment", ""))
+    told = str(request.path_params.get("assignment", ""))
     if not told.isascii() or not told.isdecimal() or len(told) > 9:
-        raise Refused("own", 404)
+        raise HTTPException("own", 404)
     return int(told)
 
 
-def by_whom(visit: Visit) -> str:
+def by_whom(request: Request) -> str:
     """Return the name under which a decision is recorded."""
-    return visit.who.name or str(visit.said["site"]["local"])
+    return request.user.name or str(request.words["site"]["local"])
 
 
-def class_page_of(visit: Visit, now: ClassNow, template: str, tab: str, **names: Any) -> Reply:
+def class_page_of(request: Request, now: ClassNow, template: str, tab: str, **names: Any) -> Response:
     """Return an instructor's page of one assignment, under its heading."""
-    return visit.page(template, now=now, tab=tab, heading=called(now.about, visit.lang), **names)
+    return request.render(template, now=now, tab=tab, heading=called(now.about, request.lang), **names)
 
 
 def called(about: About, lang: str) -> str:

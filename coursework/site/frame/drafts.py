@@ -8,7 +8,7 @@ from typing import Any
 
 from coursework.database.drafts import Box, Sent, drafts, save
 from coursework.database.people import hold
-from coursework.site.frame.visits import Form, Refused, Reply, Visit
+from coursework.site.frame.requests import Form, HTTPException, Request, Response
 
 LONGEST = 4000  #: characters of one answer
 _TEXT, _OVER = "text.", "over."
@@ -16,12 +16,12 @@ _BLANK = Box("", 0)
 
 
 def kept(
-    visit: Visit,
+    request: Request,
     sheet: str,
     boxes: Collection[str],
     read: Callable[[str, str], str] | None = None,
     is_open: bool = True,
-) -> Reply:
+) -> Response:
     """Store the boxes that a page sends; return those that another page has changed, and the reading of each
     text.
 
@@ -29,16 +29,16 @@ def kept(
 
     Raises
     ------
-    Refused
+    HTTPException
         It sends what is no box of the sheet, or more than anybody types.
     """
-    sent = sent_boxes(visit.form, boxes)
-    with visit.site.store.begin() as connection:
-        hold(connection, visit.who.id)
-        if not is_open and _is_new(drafts(connection, visit.who.id, sheet), sent):
-            return json_reply({"told": visit.said["keeping"]["closed"]}, 409)
-        others = save(connection, visit.who.id, sheet, sent, visit.at)
-        now = drafts(connection, visit.who.id, sheet)
+    sent = sent_boxes(request.form, boxes)
+    with request.site.store.begin() as connection:
+        hold(connection, request.user.id)
+        if not is_open and _is_new(drafts(connection, request.user.id, sheet), sent):
+            return json_reply({"told": request.words["keeping"]["closed"]}, 409)
+        others = save(connection, request.user.id, sheet, sent, request.received_at)
+        now = drafts(connection, request.user.id, sheet)
     mine = [name for name in sent if name not in others]
     told = {
         "versions": {name: now[name].version if name in now else 0 for name in mine},
@@ -53,7 +53,7 @@ def _is_new(stood: Mapping[str, Box], sent: Mapping[str, Sent]) -> bool:
 
 
 def keep_form(
-    visit: Visit, sheet: str, texts: Mapping[str, str], shown: Mapping[str, str], versions: str
+    request: Request, sheet: str, texts: Mapping[str, str], shown: Mapping[str, str], versions: str
 ) -> tuple[dict[str, Box], dict[str, Box]]:
     """Store the drafts of a form without a script: ``texts`` by box, if they differ from those ``shown`` or a
     draft exists.
@@ -63,24 +63,28 @@ def keep_form(
 
     Raises
     ------
-    Refused
+    HTTPException
         The versions cannot be read.
     """
     over = versions_of(versions)
-    with visit.site.store.begin() as connection:
-        hold(connection, visit.who.id)
-        stood = drafts(connection, visit.who.id, sheet)
+    with request.site.store.begin() as connection:
+        hold(connection, request.user.id)
+        stood = drafts(connection, request.user.id, sheet)
         sent = {
             name: Sent(text, over.get(name, 0))
             for name, text in texts.items()
             if name in stood or text != shown.get(name, "")
         }
-        others = save(connection, visit.who.id, sheet, sent, visit.at)
-        return drafts(connection, visit.who.id, sheet), others
+        others = save(connection, request.user.id, sheet, sent, request.received_at)
+        return drafts(connection, request.user.id, sheet), others
 
 
-def json_reply(told: Mapping[str, Any], status: int = 200) -> Reply:
-    return Reply(kind="application/json", data=json.dumps(told, ensure_ascii=False).encode(), status=status)
+def json_reply(told: Mapping[str, Any], status: int = 200) -> Response:
+    return Response(
+        media_type="application/json",
+        content=json.dumps(told, ensure_ascii=False).encode(),
+        status_code=status,
+    )
 
 
 def sent_boxes(form: Form, boxes: Collection[str]) -> dict[str, Sent]:
@@ -92,9 +96,9 @@ def sent_boxes(form: Form, boxes: Collection[str]) -> dict[str, Sent]:
         if field.startswith(_TEXT):
             text, over = form.text(field), form.text(_OVER + name, "0")
             if name not in boxes or not over.isdecimal() or len(over) > 9:
-                raise Refused("bad_request", 400)
+                raise HTTPException("bad_request", 400)
             if len(text) > LONGEST:
-                raise Refused("too_large", 413, f"{LONGEST}")
+                raise HTTPException("too_large", 413, f"{LONGEST}")
             found[name] = Sent(text, int(over))
     return found
 
@@ -104,17 +108,17 @@ def versions_of(text: str) -> dict[str, int]:
 
     Raises
     ------
-    Refused
+    HTTPException
         They are none.
     """
     try:
         return {str(name): int(number) for name, number in json.loads(text or "{}").items()}
     except (ValueError, TypeError, AttributeError, OverflowError, RecursionError):
-        raise Refused("bad_request", 400) from None
+        raise HTTPException("bad_request", 400) from None
 
 
 def keeper(
-    visit: Visit, address: str, sheet: str, boxes: Mapping[str, Box], own: str = "", **said: str
+    request: Request, address: str, sheet: str, boxes: Mapping[str, Box], own: str = "", **said: str
 ) -> dict[str, str]:
     """Return the attributes of a form whose boxes are stored as drafts; ``boxes`` are those that the page
     shows.
@@ -124,10 +128,10 @@ def keeper(
     """
     return {
         "data-keep": address,
-        "data-keep-as": f"{visit.who.id} {sheet}",
+        "data-keep-as": f"{request.user.id} {sheet}",
         "data-keep-own": own,
         "data-keep-versions": json.dumps({name: box.version for name, box in boxes.items()}),
-        "data-keep-words": json.dumps({**visit.said["keeping"], **said}, ensure_ascii=False),
+        "data-keep-words": json.dumps({**request.words["keeping"], **said}, ensure_ascii=False),
     }
 
 

@@ -11,8 +11,8 @@ from coursework.database.areas import held_by
 from coursework.database.audit import note
 from coursework.database.people import person_by_id
 from coursework.database.permissions import STAFF, STUDENT, is_of_staff, may
+from coursework.site.frame.requests import HTTPException, Person, Request, Response, Route
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Page, Person, Refused, Reply, Visit
 
 _GREATEST = 2**31 - 1  #: that ids of a database reach
 
@@ -24,7 +24,7 @@ def person_of(connection: Connection, row: Any) -> Person:
 
 
 def check_permission(
-    site: Site, page: Page, person: Person | None, path: Mapping[str, Any], *, posted: bool
+    site: Site, route: Route, person: Person | None, path: Mapping[str, Any], *, is_post: bool
 ) -> None:
     """Check that a person may request a page.
 
@@ -39,35 +39,35 @@ def check_permission(
 
     Raises
     ------
-    Refused
+    HTTPException
         They may not: nobody is signed in, their role has not the permission, or not for this assignment or person.
     """
-    needs = (page.posting if posted else None) or page.needs
-    if may(None, needs):
+    permission = (route.form_permission if is_post else None) or route.permission
+    if may(None, permission):
         return
     if person is None:
-        raise Refused("sign_in", 401)
-    if page.of_staff is not None and _is_staff(site, path):
-        needs = page.of_staff
-    if not may(person, needs):
-        raise Refused("role", 403)
-    if not is_of_staff(needs) or (assignment := _assignment(path)) is None:
+        raise HTTPException("sign_in", 401)
+    if route.staff_permission is not None and _is_staff(site, path):
+        permission = route.staff_permission
+    if not may(person, permission):
+        raise HTTPException("role", 403)
+    if not is_of_staff(permission) or (assignment := _assignment(path)) is None:
         return
-    if not may(person, needs, assignment, None if page.by_group else ""):
-        raise Refused("own", 404)
+    if not may(person, permission, assignment, None if route.by_group else ""):
+        raise HTTPException("own", 404)
 
 
-def note_export(page: Page, visit: Visit, reply: Reply) -> None:
+def note_export(route: Route, request: Request, response: Response) -> None:
     """Record that somebody of the staff took a file."""
-    if not reply.file or not is_of_staff(page.needs):
+    if not response.filename or not is_of_staff(route.permission):
         return
-    about: dict[str, Any] = {"file": reply.file}
-    if (assignment := _assignment(visit.path)) is not None:
+    about: dict[str, Any] = {"file": response.filename}
+    if (assignment := _assignment(request.path_params)) is not None:
         about["assignment"] = assignment
-    if (person := _number(visit.path.get("person"))) is not None:
+    if (person := _number(request.path_params.get("person"))) is not None:
         about["person"] = person
-    with visit.site.store.begin() as connection:
-        note(connection, visit.at, visit.actor, page.noted, **about)
+    with request.site.store.begin() as connection:
+        note(connection, request.received_at, request.actor, route.audit_event, **about)
 
 
 def _is_staff(site: Site, path: Mapping[str, Any]) -> bool:

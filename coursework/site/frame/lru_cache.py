@@ -8,23 +8,23 @@ from threading import Lock
 from typing import Any
 
 
-class Shelf:
+class LRUCache:
     """Things by their keys, made when they are first asked for."""
 
     def __init__(self, most: int):
         self._most = most
-        self._things: OrderedDict[Hashable, Any] = OrderedDict()
+        self._items: OrderedDict[Hashable, Any] = OrderedDict()
         self._lock = Lock()
 
     def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
         """Return the item of a key; two concurrent requests for a new one may both compute it."""
         with self._lock:
-            if key in self._things:
-                self._things.move_to_end(key)
-                return self._things[key]
+            if key in self._items:
+                self._items.move_to_end(key)
+                return self._items[key]
         made = make()
         with self._lock:
-            made = self._things.setdefault(key, made)
-            while len(self._things) > self._most:
-                self._things.popitem(last=False)
+            made = self._items.setdefault(key, made)
+            while len(self._items) > self._most:
+                self._items.popitem(last=False)
         return made

@@ -26,11 +26,11 @@ def local(address: str, usual: str = "/") -> str:
     return seen if seen.startswith("/") and not leads_away else usual
 
 
-class Refused(CourseworkError):
+class HTTPException(CourseworkError):
     """A page that is not shown: the name of a sentence of ``[refused]``, and the status that goes with it."""
 
-    def __init__(self, sentence: str, status: int, *parts: object):
-        self.sentence, self.status, self.parts = sentence, status, parts
+    def __init__(self, sentence: str, status_code: int, *parts: object):
+        self.sentence, self.status_code, self.parts = sentence, status_code, parts
         super().__init__(sentence)
 
 
@@ -71,42 +71,42 @@ class Form:
 
 
 @dataclass(frozen=True)
-class Visit:
+class Request:
     """A page that is asked for."""
 
     site: Site
     person: Person | None
     lang: str
-    at: datetime  #: UTC; of what is sent its arrival, however long it waited
-    address: str  #: path, as the browser sees it
-    path: Mapping[str, Any] = field(default_factory=dict)  #: what the path's places hold
-    query: Mapping[str, str] = field(default_factory=dict)
+    received_at: datetime  #: UTC; for a form, the time at which its bytes arrived
+    path: str  #: as the browser sees it
+    path_params: Mapping[str, Any] = field(default_factory=dict)
+    query_params: Mapping[str, str] = field(default_factory=dict)
     form: Form = field(default_factory=Form)
-    posted: bool = False
-    seal: str = ""  #: what a form holds in its field ``_seal``
-    is_piece: bool = False  #: a script asks for a piece of the page alone
-    came_from: str = ""  #: the address of the machine that asks
+    is_post: bool = False
+    csrf_token: str = ""  #: value of the form field ``_seal``
+    is_fragment: bool = False  #: a script asks for a fragment of the page
+    client_address: str = ""  #: network address of the client
     session: int = 0  #: number of the session; 0 where there is none
     device: str = ""  #: the device cookie, as it came
 
     @property
-    def who(self) -> Person:
+    def user(self) -> Person:
         """Current user, who must be signed in.
 
         Raises
         ------
-        Refused
+        HTTPException
             Nobody is.
         """
         if self.person is None:
-            raise Refused("sign_in", 401)
+            raise HTTPException("sign_in", 401)
         return self.person
 
     @property
     def actor(self) -> Actor:
         """Current user and address, as the audit records them."""
-        name = self.who.name or str(self.said["site"]["local"])
-        return Actor(name, self.who.id, self.came_from)
+        name = self.user.name or str(self.words["site"]["local"])
+        return Actor(name, self.user.id, self.client_address)
 
     def require(
         self, permission: Permission, assignment: int | None = None, group: str | None = None
@@ -115,61 +115,63 @@ class Visit:
 
         Raises
         ------
-        Refused
+        HTTPException
             They may not.
         """
         if not may(self.person, permission, assignment, group):
-            raise Refused("role", 403)
+            raise HTTPException("role", 403)
 
     @property
-    def said(self) -> Mapping[str, Any]:
+    def words(self) -> Mapping[str, Any]:
         """The site's words."""
         return words(self.lang, "site")
 
-    def page(self, template: str, status: int = 200, **names: Any) -> Reply:
+    def render(self, template: str, status_code: int = 200, **names: Any) -> Response:
         """Return the page of a template such as ``site_practice``, with the frame of all pages."""
-        own = {"visit": self, "person": self.person, "seal": self.seal}
-        return Reply(self.site.pages.page(template, self.lang, {**own, **names}), status)
+        own = {"request": self, "person": self.person, "csrf_token": self.csrf_token}
+        return Response(self.site.pages.page(template, self.lang, {**own, **names}), status_code)
 
 
 @dataclass(frozen=True)
-class Reply:
+class Response:
     """Response of a page: a page or a part of one, a redirect, or a file."""
 
     html: str = ""
-    status: int = 200
-    goto: str = ""
-    kind: str = "text/html; charset=utf-8"
-    data: bytes = b""
-    file: str = ""  #: its name, where it is to be kept
-    keep: int = 0  #: seconds for which a browser may keep it; nothing is kept unless told
+    status_code: int = 200
+    redirect: str = ""  #: address to which the browser goes on
+    media_type: str = "text/html; charset=utf-8"
+    content: bytes = b""
+    filename: str = ""  #: name of a download
+    max_age: int = 0  #: seconds for which a browser may cache it
     device: str = ""  #: the device cookie that the browser is to keep
     signed_in: int | None = None  #: who is from now on; 0 for nobody
     lang: str = ""  #: which the browser is to remember
 
 
-class Page(NamedTuple):
+class Route(NamedTuple):
     """An address: the permission that it needs, and what answers.
 
     Where its path names an ``assignment`` or its ``number``, the permission is needed for that assignment.
     """
 
     path: str
-    answer: Callable[[Visit], Reply]
-    needs: Permission
-    posts: bool = False  #: it takes forms
+    endpoint: Callable[[Request], Response]
+    permission: Permission
+    takes_forms: bool = False  #: it takes forms
     limit: str = "usual"  #: which of the limits it falls under (:mod:`coursework.site.frame.limits`)
     budget: Budget | None = None  #: of what is sent to it; who takes forms of students states it
     is_short: bool = False  #: it stores what is sent and shows nothing: answered before pages are
-    posting: Permission | None = None  #: that a form needs, where it is another one
-    of_staff: Permission | None = None  #: that it needs where its path names a ``person`` of the staff
-    attempt: Callable[[Visit], Attempt] | None = None  #: what a form that holds a password is counted by
+    form_permission: Permission | None = None  #: that a form needs, where it is another one
+    staff_permission: Permission | None = (
+        None  #: that it needs where its path names a ``person`` of the staff
+    )
+    attempt: Callable[[Request], Attempt] | None = None  #: what a form that holds a password is counted by
     by_group: bool = (
         False  #: it shows an assistant the students of their groups alone; else it is for the whole class
     )
-    noted: str = "exported"  #: how the audit calls a file that the staff takes there
+    audit_event: str = "exported"  #: how the audit calls a file that the staff takes there
 
     @property
-    def means(self) -> Budget:
+    def request_budget(self) -> Budget:
         """The budget of its requests: the least where none is stated."""
-        return self.budget or (DESK if is_of_staff(self.needs) else PLAIN)
+        return self.budget or (DESK if is_of_staff(self.permission) else PLAIN)
