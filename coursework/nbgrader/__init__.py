@@ -1,4 +1,5 @@
-"""nbgrader collects and keeps the points; the answers are marked here, and no cell of a student is run.
+"""Support for nbgrader: it collects notebooks and stores the points; this package marks the answers and runs
+no cell of a student.
 
 ``nbgrader_config.py`` names :func:`configure`; the preprocessors need nbgrader installed, and are loaded when they are asked for.
 """

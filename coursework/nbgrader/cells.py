@@ -1,4 +1,4 @@
-"""The cells of a notebook as nbgrader knows them, by metadata of its schema 3.
+"""Cells of a notebook with the metadata of nbgrader, schema 3.
 
 The answers cell is a solution cell; a locked grade cell stands behind it for each part. Everything that a student should
 not change is locked: nbgrader writes it anew before it marks.
@@ -16,62 +16,70 @@ from coursework.rendering.views import points_text
 from coursework.sheets.sheet import Handout, Question
 
 SCHEMA = 3
-OURS = "coursework-"  #: every grade_id of ours begins so
+OURS = "coursework-"  #: prefix of all our grade identifiers
 Cell = dict[str, Any]
 
 
 def grade_id(exercise: str, key: str) -> str:
-    """What nbgrader calls the cell that holds the points of a part, by what the notebook calls its answer: a part's own name
-    may tell what is asked."""
+    """Return nbgrader's name of the cell that holds the points of a part.
+
+    ``key`` is the name of the answer in the notebook; the part's own name may give away the question.
+    """
     return f"{OURS}{_plain(exercise)}-{_plain(key)}"
 
 
 def answers_id(exercise: str) -> str:
-    """What nbgrader calls the answers cell of an exercise."""
+    """Return nbgrader's name of the answers cell of an exercise."""
     return f"{OURS}answers-{_plain(exercise)}"
 
 
 def _plain(name: str) -> str:
-    return re.sub(r"[^A-Za-z0-9_]", lambda found: f"-{ord(found[0]):x}-", name)
+    return re.sub(r"[^A-Za-z0-9_]", lambda match: f"-{ord(match[0]):x}-", name)
 
 
 def metadata(name: str, *, solution: bool = False, points: float | None = None) -> dict[str, Any]:
-    """A cell's metadata: of a solution, of a grade where it has points, else of a text that is locked."""
+    """Return the metadata of a cell: a solution, a grade cell if ``points`` are given, else a locked text."""
     graded = points is not None
-    said = {"schema_version": SCHEMA, "grade_id": name, "grade": graded, "solution": solution}
-    return {**said, "locked": not solution, "task": False, **({"points": points} if graded else {})}
+    fields = {"schema_version": SCHEMA, "grade_id": name, "grade": graded, "solution": solution}
+    return {**fields, "locked": not solution, "task": False, **({"points": points} if graded else {})}
 
 
-def for_nbgrader(book: Mapping[str, Any], handouts: Sequence[Handout], *, own: bool) -> dict[str, Any]:
-    """A notebook of these handouts with what nbgrader needs; of students' ``own`` notebooks the texts are not locked, since
-    nbgrader would write those of one notebook for all into them."""
+def for_nbgrader(book: Mapping[str, Any], handouts: Sequence[Handout], *, personal: bool) -> dict[str, Any]:
+    """Return a notebook of these handouts with the metadata that nbgrader needs.
+
+    The texts of ``personal`` notebooks are not locked: nbgrader would overwrite them with the texts of the
+    one notebook of the class.
+    """
     waiting = list(handouts)
     cells = []
-    for place, cell in enumerate(map(_with_pictures, book["cells"])):
+    for index, cell in enumerate(map(_with_pictures, book["cells"])):
         if "answers" in cell["metadata"].get("tags", ()):
             handout = waiting.pop(0)
             prefix = f"{len(handouts) - len(waiting)}." if len(handouts) > 1 else ""
             cells.append(_marked(cell, metadata(answers_id(handout.exercise), solution=True)))
             cells += _grade_cells(handout, prefix)
-        elif own or not "".join(cell["source"]).strip():
+        elif personal or not "".join(cell["source"]).strip():
             cells.append(cell)
         else:
-            cells.append(_marked(cell, metadata(f"{OURS}text-{place + 1}")))
+            cells.append(_marked(cell, metadata(f"{OURS}text-{index + 1}")))
     return {**book, "cells": cells}
 
 
 def _with_pictures(cell: Cell) -> Cell:
-    """A cell whose pictures stand in its text: nbgrader keeps no attachments, and writes no feedback where one is missing."""
+    """Return a cell with its pictures inside its text.
+
+    nbgrader drops attachments, and writes no feedback if one is missing.
+    """
     source = "".join(cell["source"])
     for name, kinds in cell.get("attachments", {}).items():
         for kind, data in kinds.items():
             source = source.replace(f"(attachment:{name})", f"(data:{kind};base64,{data})")
-    kept = {key: value for key, value in cell.items() if key != "attachments"}
-    return {**kept, "source": source.splitlines(keepends=True)}
+    fields = {key: value for key, value in cell.items() if key != "attachments"}
+    return {**fields, "source": source.splitlines(keepends=True)}
 
 
-def _marked(cell: Cell, said: Mapping[str, Any]) -> Cell:
-    return {**cell, "metadata": {**cell["metadata"], "nbgrader": dict(said)}}
+def _marked(cell: Cell, nbgrader_metadata: Mapping[str, Any]) -> Cell:
+    return {**cell, "metadata": {**cell["metadata"], "nbgrader": dict(nbgrader_metadata)}}
 
 
 def _grade_cells(handout: Handout, prefix: str) -> Iterator[Cell]:
@@ -83,22 +91,26 @@ def _grade_cells(handout: Handout, prefix: str) -> Iterator[Cell]:
             "id": hashlib.sha256(name.encode()).hexdigest()[:12],
             "metadata": {"nbgrader": metadata(name, points=float(question.points))},
             "outputs": [],
-            "source": [f"# {_called(question, prefix, handout.lang)}"],
+            "source": [f"# {_grade_line(question, prefix, handout.lang)}"],
         }
 
 
-def _called(question: Question, prefix: str, lang: str) -> str:
-    """The line of a grade cell: which question it is, and its points."""
-    said = str(words(lang)["nbgrader"]["grade"])
+def _grade_line(question: Question, prefix: str, lang: str) -> str:
+    """Return the comment line of a grade cell: the question's number and its points."""
+    template = str(words(lang)["nbgrader"]["grade"])
     key, points = question.key or question.id, points_text(question.points, lang)
-    return said.format(number=f"{prefix}{question.number}", key=key, points=points)
+    return template.format(number=f"{prefix}{question.number}", key=key, points=points)
 
 
 def without_variants(book: Mapping[str, Any], handouts: Sequence[Handout], title: str) -> dict[str, Any]:
-    """Of somebody's own notebook what is everybody's: the answers and grade cells under a text that says to take one's own."""
+    """Return the notebook of the class, made from one student's notebook.
+
+    It has the answers cells and grade cells, under a text that tells students to open their personal
+    notebook.
+    """
     lang = handouts[0].lang
-    said = words(lang)["nbgrader"]
-    text = f"# {title}\n\n**{said['title']}.** {said['own']}"
+    texts = words(lang)["nbgrader"]
+    text = f"# {title}\n\n**{texts['title']}.** {texts['own']}"
     head = {"cell_type": "markdown", "id": f"{OURS}own", "source": text.splitlines(keepends=True)}
     seeds = {f"# {h.exercise} {h.seed}": f"# {h.exercise}" for h in handouts}
     cells = [head | {"metadata": {"nbgrader": metadata(f"{OURS}text-1")}}]

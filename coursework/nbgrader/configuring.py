@@ -1,4 +1,4 @@
-"""What ``nbgrader_config.py`` says: our steps in the places of nbgrader's."""
+"""Configuration of a course of nbgrader: our steps replace some of nbgrader's."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import Any
 
 
 def configure(config: Any, folder: str | Path, course: str | Path = "") -> None:
-    """Let a course of nbgrader, in ``folder``, mark our notebooks by ``issued/ASSIGNMENT.json``.
+    """Let a course of nbgrader in ``folder`` mark our notebooks by ``issued/ASSIGNMENT.json``.
 
-    ``course`` is the folder of the course that the exercises are of, told from ``folder``; the built-in one unless told.
-    Steps that the configuration names already keep their order; ours stand where nbgrader's would. Notebooks that are not
-    ours are cleared, run and marked by nbgrader as before.
+    ``course`` is the folder of the exercises, relative to ``folder``; the built-in course by default. Steps
+    that the configuration names already keep their order; ours replace nbgrader's. nbgrader still clears,
+    runs and marks all other notebooks.
     """
     from nbgrader.converters import Autograde, GenerateAssignment
     from nbgrader.preprocessors import ClearSolutions, Execute, SaveAutoGrades
@@ -26,17 +26,17 @@ def configure(config: Any, folder: str | Path, course: str | Path = "") -> None:
     ):
         converter, name = step
         steps = _steps(section.get(name), list(converter.class_traits()[name].default()))
-        steps = [instead.get(one, one) for one in steps]
+        steps = [instead.get(step_class, step_class) for step_class in steps]
         if name == "sanitize_preprocessors" and RestoreCells not in steps:
             steps.insert(0, RestoreCells)
         section[name] = steps
-    where = Path(folder).resolve()
-    config.MarkAnswers.folder = str(where)
-    config.MarkAnswers.course = str((where / course).resolve()) if str(course) else ""
+    root = Path(folder).resolve()
+    config.MarkAnswers.folder = str(root)
+    config.MarkAnswers.course = str((root / course).resolve()) if str(course) else ""
 
 
-def _steps(said: Any, usual: list[Any]) -> list[Any]:
-    """The steps that a configuration says, those that it adds to the usual ones too."""
-    if said is None:
+def _steps(configured: Any, usual: list[Any]) -> list[Any]:
+    """Return the configured steps, or the usual ones with those that the configuration adds."""
+    if configured is None:
         return usual
-    return list(said.get_value(usual) if hasattr(said, "get_value") else said)
+    return list(configured.get_value(usual) if hasattr(configured, "get_value") else configured)

@@ -1,4 +1,7 @@
-"""Steps of nbgrader: our notebooks keep their answers cell, get back the cells that a student changed, and are marked.
+"""Steps of nbgrader that keep the answers cells, restore the cells that a student changed, and mark.
+
+nbgrader's database says which notebooks are ours; the notebook that came back does not. None of our cells is
+run.
 
 Which notebooks are ours nbgrader's database says, never the notebook that came back. No cell of ours is run.
 """
@@ -21,14 +24,14 @@ from coursework.nbgrader.marking import MarkedNotebook, marked_notebook
 from coursework.system.visible import one_line
 
 Done = tuple[NotebookNode, ResourcesDict]
-_TOLD = "coursework"  #: where a step leaves word for those behind it
+_RESOURCE = "coursework"  #: key of the resources by which a step passes data to later steps
 
 
 def _grade_id(cell: NotebookNode) -> str:
-    """What nbgrader calls a cell; nothing for one that is none of its, or whose metadata are no metadata."""
-    said = cell.metadata.get("nbgrader") if isinstance(cell.metadata, dict) else None
-    found = said.get("grade_id") if isinstance(said, dict) else None
-    return found if isinstance(found, str) else ""
+    """Return nbgrader's name of a cell; empty if the cell or its metadata are not nbgrader's."""
+    fields = cell.metadata.get("nbgrader") if isinstance(cell.metadata, dict) else None
+    name = fields.get("grade_id") if isinstance(fields, dict) else None
+    return name if isinstance(name, str) else ""
 
 
 def _is_ours(cell: NotebookNode) -> bool:
@@ -36,7 +39,7 @@ def _is_ours(cell: NotebookNode) -> bool:
 
 
 class KeepAnswers(ClearSolutions):
-    """Clears solutions as nbgrader does, but for the cells of ours: an answers cell holds no solution."""
+    """Step that clears solutions as nbgrader does, except in our cells: an answers cell holds no solution."""
 
     def preprocess_cell(self, cell: NotebookNode, resources: ResourcesDict, cell_index: int) -> Done:
         if _is_ours(cell):
@@ -48,8 +51,8 @@ class KeepAnswers(ClearSolutions):
 
 
 def _known_cells(resources: ResourcesDict) -> dict[str, NotebookNode]:
-    """The cells of a notebook of ours as they were released, by nbgrader's database and in its order; nothing for a notebook
-    that is not ours."""
+    """Return the cells of our notebook as released, by nbgrader's database and in its order; empty for other
+    notebooks."""
     about = resources["nbgrader"]
     with Gradebook(about["db_url"]) as gradebook:
         try:
@@ -67,80 +70,80 @@ def _known_cells(resources: ResourcesDict) -> dict[str, NotebookNode]:
 
 
 def _released(cell: Any, points: float | None, solution: bool) -> NotebookNode:
-    said = {
+    fields = {
         "schema_version": SCHEMA,
         "grade_id": cell.name,
         "grade": points is not None,
         "solution": solution,
     }
-    said |= {
+    fields |= {
         "locked": bool(cell.locked),
         "task": False,
         "checksum": cell.checksum,
         "cell_type": cell.cell_type,
     }
-    said |= {} if points is None else {"points": points}
+    fields |= {} if points is None else {"points": points}
     locked = {"deletable": False} if solution else {"deletable": False, "editable": False}
-    made = {"cell_type": cell.cell_type, "source": cell.source, "metadata": {**locked, "nbgrader": said}}
+    content = {"cell_type": cell.cell_type, "source": cell.source, "metadata": {**locked, "nbgrader": fields}}
     if cell.cell_type == "code":
-        made |= {"execution_count": None, "outputs": []}
-    found: NotebookNode = _node(made)
-    return found
+        content |= {"execution_count": None, "outputs": []}
+    node: NotebookNode = _node(content)
+    return node
 
 
 def _node(value: Any) -> Any:
-    """Plain tables as nbformat's."""
+    """Return plain dictionaries and lists as nodes of nbformat."""
     if isinstance(value, dict):
         return NotebookNode({key: _node(item) for key, item in value.items()})
     return [_node(item) for item in value] if isinstance(value, list) else value
 
 
 class RestoreCells(NbGraderPreprocessor):
-    """Gives a notebook of ours back the cells that were locked, whatever became of them; the student's own cells stay.
+    """Step that restores the locked cells of our notebooks and leaves the student's own cells alone.
 
-    Metadata that a student wrote would else stop the marking of one notebook or of a class, and a grade cell that is gone
-    would be marked by nobody.
+    Without it, metadata that a student changed could stop the marking of a notebook or of the class, and a
+    deleted grade cell would never be marked.
     """
 
     def preprocess(self, nb: NotebookNode, resources: ResourcesDict) -> Done:
-        known = _known_cells(resources)
-        if known:
-            changed = restore(nb, known)
-            for told in changed:
-                self.log.warning("%s: %s", *map(one_line, (resources["nbgrader"]["student"], told)))
+        released_cells = _known_cells(resources)
+        if released_cells:
+            changed = restore(nb, released_cells)
+            for change in changed:
+                self.log.warning("%s: %s", *map(one_line, (resources["nbgrader"]["student"], change)))
         return nb, resources
 
 
-def restore(nb: NotebookNode, known: Mapping[str, NotebookNode]) -> list[str]:
-    """Put the ``known`` cells in their places of a notebook; gives what had been changed."""
-    told, kept, seen = [], [], set[str]()
+def restore(nb: NotebookNode, released_cells: Mapping[str, NotebookNode]) -> list[str]:
+    """Put the released cells back into a notebook; return the changes that had to be undone."""
+    changes, cells, seen = [], [], set[str]()
     for cell in nb.cells:
-        if not _made_whole(cell):
-            told.append("a cell that is none was left out")
+        if not _completed(cell):
+            changes.append("a cell that is none was left out")
             continue
         name = _grade_id(cell)
-        if name in known and name not in seen:
+        if name in released_cells and name not in seen:
             seen.add(name)
-            kept.append(_restored(cell, known[name], told))
+            cells.append(_restored(cell, released_cells[name], changes))
             continue
         if "nbgrader" in cell.metadata:
             del cell.metadata["nbgrader"]
-            which = f"a second cell {name}" if name in known else "a cell that was not released"
-            told.append(f"{which} counts as the student's own")
-        kept.append(cell)
-    for place, (name, cell) in enumerate(known.items()):
+            which = f"a second cell {name}" if name in released_cells else "a cell that was not released"
+            changes.append(f"{which} counts as the student's own")
+        cells.append(cell)
+    for index, (name, cell) in enumerate(released_cells.items()):
         if name not in seen:
-            told.append(f"the cell {name} was gone")
-            kept.insert(_behind(kept, list(known)[:place]), cell)
-    nb.cells = kept
-    for cell in nb.cells:  # what is restored has no id, and copies have the same one
+            changes.append(f"the cell {name} was gone")
+            cells.insert(_behind(cells, list(released_cells)[:index]), cell)
+    nb.cells = cells
+    for cell in nb.cells:  # restored cells have no id, and copies share one
         cell.pop("id", None)
     nb.nbformat, nb.nbformat_minor = 4, 4
-    return told
+    return changes
 
 
-def _made_whole(cell: Any) -> bool:
-    """Whether something is a cell; what it lacks of one is put in."""
+def _completed(cell: Any) -> bool:
+    """Return whether a value is a cell; add the fields that it lacks."""
     if not isinstance(cell, dict) or cell.get("cell_type") not in ("code", "markdown", "raw"):
         return False
     if not isinstance(cell.get("metadata"), dict):
@@ -152,33 +155,33 @@ def _made_whole(cell: Any) -> bool:
     return True
 
 
-def _restored(cell: NotebookNode, known: NotebookNode, told: list[str]) -> NotebookNode:
-    """A cell as it was released; the source of a solution is the student's."""
-    said = known.metadata.nbgrader
-    if cell.cell_type != said.cell_type or (said.locked and cell.source != known.source):
-        told.append(f"the cell {said.grade_id} was changed")
-    back = _node({**known, "metadata": {**cell.metadata, **known.metadata}})
-    if not said.locked:
+def _restored(cell: NotebookNode, released: NotebookNode, changes: list[str]) -> NotebookNode:
+    """Return a cell as it was released; the source of a solution stays the student's."""
+    fields = released.metadata.nbgrader
+    if cell.cell_type != fields.cell_type or (fields.locked and cell.source != released.source):
+        changes.append(f"the cell {fields.grade_id} was changed")
+    back = _node({**released, "metadata": {**cell.metadata, **released.metadata}})
+    if not fields.locked:
         back["source"] = cell.source
     if "attachments" in cell and cell.cell_type == back.cell_type == "markdown":
         back["attachments"] = cell.attachments
-    found: NotebookNode = back
-    return found
+    node: NotebookNode = back
+    return node
 
 
 def _behind(cells: Sequence[NotebookNode], before: Sequence[str]) -> int:
-    """The place behind the last of the cells that stand before one."""
-    return next((place + 1 for place in reversed(range(len(cells))) if _grade_id(cells[place]) in before), 0)
+    """Return the index after the last cell whose name is in ``before``."""
+    return next((index + 1 for index in reversed(range(len(cells))) if _grade_id(cells[index]) in before), 0)
 
 
 # ----------------------------------------------------------------------- marking
 
 
 class MarkAnswers(Execute):
-    """Reads the answers cell as data and writes the points and what is said of each answer into the grade cells.
+    """Step that reads the answers cell as data and writes points and feedback into the grade cells.
 
-    It stands in the place of nbgrader's ``Execute``, and runs nothing of a notebook of ours; a notebook that is not ours is run
-    as ``Execute`` does.
+    It replaces nbgrader's ``Execute`` and runs no cell of our notebooks; it runs all other notebooks as
+    ``Execute`` does.
     """
 
     folder = Unicode(
@@ -190,33 +193,35 @@ class MarkAnswers(Execute):
     )
 
     def preprocess(self, nb: NotebookNode, resources: ResourcesDict, km: Any = None) -> Done:
-        known = _known_cells(resources)
-        if not known:
+        released_cells = _known_cells(resources)
+        if not released_cells:
             done: Done = super().preprocess(nb, resources, km)
             return done
         about = resources["nbgrader"]
         issued = Path(self.folder) / "issued" / f"{about['assignment']}.json"
         marked = marked_notebook(self.course or None, issued, about["student"], _text(nb))
-        if any(name not in {_grade_id(cell) for cell in nb.cells} for name in known):
-            restore(nb, known)  # where RestoreCells is not among the steps
-        for told in marked.told:
-            self.log.warning("%s: %s", *map(one_line, (about["student"], told)))
+        if any(name not in {_grade_id(cell) for cell in nb.cells} for name in released_cells):
+            restore(nb, released_cells)  # where RestoreCells is not among the steps
+        for message in marked.messages:
+            self.log.warning("%s: %s", *map(one_line, (about["student"], message)))
         for cell in nb.cells:
-            self._fill(cell, known, marked)
-        resources[_TOLD] = {"waiting": marked.waiting}
+            self._fill(cell, released_cells, marked)
+        resources[_RESOURCE] = {"waiting": marked.waiting}
         return nb, resources
 
-    def _fill(self, cell: NotebookNode, known: Mapping[str, NotebookNode], marked: MarkedNotebook) -> None:
-        """What a cell shows: nothing of what the student's own had."""
+    def _fill(
+        self, cell: NotebookNode, released_cells: Mapping[str, NotebookNode], marked: MarkedNotebook
+    ) -> None:
+        """Replace the outputs of a cell; nothing of the student's outputs remains."""
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
         name = _grade_id(cell)
-        if name not in known:
+        if name not in released_cells:
             return
-        said = known[name].metadata.nbgrader
-        if said.grade:
-            cell.outputs = _node(marked.grade_outputs(name, float(said.points), self.log.warning))
-        elif said.solution:
+        fields = released_cells[name].metadata.nbgrader
+        if fields.grade:
+            cell.outputs = _node(marked.grade_outputs(name, float(fields.points), self.log.warning))
+        elif fields.solution:
             cell.outputs = _node(marked.notes_of(name))
 
 
@@ -225,10 +230,11 @@ def _text(nb: NotebookNode) -> bytes:
 
 
 class SaveMarks(SaveAutoGrades):
-    """Saves points as nbgrader does; what a person must look at is listed under Manual Grading."""
+    """Step that saves the points as nbgrader does, and lists under Manual Grading the parts that a person
+    must look at."""
 
     def preprocess(self, nb: NotebookNode, resources: ResourcesDict) -> Done:
-        self._waiting = frozenset(resources.get(_TOLD, {}).get("waiting", ()))
+        self._waiting = frozenset(resources.get(_RESOURCE, {}).get("waiting", ()))
         done: Done = super().preprocess(nb, resources)
         return done
 

@@ -1,7 +1,9 @@
-"""A course of nbgrader: what ``build --formats nbgrader`` writes, in the folder ``nbgrader`` of the build.
+"""Course folder of nbgrader that ``build --formats nbgrader`` writes, in the folder ``nbgrader`` of the
+build.
 
-``source/ASSIGNMENT/ASSIGNMENT.ipynb`` is the one notebook that nbgrader has for a class; ``issued/ASSIGNMENT.json`` is what
-answers are marked against; ``own/`` has the students' own notebooks, where everybody has another variant.
+``source/ASSIGNMENT/ASSIGNMENT.ipynb`` is the notebook that nbgrader releases to the class;
+``issued/ASSIGNMENT.json`` is the record that answers are marked against; ``own/`` has the students' personal
+notebooks if variants differ.
 """
 
 from __future__ import annotations
@@ -34,8 +36,8 @@ CONFIG = "nbgrader_config.py"
 
 
 @dataclass(frozen=True)
-class Collected:
-    """One assignment of nbgrader: its name, and what each student was issued of it, an exercise or a paper."""
+class NbAssignment:
+    """Assignment of nbgrader: its name, and the exercises or the paper issued to each student."""
 
     name: str
     issues: tuple[Issue, ...]
@@ -47,23 +49,24 @@ class Collected:
 
     @property
     def papers(self) -> tuple[tuple[Issue, ...], ...]:
-        """The issues of each student, in the order of the exercises."""
+        """Return the issues of each student, in the order of the exercises."""
         return self._papers(issue for issue in self.issues if issue.sitting == 1)
 
     @property
-    def own(self) -> tuple[tuple[Issue, ...], ...]:
-        """The papers that have a notebook of their own: each, where variants differ, and those of who makes up."""
-        return self._papers(issue for issue in self.issues if self.is_own or issue.sitting > 1)
+    def personal_papers(self) -> tuple[tuple[Issue, ...], ...]:
+        """Return the papers that need a personal notebook: all if variants differ, and those of make-up
+        sittings."""
+        return self._papers(issue for issue in self.issues if self.has_personal_variants or issue.sitting > 1)
 
     def _papers(self, issues: Iterable[Issue]) -> tuple[tuple[Issue, ...], ...]:
-        found: dict[str, list[Issue]] = {}
+        by_stem: dict[str, list[Issue]] = {}
         for issue in issues:
-            found.setdefault(issue.stem, []).append(issue)
-        return tuple(map(tuple, found.values()))
+            by_stem.setdefault(issue.stem, []).append(issue)
+        return tuple(map(tuple, by_stem.values()))
 
     @property
-    def is_own(self) -> bool:
-        """Whether students have other variants than their neighbours."""
+    def has_personal_variants(self) -> bool:
+        """Return whether students have different variants."""
         return len({tuple(issue.variant.seed for issue in paper) for paper in self.papers}) > 1
 
     @property
@@ -74,59 +77,59 @@ class Collected:
 def files(
     course: Course[Any], issues: Sequence[Issue], assignment: Assignment | None, out: Path
 ) -> Iterator[File]:
-    """Every file of the course of nbgrader, below the build's folder ``out``.
+    """Yield every file of the course of nbgrader, below the build's folder ``out``.
 
     Raises
     ------
     BadInput
-        It cannot be had with one notebook for a class: several languages, variants without a roster, variants that ask
-        different parts.
+        One notebook for the class is impossible: several languages, variants without a roster, or variants that ask different parts.
     """
-    for one in _collected(issues, assignment):
-        check(one)
-        yield from _assignment(renderer_of(course.folder), one)
+    for nb_assignment in _assignments(issues, assignment):
+        check(nb_assignment)
+        yield from _assignment(renderer_of(course.folder), nb_assignment)
     config = partial(_config, course.folder, out)
     yield File(FOLDER / CONFIG, lambda: config().encode("utf-8"))
 
 
-def _collected(issues: Sequence[Issue], assignment: Assignment | None) -> list[Collected]:
-    """What nbgrader calls assignments: a paper is one, and so is each exercise that is built alone."""
+def _assignments(issues: Sequence[Issue], assignment: Assignment | None) -> list[NbAssignment]:
+    """Return the assignments of nbgrader: the paper, or each exercise that is built alone."""
     if assignment is not None:
-        return [Collected(_name(assignment.name), tuple(issues), assignment)]
+        return [NbAssignment(_name(assignment.name), tuple(issues), assignment)]
     names = dict.fromkeys(issue.variant.exercise.name for issue in issues)
     return [
-        Collected(name, tuple(i for i in issues if i.variant.exercise.name == name), None) for name in names
+        NbAssignment(name, tuple(i for i in issues if i.variant.exercise.name == name), None)
+        for name in names
     ]
 
 
 def _name(name: str) -> str:
-    """A name that nbgrader takes: it parts the names of its own files by plus signs."""
+    """Return a name that nbgrader accepts: it separates the names of its own files by plus signs."""
     return name.replace("+", "-").strip()
 
 
-def check(one: Collected) -> None:
-    """Refuse what one notebook for a class cannot hold.
+def check(nb_assignment: NbAssignment) -> None:
+    """Raise if one notebook for a class cannot hold the assignment.
 
     Raises
     ------
     BadInput
-        Says what would do.
+        Several languages, variants without a roster, or variants that ask different parts; the message gives the remedy.
     """
-    langs = dict.fromkeys(lang for issue in one.issues for lang in issue.langs)
-    if len(langs) > 1 and any(len(issue.langs) > 1 for issue in one.issues):
+    langs = dict.fromkeys(lang for issue in nb_assignment.issues for lang in issue.langs)
+    if len(langs) > 1 and any(len(issue.langs) > 1 for issue in nb_assignment.issues):
         raise BadInput(
-            f"nbgrader has one notebook of {one.name} for a class, in one language: --lang {' or --lang '.join(langs)}"
+            f"nbgrader has one notebook of {nb_assignment.name} for a class, in one language: --lang {' or --lang '.join(langs)}"
         )
-    if one.is_own and not one.has_roster:
+    if nb_assignment.has_personal_variants and not nb_assignment.has_roster:
         raise BadInput(
-            f"nbgrader has one notebook of {one.name} for a class: one variant, or a variant a student by --roster FILE.csv; "
-            f"found {counted(len(one.papers), 'variant')} that are nobody's"
+            f"nbgrader has one notebook of {nb_assignment.name} for a class: one variant, or a variant a student by --roster FILE.csv; "
+            f"found {counted(len(nb_assignment.papers), 'variant')} that are nobody's"
         )
-    asked: dict[str, set[tuple[tuple[str, float], ...]]] = {}
-    for issue in one.issues:
+    parts_of: dict[str, set[tuple[tuple[str, float], ...]]] = {}
+    for issue in nb_assignment.issues:
         parts = tuple((part.id, float(part.points)) for part in issue.variant.parts)
-        asked.setdefault(issue.variant.exercise.name, set()).add(parts)
-    for exercise, different in asked.items():
+        parts_of.setdefault(issue.variant.exercise.name, set()).add(parts)
+    for exercise, different in parts_of.items():
         if len(different) > 1:
             everywhere = set.intersection(*({part for part, _ in parts} for parts in different))
             some = f" such as --parts {','.join(sorted(everywhere))}" if everywhere else ""
@@ -139,53 +142,62 @@ def check(one: Collected) -> None:
 # ---------------------------------------------------------------------- notebooks
 
 
-def _assignment(renderer: Renderer, one: Collected) -> Iterator[File]:
-    name = f"{one.name}.ipynb"
-    first = one.papers[0]
-    yield File(FOLDER / "source" / one.name / name, partial(_class_notebook, renderer, one), anywhere=True)
-    for paper in one.own:
-        path = FOLDER / "own" / one.name / paper[0].stem / name
-        yield File(path, partial(_own_notebook, renderer, one, paper), anywhere=True)
-    content = issued_content(one.issues, one.assignment)
-    yield File(FOLDER / "issued" / f"{one.name}.json", lambda: json_text(content).encode("utf-8"))
-    yield File(FOLDER / f"{one.name}.md", lambda: _go_on(one, first[0].langs[0]).encode("utf-8"))
+def _assignment(renderer: Renderer, nb_assignment: NbAssignment) -> Iterator[File]:
+    name = f"{nb_assignment.name}.ipynb"
+    first = nb_assignment.papers[0]
+    yield File(
+        FOLDER / "source" / nb_assignment.name / name,
+        partial(_class_notebook, renderer, nb_assignment),
+        anywhere=True,
+    )
+    for paper in nb_assignment.personal_papers:
+        path = FOLDER / "own" / nb_assignment.name / paper[0].stem / name
+        yield File(path, partial(_own_notebook, renderer, nb_assignment, paper), anywhere=True)
+    content = issued_content(nb_assignment.issues, nb_assignment.assignment)
+    yield File(FOLDER / "issued" / f"{nb_assignment.name}.json", lambda: json_text(content).encode("utf-8"))
+    yield File(
+        FOLDER / f"{nb_assignment.name}.md",
+        lambda: _next_steps(nb_assignment, first[0].langs[0]).encode("utf-8"),
+    )
 
 
-def _class_notebook(renderer: Renderer, one: Collected) -> bytes:
-    """The notebook that is released: of the variant that all have, or without variants."""
-    paper = one.papers[0]
-    if not one.is_own:
-        return _bytes(_notebook(renderer, one, paper, student="", own=False))
-    book = _notebook(renderer, one, paper, student="", own=True)
+def _class_notebook(renderer: Renderer, nb_assignment: NbAssignment) -> bytes:
+    """Return the notebook that is released: with the variant that all share, or without variants."""
+    paper = nb_assignment.papers[0]
+    if not nb_assignment.has_personal_variants:
+        return _bytes(_notebook(renderer, nb_assignment, paper, student="", personal=False))
+    book = _notebook(renderer, nb_assignment, paper, student="", personal=True)
     handouts = [issue.variant.handout() for issue in paper]
-    heading = _paper(one, paper).heading(one.lang) if one.assignment else None
+    heading = _paper(nb_assignment, paper).heading(nb_assignment.lang) if nb_assignment.assignment else None
     return _bytes(without_variants(book, handouts, heading.title if heading else handouts[0].title))
 
 
-def _own_notebook(renderer: Renderer, one: Collected, paper: Sequence[Issue]) -> bytes:
-    return _bytes(_notebook(renderer, one, paper, student=paper[0].student, own=True))
+def _own_notebook(renderer: Renderer, nb_assignment: NbAssignment, paper: Sequence[Issue]) -> bytes:
+    return _bytes(_notebook(renderer, nb_assignment, paper, student=paper[0].student, personal=True))
 
 
 def _notebook(
-    renderer: Renderer, one: Collected, paper: Sequence[Issue], *, student: str, own: bool
+    renderer: Renderer, nb_assignment: NbAssignment, paper: Sequence[Issue], *, student: str, personal: bool
 ) -> Mapping[str, Any]:
     handouts: Sequence[Handout]
-    if one.assignment is None:
+    if nb_assignment.assignment is None:
         handouts = [issue.variant.handout(student) for issue in paper]
         text = renderer.notebook(handouts[0], collected=True)
     else:
-        whole = _paper(one, paper, student=student).paper(paper[0].langs[0])
-        handouts, text = whole.handouts, renderer.paper_notebook(whole, collected=True)
-    return for_nbgrader(json.loads(text), handouts, own=own)
+        paper_of_student = _paper(nb_assignment, paper, student=student).paper(paper[0].langs[0])
+        handouts, text = paper_of_student.handouts, renderer.paper_notebook(paper_of_student, collected=True)
+    return for_nbgrader(json.loads(text), handouts, personal=personal)
 
 
-def _paper(one: Collected, paper: Sequence[Issue], *, student: str = "") -> IssuedPaper:
-    """The paper of a student, or that which is nobody's."""
-    assert one.assignment is not None
-    whole = papers(one.assignment, paper, polygons=False)[0]
+def _paper(nb_assignment: NbAssignment, paper: Sequence[Issue], *, student: str = "") -> IssuedPaper:
+    """Return the paper of a student, or the paper without a name."""
+    assert nb_assignment.assignment is not None
+    issued_paper = papers(nb_assignment.assignment, paper, polygons=False)[0]
     if student:
-        return whole
-    return replace(whole, issues=tuple(replace(issue, student="", columns={}) for issue in whole.issues))
+        return issued_paper
+    return replace(
+        issued_paper, issues=tuple(replace(issue, student="", columns={}) for issue in issued_paper.issues)
+    )
 
 
 def _bytes(book: Mapping[str, Any]) -> bytes:
@@ -198,21 +210,21 @@ def _bytes(book: Mapping[str, Any]) -> bytes:
 # -------------------------------------------------------------------- how to go on
 
 
-def _go_on(one: Collected, lang: str) -> str:
-    said = words(lang)["nbgrader"]
-    text = str(said["go_on"]).strip().format(
-        name=one.name,
-        notebook=one.name,
+def _next_steps(nb_assignment: NbAssignment, lang: str) -> str:
+    texts = words(lang)["nbgrader"]
+    text = str(texts["go_on"]).strip().format(
+        name=nb_assignment.name,
+        notebook=nb_assignment.name,
         install=pip_install(extra="nbgrader"),
-        variants=said["each" if one.is_own else "one"],
-        student=said["known" if one.has_roster else "anybody"],
+        variants=texts["each" if nb_assignment.has_personal_variants else "one"],
+        student=texts["known" if nb_assignment.has_roster else "anybody"],
     )  # fmt: skip
     return f"{text}\n"
 
 
 def _config(folder: Folder, out: Path) -> str:
-    """nbgrader's configuration; a course of one's own is named by the way to it."""
-    course = "" if folder.label == "the built-in course" else _way(folder.root, out / FOLDER)
+    """Return nbgrader's configuration file; it names the course's folder by its relative path."""
+    course = "" if folder.label == "the built-in course" else _relative_path(folder.root, out / FOLDER)
     named = f", course={course!r}" if course else ""
     return (
         "# A course of nbgrader, written by coursework build. What is not of coursework is run and marked by nbgrader as ever.\n"
@@ -222,8 +234,9 @@ def _config(folder: Folder, out: Path) -> str:
     )
 
 
-def _way(target: Path, start: Path) -> str:
-    """The way from a folder to another; on another drive there is none but the whole one."""
+def _relative_path(target: Path, start: Path) -> str:
+    """Return the relative path from ``start`` to ``target``; the full path if they are on different
+    drives."""
     try:
         return Path(os.path.relpath(target, start.resolve())).as_posix()
     except ValueError:

@@ -1,4 +1,4 @@
-"""What a student is told of an answer, in the outputs of nbgrader's cells."""
+"""Feedback on an answer, as outputs of nbgrader's cells."""
 
 from __future__ import annotations
 
@@ -18,14 +18,15 @@ Output = dict[str, Any]
 
 
 def outputs(course: Course, graded: Graded) -> dict[str, list[Output]]:
-    """For each part, the outputs of its grade cell but the points: what became of the answer. The right one is not told."""
+    """Return for each part the outputs of its grade cell without the points. They do not give the right
+    answer away."""
     sheet = feedback_sheet(course, graded)
     lang = sheet.handout.lang
     env = environment_of(renderer_of(course.folder).template_folders, lang)
     names = {"words": words(lang), "lang": lang}
     return {
         line.question.id: [
-            shown(
+            display_output(
                 render(env, "nbgrader_mark.html.j2", {**names, "line": line}),
                 graded.lines[line.question.id].feedback,
             )
@@ -34,13 +35,13 @@ def outputs(course: Course, graded: Graded) -> dict[str, list[Output]]:
     }
 
 
-def shown(html: str, plain: str) -> Output:
-    """What a cell shows, and what stands for it where no page is shown."""
+def display_output(html: str, plain: str) -> Output:
+    """Return an output of a cell as HTML, with the plain text for viewers that show no HTML."""
     return {"output_type": "display_data", "metadata": {}, "data": {"text/html": html, "text/plain": plain}}
 
 
-def points(value: float) -> Output:
-    """The points as what a cell computes: nbgrader takes the number as the cell's partial credit."""
+def points_output(value: float) -> Output:
+    """Return the points as the result of a cell; nbgrader takes the number as the cell's partial credit."""
     return {
         "output_type": "execute_result",
         "execution_count": None,
@@ -49,11 +50,12 @@ def points(value: float) -> Output:
     }
 
 
-def said(lang: str, key: str, texts: Sequence[str]) -> list[Output]:
-    """A sentence for each of some texts, ``rejected`` or ``note``; what a student wrote in them stays text."""
-    sentences = [str(words(lang)["nbgrader"][key]).format(**{_PLACES[key]: text}) for text in texts]
-    html = "\n".join(f"<p>{html_text(one, lang)}</p>" for one in sentences)
-    return [shown(html, "\n".join(sentences))] if sentences else []
+def sentences(lang: str, key: str, texts: Sequence[str]) -> list[Output]:
+    """Return one sentence per text, by the key ``rejected`` or ``note``. Text that a student wrote is
+    escaped."""
+    lines = [str(words(lang)["nbgrader"][key]).format(**{_FIELDS[key]: text}) for text in texts]
+    html = "\n".join(f"<p>{html_text(line, lang)}</p>" for line in lines)
+    return [display_output(html, "\n".join(lines))] if lines else []
 
 
-_PLACES = {"rejected": "why", "note": "what"}
+_FIELDS = {"rejected": "why", "note": "what"}
