@@ -52,7 +52,7 @@ from coursework.making.issued import issued_content
 from coursework.making.roster import Student as Enrolled
 from coursework.making.students import folded
 from coursework.site.frame.cookies import cookie_name
-from coursework.site.frame.pool import Pool
+from coursework.site.frame.pool import PracticePool
 
 EXERCISES = ("slotted_mechanism", "four_bar_positions", "slider_extras", "quick_return", "ball_reducer")
 READY = 40  #: variants of each that are found before the class comes
@@ -254,7 +254,7 @@ def found_ahead():
     course = open_course()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as place:
         store = Store(str(Path(place) / "pool.db"))
-        pools = {name: Pool(course, store)._grown(name, READY) for name in EXERCISES}
+        pools = {name: PracticePool(course, store)._grown(name, READY) for name in EXERCISES}
         store.close()
     solutions = {(n, seed): course[n].variant(seed).solution() for n in EXERCISES for seed in pools[n].seeds}
     rest = {name: Pooled(are_all=True) for name in course if name not in pools}  # nobody asks for them here

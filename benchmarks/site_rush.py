@@ -43,7 +43,7 @@ from coursework.making.issued import issued_content
 from coursework.making.roster import Student as Enrolled
 from coursework.making.students import folded
 from coursework.site.frame.cookies import cookie_name
-from coursework.site.papers.handing_in import AS_SAVED
+from coursework.site.papers.submission import AS_SAVED
 
 WITHIN, BEFORE = 20.0, 6.0  #: seconds in which the first paper is opened; before closing, when all hand in
 MARKING = 180  #: seconds that marking may take at most

@@ -12,7 +12,7 @@ from coursework.making.assignment import AskedExercise, Assignment, Scale
 from coursework.making.dealing import deal
 from coursework.making.issued import Issued, issued_content
 from coursework.making.roster import Student
-from coursework.site.publication import dealings
+from coursework.site.publication import assigning
 
 OPENS, CLOSES = datetime(2026, 11, 23, 8, tzinfo=UTC), datetime(2026, 11, 23, 12, tzinfo=UTC)
 ASSIGNMENT = Assignment(
@@ -69,7 +69,7 @@ def dealt_by(one, staff, reply):
     assert reply.status_code == 303, reply.text
     token = reply.headers["location"].rpartition("/")[2]
     until = time.monotonic() + 60
-    while not (found := dealings.dealing(one.site, token)).is_over:
+    while not (found := assigning.assigning_job(one.site, token)).is_over:
         assert time.monotonic() < until
         time.sleep(0.05)
     assert found.state == "done", found.told

@@ -51,7 +51,7 @@ class Lived(Class):
             connection.execute(update(person).where(person.c.id == self.ids[STUDENT]).values(lang=""))
             put_account(connection, self.ids[STUDENT], login="david@example.org", role="student")
             mine = account_of(connection, self.ids[STUDENT])
-            set_secret(connection, mine.id, passwords.kept("a password of the demonstration"))
+            set_secret(connection, mine.id, passwords.hashed("a password of the demonstration"))
         self.seed = self._practised()
         self.question = self.site.course[EXERCISE].name, "rA"
         row = {"student": OTHER, "answer": "12", "exercise": EXERCISE, "seed": "1", "part": "rA"}

@@ -116,7 +116,7 @@ def serve(
         if lti is not None:
             _check_lti(lti, own)
         entrance = _entrance(host, own, demo, told=url is not None)
-        serving = server.Serving(context.obj, place, entrance, own, lti, server.worker_name())
+        serving = server.ServerSettings(context.obj, place, entrance, own, lti, server.worker_name())
         shown = serving.check()
         if entrance is Entrance.ACCOUNTS:
             _check_private(place)
@@ -158,9 +158,9 @@ def _invite(course: str | None, db: str | None, login: str, role: str, url: str)
     """Print where somebody of the staff chooses a password."""
     from coursework.site.frame.settings import Entrance
     from coursework.site.people.accounts import invited_by_command
-    from coursework.site.server import Serving
+    from coursework.site.server import ServerSettings
 
-    site = Serving(course, db or _usual(), Entrance.ACCOUNTS, url).site()
+    site = ServerSettings(course, db or _usual(), Entrance.ACCOUNTS, url).site()
     click.echo(invited_by_command(site, login, role))
     site.store.close()
 
@@ -278,13 +278,13 @@ def preview(context: click.Context, exercise: str, port: int, variants: int, lan
     from coursework.course.folder import course_folder
     from coursework.site import server
     from coursework.site.preview.preview_page import preview as pages
-    from coursework.site.preview.under_work import UnderWork
+    from coursework.site.preview.under_work import EditedExercise
 
     folder = course_folder(context.obj)
     if exercise not in folder.names:
         raise unknown("exercise", exercise, folder.names, folder.label)
     with server.listening(_LOOPBACK, port) as at:
-        work = UnderWork(context.obj, exercise, variants)
+        work = EditedExercise(context.obj, exercise, variants)
         try:
             says = partial(_say, _address(_LOOPBACK, at), f"follows {folder.root}", opens)
             server.run(lambda: pages(work, lang), at, ready=says)

@@ -80,7 +80,7 @@ def application(site: Site, lti: Starlette | None = None) -> Starlette:
     app = Starlette(
         routes=routes,
         exception_handlers={HTTPException: middleware.lost},
-        lifespan=lambda app: _beside(site, lti),
+        lifespan=lambda app: _background_work(site, lti),
     )
     app.add_middleware(Guarded, is_secure=lambda: site.is_secure)
     app.router.redirect_slashes = False  # it would lead to whatever host a request names
@@ -98,7 +98,7 @@ def _lti(site: Site) -> Starlette | None:
 
 
 @asynccontextmanager
-async def _beside(site: Site, lti: Starlette | None) -> AsyncIterator[None]:
+async def _background_work(site: Site, lti: Starlette | None) -> AsyncIterator[None]:
     """Run the background work of the site while it is served."""
     current_default_thread_limiter().total_tokens = PAGES_AT_ONCE
     stop = begin_warming(site)

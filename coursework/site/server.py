@@ -44,7 +44,7 @@ Application = Callable[..., Any]
 
 
 @dataclass(frozen=True)
-class Serving:
+class ServerSettings:
     """Settings of a process that serves the site."""
 
     course: str | None  #: its folder; the built-in course where none is told
@@ -110,7 +110,7 @@ def _refusal(host: str, port: int, fault: OSError) -> str:
     )
 
 
-def serve(serving: Serving, at: socket.socket, workers: int, ready: Callable[[], None]) -> None:
+def serve(serving: ServerSettings, at: socket.socket, workers: int, ready: Callable[[], None]) -> None:
     """Answer until a signal says to end (Ctrl-C, SIGTERM, a closed terminal); requests under way are answered first.
 
     ``ready`` is called once such a signal is heeded.
@@ -136,15 +136,15 @@ def run(
     from uvicorn import Config
 
     config = Config(
-        partial(_made, made), factory=True, workers=workers, log_config=_logs(tells_all), access_log=False, server_header=False,
+        partial(_application_of_process, made), factory=True, workers=workers, log_config=_logs(tells_all), access_log=False, server_header=False,
         proxy_headers=has_proxy, forwarded_allow_ips="127.0.0.1",
         timeout_keep_alive=_KEEP_ALIVE, http=_PROTOCOL, timeout_graceful_shutdown=_LAST_REQUESTS, timeout_worker_healthcheck=_SILENCE,
     )  # fmt: skip
     _open_more()
     if workers > 1:
-        _many(config, at, ready)
+        _run_workers(config, at, ready)
     else:
-        _one(config, at, ready)
+        _run_single(config, at, ready)
 
 
 def _open_more() -> None:
@@ -179,7 +179,7 @@ def _logs(tells_all: bool) -> dict[str, Any]:
     }
 
 
-def _one(config: Config, at: socket.socket, ready: Callable[[], None]) -> None:
+def _run_single(config: Config, at: socket.socket, ready: Callable[[], None]) -> None:
     from uvicorn import Server
 
     server = Server(config)
@@ -190,7 +190,7 @@ def _one(config: Config, at: socket.socket, ready: Callable[[], None]) -> None:
     server.run(sockets=[at])
 
 
-def _many(config: Config, at: socket.socket, ready: Callable[[], None]) -> None:
+def _run_workers(config: Config, at: socket.socket, ready: Callable[[], None]) -> None:
     from uvicorn.supervisors import Multiprocess
 
     supervisor = Multiprocess(config, sockets=[at])
@@ -205,7 +205,7 @@ def _end_with_terminal(end: Callable[[], None]) -> None:
         signal.signal(signal.SIGHUP, lambda *_: end())
 
 
-def _made(made: Callable[[], Application]) -> Application:
+def _application_of_process(made: Callable[[], Application]) -> Application:
     """Return the application of this process, which ends with its parent process."""
     parent = multiprocessing.parent_process()
     if parent is None:
@@ -229,13 +229,13 @@ def worker_name() -> str:
     return f"{socket.gethostname()[:40]} {os.getpid()}" if others_can_start() else ""
 
 
-def working(serving: Serving) -> AbstractContextManager[None]:
+def working(serving: ServerSettings) -> AbstractContextManager[None]:
     """Start one process, whatever the number of server processes, that marks submissions and submits saved
     answers; none for a site without a worker."""
     return kept_beside(_NICENESS, _work, serving) if serving.worker else nullcontext()
 
 
-def _work(serving: Serving) -> None:
+def _work(serving: ServerSettings) -> None:
     logging.config.dictConfig(_logs(False))
     try:
         work(serving.site(), serving.worker)
@@ -243,7 +243,7 @@ def _work(serving: Serving) -> None:
         LOG.error("%s", fault)
 
 
-def filling(serving: Serving) -> AbstractContextManager[None]:
+def filling(serving: ServerSettings) -> AbstractContextManager[None]:
     """Start one process, whatever the number of server processes, that searches variants for practice; none
     if all were found."""
     site = serving.site()
@@ -253,7 +253,7 @@ def filling(serving: Serving) -> AbstractContextManager[None]:
         site.store.close()
 
 
-def _fill(serving: Serving) -> None:
+def _fill(serving: ServerSettings) -> None:
     try:
         serving.site().pool.fill()
     except (
@@ -262,5 +262,5 @@ def _fill(serving: Serving) -> None:
         LOG.error("%s", fault)
 
 
-def _application(serving: Serving) -> Application:
+def _application(serving: ServerSettings) -> Application:
     return application(serving.site())

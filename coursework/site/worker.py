@@ -35,8 +35,8 @@ from coursework.database.tables import assignment, extension
 from coursework.errors import CourseworkError
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.settings import Site
-from coursework.site.papers.handing_in import close_passed, rescue
 from coursework.site.papers.opening import prepare, prepare_soon
+from coursework.site.papers.submission import close_passed, rescue
 
 LOG = logging.getLogger("coursework.site")
 #: After a date has passed, until what is in the boxes is handed in: what arrived in time may wait for the database still.
@@ -61,17 +61,17 @@ class Worker:
 
     def run(self) -> None:
         """Work until the process is told to terminate."""
-        self._tell_faults(self.take_over)
-        self._tell_faults(self.prepare_all)
+        self._log_faults(self.take_over)
+        self._log_faults(self.prepare_all)
         dates = 0.0
         while True:
             if time.monotonic() - dates > _DATES:
-                self._tell_faults(self.close)
+                self._log_faults(self.close)
                 dates = time.monotonic()
-            if not self._tell_faults(self.work_once):
+            if not self._log_faults(self.work_once):
                 time.sleep(_POLL)
 
-    def _tell_faults(self, work: Callable[[], bool | None]) -> bool:
+    def _log_faults(self, work: Callable[[], bool | None]) -> bool:
         try:
             return bool(work())
         except CourseworkError as fault:

@@ -15,7 +15,7 @@ from coursework.database.deliveries import deliveries
 from coursework.database.publication import Extension, Publication, extend, publish, published, say_sittings
 from coursework.database.standing import graded
 from coursework.site.desk.class_cache import class_now
-from coursework.site.papers import handing_in
+from coursework.site.papers import submission
 
 SECOND = timedelta(seconds=1)
 
@@ -376,7 +376,7 @@ def test_what_was_saved_is_not_lost_when_the_process_falls_as_it_is_handed_in(cl
     class_of_three.browser(ZOE).fill(f"/assignments/{number}/keep", {"text.e1-rA": "5", "over.e1-rA": "0"})
     class_of_three.at = CLOSES + SECOND
     with monkeypatch.context() as falling:
-        falling.setattr(handing_in, "_saved", lambda *all_of_it: 1 / 0)
+        falling.setattr(submission, "_saved", lambda *all_of_it: 1 / 0)
         assert class_of_three.browser(MAX).get("/assignments").status_code == 500
     class_of_three.browser(MAX).get("/assignments")
     assert len(delivered(class_of_three, number)) == 1
@@ -393,7 +393,7 @@ def test_what_was_saved_counts_at_the_desk_before_any_student_comes(class_of_thr
 def test_a_fault_of_the_marking_is_no_fault_of_handing_in(class_of_three, monkeypatch):
     number = dealt(class_of_three)
     with monkeypatch.context() as falling:
-        falling.setattr(handing_in, "mark_delivery", lambda *all_of_it: 1 / 0)
+        falling.setattr(submission, "mark_delivery", lambda *all_of_it: 1 / 0)
         assert handed_in(class_of_three.browser(ZOE), number, right(class_of_three, ZOE)).status_code == 303
     assert not marks(class_of_three, number)
     class_of_three.at += timedelta(minutes=2)

@@ -132,7 +132,7 @@ def test_the_worst_body_within_a_budget_takes_little_memory(site):
 
 
 def spend(class_, kind, name=ZOE):
-    class_.site.limits.took(kind, class_.ids[name], AT_ONCE + 12 * BACK)
+    class_.site.limits.add_processor_time(kind, class_.ids[name], AT_ONCE + 12 * BACK)
 
 
 def test_who_took_much_of_a_processor_waits_and_nobody_else(class_of_three):

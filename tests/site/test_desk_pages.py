@@ -14,7 +14,7 @@ from coursework.database.desk import Stamp, people_of, stamp
 from coursework.database.erasing import erase
 from coursework.database.publication import say_sittings
 from coursework.site.desk.class_cache import class_now
-from coursework.site.desk.question_cards import asked
+from coursework.site.desk.question_cards import question_card
 from coursework.system.tables import as_written
 
 
@@ -194,7 +194,7 @@ def test_marking_again_shows_what_changes_before_it_changes(tmp_path, desk, monk
     reply = desk.browser(TEACHER).fill(f"/desk/{desk.number}/regrade", {"do": "regrade"})
     assert "Sheets marked anew: 3." in reply.text
     assert class_now(desk.site, desk.number).stamp != before
-    assert regrading.Row._fields[0] == "student"
+    assert regrading.ChangeRow._fields[0] == "student"
 
 
 def test_what_was_erased_is_shown_as_nobody_elses(tmp_path):
@@ -221,7 +221,7 @@ def test_a_question_is_shown_as_it_was_asked_in_each_assignment(desk):
     for name in ("rA", "theta4"):
         parts = [part for part in one.record["parts"] if part["id"] == name]
         alone = one._replace(record={**one.record, "parts": parts})
-        assert asked(now.course, now.issued, alone, name, "en").part.id == name
+        assert question_card(now.course, now.issued, alone, name, "en").part.id == name
 
 
 def test_a_zip_that_is_damaged_inside_is_refused(desk):

@@ -266,10 +266,10 @@ def test_a_clock_that_jumps_loses_no_draft_and_no_answer(class_of_three, jump):
 
 def test_what_a_process_left_unmarked_is_marked_when_it_is_asked_for(class_of_three, monkeypatch):
     from coursework.database.marking import mark_new
-    from coursework.site.papers import handing_in
+    from coursework.site.papers import submission
 
     number = dealt(class_of_three, OPEN)
-    monkeypatch.setattr(handing_in, "mark", lambda site, made: None)  # it fell between the two
+    monkeypatch.setattr(submission, "mark", lambda site, made: None)  # it fell between the two
     texts = right(class_of_three, ZOE)
     reply = class_of_three.browser(ZOE).fill(f"/assignments/{number}/hand-in", {**texts, "_number": "1"})
     assert reply.status_code == 303

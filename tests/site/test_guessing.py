@@ -144,7 +144,7 @@ def test_device_cookies_name_nobody(class_of_three):
     many = ""
     for number in range(9):
         many = devices.after_sign_in(many, f"login{number}")
-    assert [bool(devices.known(many, f"login{n}")) for n in range(9)] == [False] * 4 + [True] * 5
+    assert [bool(devices.name_for_login(many, f"login{n}")) for n in range(9)] == [False] * 4 + [True] * 5
     assert len(many) < 400
 
 
@@ -171,7 +171,7 @@ def test_who_asks_without_end_shuts_no_known_browser_out(class_of_three):
     known = join(class_of_three, ZOE)
     known.fill("/sign-out")
     limits, most = class_of_three.site.limits, int(ADDRESS["sign_in"].partition("/")[0])
-    while not limits.asked("sign_in", 0, "testclient"):
+    while not limits.wait_for_rate("sign_in", 0, "testclient"):
         most -= 1
     assert most in range(10)  # those of this test are among them
     assert class_of_three.browser().get("/sign-in").status_code == 429

@@ -37,8 +37,8 @@ class Handed:
 
         from coursework.database.publication import places
         from coursework.site.frame.settings import Site
-        from coursework.site.papers.handing_in import ON_THE_PAGE, hand_in
-        from coursework.site.papers.own_paper import own_paper
+        from coursework.site.papers.student_paper import student_paper
+        from coursework.site.papers.submission import ON_THE_PAGE, submit
 
         cookies, self.homework = load.set_up(store, 2)
         self.load, self.store, self.told = load, store, load.Told()
@@ -46,9 +46,9 @@ class Handed:
         for person in cookies:
             with store.reading() as connection:
                 (place,) = places(connection, person)
-                paper = own_paper(connection, site.course, place, person, "fr")
+                paper = student_paper(connection, site.course, place, person, "fr")
             texts = {name: f"{number}.5" for number, name in enumerate(paper.boxes)}
-            made = hand_in(site, place, paper, person, texts, 1, now, ON_THE_PAGE)
+            made = submit(site, place, paper, person, texts, 1, now, ON_THE_PAGE)
             self.told.receipts[made.delivery.receipt] = (person, texts)
 
     @property

@@ -23,7 +23,7 @@ from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.site.papers import opening
-from coursework.site.papers.own_paper import OwnPaper, own_paper
+from coursework.site.papers.student_paper import StudentPaper, student_paper
 from coursework.site.worker import Worker
 
 SECOND = timedelta(seconds=1)
@@ -67,7 +67,7 @@ def never(*told):
 def paper_of(one, number, name, lang):
     with one.site.store.reading() as connection:
         (place,) = places(connection, one.ids[name], number)
-        return own_paper(connection, one.site.course, place, one.ids[name], lang)
+        return student_paper(connection, one.site.course, place, one.ids[name], lang)
 
 
 def texts_of(page):
@@ -94,7 +94,7 @@ def test_a_prepared_page_is_the_page_made_directly_byte_for_byte(served, lang, m
         drop_prepared(connection, number)
     prepared_by_worker(served)
     with monkeypatch.context() as context:
-        context.setattr(OwnPaper, "pieces", never)
+        context.setattr(StudentPaper, "pieces", never)
         assert page_of(browser, number) == direct
         sent = {f"text.{name}": text for name, text in texts.items()}
         assert (
@@ -117,7 +117,7 @@ def test_a_prepared_page_is_the_page_made_directly_byte_for_byte(served, lang, m
 def test_another_process_reads_the_page_that_one_made(served, monkeypatch):
     number = dealt(served)
     first = page_of(served.browser(ZOE), number)
-    monkeypatch.setattr(OwnPaper, "pieces", never)
+    monkeypatch.setattr(StudentPaper, "pieces", never)
     other = Class.of(served)
     assert page_of(other.browser(ZOE), number) == first
     other.site.store.close()
@@ -244,7 +244,7 @@ def test_erasing_leaves_nothing_whatever_is_under_way(served, monkeypatch):
         == {row.person_id for row in rows(served, job)}
         == {served.ids[MAX]}
     )
-    pieces = OwnPaper.pieces
+    pieces = StudentPaper.pieces
 
     def erased_meanwhile(own):
         made = pieces(own)
@@ -253,7 +253,7 @@ def test_erasing_leaves_nothing_whatever_is_under_way(served, monkeypatch):
             erase(connection, served.ids[MAX])
         return made
 
-    monkeypatch.setattr(OwnPaper, "pieces", erased_meanwhile)
+    monkeypatch.setattr(StudentPaper, "pieces", erased_meanwhile)
     with served.site.store.begin() as connection:
         drop_prepared(connection, number)
     opening.prepare(served.site, number, served.ids[MAX], served.at)
@@ -297,9 +297,9 @@ def test_publishing_has_the_pages_prepared_and_hand_ins_go_before_them(served):
 
 def test_a_page_that_cannot_be_made_stops_nobody_and_is_not_told_as_a_hand_in(served, monkeypatch, caplog):
     number = dealt(served)
-    whole = OwnPaper.pieces
+    whole = StudentPaper.pieces
     monkeypatch.setattr(
-        OwnPaper, "pieces", lambda own: never() if own.student == ZOE and own.lang == "fr" else whole(own)
+        StudentPaper, "pieces", lambda own: never() if own.student == ZOE and own.lang == "fr" else whole(own)
     )
     prepared_by_worker(served)
     assert {row.person_id for row in rows(served)} >= {served.ids[MAX]}

@@ -6,7 +6,7 @@ from site_people import ZOE, Class
 
 from coursework.database.pool import Pooled, put_pooled
 from coursework.site.frame.lru_cache import LRUCache
-from coursework.site.frame.pool import Pool
+from coursework.site.frame.pool import PracticePool
 from coursework.site.warming import warm
 
 NAME = "grashof"
@@ -19,9 +19,9 @@ def put(one, found):
 
 def test_what_another_process_found_is_practised(class_of_three):
     one = class_of_three
-    pool = Pool(one.site.course, one.site.store)
+    pool = PracticePool(one.site.course, one.site.store)
     few = pool.seeds(NAME)
-    more = Pool(one.site.course, one.site.store)._grown(NAME, 60)
+    more = PracticePool(one.site.course, one.site.store)._extended(NAME, 60)
     assert len(more.seeds) > len(few)
     assert pool.seeds(NAME) == more.seeds
     assert pool.holds(NAME, more.seeds[-1])
@@ -29,7 +29,7 @@ def test_what_another_process_found_is_practised(class_of_three):
 
 def test_who_finds_fewer_takes_nothing_away(class_of_three, monkeypatch):
     one = class_of_three
-    pool = Pool(one.site.course, one.site.store)
+    pool = PracticePool(one.site.course, one.site.store)
     many = Pooled(tuple(range(5, 75)))
 
     def slow(exercise, count):
@@ -38,7 +38,7 @@ def test_who_finds_fewer_takes_nothing_away(class_of_three, monkeypatch):
 
     monkeypatch.setattr("coursework.site.frame.pool._drawn", slow)
     assert pool.seeds(NAME) == many.seeds
-    assert Pool(one.site.course, one.site.store).seeds(NAME) == many.seeds
+    assert PracticePool(one.site.course, one.site.store).seeds(NAME) == many.seeds
 
 
 def test_it_is_filled_once_everything_was_found(class_of_three):

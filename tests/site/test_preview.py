@@ -8,7 +8,7 @@ from starlette.testclient import TestClient
 from coursework.authoring.scaffold import new_course, new_exercise
 from coursework.cli import run
 from coursework.site.preview.preview_page import preview
-from coursework.site.preview.under_work import UnderWork
+from coursework.site.preview.under_work import EditedExercise
 
 pytestmark = pytest.mark.e2e
 
@@ -25,7 +25,7 @@ def written(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def client(written):
-    work = UnderWork(str(written), NAME, variants=3)
+    work = EditedExercise(str(written), NAME, variants=3)
     with TestClient(preview(work, "en"), base_url="http://127.0.0.1:8000") as client:
         yield client
     work.end()

@@ -15,7 +15,7 @@ from coursework.database.assignments import issued_content, names
 from coursework.database.audit import noted
 from coursework.database.publication import ACCEPT, CHARGE, Publication, extensions, published
 from coursework.making.issued import Issued
-from coursework.site.publication import dealings
+from coursework.site.publication import assigning
 from coursework.site.publication.publishing import holders
 
 TOML = b"""
@@ -140,12 +140,12 @@ def test_a_name_is_given_once(class_of_three, staff):
 
 def test_a_large_class_is_dealt_by_another_process_the_same_way(class_of_three, staff, monkeypatch):
     roster = b"student\n" + b"".join(b"S%d\n" % k for k in range(24))
-    monkeypatch.setattr(dealings, "_PATIENCE", 0.0)
+    monkeypatch.setattr(assigning, "_PATIENCE", 0.0)
     reply = handed_out(class_of_three, staff, file=TOML, roster=roster)
     assert "This page looks again by itself" in staff.get(reply.headers["location"]).text
     number = dealt_by(class_of_three, staff, reply)
     apart = content(class_of_three, number)["issued"]
-    monkeypatch.setattr(dealings, "_ALONE", 1000)
+    monkeypatch.setattr(assigning, "_ALONE", 1000)
     other = dealt_by(
         class_of_three,
         staff,
@@ -154,14 +154,17 @@ def test_a_large_class_is_dealt_by_another_process_the_same_way(class_of_three, 
         ),
     )
     assert len(apart) == len(content(class_of_three, other)["issued"]) == 48
-    assert dealings.dealing(class_of_three.site, reply.headers["location"].rpartition("/")[2]).state == "done"
+    assert (
+        assigning.assigning_job(class_of_three.site, reply.headers["location"].rpartition("/")[2]).state
+        == "done"
+    )
 
 
 def test_a_dealing_that_fails_is_told_and_issues_nothing(class_of_three, staff, monkeypatch):
     def failing(*told):
         raise RuntimeError("no memory")
 
-    monkeypatch.setattr(dealings, "_dealt", failing)
+    monkeypatch.setattr(assigning, "_assigned", failing)
     reply = handed_out(class_of_three, staff, file=TOML, roster=ROSTER)
     page = staff.get(reply.headers["location"])
     assert "Nothing was issued" in page.text
@@ -169,7 +172,7 @@ def test_a_dealing_that_fails_is_told_and_issues_nothing(class_of_three, staff, 
 
 
 def test_a_dealing_that_was_interrupted_is_told(class_of_three, staff):
-    dealings._put(class_of_three.site, "abc", dealings.Dealing(dealings.RUNNING, "x", 3))
+    assigning._store_state(class_of_three.site, "abc", assigning.AssigningJob(assigning.RUNNING, "x", 3))
     class_of_three.at += timedelta(hours=1)
     assert "interrupted" in staff.get("/desk/assignments/dealing/abc").text
 

@@ -22,7 +22,7 @@ from coursework.database.tables import delivery, job, mark, marking
 from coursework.making.students import folded
 from coursework.site.frame import arrivals
 from coursework.site.frame.cookies import COOKIE
-from coursework.site.papers import handing_in
+from coursework.site.papers import submission
 from coursework.site.worker import SETTLES, Worker
 
 pytestmark = pytest.mark.e2e
@@ -95,7 +95,7 @@ def test_all_who_hand_in_before_it_closes_are_taken_while_every_thread_is_busy(s
     def slow(*told):
         served.at += SECOND
 
-    monkeypatch.setattr(handing_in, "mark_delivery", slow)
+    monkeypatch.setattr(submission, "mark_delivery", slow)
     connect = served.site.store.begin
 
     def begin():
@@ -184,7 +184,7 @@ def test_a_body_that_trickles_buys_no_time_beyond_the_grace(served, begins, ends
 def test_a_date_that_is_written_down_meanwhile_refuses_nobody_who_was_in_time(served, monkeypatch):
     number = dealt(served)
     served.at = CLOSES - SECOND
-    hold = handing_in.hold
+    hold = submission.hold
 
     def late(connection, person):
         """The worker writes the date down while this one waits."""
@@ -192,7 +192,7 @@ def test_a_date_that_is_written_down_meanwhile_refuses_nobody_who_was_in_time(se
         hold(connection, person)
         reach(connection, number, served.at)
 
-    monkeypatch.setattr(handing_in, "hold", late)
+    monkeypatch.setattr(submission, "hold", late)
     assert asyncio.run(sent(served, number, ZOE)).status_code == 303
     assert delivered(served, number)[0].late == 0
 
@@ -202,7 +202,7 @@ def test_what_was_rescued_does_not_stand_for_what_arrived_in_time_and_waited(ser
     served.browser(ZOE).fill(f"/assignments/{number}/keep", {"text.e1-rA": "5", "over.e1-rA": "0"})
     served.at = CLOSES + SETTLES + 2 * SECOND
     Worker(served.site, "test").close()
-    assert [one.source for one in delivered(served, number)] == [handing_in.AS_SAVED]
+    assert [one.source for one in delivered(served, number)] == [submission.AS_SAVED]
     token = arrivals._arrival.set(arrivals.Arrival(lambda: CLOSES - SECOND, {}))
     try:
         assert asyncio.run(sent_from_queue(served, number)).number == 2
@@ -213,26 +213,24 @@ def test_what_was_rescued_does_not_stand_for_what_arrived_in_time_and_waited(ser
 async def sent_from_queue(one, number):
     """What a thread does with a form that arrived in time, long after."""
     from coursework.database.publication import places
-    from coursework.site.papers.own_paper import own_paper
+    from coursework.site.papers.student_paper import student_paper
 
     with one.site.store.reading() as connection:
         (place,) = places(connection, one.ids[ZOE], number)
-        paper = own_paper(connection, one.site.course, place, one.ids[ZOE], "en")
+        paper = student_paper(connection, one.site.course, place, one.ids[ZOE], "en")
     texts = dict.fromkeys(paper.fields, "7")
-    return handing_in.hand_in(
-        one.site, place, paper, one.ids[ZOE], texts, 1, CLOSES - SECOND, "site"
-    ).delivery
+    return submission.submit(one.site, place, paper, one.ids[ZOE], texts, 1, CLOSES - SECOND, "site").delivery
 
 
 def test_the_boxes_that_a_record_tells_are_those_of_the_page(served):
     from coursework.database.publication import places
-    from coursework.site.papers.own_paper import own_paper
+    from coursework.site.papers.student_paper import student_paper
 
     number = dealt(served)
     for name in (ZOE, MAX):
         with served.site.store.reading() as connection:
             (place,) = places(connection, served.ids[name], number)
-            paper = own_paper(connection, served.site.course, place, served.ids[name], "fr")
+            paper = student_paper(connection, served.site.course, place, served.ids[name], "fr")
         told = {
             box.name: (box.variant.exercise.name, box.variant.seed, box.part.id, box.variant.lang)
             for box in paper.boxes.values()
@@ -353,7 +351,7 @@ def test_what_was_saved_is_handed_in_when_nobody_asks_for_a_page(site_class):
     worker.close()
     for name in CROWD:
         (made,) = delivered(one, number, name)
-        assert (made.source, made.late) == (handing_in.AS_SAVED, 0)
+        assert (made.source, made.late) == (submission.AS_SAVED, 0)
     worked_off(one)
     assert marks_of(one, number) == 2 * len(CROWD)
 
@@ -363,10 +361,10 @@ def test_one_whose_answers_cannot_be_handed_in_keeps_nobody_elses_back(served, m
     for name in (ZOE, MAX):
         served.browser(name).fill(f"/assignments/{number}/keep", {"text.e1-rA": "5", "over.e1-rA": "0"})
     served.at = CLOSES + SETTLES + SECOND
-    saved = handing_in._saved
+    saved = submission._saved
     with monkeypatch.context() as falling:
         falling.setattr(
-            handing_in,
+            submission,
             "_saved",
             lambda site, connection, number, person, at: (
                 1 / 0 if person == served.ids[ZOE] else saved(site, connection, number, person, at)

@@ -22,7 +22,7 @@ PASSWORD = "four plain words here"
 def site(tmp_path_factory):
     found = Filled(f"sqlite:///{tmp_path_factory.mktemp('security')}/site.db")
     with found.site.store.begin() as connection:
-        set_secret(connection, account_of(connection, found.ids[ZOE]).id, passwords.kept(PASSWORD))
+        set_secret(connection, account_of(connection, found.ids[ZOE]).id, passwords.hashed(PASSWORD))
     return found
 
 

@@ -34,7 +34,7 @@ from coursework.making.issued import Issued
 from coursework.making.students import namesakes
 from coursework.site.frame.requests import HTTPException, Request, Response
 from coursework.site.frame.settings import Site
-from coursework.site.papers.handing_in import mark, pass_dates
+from coursework.site.papers.submission import mark, pass_dates
 
 _MARKING = timedelta(minutes=1)  #: after which nobody marks a hand-in any more who began to
 
@@ -82,7 +82,7 @@ class ClassNow:
     faults: Mapping[SheetPlace, str]
     decisions: Decisions
     placings: Mapping[str, Placed]
-    came: Mapping[str, Came]
+    received: Mapping[str, Came]
     charged: Mapping[Sitting, float]  #: shares that are taken off of what came late
 
     @cached_property
@@ -251,7 +251,7 @@ def row_id(row: Rejected) -> str:
 
 
 @dataclass
-class _Kept:
+class _ClassCache:
     """Cached data of an assignment."""
 
     lock: Any = field(default_factory=RLock)
@@ -260,7 +260,7 @@ class _Kept:
     measured: dict[int, Measure] = field(default_factory=dict)
 
 
-_kept: WeakKeyDictionary[Store, dict[int, _Kept]] = WeakKeyDictionary()
+_class_caches: WeakKeyDictionary[Store, dict[int, _ClassCache]] = WeakKeyDictionary()
 _lock = Lock()
 
 
@@ -274,19 +274,19 @@ def class_now(site: Site, assignment_id: int) -> ClassNow:
         There is no such assignment.
     """
     pass_dates(site, assignment_id, site.clock())
-    now = _as_it_stands(site, assignment_id)
+    now = _current_class(site, assignment_id)
     if now.is_marked:
         return now
     with site.store.reading() as connection:
         left = unmarked(connection, assignment_id, site.clock() - _MARKING)
     for number in left:
         mark(site, number)
-    return _as_it_stands(site, assignment_id) if left else now
+    return _current_class(site, assignment_id) if left else now
 
 
-def _as_it_stands(site: Site, assignment_id: int) -> ClassNow:
+def _current_class(site: Site, assignment_id: int) -> ClassNow:
     with _lock:
-        kept = _kept.setdefault(site.store, {}).setdefault(assignment_id, _Kept())
+        kept = _class_caches.setdefault(site.store, {}).setdefault(assignment_id, _ClassCache())
     with kept.lock, site.store.reading() as connection:
         about = next(iter(listed(connection, assignment_id)), None)
         if about is None:
@@ -303,14 +303,14 @@ def _as_it_stands(site: Site, assignment_id: int) -> ClassNow:
         return now
 
 
-def _read(course: Course, connection: Connection, about: About, at: Stamp, kept: _Kept) -> ClassNow:
+def _read(course: Course, connection: Connection, about: About, at: Stamp, kept: _ClassCache) -> ClassNow:
     before = kept.now if kept.now is not None and kept.now.course is course else None
     decisions, placed_by_hand = Decisions.read(connection, about.id), placings(connection, about.id)
     charged = charges(connection, about.id)
     if before is not None and _has_come(before.stamp, before.about) == _has_come(at, about):
         now = ClassNow(
             course, about, before.issued, at, before.machine, before.numbers, before.measured, before.sheets,
-            before.faults, decisions, placed_by_hand, before.came, charged,
+            before.faults, decisions, placed_by_hand, before.received, charged,
         )  # fmt: skip
         now.__dict__.update({k: before.__dict__[k] for k in _LASTING if k in before.__dict__})
         return now
@@ -380,9 +380,11 @@ def by_whom(request: Request) -> str:
 
 def class_page_of(request: Request, now: ClassNow, template: str, tab: str, **names: Any) -> Response:
     """Return an instructor's page of one assignment, under its heading."""
-    return request.render(template, now=now, tab=tab, heading=called(now.about, request.lang), **names)
+    return request.render(
+        template, now=now, tab=tab, heading=assignment_title(now.about, request.lang), **names
+    )
 
 
-def called(about: About, lang: str) -> str:
+def assignment_title(about: About, lang: str) -> str:
     """Return the title of an assignment, or its name if it has none."""
     return text_in((about.stated or {}).get("title") or {}, lang) or about.name

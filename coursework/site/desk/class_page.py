@@ -36,10 +36,10 @@ BLANK = Cell("", 0.0, "", False)
 
 
 @dataclass(frozen=True)
-class Row:
+class ClassRow:
     """A student in the table."""
 
-    place: int  #: in the class's own order
+    order: int  #: in the class's own order
     student: str
     identity: str
     cells: tuple[Cell, ...]
@@ -59,7 +59,7 @@ class Row:
         return -(-self.late // 60)
 
 
-def rows(now: ClassNow) -> list[Row]:
+def rows(now: ClassNow) -> list[ClassRow]:
     """Every student of the class, in its own order."""
     counted: dict[str, dict[tuple[str, str], Cell]] = {}
     for place, one in now.graded.items():
@@ -86,11 +86,11 @@ def _by_hand(before: Mark, now: Mark) -> bool:
 
 def _row(
     now: ClassNow, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
-) -> Row:
+) -> ClassRow:
     told = own_columns(now.issued, student)
     titles = (now.issued.assignment or {}).get("identity") or ()
     identity = " ".join(filter(None, (told.get(folded(str(title)), "") for title in titles)))
-    came = now.came.get(student)
+    came = now.received.get(student)
     tries = (
         came.tries
         if came
@@ -98,7 +98,7 @@ def _row(
         if cells
         else 0
     )
-    return Row(
+    return ClassRow(
         number, student, identity, tuple(cells.get(question, BLANK) for question in now.questions),
         result.points, result.out_of, mark_of(now.issued, result.counts, result.out_of),
         tries, came.late if came else 0, bool(cells) or came is not None,
@@ -113,7 +113,7 @@ def class_page(request: Request) -> Response:
     now = class_now(request.site, assignment_of(request))
     found = rows(now)
     sort, sought = request.query_params.get("sort", ""), request.query_params.get("find", "").strip()
-    shown = sorted((one for one in found if _is_found(one, sought)), key=_sorting(now, sort))
+    shown = sorted((one for one in found if _matches(one, sought)), key=_sorting(now, sort))
     return class_page_of(
         request, now, "site_desk_class", "class", rows=shown, all_rows=len(found), sort=sort, sought=sought,
         handed_in=sum(one.handed_in for one in found), has_mark=bool((now.issued.assignment or {}).get("mark")),
@@ -162,26 +162,26 @@ def _words(request: Request) -> dict[str, Any]:
     return {"word": word, "number": number, "decimal": lambda text: localise(text, request.lang)}
 
 
-def _is_found(row: Row, sought: str) -> bool:
+def _matches(row: ClassRow, sought: str) -> bool:
     return folded(sought) in folded(f"{row.student} {row.identity}") if sought else True
 
 
-def _sorting(now: ClassNow, sort: str) -> Callable[[Row], Any]:
+def _sorting(now: ClassNow, sort: str) -> Callable[[ClassRow], Any]:
     """Return the sort key of an order; students without a value are last."""
-    by: dict[str, Callable[[Row], Any]] = {
+    by: dict[str, Callable[[ClassRow], Any]] = {
         "name": lambda row: folded(row.student),
-        "total": lambda row: (-row.points, row.place),
-        "waits": lambda row: (-row.waits, row.place),
-        "late": lambda row: (-row.late, row.place),
-        "tries": lambda row: (-row.tries, row.place),
+        "total": lambda row: (-row.points, row.order),
+        "waits": lambda row: (-row.waits, row.order),
+        "late": lambda row: (-row.late, row.order),
+        "tries": lambda row: (-row.tries, row.order),
     }
     if sort.isdecimal() and len(sort) < 5 and int(sort) < len(now.questions):
         column = int(sort)
-        return lambda row: (row.cells[column].sign == "", row.cells[column].points, row.place)
-    return by.get(sort, lambda row: row.place)
+        return lambda row: (row.cells[column].sign == "", row.cells[column].points, row.order)
+    return by.get(sort, lambda row: row.order)
 
 
-def _means(now: ClassNow, found: Sequence[Row]) -> list[str]:
+def _means(now: ClassNow, found: Sequence[ClassRow]) -> list[str]:
     """Of each question, the percent of its points that those have who handed in."""
     most: dict[tuple[str, str], float] = {}
     for (name, _), record in now.issued.records.items():

@@ -133,22 +133,24 @@ def _read(folder: Path) -> Iterator[Row | Rejected | Seen]:
     for found in find([folder]):
         rows = [found] if isinstance(found, (Rejected, Seen)) else read_file(found, [folder])
         for row in rows:
-            yield _called(row, folder)
+            yield _with_short_source(row, folder)
 
 
-def _called(row: Row | Rejected | Seen, folder: Path) -> Row | Rejected | Seen:
+def _with_short_source(row: Row | Rejected | Seen, folder: Path) -> Row | Rejected | Seen:
     """Return a row without the temporary folder in its source."""
 
-    def own(text: str) -> str:
+    def shortened(text: str) -> str:
         for number in range(60):
             text = text.replace(f"{folder}/{number}/zip/", "").replace(f"{folder}/{number}/", "")
         return text.replace(str(folder), "")
 
     if isinstance(row, Row):
-        return row._replace(source=own(row.source), warning=own(row.warning) if row.warning else "")
+        return row._replace(
+            source=shortened(row.source), warning=shortened(row.warning) if row.warning else ""
+        )
     if isinstance(row, Rejected):
-        return Rejected(own(row.source), own(row.reason), row.row)
-    return row._replace(source=own(row.source))
+        return Rejected(shortened(row.source), shortened(row.reason), row.row)
+    return row._replace(source=shortened(row.source))
 
 
 def roster_in(request: Request) -> Response:
@@ -263,7 +265,7 @@ def _origin(row: Row) -> dict[str, str]:
     return {"sitting": str(row.origin.sitting or ""), "submitted": row.origin.submitted}
 
 
-def _came(request: Request, now: ClassNow) -> bytes:
+def _submissions(request: Request, now: ClassNow) -> bytes:
     with request.site.store.reading() as connection:
         rows = [one._asdict() for one in deliveries(connection, now.about.id)]
     return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
@@ -286,7 +288,7 @@ def table(request: Request) -> Response:
     name = str(request.path_params["file"])
     if name == "archive.zip":
         files = {own: make(request, now) for own, make in _TABLES.items()} | {
-            "deliveries.csv": _came(request, now)
+            "deliveries.csv": _submissions(request, now)
         }
         return Response(
             media_type="application/zip", content=zipped(files), filename=f"{_safe(now.about.name)}.zip"
@@ -310,7 +312,7 @@ def feedback(request: Request) -> Response:
         raise BadInput(request.words["class"]["nothing"])
     with TemporaryDirectory(prefix="coursework-") as made:
         folder = Path(made) / "feedback"
-        book = now.book if not only else _of_one(now, only)
+        book = now.book if not only else _book_of_student(now, only)
         write_feedback(now.course, book, shown, folder, lambda done, of: None)
         files = {path.name: path.read_bytes() for path in sorted(folder.glob("*.pdf"))}
     if only and files:
@@ -326,7 +328,7 @@ def feedback(request: Request) -> Response:
     )
 
 
-def _of_one(now: ClassNow, student: str) -> Any:
+def _book_of_student(now: ClassNow, student: str) -> Any:
     """Return the current gradebook, set to write the feedback of one student alone."""
     from copy import copy
 

@@ -12,8 +12,8 @@ from coursework.database.desk import listed
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput, CourseworkError
 from coursework.making.issued import Issued
-from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, called, class_now
-from coursework.site.desk.question_cards import asked, moment
+from coursework.site.desk.class_cache import ClassNow, assignment_of, assignment_title, by_whom, class_now
+from coursework.site.desk.question_cards import moment, question_card
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.clock import Leap, last_leap
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
@@ -68,14 +68,14 @@ def _tile(request: Request, number: int) -> Tile:
             raise
         with request.site.store.reading() as connection:
             about = listed(connection, number)[0]
-        return Tile(number, called(about, request.lang), about.name, 0, 0, 0, "", False, str(fault))
+        return Tile(number, assignment_title(about, request.lang), about.name, 0, 0, 0, "", False, str(fault))
 
 
 def _counted(request: Request, now: ClassNow) -> Tile:
     about = now.about
     last = moment(about.last, request.lang) if about.last else ""
     return Tile(
-        about.id, called(about, request.lang), about.name, len(now.issued.students) or len(now.results),
+        about.id, assignment_title(about, request.lang), about.name, len(now.issued.students) or len(now.results),
         len({one.student for one in now.machine.values()}), now.waiting, last, about.published is not None,
     )  # fmt: skip
 
@@ -119,7 +119,7 @@ def figure(request: Request) -> Response:
     )
     if sheet is None or not sheet.lines:
         raise HTTPException("own", 404)
-    drawn = asked(now.course, now.issued, sheet, next(iter(sheet.lines)), request.lang).handout.figure
+    drawn = question_card(now.course, now.issued, sheet, next(iter(sheet.lines)), request.lang).handout.figure
     if drawn is None:
         raise HTTPException("own", 404)
     return Response(media_type="image/svg+xml; charset=utf-8", content=drawn.outlined_svg().encode())

@@ -13,7 +13,7 @@ from coursework.making.booklets import parted
 from coursework.making.students import file_stems
 from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.requests import Request, Response, Route
-from coursework.site.papers.own_paper import OwnPaper, own_paper
+from coursework.site.papers.student_paper import StudentPaper, student_paper
 from coursework.site.publication.publishing import assignment_here, holders
 from coursework.system.zips import zipped
 
@@ -40,7 +40,7 @@ def sheets(request: Request) -> Response:
     return Response(media_type="application/zip", content=zipped(files), filename=f"{stem}.zip")
 
 
-def _papers(request: Request, connection: Connection, number: int) -> list[OwnPaper]:
+def _papers(request: Request, connection: Connection, number: int) -> list[StudentPaper]:
     """In the order in which they were issued, each in the language that it was issued in."""
     ticked = set(request.form.texts.get("who", ())) if request.is_post else set()
     found = []
@@ -49,11 +49,11 @@ def _papers(request: Request, connection: Connection, number: int) -> list[OwnPa
             continue
         [place] = places(connection, holder.person, number)[:1]
         lang = holder.lang or request.lang
-        found.append(own_paper(connection, request.site.course, place, holder.person, lang))
+        found.append(student_paper(connection, request.site.course, place, holder.person, lang))
     return found
 
 
-def _printed(request: Request, papers: Sequence[OwnPaper], stem: str) -> Iterator[tuple[str, bytes]]:
+def _printed(request: Request, papers: Sequence[StudentPaper], stem: str) -> Iterator[tuple[str, bytes]]:
     """Yield the files with their names."""
     renderer = renderer_of(request.site.course.folder)
     for lang in dict.fromkeys(one.lang for one in papers):

@@ -33,7 +33,7 @@ _STEPS = 12  #: buttons of points at most
 
 
 @dataclass(frozen=True)
-class Asked:
+class QuestionCard:
     """A question of somebody's variant, as the staff sees it."""
 
     variant: Variant
@@ -77,12 +77,12 @@ class Asked:
         return self.handout.figure is not None
 
 
-def asked(course: Course, issued: Issued, graded: Graded, part: str, lang: str) -> Asked:
+def question_card(course: Course, issued: Issued, graded: Graded, part: str, lang: str) -> QuestionCard:
     """Return the question of an answer, in the reader's language if its exercise has it."""
     exercise = course[graded.exercise]
     own = str(graded.record.get("lang", ""))
     spoken = lang if lang in exercise.languages else own
-    return _asked(_Hashed(course, rules_of(course, issued), {**graded.record, "lang": spoken}), part)
+    return _question_card(_Hashed(course, rules_of(course, issued), {**graded.record, "lang": spoken}), part)
 
 
 class _Hashed:
@@ -109,9 +109,9 @@ def _variant(of: _Hashed) -> Variant:
 
 
 @lru_cache(maxsize=512)
-def _asked(of: _Hashed, part: str) -> Asked:
+def _question_card(of: _Hashed, part: str) -> QuestionCard:
     variant = _variant(of)
-    return Asked(variant, next(p for p in variant.parts if p.id == part))
+    return QuestionCard(variant, next(p for p in variant.parts if p.id == part))
 
 
 def steps(out_of: float) -> tuple[float, ...]:

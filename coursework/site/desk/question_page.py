@@ -13,7 +13,7 @@ from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.renderer import renderer_of
 from coursework.site.desk.class_cache import ClassNow, assignment_of, class_now, class_page_of
-from coursework.site.desk.question_cards import asked, sign_of
+from coursework.site.desk.question_cards import question_card, sign_of
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.statistics.captions import Names
 from coursework.statistics.measures import PartStatistics, Statistics, measure
@@ -31,13 +31,13 @@ def statistics_of(now: ClassNow) -> Statistics:
 
 
 @dataclass(frozen=True)
-class Asked:
+class QuestionRow:
     """A question in the list."""
 
     exercise: str
     part: str
     number: str
-    told: PartStatistics | None
+    statistics: PartStatistics | None
     words: str = ""
 
 
@@ -47,10 +47,10 @@ def questions(request: Request) -> Response:
     told = statistics_of(now)
     names = Names(now.course, told, request.lang)
     known = {(one.exercise, one.part): one for one in told.parts}
-    asked_for = [Asked(*one, now.number(*one), known.get(one)) for one in now.questions]
+    asked_for = [QuestionRow(*one, now.number(*one), known.get(one)) for one in now.questions]
     listed = [replace(one, words=names.question(one)) for one in asked_for]
     if request.query_params.get("sort") == "hard":
-        listed.sort(key=lambda one: one.told.mean if one.told and one.told.marked else 2.0)
+        listed.sort(key=lambda one: one.statistics.mean if one.statistics and one.statistics.marked else 2.0)
     return class_page_of(
         request,
         now,
@@ -63,13 +63,13 @@ def questions(request: Request) -> Response:
 
 
 @dataclass(frozen=True)
-class Written:
+class DistinctAnswer:
     """One way of answering a question."""
 
     text: str
     verdict: str  #: in words
     sign: str
-    says: str  #: Markdown
+    message: str  #: Markdown
     students: tuple[str, ...]
     matches: tuple[str, ...]
 
@@ -91,7 +91,7 @@ def question(request: Request) -> Response:
     sheet = next(
         (one for one in now.machine.values() if one.exercise == exercise and part in one.lines), None
     )
-    shown = None if sheet is None else asked(now.course, now.issued, sheet, part, request.lang)
+    shown = None if sheet is None else question_card(now.course, now.issued, sheet, part, request.lang)
     only = request.query_params.get("verdict", "")
     answers = _answers(request, now, exercise, part)
     return class_page_of(
@@ -103,7 +103,7 @@ def question(request: Request) -> Response:
     )  # fmt: skip
 
 
-def _answers(request: Request, now: ClassNow, exercise: str, part: str) -> list[Written]:
+def _answers(request: Request, now: ClassNow, exercise: str, part: str) -> list[DistinctAnswer]:
     found: dict[tuple[str, str], list[tuple[str, Mark]]] = {}
     for one in now.graded.values():
         mark = one.lines.get(part) if one.exercise == exercise else None
@@ -113,9 +113,9 @@ def _answers(request: Request, now: ClassNow, exercise: str, part: str) -> list[
     return sorted(listed, key=lambda one: (-len(one.students), one.sign == "full", one.text))
 
 
-def _written(request: Request, own: list[tuple[str, Mark]]) -> Written:
+def _written(request: Request, own: list[tuple[str, Mark]]) -> DistinctAnswer:
     mark = own[0][1]
-    return Written(
+    return DistinctAnswer(
         mark.answer, verdict_word(mark.verdict, request.lang), sign_of(mark), mark.says,
         tuple(dict.fromkeys(student for student, _ in own)), (mark.verdict.partition(":")[0], mark.verdict),
     )  # fmt: skip

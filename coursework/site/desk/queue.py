@@ -26,7 +26,7 @@ from coursework.site.desk.class_cache import (
     class_now,
     class_page_of,
 )
-from coursework.site.desk.question_cards import Asked, asked, decided_words, raw_texts, steps
+from coursework.site.desk.question_cards import QuestionCard, decided_words, question_card, raw_texts, steps
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 
 REJECTED = "rejected"
@@ -59,7 +59,7 @@ class Filters:
 
 
 @dataclass(frozen=True)
-class Item:
+class QueueItem:
     """One card of the queue."""
 
     id: str
@@ -71,14 +71,16 @@ class Item:
     row: RejectedRow | None = None
 
 
-def items(now: ClassNow, filters: Filters) -> list[Item]:
+def items(now: ClassNow, filters: Filters) -> list[QueueItem]:
     """Return the waiting cards that the filters select, in order."""
     found = [
-        Item(one.group.id, one.why, one.group.exercise, one.group.part, len(one.members), one.group)
+        QueueItem(one.group.id, one.why, one.group.exercise, one.group.part, len(one.members), one.group)
         for one in now.open.values()
     ]
     found += [
-        Item(f"r{one.id}", REJECTED, one.row.row.get("exercise", ""), one.row.row.get("part", ""), 1, row=one)
+        QueueItem(
+            f"r{one.id}", REJECTED, one.row.row.get("exercise", ""), one.row.row.get("part", ""), 1, row=one
+        )
         for one in now.named
         if one.waits
     ]
@@ -89,11 +91,11 @@ def items(now: ClassNow, filters: Filters) -> list[Item]:
 
 
 @dataclass(frozen=True)
-class Card:
+class QueueCard:
     """A group as it is shown."""
 
-    item: Item
-    asked: Asked
+    item: QueueItem
+    question_card: QuestionCard
     first: Waits
     members: tuple[Waits, ...]  #: those who wait
     decided: tuple[tuple[str, str], ...]  #: those who wrote the same, and what was decided of it
@@ -114,7 +116,7 @@ class Card:
         return tuple((one[1], one[2]) for one in told if one)
 
 
-def card_of(request: Request, now: ClassNow, item: Item) -> Card:
+def card_of(request: Request, now: ClassNow, item: QueueItem) -> QueueCard:
     """Return the card of a group, decided or not."""
     assert item.group is not None
     group = item.group
@@ -122,8 +124,8 @@ def card_of(request: Request, now: ClassNow, item: Item) -> Card:
     made = [(one, now.decisions.standing(one.sheet, one.mark)) for one in group.members]
     first = (waits or group.members)[0]
     margin = "" if first.margin is None else localise(significant(first.margin, 2), request.lang)
-    return Card(
-        item, asked(now.course, now.issued, first.sheet, group.part, request.lang), first, waits,
+    return QueueCard(
+        item, question_card(now.course, now.issued, first.sheet, group.part, request.lang), first, waits,
         tuple((one.student, decided_words(request, done)) for one, done in made if done is not None), now.number(group.exercise, group.part), margin,
         raw_texts([one.mark for one in group.members]), steps(first.mark.out_of),
         sum(len(one.members) for one in _alike(now, group)),
@@ -146,7 +148,7 @@ def queue(request: Request) -> Response:
     """Return the requested card, or else the first."""
     filters = Filters.of(request.query_params)
     now = class_now(request.site, assignment_of(request))
-    return shown_card(request, now, filters, request.query_params.get("at", ""))
+    return card_response(request, now, filters, request.query_params.get("at", ""))
 
 
 def decided(request: Request) -> Response:
@@ -159,14 +161,14 @@ def decided(request: Request) -> Response:
     name = request.form.text("group")
     group = next((one for one in now.groups if one.id == name), None)
     if group is None:
-        return shown_card(request, now, filters, "", told=request.words["queue"]["anew"])
+        return card_response(request, now, filters, "", told=request.words["queue"]["anew"])
     before = [one.id for one in _around(now, filters)]
     try:
         told = _decide(request, now, group, asked_for)
     except BadInput as fault:
-        return shown_card(request, now, filters, name, told=str(fault))
+        return card_response(request, now, filters, name, told=str(fault))
     later = class_now(request.site, now.about.id)
-    return shown_card(request, later, filters, _after(before, name, later, filters), told=told)
+    return card_response(request, later, filters, _after(before, name, later, filters), told=told)
 
 
 def queue_page(request: Request) -> Response:
@@ -185,7 +187,7 @@ def watch(request: Request) -> Response:
     return request.render("_desk_told", told=told)
 
 
-def _around(now: ClassNow, filters: Filters) -> list[Item]:
+def _around(now: ClassNow, filters: Filters) -> list[QueueItem]:
     return items(now, filters)
 
 
@@ -198,14 +200,14 @@ def _after(before: Sequence[str], name: str, now: ClassNow, filters: Filters) ->
     return ""
 
 
-def shown_card(request: Request, now: ClassNow, filters: Filters, at: str, told: str = "") -> Response:
+def card_response(request: Request, now: ClassNow, filters: Filters, at: str, told: str = "") -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
     shown = items(now, filters)
     place = next((k for k, one in enumerate(shown) if one.id == at), None)
     item = shown[place or 0] if shown else None
     if place is None and at:
         item = _closed(now, at) or item
-        told = told or _by_whom_told(request, now, at)
+        told = told or _already_decided_message(request, now, at)
     card = card_of(request, now, item) if item is not None and item.group is not None else None
     number = next((k for k, one in enumerate(shown) if item is not None and one.id == item.id), 0)
     names: dict[str, Any] = {
@@ -230,15 +232,15 @@ def shown_card(request: Request, now: ClassNow, filters: Filters, at: str, told:
     return class_page_of(request, now, "site_desk_queue", "queue", **names)
 
 
-def _closed(now: ClassNow, name: str) -> Item | None:
+def _closed(now: ClassNow, name: str) -> QueueItem | None:
     """Return a decided card, to be shown again."""
     group = next((one for one in now.groups if one.id == name), None)
     if group is None:
         return None
-    return Item(group.id, group.why, group.exercise, group.part, len(group.members), group)
+    return QueueItem(group.id, group.why, group.exercise, group.part, len(group.members), group)
 
 
-def _by_whom_told(request: Request, now: ClassNow, name: str) -> str:
+def _already_decided_message(request: Request, now: ClassNow, name: str) -> str:
     item = _closed(now, name)
     if item is None or item.group is None:
         return str(request.words["queue"]["anew"])
@@ -280,20 +282,20 @@ def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, i
 
 def _decide(request: Request, now: ClassNow, group: Group, asked_for: str) -> str:
     """Keep the decision on those whom nobody decided on meanwhile; says what was done."""
-    kind, points = _asked_kind(asked_for, request, group)
+    kind, points = _requested_decision(asked_for, request, group)
     members = list(_chosen(request, now, group))
     if request.form.text("everywhere") and not points:
         members += [one for other in _alike(now, group) for one in other.members]
     since = request.form.text("since")
     with request.site.store.begin() as connection:
-        taken = _taken(
+        taken = _decided_meanwhile(
             decided_since(
                 connection, now.about.id, int(since) if since.isdecimal() and len(since) < 16 else 0
             )
         )
         free = [one for one in members if _key(one) not in taken]
         comment = request.form.text("comment").strip()[:LONGEST]
-        decide(connection, now.about.id, map(_place, free), kind, points, comment, by_whom(request))
+        decide(connection, now.about.id, map(_target, free), kind, points, comment, by_whom(request))
         about = {"assignment": now.about.id, "exercise": group.exercise, "part": group.part, "kind": kind}
         if free:
             note(
@@ -306,10 +308,12 @@ def _decide(request: Request, now: ClassNow, group: Group, asked_for: str) -> st
                 **about,
             )
     others = [taken[_key(one)].by for one in members if _key(one) in taken]
-    return _told(request, kind, points, len(free), others)
+    return _decision_message(request, kind, points, len(free), others)
 
 
-def _told(request: Request, kind: str, points: float | None, count: int, others: Sequence[str]) -> str:
+def _decision_message(
+    request: Request, kind: str, points: float | None, count: int, others: Sequence[str]
+) -> str:
     """Return the message on a decision, with the number of answers that somebody else had already decided."""
     said = request.words["queue"]
     told = (
@@ -332,7 +336,7 @@ def _chosen(request: Request, now: ClassNow, group: Group) -> Sequence[Waits]:
     return [one for one in waits if one.student == student] or waits[:1]
 
 
-def _asked_kind(asked_for: str, request: Request, group: Group) -> tuple[str, float | None]:
+def _requested_decision(asked_for: str, request: Request, group: Group) -> tuple[str, float | None]:
     """Return the kind of a decision, and its points.
 
     Raises
@@ -358,11 +362,11 @@ def _asked_kind(asked_for: str, request: Request, group: Group) -> tuple[str, fl
     return GIVEN, points
 
 
-def _place(one: Waits) -> Place:
+def _target(one: Waits) -> Place:
     return Place(one.student, one.sheet.exercise, str(one.sheet.seed), one.mark.part, one.mark.answer)
 
 
-def _taken(later: Sequence[Made]) -> dict[tuple[str, str, str, str], Made]:
+def _decided_meanwhile(later: Sequence[Made]) -> dict[tuple[str, str, str, str], Made]:
     """Return the answers with a later decision."""
     found: dict[tuple[str, str, str, str], Made] = {}
     for one in later:
@@ -391,10 +395,12 @@ def _undone(request: Request, now: ClassNow, filters: Filters) -> Response:
             )
     later = class_now(request.site, now.about.id)
     if not batch:
-        return shown_card(request, later, filters, request.form.text("group"), told=said["nothing_to_undo"])
+        return card_response(
+            request, later, filters, request.form.text("group"), told=said["nothing_to_undo"]
+        )
     at = next((one.group.id for one in later.open.values() if _is_of(one.members, batch[0])), "")
     shown = filters if any(one.id == at for one in items(later, filters)) else Filters()
-    return shown_card(request, later, shown, at, told=said["undone"].format(len(batch)))
+    return card_response(request, later, shown, at, told=said["undone"].format(len(batch)))
 
 
 def _is_of(members: Sequence[Waits], one: Made) -> bool:

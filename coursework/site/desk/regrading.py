@@ -18,10 +18,10 @@ from coursework.site.frame.requests import Request, Response, Route
 from coursework.site.frame.settings import Site
 from coursework.system.tables import SPREADSHEETS, csv_file
 
-_SHOWN = 500  #: changes in the table
+_MOST_ROWS = 500  #: changes in the table
 
 
-class Row(NamedTuple):
+class ChangeRow(NamedTuple):
     """A change, in words."""
 
     student: str
@@ -37,7 +37,7 @@ class Row(NamedTuple):
 def regrade(request: Request) -> Response:
     """Return the marks that would change; after confirmation, mark again and return the marks that changed."""
     now = class_now(request.site, assignment_of(request))
-    course = _as_it_stands(request.site, now)
+    course = _current_course(request.site, now)
     done = request.is_post and request.form.text("do") == "regrade"
     if done:
         told = mark_new(course, request.site.store, now.about.id)
@@ -50,12 +50,12 @@ def regrade(request: Request) -> Response:
         told = would_change(course, request.site.store, now.about.id)
     return class_page_of(
         request, now, "site_desk_regrade", "regrade", told=told, done=done, is_new=course is not request.site.course,
-        rows=[_row(request, now, one) for one in told.changes[:_SHOWN]], questions=_questions(request, now, told),
+        rows=[_row(request, now, one) for one in told.changes[:_MOST_ROWS]], questions=_questions(request, now, told),
         students=len({one.student for one in told.changes}),
     )  # fmt: skip
 
 
-def _as_it_stands(site: Site, now: ClassNow) -> Course[Any]:
+def _current_course(site: Site, now: ClassNow) -> Course[Any]:
     """Return the course with its current files; the open one if no issued exercise has changed."""
     course, fresh = site.course, site.reopened()
     same = fresh.folder.rules == course.folder.rules and all(
@@ -64,14 +64,14 @@ def _as_it_stands(site: Site, now: ClassNow) -> Course[Any]:
     return course if same else fresh
 
 
-def _row(request: Request, now: ClassNow, one: Change) -> Row:
+def _row(request: Request, now: ClassNow, one: Change) -> ChangeRow:
     before, after = (
         verdict_word(v, request.lang) if v else "" for v in (one.verdict_before, one.verdict_now)
     )
     points_before, points_now = (localise(p, request.lang) for p in (one.points_before, one.points_now))
     is_less = _number(one.points_now) < _number(one.points_before)
     number = now.number(one.exercise, one.part)
-    return Row(one.student, number, one.answer, before, after, points_before, points_now, is_less)
+    return ChangeRow(one.student, number, one.answer, before, after, points_before, points_now, is_less)
 
 
 def _questions(request: Request, now: ClassNow, told: MarkedNow) -> list[tuple[str, int, int, str]]:
@@ -103,7 +103,7 @@ def _number(points: str) -> float:
 def changes(request: Request) -> Response:
     """Return the table of changed marks as a file."""
     now = class_now(request.site, assignment_of(request))
-    told = would_change(_as_it_stands(request.site, now), request.site.store, now.about.id)
+    told = would_change(_current_course(request.site, now), request.site.store, now.about.id)
     spreadsheet = SPREADSHEETS["comma" if request.lang == "fr" else "point"]
     data = csv_file((one.row() for one in told.changes), Change._fields, spreadsheet)
     return Response(media_type="text/csv; charset=utf-8", content=data, filename="changes.csv")

@@ -11,7 +11,7 @@ from coursework.errors import BadInput
 from coursework.gradebook.rows import Collected, Row
 from coursework.site.desk.class_cache import ClassNow, RejectedRow, assignment_of, by_whom, class_now
 from coursework.site.desk.files import files_page
-from coursework.site.desk.queue import Filters, shown_card
+from coursework.site.desk.queue import Filters, card_response
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 
 _LONGEST = 500  #: characters of a reason
@@ -29,7 +29,7 @@ def rejected(request: Request) -> Response:
         told = str(fault)
     if request.form.text("from") == "queue":
         filters = Filters.of({k: request.form.text(k) for k in ("why", "exercise", "part")})
-        return shown_card(request, class_now(request.site, now.about.id), filters, "", told)
+        return card_response(request, class_now(request.site, now.about.id), filters, "", told)
     return files_page(request, [told])
 
 

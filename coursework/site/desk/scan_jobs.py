@@ -31,34 +31,34 @@ _GIVEN_UP = timedelta(minutes=60)  #: after which what has not ended is taken fo
 RUNNING, DONE, FAILED = "running", "done", "failed"
 
 
-class Job(NamedTuple):
+class ScanJob(NamedTuple):
     """State of the job that reads the last upload."""
 
     state: str
     files: int
     pages: int = 0  #: that are new, when it is done
-    told: tuple[str, ...] = ()  #: why it failed
+    messages: tuple[str, ...] = ()  #: why it failed
 
 
-class _Found(NamedTuple):
+class _ScannedPage(NamedTuple):
     """A page that was read."""
 
     page: str
     file: str
     number: int
-    kept: PageKept
+    content: PageKept
     picture: bytes
 
 
 def begin(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
     """Read what was sent, files by their names, as ``by`` asks. Back at once, or when it is over."""
-    _put(site, number, Job(RUNNING, len(sent)))
+    _store_state(site, number, ScanJob(RUNNING, len(sent)))
     thread = threading.Thread(target=_run, args=(site, number, dict(sent), by), daemon=True)
     thread.start()
     thread.join(_PATIENCE)
 
 
-def job(site: Site, number: int) -> Job | None:
+def job(site: Site, number: int) -> ScanJob | None:
     """Return the state of the last job; None if nothing was ever uploaded. An interrupted job counts as
     failed."""
     with site.store.reading() as connection:
@@ -66,7 +66,7 @@ def job(site: Site, number: int) -> Job | None:
     if kept is None:
         return None
     state, files, pages, told = kept["job"]
-    found = Job(state, files, pages, tuple(told))
+    found = ScanJob(state, files, pages, tuple(told))
     if state == RUNNING and site.clock() - datetime.fromisoformat(kept["at"]) > _GIVEN_UP:
         return found._replace(state=FAILED)
     return found
@@ -76,34 +76,34 @@ def _key(number: int) -> str:
     return f"scans {number}"
 
 
-def _put(site: Site, number: int, now: Job) -> None:
+def _store_state(site: Site, number: int, now: ScanJob) -> None:
     with site.store.begin() as connection:
         put_value(connection, _key(number), {"job": list(now), "at": site.clock().isoformat()})
 
 
 def _run(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
-    begun = Job(RUNNING, len(sent))
+    begun = ScanJob(RUNNING, len(sent))
     try:
         with site.store.reading() as connection:
             content = issued_content(connection, number)
         found = _read_apart(str(site.course.folder.root), content, sent)
-        pages = _keep(site, number, content, found, by)
-        _put(site, number, begun._replace(state=DONE, pages=pages))
+        pages = _store(site, number, content, found, by)
+        _store_state(site, number, begun._replace(state=DONE, pages=pages))
     except CourseworkError as fault:
-        _put(site, number, begun._replace(state=FAILED, told=(str(fault),)))
+        _store_state(site, number, begun._replace(state=FAILED, messages=(str(fault),)))
     except Exception as fault:  # nobody waits for this thread: what happened is told on the page
-        _put(site, number, begun._replace(state=FAILED, told=(type(fault).__name__,)))
+        _store_state(site, number, begun._replace(state=FAILED, messages=(type(fault).__name__,)))
 
 
-def _read_apart(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_Found]:
+def _read_apart(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_ScannedPage]:
     if workers(2) < 2:
         return _read(root, content, sent)
     with processes(1) as submit:
-        found: list[_Found] = submit(_read, root, content, sent).result()
+        found: list[_ScannedPage] = submit(_read, root, content, sent).result()
         return found
 
 
-def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_Found]:
+def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_ScannedPage]:
     course = opened(root, Variant)
     with TemporaryDirectory(prefix="coursework-") as made:
         folder = Path(made).resolve()
@@ -114,19 +114,21 @@ def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> l
             (scans / name).write_bytes(data)
         files, _ = read_files(Papers(course, content), [scans], issued, out)
         return [
-            found for file in files for found in _found(out, file.name, file.digest, file.pages, file.fault)
+            found
+            for file in files
+            for found in _scanned_pages(out, file.name, file.digest, file.pages, file.fault)
         ]
 
 
-def _found(out: Path, name: str, digest: str, pages: int, fault: str) -> Sequence[_Found]:
+def _scanned_pages(out: Path, name: str, digest: str, pages: int, fault: str) -> Sequence[_ScannedPage]:
     if fault:
-        return [_Found(page_id(digest, 0), name, 0, PageKept(REFUSED, fault, has_picture=False), b"")]
+        return [_ScannedPage(page_id(digest, 0), name, 0, PageKept(REFUSED, fault, has_picture=False), b"")]
     found = []
     for number in range(1, pages + 1):
         own = page_id(digest, number)
         page = page_kept(out, own)
         if page is not None:
-            found.append(_Found(own, name, number, page, _bytes(out / picture_of(own))))
+            found.append(_ScannedPage(own, name, number, page, _bytes(out / picture_of(own))))
     return found
 
 
@@ -134,15 +136,17 @@ def _bytes(path: Path) -> bytes:
     return path.read_bytes() if path.is_file() else b""
 
 
-def _keep(site: Site, number: int, content: Mapping[str, Any], found: Sequence[_Found], by: str) -> int:
+def _store(
+    site: Site, number: int, content: Mapping[str, Any], found: Sequence[_ScannedPage], by: str
+) -> int:
     """Store all pages in one transaction; return the number of new ones."""
     papers = Papers(site.course, content).papers
     at = site.clock()
     with site.store.begin() as connection:
         new = 0
         for one in found:
-            student = papers[one.kept.code].student if one.kept.code in papers else ""
-            page = Page(one.page, one.file, one.number, student, page_as_json(one.kept), at)
+            student = papers[one.content.code].student if one.content.code in papers else ""
+            page = Page(one.page, one.file, one.number, student, page_as_json(one.content), at)
             is_new = put_scanned(connection, number, page, one.picture)
             new += is_new and one.number > 0
         note(connection, at, by, "scans", assignment=number, pages=len(found), new=new)

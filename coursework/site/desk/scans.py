@@ -20,18 +20,18 @@ from coursework.scanning.sources import ENDINGS
 from coursework.scanning.typed import NAME, PAGE
 from coursework.site.desk import scan_jobs
 from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_scans import ClassScans, class_scans, hand_over
 from coursework.site.desk.files import file_name
-from coursework.site.desk.scans_now import ScansNow, hand_over, scans_now
 from coursework.site.frame.budgets import DESK_FILES
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
 
 LONGEST = 4000  #: characters of an answer
 _ID = re.compile(r"[0-9a-f]{16}-\d{4,6}")
-_KEPT = 3600  #: seconds for which a browser may keep a picture
+_PICTURE_SECONDS = 3600  #: seconds for which a browser may keep a picture
 
 
 @dataclass(frozen=True)
-class Shown:
+class ScanCard:
     """A card as it is shown."""
 
     card: Card
@@ -50,7 +50,7 @@ def scans_page(request: Request, told: str = "") -> Response:
     if request.is_post:
         told = _sent(request, now)
     job = scan_jobs.job(request.site, now.about.id)
-    scans = scans_now(request.site, now.about.id)
+    scans = class_scans(request.site, now.about.id)
     if request.is_post and request.form.text("do") == "hand over":
         told = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, scans))
     absent = _absent(now, scans)
@@ -86,33 +86,33 @@ def _by_names(sent: list[Upload]) -> dict[str, bytes]:
     return found
 
 
-def _absent(now: ClassNow, scans: ScansNow) -> list[str]:
+def _absent(now: ClassNow, scans: ClassScans) -> list[str]:
     """Return the students with a paper of which no page was scanned."""
-    met = set(scans.found.whose.values())
+    met = set(scans.gathered.whose.values())
     return [student for student in now.issued.students if student not in met]
 
 
 def cards_page(request: Request) -> Response:
     """Return one card after another; a form decides on one."""
     now = class_now(request.site, assignment_of(request))
-    scans = scans_now(request.site, now.about.id)
+    scans = class_scans(request.site, now.about.id)
     if not request.is_post:
-        return _shown(request, now, scans, request.query_params.get("at", ""))
+        return _card_response(request, now, scans, request.query_params.get("at", ""))
     asked_for, id_ = request.form.text("do"), request.form.text("card")
     before = [card.id for card in scans.cards]
     card = next((one for one in scans.cards if one.id == id_), None)
     if card is None:
-        return _shown(request, now, scans, "", request.words["scans"]["taken"])
+        return _card_response(request, now, scans, "", request.words["scans"]["taken"])
     if asked_for not in ("confirm", "nothing"):
         raise HTTPException("bad_request", 400)
     told = _typed(request, now, scans, card, "" if asked_for == "nothing" else _answer(request, card))
-    later = scans_now(request.site, now.about.id)
+    later = class_scans(request.site, now.about.id)
     if not later.cards:
         told = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, later))
     left = {one.id for one in later.cards}
     place = before.index(id_)
     at = next((one for one in (*before[place:], *before[:place]) if one in left), "")
-    return _shown(request, class_now(request.site, now.about.id), later, at, told)
+    return _card_response(request, class_now(request.site, now.about.id), later, at, told)
 
 
 def _answer(request: Request, card: Card) -> str:
@@ -131,7 +131,7 @@ def _answer(request: Request, card: Card) -> str:
     return told
 
 
-def _typed(request: Request, now: ClassNow, scans: ScansNow, card: Card, answer: str) -> str:
+def _typed(request: Request, now: ClassNow, scans: ClassScans, card: Card, answer: str) -> str:
     """Keep what was typed; says so."""
     student, exercise, seed, part, coordinate = place_of_card(card)
     row = TypedRow(
@@ -157,16 +157,16 @@ def _typed(request: Request, now: ClassNow, scans: ScansNow, card: Card, answer:
     return str(request.words["scans"]["kept"])
 
 
-def _numbers(scans: ScansNow, code: str) -> list[str]:
+def _numbers(scans: ClassScans, code: str) -> list[str]:
     return [str(page.number) for page in scans.papers[code]]
 
 
-def _shown(request: Request, now: ClassNow, scans: ScansNow, at: str, told: str = "") -> Response:
+def _card_response(request: Request, now: ClassNow, scans: ClassScans, at: str, told: str = "") -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
     cards = scans.cards
     place = next((k for k, one in enumerate(cards) if one.id == at), 0)
     names: dict[str, Any] = {
-        "shown": _as_shown(request, now, scans, cards[place]) if cards else None,
+        "shown": _scan_card(request, now, scans, cards[place]) if cards else None,
         "place": place + 1,
         "count": len(cards),
         "before": cards[place - 1].id if cards else "",
@@ -181,13 +181,13 @@ def _shown(request: Request, now: ClassNow, scans: ScansNow, at: str, told: str 
     return class_page_of(request, now, "site_desk_scan_queue", "scans", **names)
 
 
-def _as_shown(request: Request, now: ClassNow, scans: ScansNow, card: Card) -> Shown:
+def _scan_card(request: Request, now: ClassNow, scans: ClassScans, card: Card) -> ScanCard:
     said = words(request.lang, "scan")["waits"]
     base = f"/desk/{now.about.id}/scans"
     pages = tuple(f"{base}/picture?page={name}" for name in card.pages)
     crops = tuple(f"{base}/crop?page={one.page}&field={one.index}" for one in card.said) or pages
     why = said.get(card.waits) or said["other"].format(card.waits)
-    return Shown(card, scans.queue.group(card), why, crops, pages)
+    return ScanCard(card, scans.queue.group(card), why, crops, pages)
 
 
 # --------------------------------------------------------------------- pictures
@@ -202,7 +202,7 @@ def picture(request: Request) -> Response:
 def crop(request: Request) -> Response:
     """Return the picture of a field of a page."""
     name, data = _picture(request)
-    scans = scans_now(request.site, assignment_of(request))
+    scans = class_scans(request.site, assignment_of(request))
     told, page = request.query_params.get("field", ""), scans.by_id[name].page
     number = int(told) if told.isascii() and told.isdecimal() and len(told) < 5 else -1
     if not 0 <= number < len(page.fields):

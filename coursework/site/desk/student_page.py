@@ -25,17 +25,24 @@ from coursework.language.numbers import localise
 from coursework.making.students import folded
 from coursework.marking.mark import Mark
 from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, class_now, class_page_of
-from coursework.site.desk.question_cards import Asked, asked, decided_words, moment, sign_of, steps
+from coursework.site.desk.question_cards import (
+    QuestionCard,
+    decided_words,
+    moment,
+    question_card,
+    sign_of,
+    steps,
+)
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 
 _LONGEST = 2000  #: characters of a comment
 
 
 @dataclass(frozen=True)
-class Line:
+class AnswerLine:
     """An answer as it stands, and what became of it."""
 
-    asked: Asked
+    question_card: QuestionCard
     number: str  #: on the student's own paper
     in_class: str  #: of the question among all that the class was asked; nothing where it is the same
     machine: Mark
@@ -47,17 +54,17 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class StudentSheet:
     """One exercise of one try."""
 
     graded: Graded
     title: str
-    lines: tuple[Line, ...]
+    lines: tuple[AnswerLine, ...]
     counts: bool
 
 
 @dataclass(frozen=True)
-class Practised:
+class PracticeSummary:
     """Practice of a student, as far as the instructor may see it."""
 
     title: str
@@ -115,32 +122,32 @@ def _columns(now: ClassNow, student: str) -> list[tuple[str, str]]:
 
 def _sheet(
     request: Request, now: ClassNow, place: Any, happened: dict[tuple[str, str], list[Happened]]
-) -> Sheet:
+) -> StudentSheet:
     machine, stands = now.machine[place], now.graded[place]
     lines = [
         _line(request, now, machine, stands, part, happened.get((machine.exercise, part), []))
         for part in machine.lines
     ]
-    title = lines[0].asked.handout.title if lines else machine.exercise
-    return Sheet(stands, title, tuple(lines), stands.sitting == now.results[stands.student].sitting)
+    title = lines[0].question_card.handout.title if lines else machine.exercise
+    return StudentSheet(stands, title, tuple(lines), stands.sitting == now.results[stands.student].sitting)
 
 
 def _line(
     request: Request, now: ClassNow, machine: Graded, stands: Graded, part: str, happened: list[Happened]
-) -> Line:
+) -> AnswerLine:
     own = [one for one in happened if one.seed in ("", str(machine.seed))]
     own = [one for one in own if one.sitting in (0, machine.sitting)]
-    told = tuple(_told(request, one) for one in own)
+    told = tuple(_history_line(request, one) for one in own)
     mark, in_class = stands.lines[part], now.number(machine.exercise, part)
     number = f"{in_class.partition('.')[0]}.{list(machine.lines).index(part) + 1}"
-    return Line(
-        asked(now.course, now.issued, machine, part, request.lang), number, in_class if in_class != number else "",
+    return AnswerLine(
+        question_card(now.course, now.issued, machine, part, request.lang), number, in_class if in_class != number else "",
         machine.lines[part], mark, sign_of(mark), told,
         now.decisions.standing(machine, machine.lines[part]) is not None, steps(mark.out_of),
     )  # fmt: skip
 
 
-def _told(request: Request, one: Happened) -> str:
+def _history_line(request: Request, one: Happened) -> str:
     """Return a line of the history."""
     if one.kind == "marked":
         from coursework.rendering.feedback import verdict_word
@@ -148,10 +155,10 @@ def _told(request: Request, one: Happened) -> str:
         said = request.words["class"]["marked"]
         at = moment(one.at, request.lang)
         return str(said).format(verdict_word(one.verdict, request.lang), f"{one.points or 0:g}", at)
-    return decided_words(request, _Made(one))
+    return decided_words(request, _EventDecision(one))
 
 
-class _Made:
+class _EventDecision:
     """Event of the history, in the form of a decision."""
 
     def __init__(self, one: Happened):
@@ -164,10 +171,10 @@ class _Made:
         )
 
 
-def _practised(request: Request, name: str, variants: int, last: datetime | None) -> Practised:
+def _practised(request: Request, name: str, variants: int, last: datetime | None) -> PracticeSummary:
     exercise = request.site.course[name]
     lang = request.lang if request.lang in exercise.languages else exercise.languages[0]
-    return Practised(exercise.title(lang), variants, moment(last, request.lang) if last else "")
+    return PracticeSummary(exercise.title(lang), variants, moment(last, request.lang) if last else "")
 
 
 def _decided(request: Request, now: ClassNow, student: str) -> str:

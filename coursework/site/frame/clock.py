@@ -31,7 +31,7 @@ LOG = logging.getLogger("coursework.site")
 LEAP = timedelta(minutes=5)  #: by which clocks are corrected every day
 STEADY = 15 * 60.0  #: seconds after which a clock that leapt is believed
 _EVERY = 60.0  #: seconds between two notes of the time in the database
-_SHOWN = timedelta(days=7)  #: for which the desk tells of a leap
+_REPORTED = timedelta(days=7)  #: for which the desk tells of a leap
 _SEEN, _LEAPT = "clock seen", "clock leapt"
 _BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
 _BY = "clock"
@@ -157,7 +157,7 @@ def last_leap(connection: Connection, now: datetime) -> Leap | None:
     if told is None:
         return None
     found = Leap(datetime.fromisoformat(told[0]), float(told[1]), bool(told[2]))
-    return found if abs(now - found.at) < _SHOWN else None
+    return found if abs(now - found.at) < _REPORTED else None
 
 
 def _elapsed() -> float:

@@ -59,7 +59,7 @@ class Cookies:
         """Return a CSRF token of a session. It is another text each time, so that the length of a compressed page gives nothing of
         it away."""
         mask = secrets.token_bytes(_HALF)
-        return (mask + _mixed(mask, self._own(session))).hex()
+        return (mask + _mixed(mask, self._expected_token(session))).hex()
 
     def fits(self, session: Session, token: str) -> bool:
         """Return True for a CSRF token of the session."""
@@ -69,9 +69,9 @@ class Cookies:
             return False
         if len(told) != 2 * _HALF:
             return False
-        return hmac.compare_digest(_mixed(told[:_HALF], told[_HALF:]), self._own(session))
+        return hmac.compare_digest(_mixed(told[:_HALF], told[_HALF:]), self._expected_token(session))
 
-    def _own(self, session: Session) -> bytes:
+    def _expected_token(self, session: Session) -> bytes:
         return hmac.new(self._key, f"form {session.token}".encode(), hashlib.sha256).digest()[:_HALF]
 
 

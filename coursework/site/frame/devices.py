@@ -24,7 +24,7 @@ class Devices:
             key, salt="device", signer_kwargs={"digest_method": hashlib.sha256}
         )
 
-    def known(self, cookie: str, login: str) -> str:
+    def name_for_login(self, cookie: str, login: str) -> str:
         """Return the name of a browser that signed in as a login before; an empty text for any other."""
         name, logins = self._read(cookie)
         return name if self.digest("device", login)[:_LENGTH] in logins else ""

@@ -15,7 +15,7 @@ _TEXT, _OVER = "text.", "over."
 _BLANK = Box("", 0)
 
 
-def kept(
+def save_drafts(
     request: Request,
     sheet: str,
     boxes: Collection[str],
@@ -25,7 +25,7 @@ def kept(
     """Store the boxes that a page sends; return those that another page has changed, and the reading of each
     text.
 
-    A sheet that is closed takes nothing new; what was kept before it closed is said to be kept, however often it is sent.
+    A sheet that is closed takes nothing new; what was save_drafts before it closed is said to be save_drafts, however often it is sent.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def kept(
     with request.site.store.begin() as connection:
         hold(connection, request.user.id)
         if not is_open and _is_new(drafts(connection, request.user.id, sheet), sent):
-            return json_reply({"told": request.words["keeping"]["closed"]}, 409)
+            return json_response({"told": request.words["keeping"]["closed"]}, 409)
         others = save(connection, request.user.id, sheet, sent, request.received_at)
         now = drafts(connection, request.user.id, sheet)
     mine = [name for name in sent if name not in others]
@@ -45,20 +45,20 @@ def kept(
         "others": {name: box._asdict() for name, box in others.items()},
     }
     reads = {"read": {name: read(name, sent[name].text) for name in mine}} if read else {}
-    return json_reply({**told, **reads})
+    return json_response({**told, **reads})
 
 
 def _is_new(stood: Mapping[str, Box], sent: Mapping[str, Sent]) -> bool:
     return not sent or any(one.text != stood.get(name, _BLANK).text for name, one in sent.items())
 
 
-def keep_form(
+def save_form_drafts(
     request: Request, sheet: str, texts: Mapping[str, str], shown: Mapping[str, str], versions: str
 ) -> tuple[dict[str, Box], dict[str, Box]]:
     """Store the drafts of a form without a script: ``texts`` by box, if they differ from those ``shown`` or a
     draft exists.
 
-    ``versions`` is JSON, as :func:`keeper` has it. Gives what is kept now, and the boxes that another page wrote to since:
+    ``versions`` is JSON, as :func:`draft_attributes` has it. Gives what is save_drafts now, and the boxes that another page wrote to since:
     these are not overwritten.
 
     Raises
@@ -79,7 +79,7 @@ def keep_form(
         return drafts(connection, request.user.id, sheet), others
 
 
-def json_reply(told: Mapping[str, Any], status: int = 200) -> Response:
+def json_response(told: Mapping[str, Any], status: int = 200) -> Response:
     return Response(
         media_type="application/json",
         content=json.dumps(told, ensure_ascii=False).encode(),
@@ -117,7 +117,7 @@ def versions_of(text: str) -> dict[str, int]:
         raise HTTPException("bad_request", 400) from None
 
 
-def keeper(
+def draft_attributes(
     request: Request, address: str, sheet: str, boxes: Mapping[str, Box], own: str = "", **said: str
 ) -> dict[str, str]:
     """Return the attributes of a form whose boxes are stored as drafts; ``boxes`` are those that the page
@@ -135,6 +135,6 @@ def keeper(
     }
 
 
-def held(text: str) -> list[str]:
+def box_values(text: str) -> list[str]:
     """Return the content of a box for the templates of sheets: the text, and each of several ticks."""
     return [text, *text.split(", ")] if ", " in text else [text]

@@ -36,7 +36,7 @@ async def read_form(request: Request, budget: Budget) -> Form:
     kind = _kind(request)
     most = min(budget.largest, _TYPED) if kind == _PLAIN else budget.largest
     if size > most:
-        raise HTTPException("too_large", 413, shown_size(most))
+        raise HTTPException("too_large", 413, size_text(most))
     try:
         async with asyncio.timeout(_SECONDS + size / _RATE):
             return await _read(request, kind, budget)
@@ -99,7 +99,7 @@ class _Parts(MultiPartParser):
     def on_part_data(self, data: bytes, start: int, end: int) -> None:
         self._so_far += end - start
         if self._most and self._so_far > self._most:
-            raise HTTPException("too_large", 413, shown_size(self._most))
+            raise HTTPException("too_large", 413, size_text(self._most))
         super().on_part_data(data, start, end)
 
 
@@ -123,5 +123,5 @@ def clean(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\0", "").encode("utf-8", "replace").decode()
 
 
-def shown_size(count: int) -> str:
+def size_text(count: int) -> str:
     return f"{count // MEGABYTE} MB" if count >= MEGABYTE else f"{count // KILOBYTE} kB"

@@ -44,7 +44,7 @@ class Limits:
         self._limiter = MovingWindowRateLimiter(MemoryStorage())
         self._processor = Allowances(AT_ONCE, BACK)
 
-    def asked(self, kind: str, person: int, address: str, browser: str = "") -> int:
+    def wait_for_rate(self, kind: str, person: int, address: str, browser: str = "") -> int:
         """Count a request for a page of a class, by a person, or without one (0) by address and known
         browser."""
         if kind == FREE:
@@ -55,11 +55,11 @@ class Limits:
             return self._count(parse(PERSON[kind]), kind, f"browser {browser}")
         return self._count(parse(ADDRESS[kind]), kind, f"address {network(address)}")
 
-    def took(self, kind: str, person: int, seconds: float) -> None:
+    def add_processor_time(self, kind: str, person: int, seconds: float) -> None:
         """Count seconds of a processor that a page took."""
         self._processor.spend((kind, person), seconds)
 
-    def owed(self, kind: str, person: int) -> int:
+    def wait_for_processor(self, kind: str, person: int) -> int:
         """Return the seconds until somebody may have a page of a class, as far as pages before it took of a processor."""
         return self._processor.wait((kind, person))
 

@@ -80,9 +80,7 @@ class Middleware:
         """Return the endpoint of a route."""
 
         async def answer(http_request: HTTPRequest) -> HTTPResponse:
-            return await self._written_down(
-                http_request, route.path, lambda: self._answer(http_request, route)
-            )
+            return await self._logged(http_request, route.path, lambda: self._answer(http_request, route))
 
         return answer
 
@@ -97,11 +95,9 @@ class Middleware:
             http_response.headers.update(allowed)
             return http_response
 
-        return await self._written_down(http_request, "-", answer)
+        return await self._logged(http_request, "-", answer)
 
-    async def _written_down(
-        self, http_request: HTTPRequest, path: str, answer: Callable[[], Any]
-    ) -> HTTPResponse:
+    async def _logged(self, http_request: HTTPRequest, path: str, answer: Callable[[], Any]) -> HTTPResponse:
         """Return the response and log the request: the page and the number of the person, never the content."""
         begun, why = time.perf_counter(), ""
         try:
@@ -109,7 +105,7 @@ class Middleware:
         except ClientDisconnect:
             http_response = HTTPResponse(status_code=400)
         except Exception as fault:  # written down without any value, since a message may hold an answer
-            why = _place_of(fault)
+            why = _location_of(fault)
             http_response = await run_in_threadpool(self._broken, http_request)
         took = 1000 * (time.perf_counter() - begun)
         level = logging.ERROR if why else logging.INFO
@@ -130,21 +126,21 @@ class Middleware:
 
     async def _answer(self, http_request: HTTPRequest, route: Route) -> HTTPResponse:
         run = self._lanes.short if route.is_short else self._lanes.usual
-        current = await run(self._let_in, http_request, route)
-        if isinstance(current, HTTPResponse):
-            return current
-        if current.person is None:
-            return await self._read_and_answered(http_request, route, current, run)
-        means, waiting = route.request_budget, _STAFF_WAITING if current.person.is_staff else WAITING
+        current_user = await run(self._let_in, http_request, route)
+        if isinstance(current_user, HTTPResponse):
+            return current_user
+        if current_user.person is None:
+            return await self._read_and_answered(http_request, route, current_user, run)
+        means, waiting = route.request_budget, _STAFF_WAITING if current_user.person.is_staff else WAITING
         try:
-            async with self.site.places.one((current.person.id, means.name), means.at_once, waiting):
-                return await self._read_and_answered(http_request, route, current, run)
+            async with self.site.places.one((current_user.person.id, means.name), means.at_once, waiting):
+                return await self._read_and_answered(http_request, route, current_user, run)
         except Crowded:
             why = HTTPException("too_often", 429, _CROWDED)
-            return await run(self._refused, http_request, current, why)
+            return await run(self._refused, http_request, current_user, why)
 
     async def _read_and_answered(
-        self, http_request: HTTPRequest, route: Route, current: _CurrentUser, run: Run
+        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, run: Run
     ) -> HTTPResponse:
         """Return the response to a request whose turn it is; its body is read before it takes a thread."""
         form, means = Form(), route.request_budget
@@ -152,42 +148,44 @@ class Middleware:
             try:
                 form = await read_form(http_request, means)
             except HTTPException as why:
-                return await run(self._refused, http_request, current, why)
+                return await run(self._refused, http_request, current_user, why)
         if route.attempt is not None and http_request.method == "POST":
-            return await self._attempted(http_request, route, current, form, run)
+            return await self._attempted(http_request, route, current_user, form, run)
         if not form.files:
-            return await run(self._answered, http_request, route, current, form)
+            return await run(self._answered, http_request, route, current_user, form)
         async with self.site.places.one(means.name, means.readings, _STAFF_WAITING):
-            return await run(self._answered, http_request, route, current, form)
+            return await run(self._answered, http_request, route, current_user, form)
 
     async def _attempted(
-        self, http_request: HTTPRequest, route: Route, current: _CurrentUser, form: Form, run: Run
+        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: Form, run: Run
     ) -> HTTPResponse:
         """Respond to a form with a password, after the delay caused by earlier failures; no thread waits
         meanwhile."""
-        attempt = await run(self._attempt, http_request, route, current, form)
+        attempt = await run(self._attempt, http_request, route, current_user, form)
         if isinstance(attempt, HTTPResponse):
             return attempt
         try:
             async with self._attempts.waited(attempt):
-                return await run(self._answered, http_request, route, current, form)
+                return await run(self._answered, http_request, route, current_user, form)
         except TooMany as fault:
             return await run(
-                self._refused, http_request, current, HTTPException("too_often", 429, fault.seconds)
+                self._refused, http_request, current_user, HTTPException("too_often", 429, fault.seconds)
             )
 
     def _attempt(
-        self, http_request: HTTPRequest, route: Route, current: _CurrentUser, form: Form
+        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: Form
     ) -> Attempt | HTTPResponse:
         try:
-            self._check_csrf_token(http_request, current.session, form)
+            self._check_csrf_token(http_request, current_user.session, form)
             return (
-                route.attempt(self._page_request(http_request, current, form)) if route.attempt else Attempt()
+                route.attempt(self._page_request(http_request, current_user, form))
+                if route.attempt
+                else Attempt()
             )
         except HTTPException as why:
-            return self._refused(http_request, current, why)
+            return self._refused(http_request, current_user, why)
         except BadInput as fault:
-            return self._refused(http_request, current, _mistaken(fault))
+            return self._refused(http_request, current_user, _mistaken(fault))
 
     def _let_in(self, http_request: HTTPRequest, route: Route) -> _CurrentUser | HTTPResponse:
         """Return the current user if they have the permission; otherwise the response of the refusal. The
@@ -198,26 +196,26 @@ class Middleware:
         except HTTPException as why:
             return self._without_person(http_request, why)
         try:
-            current = self._current_user(http_request)
+            current_user = self._current_user(http_request)
         except BadInput:  # the database is gone
             return self._without_person(http_request, HTTPException("busy", 503, _AGAIN))
         try:
-            self._check_often(http_request, route, current)
+            self._check_often(http_request, route, current_user)
             if http_request.method == "POST":
                 self._check_origin(http_request)
             is_post = http_request.method == "POST"
-            check_permission(self.site, route, current.person, http_request.path_params, is_post=is_post)
+            check_permission(self.site, route, current_user.person, http_request.path_params, is_post=is_post)
         except HTTPException as why:
-            return self._refused(http_request, current, why)
-        return current
+            return self._refused(http_request, current_user, why)
+        return current_user
 
     def _answered(
-        self, http_request: HTTPRequest, route: Route, current: _CurrentUser, form: Form
+        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: Form
     ) -> HTTPResponse:
-        request, begun = self._page_request(http_request, current, form), processor_time()
+        request, begun = self._page_request(http_request, current_user, form), processor_time()
         try:
             if request.is_post:
-                self._check_csrf_token(http_request, current.session, form)
+                self._check_csrf_token(http_request, current_user.session, form)
             response = route.endpoint(request)
             note_export(route, request, response)
             happened(
@@ -225,30 +223,32 @@ class Middleware:
                 FAILED if response.status_code == 401 else "",
                 request.person.id if request.person else 0,
             )
-            return self._sent(http_request, current, response)
+            return self._sent(http_request, current_user, response)
         except HTTPException as why:
-            return self._refused(http_request, current, why)
+            return self._refused(http_request, current_user, why)
         except UnknownName:
-            return self._refused(http_request, current, HTTPException("page", 404))
+            return self._refused(http_request, current_user, HTTPException("page", 404))
         except BadInput as fault:
-            return self._refused(http_request, current, _mistaken(fault))
+            return self._refused(http_request, current_user, _mistaken(fault))
         except BadCourse as fault:  # its folder is out of reach, or a file in it is not as it was
-            LOG.error("the course: %s", _place_of(fault) if isinstance(fault, BrokenFunction) else fault)
-            return self._refused(http_request, current, HTTPException("course", 503, _AGAIN))
+            LOG.error("the course: %s", _location_of(fault) if isinstance(fault, BrokenFunction) else fault)
+            return self._refused(http_request, current_user, HTTPException("course", 503, _AGAIN))
         except IntegrityError:  # somebody else wrote the same at the same time: nothing of this was kept
             LOG.error("the database: two wrote the same at once")
-            return self._refused(http_request, current, HTTPException("busy", 503, _AGAIN))
+            return self._refused(http_request, current_user, HTTPException("busy", 503, _AGAIN))
         finally:
-            if current.person is not None:
-                self.site.limits.took(route.limit, current.person.id, processor_time() - begun)
+            if current_user.person is not None:
+                self.site.limits.add_processor_time(
+                    route.limit, current_user.person.id, processor_time() - begun
+                )
 
     def _lost(self, http_request: HTTPRequest, why: HTTPException) -> HTTPResponse:
         try:
             self._check_host(http_request)
-            current = self._current_user(http_request)
+            current_user = self._current_user(http_request)
         except (HTTPException, BadInput):
             return self._without_person(http_request, why)
-        return self._refused(http_request, current, why)
+        return self._refused(http_request, current_user, why)
 
     # -------------------------------------------------------------- who comes
 
@@ -295,13 +295,13 @@ class Middleware:
         ]
         return next((lang for lang in asked if lang in known), known[0])
 
-    def _page_request(self, http_request: HTTPRequest, current: _CurrentUser, form: Form) -> Request:
+    def _page_request(self, http_request: HTTPRequest, current_user: _CurrentUser, form: Form) -> Request:
         return Request(
-            self.site, current.person, current.lang, arrived(self.site.clock), clean(http_request.scope["path"]), dict(http_request.path_params),
+            self.site, current_user.person, current_user.lang, arrived(self.site.clock), clean(http_request.scope["path"]), dict(http_request.path_params),
             {clean(name): clean(text) for name, text in http_request.query_params.items()}, form, http_request.method == "POST",
-            self.cookies.csrf_token(current.session),
+            self.cookies.csrf_token(current_user.session),
             http_request.headers.get("hx-request") == "true" and http_request.headers.get("hx-boosted") != "true",
-            _address(http_request), current.session.id, http_request.cookies.get(self._device, ""),
+            _address(http_request), current_user.session.id, http_request.cookies.get(self._device, ""),
         )  # fmt: skip
 
     # ------------------------------------------------------------ whether they may
@@ -316,16 +316,16 @@ class Middleware:
         ):
             raise HTTPException("forwarded", 421)
 
-    def _check_often(self, http_request: HTTPRequest, route: Route, current: _CurrentUser) -> None:
+    def _check_often(self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser) -> None:
         """Check the limits on the rate of requests and on processor time.
 
         What stores and shows nothing, handing in among it, is refused to nobody for what they did before.
         """
-        person, limits = current.person.id if current.person else 0, self.site.limits
+        person, limits = current_user.person.id if current_user.person else 0, self.site.limits
         browser = "" if person else Devices(self.site.secret).name(http_request.cookies.get(self._device, ""))
-        wait = limits.asked(route.limit, person, _address(http_request), browser)
-        if current.person is not None and not current.person.is_staff and not route.is_short:
-            wait = max(wait, limits.owed(route.limit, person))
+        wait = limits.wait_for_rate(route.limit, person, _address(http_request), browser)
+        if current_user.person is not None and not current_user.person.is_staff and not route.is_short:
+            wait = max(wait, limits.wait_for_processor(route.limit, person))
         if wait:
             raise HTTPException("too_often", 429, wait)
 
@@ -347,19 +347,21 @@ class Middleware:
 
     # ----------------------------------------------------------------- what goes back
 
-    def _sent(self, http_request: HTTPRequest, current: _CurrentUser, response: Response) -> HTTPResponse:
+    def _sent(
+        self, http_request: HTTPRequest, current_user: _CurrentUser, response: Response
+    ) -> HTTPResponse:
         http_response = to_http_response(http_request, response, self.site.is_secure)
         if response.max_age:
             return http_response
         if response.signed_in is not None:
-            before = current.person.id if current.person else 0
+            before = current_user.person.id if current_user.person else 0
             happened(
                 http_request, SIGNED_IN if response.signed_in else SIGNED_OUT, response.signed_in or before
             )
-            token, seconds = self._other_session(http_request, current, response.signed_in)
+            token, seconds = self._other_session(http_request, current_user, response.signed_in)
             self._set_cookie(http_response, self._cookie, token, seconds)
-        elif current.is_new:
-            self._set_cookie(http_response, self._cookie, current.session.token, ANONYMOUS_SECONDS)
+        elif current_user.is_new:
+            self._set_cookie(http_response, self._cookie, current_user.session.token, ANONYMOUS_SECONDS)
         if response.device:
             self._set_cookie(http_response, self._device, response.device, DEVICE_SECONDS)
         if response.lang:
@@ -367,15 +369,15 @@ class Middleware:
         return http_response
 
     def _other_session(
-        self, http_request: HTTPRequest, current: _CurrentUser, person: int
+        self, http_request: HTTPRequest, current_user: _CurrentUser, person: int
     ) -> tuple[str, int]:
         """End the session that the browser had. Return the token of a new one, of nobody for 0, and its seconds."""
         browser = described(http_request.headers.get("user-agent", ""))
-        if not person and not current.session.id:
+        if not person and not current_user.session.id:
             return self.cookies.anonymous().token, ANONYMOUS_SECONDS
         with self.site.store.begin() as connection:
-            if current.person is not None:
-                end_session(connection, current.session.id, current.person.id)
+            if current_user.person is not None:
+                end_session(connection, current_user.session.id, current_user.person.id)
             if not person:
                 return self.cookies.anonymous().token, ANONYMOUS_SECONDS
             token = begin_session(connection, person, browser, datetime.now(UTC))
@@ -386,12 +388,14 @@ class Middleware:
             name, value, max_age=seconds, httponly=True, samesite="lax", secure=self.site.is_secure
         )
 
-    def _refused(self, http_request: HTTPRequest, current: _CurrentUser, why: HTTPException) -> HTTPResponse:
-        happened(http_request, event_of(why), current.person.id if current.person else 0)
-        request = self._page_request(http_request, current, Form())
+    def _refused(
+        self, http_request: HTTPRequest, current_user: _CurrentUser, why: HTTPException
+    ) -> HTTPResponse:
+        happened(http_request, event_of(why), current_user.person.id if current_user.person else 0)
+        request = self._page_request(http_request, current_user, Form())
         if why.sentence == "sign_in" and not request.is_post and not request.is_fragment:
-            return self._sent(http_request, current, Response(redirect=home.door_to(request)))
-        http_response = self._sent(http_request, current, _refusal(request, why))
+            return self._sent(http_request, current_user, Response(redirect=home.door_to(request)))
+        http_response = self._sent(http_request, current_user, _refusal(request, why))
         if why.status_code in (429, 503) and why.parts:
             http_response.headers["retry-after"] = str(why.parts[0])
         return http_response
@@ -401,7 +405,7 @@ class Middleware:
         try:
             return self._without_person(http_request, HTTPException("fault", 500))
         except Exception as fault:
-            LOG.error("the page for that: %s", _place_of(fault))
+            LOG.error("the page for that: %s", _location_of(fault))
             return to_http_response(
                 http_request,
                 Response("Error 500", 500, media_type="text/plain; charset=utf-8"),
@@ -459,7 +463,7 @@ def _origin(url: str) -> str:
     return f"{parts.scheme}://{parts.netloc}"
 
 
-def _place_of(fault: BaseException) -> str:
+def _location_of(fault: BaseException) -> str:
     frames = traceback.extract_tb(fault.__traceback__)[-5:]
     told = " < ".join(
         f"{frame.filename.rpartition('coursework/')[2]}:{frame.lineno}" for frame in reversed(frames)

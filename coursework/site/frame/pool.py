@@ -22,28 +22,28 @@ FIRST_SEED = 3_000_000  #: far from those of classes, of self-study and of books
 COUNTS = (8, 60)  #: variants of an exercise that are found ahead, in turns
 
 
-class Pool:
+class PracticePool:
     """Pool of seeds for practice, by exercise: shared by everybody, and stored in the database."""
 
     def __init__(self, course: Course[Any], store: Store):
         self._course, self._store = course, store
-        self._found: dict[str, Pooled] = {}
+        self._pools: dict[str, Pooled] = {}
         self._locks: dict[str, Lock] = {}
         self._lock = Lock()
 
     def seeds(self, exercise: str) -> tuple[int, ...]:
         """Return the seeds found so far; search for the first of them if there are none."""
-        known = self._found.get(exercise)
-        if known is None or not _is_whole(known):  # another process may have found more
-            known = self._grown(exercise, COUNTS[0])
+        known = self._pools.get(exercise)
+        if known is None or not _is_complete(known):  # another process may have found more
+            known = self._extended(exercise, COUNTS[0])
         return known.seeds
 
     def holds(self, exercise: str, seed: int) -> bool:
         """Return True if the pool contains a seed."""
-        known = self._found.get(exercise, Pooled())
+        known = self._pools.get(exercise, Pooled())
         return seed in known.seeds or seed in self.seeds(exercise)
 
-    def own(self, exercise: str, person: int, begun: Collection[int]) -> int:
+    def choose_seed(self, exercise: str, person: int, begun: Collection[int]) -> int:
         """Return a seed for a person who has begun the given ones: it depends on the person and the exercise,
         and was issued to no class while another remains.
 
@@ -61,7 +61,7 @@ class Pool:
         seeds: tuple[int, ...] = self.seeds(exercise)
         left = [seed for seed in seeds if seed not in begun]
         if not left:
-            seeds = self._grown(exercise, 2 * len(seeds)).seeds
+            seeds = self._extended(exercise, 2 * len(seeds)).seeds
             left = [seed for seed in seeds if seed not in begun]
         if not seeds:
             raise Starved(f"{exercise}: no variant that is worth issuing was found")
@@ -76,7 +76,7 @@ class Pool:
             own = self._course[exercise].variant(seed).record["given"]
             return any(given == own for given in issued_given(connection, exercise))
 
-    def _grown(self, exercise: str, count: int) -> Pooled:
+    def _extended(self, exercise: str, count: int) -> Pooled:
         """At least so many, or all that are found."""
         one = self._course[exercise]
         with self._lock:
@@ -85,11 +85,11 @@ class Pool:
             with self._store.reading() as connection:
                 found = pooled(connection, exercise, one.version)
             if len(found.seeds) < count and not found.are_all:
-                found = self._kept(exercise, one.version, _drawn(one, count))
-            self._found[exercise] = found
+                found = self._stored(exercise, one.version, _drawn(one, count))
+            self._pools[exercise] = found
         return found
 
-    def _kept(self, exercise: str, version: int, found: Pooled) -> Pooled:
+    def _stored(self, exercise: str, version: int, found: Pooled) -> Pooled:
         """Store the seeds found; return those of another process if it has stored more meanwhile, so that no
         begun variant is lost."""
         with (
@@ -109,19 +109,19 @@ class Pool:
         known = {name: self._course[name].version for name in self._course.folder.study_order}
         with self._store.reading() as connection:
             found = pools(connection, known)
-        return all(_is_whole(found.get(name, Pooled())) for name in known)
+        return all(_is_complete(found.get(name, Pooled())) for name in known)
 
     def fill(self) -> None:
         """Find all that is wanted ahead, exercise after exercise in the order in which they are learnt."""
         for count in COUNTS:
             for exercise in self._course.folder.study_order:
                 try:
-                    self._grown(exercise, count)
+                    self._extended(exercise, count)
                 except CourseworkError as fault:
                     LOG.error("no variants of %s were drawn ahead: %s", exercise, type(fault).__name__)
 
 
-def _is_whole(found: Pooled) -> bool:
+def _is_complete(found: Pooled) -> bool:
     return found.are_all or len(found.seeds) >= COUNTS[-1]
 
 

@@ -22,7 +22,7 @@ from coursework.site.frame.clock import SteadyClock
 from coursework.site.frame.limits import Limits
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.pages import Pages
-from coursework.site.frame.pool import Pool
+from coursework.site.frame.pool import PracticePool
 from coursework.system.places import Places
 
 _VARIANTS = (
@@ -56,21 +56,21 @@ class Site:
     has_worker: bool = (
         False  #: a process beside marks what is handed in; else the request does that handed it in
     )
-    _taken: int = field(init=False)
+    _revision: int = field(init=False)
 
     def __post_init__(self) -> None:
         if self.clock is None:
             self.clock = SteadyClock(self.store)
         with self.store.reading() as connection:
-            self._taken = course_taken(connection)
+            self._revision = course_taken(connection)
 
     @cached_property
     def pages(self) -> Pages:
         return Pages(self.course.folder)
 
     @cached_property
-    def pool(self) -> Pool:
-        return Pool(self.course, self.store)
+    def pool(self) -> PracticePool:
+        return PracticePool(self.course, self.store)
 
     def ahead(self, key: Hashable, work: Callable[[], object]) -> None:
         """Do something beside the requests that somebody will soon ask for; once."""
@@ -90,14 +90,14 @@ class Site:
         """Go on with the course as its files stand now, in all processes; what is drawn ahead for practice stays until the next
         start."""
         with self.store.begin() as connection:
-            self._taken = take_course(connection)
+            self._revision = take_course(connection)
         self._go_on_with(course)
 
-    def follow(self, connection: Connection, taken: int | None = None) -> None:
-        """Go on with the course that another process took; ``taken`` is which, where who calls knows it already."""
-        taken = course_taken(connection) if taken is None else taken
-        if taken != self._taken:
-            self._taken = taken
+    def follow(self, connection: Connection, revision: int | None = None) -> None:
+        """Go on with the course that another process took; ``revision`` is which, where who calls knows it already."""
+        revision = course_taken(connection) if revision is None else revision
+        if revision != self._revision:
+            self._revision = revision
             self._go_on_with(self.reopened())
 
     def reopened(self) -> Course[Any]:

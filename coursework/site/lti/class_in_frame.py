@@ -17,10 +17,10 @@ from coursework.site.desk import class_page
 from coursework.site.desk.class_cache import ClassNow
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import moment_text
-from coursework.site.lti.scores import marked_in, number_text, standing
+from coursework.site.lti.scores import assignment_state, marked_in, number_text
 
 
-class Row(NamedTuple):
+class LaunchClassRow(NamedTuple):
     """A student of the class."""
 
     name: str
@@ -33,7 +33,9 @@ class Row(NamedTuple):
     gradebook: str
 
 
-def class_rows(connection: Connection, site: Site, now: ClassNow, visit: Visit, here: set[str]) -> list[Row]:
+def class_rows(
+    connection: Connection, site: Site, now: ClassNow, visit: Visit, here: set[str]
+) -> list[LaunchClassRow]:
     """Return the students of the platform's course, in the order of the desk's table.
 
     Parameters
@@ -54,7 +56,7 @@ def class_rows(connection: Connection, site: Site, now: ClassNow, visit: Visit, 
         if (
             charges
             and row.late
-            and (state := standing(connection, now.about.id, person, visit.lang, site.clock()))
+            and (state := assignment_state(connection, now.about.id, person, visit.lang, site.clock()))
         ):
             marked = marked_in(now, row.student)
             points = marked.given(state) if marked else points
@@ -63,9 +65,11 @@ def class_rows(connection: Connection, site: Site, now: ClassNow, visit: Visit, 
             if row.handed_in
             else ""
         )
-        on_its_way = _way(scores.get(subject), subject, visit.lang) if row.handed_in else ""
+        on_its_way = _score_state(scores.get(subject), subject, visit.lang) if row.handed_in else ""
         found.append(
-            Row(row.student, subject, row.tries, row.minutes_late, told, row.mark, row.waits, on_its_way)
+            LaunchClassRow(
+                row.student, subject, row.tries, row.minutes_late, told, row.mark, row.waits, on_its_way
+            )
         )
     return found
 
@@ -75,7 +79,7 @@ def _subjects(connection: Connection, issuer: str) -> dict[int, str]:
     return {row.person_id: row.subject for row in connection.execute(found)}
 
 
-def _way(waiting: Waiting | None, subject: str, lang: str) -> str:
+def _score_state(waiting: Waiting | None, subject: str, lang: str) -> str:
     """Return the state of a score on its way to the platform."""
     said, own = words(lang)["lti"]["class"], words(lang, "site")["lti"]["class"]
     if waiting is None:

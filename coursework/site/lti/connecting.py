@@ -38,7 +38,7 @@ def address(site: Site, launch: Launch, person: int) -> str:
 
 def connect(request: Request) -> Response:
     """Answer the page that ties an account of a platform to who is signed in, once they enter their password again."""
-    issuer, subject, name = _told(request)
+    issuer, subject, name = _read_token(request)
     platform = urlsplit(issuer).hostname or issuer
     with request.site.store.reading() as connection:
         mine = account_of(connection, request.user.id)
@@ -55,7 +55,7 @@ def connect(request: Request) -> Response:
     return request.render("site_connect", 422 if missed else 200, **told)
 
 
-def _told(request: Request) -> tuple[str, str, str]:
+def _read_token(request: Request) -> tuple[str, str, str]:
     try:
         issuer, subject, name, person = _signed(request.site).loads(
             str(request.path_params["token"]), max_age=_SECONDS

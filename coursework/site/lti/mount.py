@@ -14,7 +14,7 @@ from coursework.lti.service import service
 from coursework.lti.settings import Settings, checked_url, read_settings
 from coursework.lti.storage import Storage
 from coursework.site.frame.settings import Site
-from coursework.site.lti.scores import Watch
+from coursework.site.lti.scores import ScoreWatch
 from coursework.site.lti.site_host import SiteHost
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def mounted(site: Site, folder: Path, client: Any = None, settings: Settings | N
         settings or settings_of(folder, site.url), SiteHost(site, storage), Pages(site.course.folder), storage=storage,
         client=client,
     )  # fmt: skip
-    app.state.watch = Watch(site, storage, app.state.sender.wake)
+    app.state.watch = ScoreWatch(site, storage, app.state.sender.wake)
     app.router.lifespan_context = _with_watch(app.router.lifespan_context)
     return app
 

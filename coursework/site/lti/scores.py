@@ -36,8 +36,8 @@ from coursework.making.issued import Issued
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import ClassNow, class_now
 from coursework.site.frame.settings import Site
-from coursework.site.papers.handing_in import pass_dates
-from coursework.site.papers.own_assignment import State
+from coursework.site.papers.assignment_state import AssignmentState
+from coursework.site.papers.submission import pass_dates
 
 LOG = logging.getLogger("coursework.lti")
 WAITS = ("to_mark", "unreadable")  #: verdicts of answers that a person has to look at
@@ -53,10 +53,10 @@ class Marked(NamedTuple):
     sheets: Sequence[Graded]  #: of the hand-in that counts
     waits: bool  #: a person has to look at some of it
 
-    def given(self, state: State) -> float:
+    def given(self, state: AssignmentState) -> float:
         """Return the points after the penalty for lateness."""
         late = next((one.late for one in state.done if one.number == self.result.sitting), 0)
-        return round(self.result.points * (1 - state.place.own.charged(late)), 9)
+        return round(self.result.points * (1 - state.assignment.own.charged(late)), 9)
 
 
 def marked_in(now: ClassNow, student: str) -> Marked | None:
@@ -99,10 +99,10 @@ def score_of(site: Site, launch: Launch, now: ClassNow | None = None) -> Score |
         return None
     with site.store.reading() as connection:
         known = person_known(connection, launch.issuer, launch.person)
-        state = None if known is None else standing(connection, number, known.id, lang, site.clock())
-        if state is None or not state.done or not state.tells("feedback"):
+        state = None if known is None else assignment_state(connection, number, known.id, lang, site.clock())
+        if state is None or not state.done or not state.releases("feedback"):
             return None
-        student = state.place.student
+        student = state.assignment.student
         marked = marked_in(now, student) if now else marked_of(connection, number, student)
     if marked is None:
         return None
@@ -121,13 +121,17 @@ def assignment_number(site: Site, launch: Launch) -> int | None:
         return names(connection).get(name)
 
 
-def standing(connection: Connection, number: int, person: int, lang: str, at: datetime) -> State | None:
+def assignment_state(
+    connection: Connection, number: int, person: int, lang: str, at: datetime
+) -> AssignmentState | None:
     """Return the state of a published assignment for a person; None if they have no paper of it."""
     place = next(iter(places(connection, person, number)), None)
     if place is None or place.publication is None:
         return None
     ends = last_end(place.publication, list(extensions(connection, number).values()))
-    return State(place, lang, place.publication.now(at), deliveries(connection, number, person), ends)
+    return AssignmentState(
+        place, lang, place.publication.now(at), deliveries(connection, number, person), ends
+    )
 
 
 def _comment(marked: Marked, given: float, lang: str) -> str:
@@ -151,7 +155,7 @@ def number_text(number: float, lang: str) -> str:
 # --------------------------------------------------------------------- sent anew
 
 
-class Watch:
+class ScoreWatch:
     """Puts scores on their way that something has changed."""
 
     def __init__(self, site: Site, storage: Storage, wake: Any):
@@ -172,17 +176,17 @@ class Watch:
 
     def _look(self, number: int, launches: Sequence[Launch]) -> int:
         pass_dates(self._site, number, self._site.clock())
-        what, stands = f"assignment {number}", f"{self._stands(number)} {len(launches)}"
+        what, stands = f"assignment {number}", f"{self._state_text(number)} {len(launches)}"
         if self._storage.stood(what) == stands:
             return 0
         now = class_now(self._site, number)
-        new = sum(self._put(launch, now) for launch in launches)
+        new = sum(self._queue_score(launch, now) for launch in launches)
         self._storage.looked(what, stands)
         if new:
             self._wake()
         return new
 
-    def _stands(self, number: int) -> str:
+    def _state_text(self, number: int) -> str:
         """Return a text that changes whenever a score may have changed."""
         with self._site.store.reading() as connection:
             said, more = published(connection, number), extensions(connection, number)
@@ -193,7 +197,7 @@ class Watch:
         rules = replace(said, reached=None).as_json()
         return f"{stamped} {passed} {sorted(rules.items())} {len(more)}"
 
-    def _put(self, launch: Launch, now: ClassNow) -> bool:
+    def _queue_score(self, launch: Launch, now: ClassNow) -> bool:
         score = score_of(self._site, launch, now)
         return score is not None and self._storage.put_score(launch, score)
 

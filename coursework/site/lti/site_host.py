@@ -30,23 +30,23 @@ from coursework.lti.services import Member, NotServed
 from coursework.lti.storage import Score, Storage
 from coursework.lti.wanted import Wanted
 from coursework.making.students import folded
-from coursework.site.desk.class_cache import called, class_now
+from coursework.site.desk.class_cache import assignment_title, class_now
 from coursework.site.frame.arrivals import arrived
 from coursework.site.frame.requests import Form as SiteForm
 from coursework.site.frame.requests import HTTPException, Person
 from coursework.site.frame.requests import Request as SiteRequest
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import exact_text, moment_text
-from coursework.site.lti import people_of_platforms
+from coursework.site.lti import launch_persons
 from coursework.site.lti.class_in_frame import class_rows, rules_rows
 from coursework.site.lti.scores import assignment_number, score_of
+from coursework.site.papers.assignment_state import AssignmentState, state_and_paper
 from coursework.site.papers.assignments import feedback_from
-from coursework.site.papers.being_marked import being_marked
 from coursework.site.papers.feedback import feedback_of
-from coursework.site.papers.handing_in import hand_in
-from coursework.site.papers.own_assignment import State, own_assignment
-from coursework.site.papers.own_paper import OwnPaper, read_lines
-from coursework.site.publication.publishing import handed_out
+from coursework.site.papers.pending_marking import pending_marking
+from coursework.site.papers.student_paper import StudentPaper, read_lines
+from coursework.site.papers.submission import submit
+from coursework.site.publication.publishing import listed_assignments
 
 FROM_A_PLATFORM = "site: from a platform"
 _BEST = "best"
@@ -81,7 +81,7 @@ class SiteHost:
     def shelves(self, lang: str) -> Sequence[Shelf]:
         """Return the published assignments, then the exercises by chapter."""
         with self._site.store.reading() as connection:
-            found = [one for one in handed_out(connection) if one.publication is not None]
+            found = [one for one in listed_assignments(connection) if one.publication is not None]
             offers = [
                 Offer(
                     f"assignment:{one.name}", one.title(lang), _worth(connection, one.id),
@@ -97,12 +97,12 @@ class SiteHost:
     def show(self, visit: Visit) -> Reply:
         if not Wanted.of(visit.launch.custom).assignment:
             return self.practice.show(visit)
-        return self._answered(visit, lambda number: self._shown(visit, number))
+        return self._answered(visit, lambda number: self._student_page(visit, number))
 
     def take(self, visit: Visit, form: Form) -> Reply:
         if not Wanted.of(visit.launch.custom).assignment:
             return self.practice.take(visit, form)
-        return self._answered(visit, lambda number: self._taken(visit, number, form))
+        return self._answered(visit, lambda number: self._submit(visit, number, form))
 
     def score(self, visit: Visit) -> Score | None:
         try:
@@ -136,15 +136,15 @@ class SiteHost:
             names |= {"connect": str(why.parts[0]), "connect_word": said["connect"]["title"]}
         return Reply(self.pages.page("lti_message", visit.lang, names), why.status_code)
 
-    def _shown(self, visit: Visit, number: int) -> Reply:
+    def _student_page(self, visit: Visit, number: int) -> Reply:
         if visit.launch.role is not Role.STUDENT:
             return self._class(visit, number)
         if visit.path:
             raise LtiRefused("page", 404, "a student")
         site_request = self._site_request(visit, number, SiteForm())
-        state, own = own_assignment(site_request)
+        state, own = state_and_paper(site_request)
         if state.done and not ("again" in visit.query and state.may_hand_in):
-            return self._became(visit, site_request, state, own)
+            return self._after_submission(visit, site_request, state, own)
         if not state.may_hand_in:
             raise HTTPException("closed", 409)
         texts = self._handed_in(state, own) if state.done else {}
@@ -164,8 +164,8 @@ class SiteHost:
         with site.store.reading() as connection:
             if published(connection, number) is None:
                 raise HTTPException("own", 404)
-        known = people_of_platforms.comer(site, launch, visit.lang)
-        self._deal(visit, number, known)
+        known = launch_persons.launch_person(site, launch, visit.lang)
+        self._assign(visit, number, known)
         person = Person(known.id, known.name, "student", visit.lang)
         return SiteRequest(
             site,
@@ -178,7 +178,7 @@ class SiteHost:
             is_post=bool(form.texts),
         )
 
-    def _deal(self, visit: Visit, number: int, known: Any) -> None:
+    def _assign(self, visit: Visit, number: int, known: Any) -> None:
         with self._site.store.reading() as connection:
             said = published(connection, number)
             if said is None or places(connection, known.id, number):
@@ -188,10 +188,10 @@ class SiteHost:
             raise HTTPException("not_yet", 409, moment_text(said.opens, visit.lang) if said.opens else "")
         if not phase.takes:
             raise HTTPException("closed", 409)
-        people_of_platforms.deal_to(self._site, number, known, visit.launch, visit.lang)
+        launch_persons.assign_paper(self._site, number, known, visit.launch, visit.lang)
 
     def _sheet(
-        self, visit: Visit, state: State, own: OwnPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
+        self, visit: Visit, state: AssignmentState, own: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
         unread: Sequence[str] = (),
     ) -> str:  # fmt: skip
         filled = {
@@ -206,11 +206,13 @@ class SiteHost:
         )  # fmt: skip
         return self.pages.sheet(own.paper, form, alone=False)
 
-    def _handed_in(self, state: State, own: OwnPaper) -> dict[str, str]:
+    def _handed_in(self, state: AssignmentState, own: StudentPaper) -> dict[str, str]:
         """Return the last submission, by box."""
         with self._site.store.reading() as connection:
             rows = [
-                one for one in rows_of(connection, state.place.id, state.done[-1].id) if isinstance(one, Row)
+                one
+                for one in rows_of(connection, state.assignment.id, state.done[-1].id)
+                if isinstance(one, Row)
             ]
         told = {(one.exercise, one.seed, one.part): str(one.answer or "") for one in rows}
         return {
@@ -218,12 +220,12 @@ class SiteHost:
             for name, box in own.boxes.items()
         }
 
-    def _rules(self, visit: Visit, state: State) -> list[str]:
+    def _rules(self, visit: Visit, state: AssignmentState) -> list[str]:
         """Until when, how often, and what counts."""
         said, own = words(visit.lang)["lti"], words(visit.lang, "site")["lti"]
         found = []
-        if state.phase is Phase.OPEN and state.place.own.closes:
-            found.append(str(own["open_until"]).format(state.moment(state.place.own.closes)))
+        if state.phase is Phase.OPEN and state.assignment.own.closes:
+            found.append(str(own["open_until"]).format(state.moment(state.assignment.own.closes)))
         elif state.phase is Phase.LATE:
             found.append(str(own["late_now"]))
         left = state.tries_left
@@ -236,19 +238,21 @@ class SiteHost:
                 if left
                 else said["no_try_left"]
             )
-        if state.place.own.tries != 1:
-            counts = state.place.stated.get("sittings", _BEST)
+        if state.assignment.own.tries != 1:
+            counts = state.assignment.stated.get("sittings", _BEST)
             found.append(str(said["counts_best" if counts == _BEST else "counts_last"]))
         return [" ".join(found)]
 
-    def _became(self, visit: Visit, site_request: SiteRequest, state: State, own: OwnPaper) -> Reply:
+    def _after_submission(
+        self, visit: Visit, site_request: SiteRequest, state: AssignmentState, own: StudentPaper
+    ) -> Reply:
         """Return the feedback on the last submission if it is released; otherwise a confirmation."""
         said, last = words(visit.lang)["lti"], state.done[-1]
         came = said["try_number"].format(last.number, exact_text(last.came, visit.lang))
         receipt = site_request.words["lti"]["receipt"].format(last.receipt)
         more = [(f"{visit.home}?again=1", said["again"])] if state.may_hand_in else []
-        waits = being_marked(site_request, last.id) if state.tells("feedback") else None
-        if state.tells("feedback") and waits is None:
+        waits = pending_marking(site_request, last.id) if state.releases("feedback") else None
+        if state.releases("feedback") and waits is None:
             told, notes = feedback_of(site_request, state, own, last)
             notes = [f"{came}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
             form = Surrounding("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
@@ -256,7 +260,7 @@ class SiteHost:
         notes = [
             f"{came}.",
             receipt,
-            waits.says if waits else feedback_from(site_request, state),
+            waits.message if waits else feedback_from(site_request, state),
             *self._rules(visit, state),
             self._sent(visit, state),
         ]
@@ -266,23 +270,23 @@ class SiteHost:
         }  # fmt: skip
         return Reply(self.pages.page("lti_site_handed_in", visit.lang, names))
 
-    def _sent(self, visit: Visit, state: State | None = None) -> str:
+    def _sent(self, visit: Visit, state: AssignmentState | None = None) -> str:
         """Return the state of the score on its way to the platform."""
         said, launch = words(visit.lang)["lti"], visit.launch
         if not (launch.line or launch.lines):
             return str(said["score_none"])
         waiting = visit.scores().get(launch.person)
         if waiting is None and state is not None:
-            kept_back = "score_never" if state.place.own.feedback == "never" else "score_later"
+            kept_back = "score_never" if state.assignment.own.feedback == "never" else "score_later"
             return str(words(visit.lang, "site")["lti"][kept_back])
         return str(said["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
 
-    def _taken(self, visit: Visit, number: int, form: Form) -> Reply:
+    def _submit(self, visit: Visit, number: int, form: Form) -> Reply:
         """Hand in what a form brings: once, whatever comes twice."""
         if visit.launch.role is not Role.STUDENT or visit.path:
             raise LtiRefused("page", 404, "nothing is handed in there")
         site_request = self._site_request(visit, number, SiteForm(form))
-        state, own = own_assignment(site_request)
+        state, own = state_and_paper(site_request)
         texts, place = own.texts(site_request.form), _number(form)
         if place <= len(state.done):
             return Reply(goto=visit.home)  # the same form once more
@@ -292,9 +296,9 @@ class SiteHost:
         unread = _unread(visit, own, texts)
         if unread and not form.get("_as_it_is"):
             return Reply(self._sheet(visit, state, own, texts, unread=unread), 422)
-        hand_in(
+        submit(
             self._site,
-            state.place,
+            state.assignment,
             own,
             site_request.user.id,
             texts,
@@ -306,7 +310,7 @@ class SiteHost:
 
     # ------------------------------------------------------------------------ class
 
-    def _came_from(self, launch: Launch) -> set[str]:
+    def _opened_by_course(self, launch: Launch) -> set[str]:
         """Return what the platform calls those who opened the assignment of a launch from the launch's course."""
         named = Wanted.of(launch.custom).assignment
         opened = (one for one in self._storage.opened() if one.course == launch.course)
@@ -320,10 +324,10 @@ class SiteHost:
         members, note = _members(visit, lang)
         with self._site.store.reading() as connection:
             said = published(connection, number)
-            rows = class_rows(connection, self._site, now, visit, self._came_from(visit.launch))
+            rows = class_rows(connection, self._site, now, visit, self._opened_by_course(visit.launch))
         missing = _not_there(members, {folded(row.name) for row in rows}, {row.person for row in rows})
         names = {
-            "title": visit.launch.link_title or called(now.about, lang), "context": visit.launch.context_title, "home": visit.home,
+            "title": visit.launch.link_title or assignment_title(now.about, lang), "context": visit.launch.context_title, "home": visit.home,
             "desk": f"{self._site.url}/desk/{number}", "rules": rules_rows(visit, now, said), "rows": rows, "missing": missing,
             "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
         }  # fmt: skip
@@ -339,10 +343,12 @@ def _worth(connection: Connection, number: int) -> float:
     return sum(float(part["points"]) for record in records for part in record["parts"]) or 1.0
 
 
-def _unread(visit: Visit, own: OwnPaper, texts: Mapping[str, str]) -> list[str]:
+def _unread(visit: Visit, own: StudentPaper, texts: Mapping[str, str]) -> list[str]:
     """Return a sentence for each answer that could not be read."""
     form = str(words(visit.lang)["lti"]["unread_line"])
-    return [form.format(box.number, told.says) for box, _, told in read_lines(own, texts) if told.is_in_doubt]
+    return [
+        form.format(box.number, told.message) for box, _, told in read_lines(own, texts) if told.is_in_doubt
+    ]
 
 
 def _number(form: Form) -> int:

@@ -24,16 +24,21 @@ from coursework.gradebook.submissions import read_rows
 from coursework.making.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, read_apart
-from coursework.site.frame.drafts import keep_form, keeper, kept
+from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
 from coursework.site.frame.times import exact_text, length_text, zone_name
-from coursework.site.papers import handing_in, receipts
-from coursework.site.papers.being_marked import being_marked
+from coursework.site.papers import receipts, submission
+from coursework.site.papers.assignment_state import (
+    AssignmentState,
+    assignment_and_paper,
+    state_and_paper,
+    state_of,
+)
 from coursework.site.papers.feedback import charged_text, feedback_of
-from coursework.site.papers.handing_in import IN_A_FILE, ON_THE_PAGE, pass_dates, sheet_of
-from coursework.site.papers.opening import filled_in, made
-from coursework.site.papers.own_assignment import State, own_assignment, own_sheet, state_of
-from coursework.site.papers.own_paper import OwnPaper, counts, read_lines
+from coursework.site.papers.opening import filled_in, make_pieces
+from coursework.site.papers.pending_marking import pending_marking
+from coursework.site.papers.student_paper import StudentPaper, counts, read_lines
+from coursework.site.papers.submission import IN_A_FILE, ON_THE_PAGE, pass_dates, sheet_of
 
 _FILES = (".ipynb", ".json", ".csv")
 _ORDER = (Phase.OPEN, Phase.LATE, Phase.TO_COME, Phase.CLOSED)
@@ -42,7 +47,7 @@ _ORDER = (Phase.OPEN, Phase.LATE, Phase.TO_COME, Phase.CLOSED)
 # ------------------------------------------------------------------------- list
 
 
-def listed(request: Request) -> Response:
+def list_page(request: Request) -> Response:
     """Return the page of the person's assignments, by phase."""
     with request.site.store.reading() as connection:
         numbers = [one.id for one in places(connection, request.user.id) if one.publication is not None]
@@ -60,31 +65,31 @@ def listed(request: Request) -> Response:
 # ------------------------------------------------------------------------ paper
 
 
-def paper(request: Request) -> Response:
+def paper_page(request: Request) -> Response:
     """Return the person's paper to fill in; a submitted form returns with its reading."""
-    state, own = own_assignment(request)
+    state, own = state_and_paper(request)
     if request.is_post:
         return _read_back(request, state, own)
     if not state.may_hand_in and state.done:
         return Response(redirect=f"{state.address}/receipts/{state.done[-1].receipt}")
-    return _shown(request, state, own)
+    return _paper_response(request, state, own)
 
 
-def _shown(
+def _paper_response(
     request: Request,
-    state: State,
-    own: OwnPaper,
+    state: AssignmentState,
+    own: StudentPaper,
     boxes: Mapping[str, Box] | None = None,
     problem: str = "",
     status: int = 200,
 ) -> Response:
     """Return the page of the paper, with the drafts in its boxes, or with the given ``boxes``."""
-    number, who, sheet = state.place.id, request.user.id, sheet_of(state.place, own)
+    number, who, sheet = state.assignment.id, request.user.id, sheet_of(state.assignment, own)
     with request.site.store.reading() as connection:
         stands = drafts(connection, who, sheet) if boxes is None else boxes
         found = prepared_pieces(connection, number, who, own.lang, own.state)
-    pieces = found or made(request.site, number, who, own, keeps=state.phase.takes)
-    form = keeper(request, f"{state.address}/keep", sheet, stands)
+    pieces = found or make_pieces(request.site, number, who, own, stores=state.phase.takes)
+    form = draft_attributes(request, f"{state.address}/keep", sheet, stands)
     texts = {name: box.text for name, box in stands.items() if name in own.fields}
     return request.render(
         "site_assignment", status, state=state, form=form, versions=form["data-keep-versions"], problem=problem,
@@ -93,33 +98,39 @@ def _shown(
     )  # fmt: skip
 
 
-def keep(request: Request) -> Response:
+def save_draft(request: Request) -> Response:
     """Store drafts while the assignment can be submitted."""
     if not request.is_post:
         raise HTTPException("method", 405)
-    state, own = own_assignment(request)
-    sheet = sheet_of(state.place, own)
-    return kept(request, sheet, own.fields, lambda name, text: own.read(name, text).says, state.may_hand_in)
+    state, own = state_and_paper(request)
+    sheet = sheet_of(state.assignment, own)
+    return save_drafts(
+        request, sheet, own.fields, lambda name, text: own.read(name, text).message, state.may_hand_in
+    )
 
 
-def _read_back(request: Request, state: State, own: OwnPaper) -> Response:
+def _read_back(request: Request, state: AssignmentState, own: StudentPaper) -> Response:
     texts = own.texts(request.form)
     said = request.words["assignments"]
     if not state.may_hand_in:
         return _too_late(request, state)
-    boxes = _kept_too(request, state, own, texts)
+    boxes = _save_form(request, state, own, texts)
     if not any(text.strip() for text in texts.values()):
-        return _shown(request, state, own, boxes, said["nothing_typed"], 422)
+        return _paper_response(request, state, own, boxes, said["nothing_typed"], 422)
     return _confirming(request, state, own, texts, ON_THE_PAGE)
 
 
-def _kept_too(request: Request, state: State, own: OwnPaper, texts: Mapping[str, str]) -> dict[str, Box]:
+def _save_form(
+    request: Request, state: AssignmentState, own: StudentPaper, texts: Mapping[str, str]
+) -> dict[str, Box]:
     """Store the drafts of a form without a script as well; return the boxes for this page."""
-    now, _ = keep_form(request, sheet_of(state.place, own), texts, {}, request.form.text("_versions"))
+    now, _ = save_form_drafts(
+        request, sheet_of(state.assignment, own), texts, {}, request.form.text("_versions")
+    )
     return {name: Box(text, now[name].version if name in now else 0) for name, text in texts.items()}
 
 
-def _too_late(request: Request, state: State) -> Response:
+def _too_late(request: Request, state: AssignmentState) -> Response:
     """Refuse a submission that is no longer accepted."""
     if state.done:
         raise HTTPException("no_try_left" if state.phase.takes else "not_open", 409)
@@ -128,16 +139,16 @@ def _too_late(request: Request, state: State) -> Response:
 
 def _confirming(
     request: Request,
-    state: State,
-    own: OwnPaper,
+    state: AssignmentState,
+    own: StudentPaper,
     texts: Mapping[str, str],
     source: str,
     notes: Sequence[str] = (),
 ) -> Response:
     """Return the reading of each answer, for confirmation."""
     lines = read_lines(own, texts)
-    late = state.place.own.late_seconds(state.now)
-    charged = state.place.own.charged(late)
+    late = state.assignment.own.late_seconds(state.now)
+    charged = state.assignment.own.charged(late)
     return request.render(
         "site_assignment_read_back", state=state, lines=lines, counts=counts(lines), source=source, notes=notes,
         number=len(state.done) + 1, texts={name: text for name, text in texts.items() if text},
@@ -151,7 +162,7 @@ def _confirming(
 
 def files(request: Request) -> Response:
     """Return the paper as a PDF or as a notebook."""
-    state, own = own_assignment(request)
+    state, own = state_and_paper(request)
     renderer, stem = renderer_of(request.site.course.folder), _stem(state, own)
     if request.path_params["file"] == "paper.pdf":
         return Response(
@@ -163,27 +174,27 @@ def files(request: Request) -> Response:
     raise HTTPException("page", 404)
 
 
-def _stem(state: State, own: OwnPaper) -> str:
-    return "-".join(filter(None, file_stems([state.place.name, own.student]))) or "paper"
+def _stem(state: AssignmentState, own: StudentPaper) -> str:
+    return "-".join(filter(None, file_stems([state.assignment.name, own.student]))) or "paper"
 
 
 def take_file(request: Request) -> Response:
     """Read a completed notebook or file of answers, without running it, and return its reading."""
     if not request.is_post:
         raise HTTPException("method", 405)
-    state, own = own_assignment(request)
+    state, own = state_and_paper(request)
     said = request.words["assignments"]
     if not state.may_hand_in:
         return _too_late(request, state)
     sent = next(iter(request.form.files.get("file", ())), None)
     if sent is None or _ending(sent) not in _FILES:
-        return _shown(request, state, own, None, said["which_file"].format(", ".join(_FILES)), 422)
+        return _paper_response(request, state, own, None, said["which_file"].format(", ".join(_FILES)), 422)
     try:
         texts, notes = _of_file(request, own, sent)
     except BadInput as fault:
-        return _shown(request, state, own, None, str(fault), 422)
+        return _paper_response(request, state, own, None, str(fault), 422)
     if not any(text.strip() for text in texts.values()):
-        return _shown(request, state, own, None, " ".join([said["file_empty"], *notes]), 422)
+        return _paper_response(request, state, own, None, " ".join([said["file_empty"], *notes]), 422)
     return _confirming(request, state, own, texts, IN_A_FILE, notes)
 
 
@@ -192,7 +203,7 @@ def _ending(sent: Upload) -> str:
     return found[0] if found else ""
 
 
-def _of_file(request: Request, own: OwnPaper, sent: Upload) -> tuple[dict[str, str], list[str]]:
+def _of_file(request: Request, own: StudentPaper, sent: Upload) -> tuple[dict[str, str], list[str]]:
     """Return the answers of a file to the person's own paper, by box, and messages about the file.
 
     Raises
@@ -235,15 +246,15 @@ def confirm(request: Request) -> Response:
     pass_dates(site, int(request.path_params["number"]), request.received_at)
     with site.store.begin() as connection:
         hold(connection, who)
-        place, own = own_sheet(request, connection)
+        place, own = assignment_and_paper(request, connection)
         if not re.fullmatch("[1-9][0-9]{0,5}", number):
             raise HTTPException("bad_request", 400)
         texts = own.texts(request.form)
-        made = handing_in.store(
+        made = submission.store_submission(
             connection, site, place, own, who, texts, int(number), request.received_at, source
         )
     if made.is_new:
-        handing_in.mark(site, made.delivery.id)
+        submission.mark(site, made.delivery.id)
     again = "" if made.is_new else "?again=other" if made.differs else "?again=same"
     return Response(redirect=f"/assignments/{place.id}/receipts/{made.delivery.receipt}{again}")
 
@@ -252,10 +263,10 @@ def receipt(request: Request) -> Response:
     """Return the receipt of a submission, with the next steps."""
     pass_dates(request.site, int(request.path_params["number"]), request.received_at)
     with request.site.store.reading() as connection:
-        place, own = own_sheet(request, connection)
+        place, own = assignment_and_paper(request, connection)
         state = state_of(request, place, connection)
         row = receipts.find(state.done, str(request.path_params["code"]))
-        told = receipts.told_of(connection, row, place.name, request.user.name)
+        told = receipts.receipt_content(connection, row, place.name, request.user.name)
     again = request.query_params.get("again", "")
     shown = {(e, s, p): a for e, s, p, a in told["answers"]}
     texts = {
@@ -266,15 +277,15 @@ def receipt(request: Request) -> Response:
         "site_assignment_receipt", state=state, row=row, told=told, lines=read_lines(own, texts),
         came=exact_text(row.came, request.lang), zone=zone_name(row.came), again=again if again in ("same", "other") else "",
         late=length_text(timedelta(seconds=row.late), request.lang) if row.late else "",
-        charged=charged_text(state.place.own.charged(row.late), request.lang) if state.place.own.charged(row.late) else "",
-        saved=row.source == handing_in.AS_SAVED, feedback_from=feedback_from(request, state),
-        marking=being_marked(request, row.id) if state.tells("feedback") else None,
+        charged=charged_text(state.assignment.own.charged(row.late), request.lang) if state.assignment.own.charged(row.late) else "",
+        saved=row.source == submission.AS_SAVED, feedback_from=feedback_from(request, state),
+        marking=pending_marking(request, row.id) if state.releases("feedback") else None,
     )  # fmt: skip
 
 
-def feedback_from(request: Request, state: State) -> str:
+def feedback_from(request: Request, state: AssignmentState) -> str:
     """Return the time of the feedback, as a sentence."""
-    said, own = request.words["assignments"]["feedback_when"], state.place.own
+    said, own = request.words["assignments"]["feedback_when"], state.assignment.own
     if own.feedback == "date":
         return str(said["date"]).format(state.moment(own.feedback_on))
     if own.feedback == "closed":
@@ -285,31 +296,33 @@ def feedback_from(request: Request, state: State) -> str:
 
 def feedback(request: Request) -> Response:
     """Return the feedback on a submission, as far as it is released."""
-    state, own = own_assignment(request)
-    if not state.tells("feedback"):
+    state, own = state_and_paper(request)
+    if not state.releases("feedback"):
         raise HTTPException("feedback_later", 409)
     if not state.done:
         raise HTTPException("nothing_handed_in", 404)
     chosen = _chosen(request, state)
-    if being_marked(request, chosen.id) is not None:
+    if pending_marking(request, chosen.id) is not None:
         return Response(redirect=f"{state.address}/receipts/{chosen.receipt}")
     told, notes = feedback_of(request, state, own, chosen)
     return request.render(
-        "site_assignment_feedback", state=state, notes=notes, delivery=chosen, **own.shown(told)
+        "site_assignment_feedback", state=state, notes=notes, delivery=chosen, **own.template_names(told)
     )
 
 
-def _chosen(request: Request, state: State) -> Delivery:
+def _chosen(request: Request, state: AssignmentState) -> Delivery:
     asked = request.query_params.get("number", "")
     return next((one for one in state.done if str(one.number) == asked), state.done[-1])
 
 
 ROUTES = (
-    Route("/assignments", listed, Permission.OWN, limit="paper"),
-    Route("/assignments/{number:int}", paper, Permission.OWN, takes_forms=True, limit="paper", budget=BOXES),
+    Route("/assignments", list_page, Permission.OWN, limit="paper"),
+    Route(
+        "/assignments/{number:int}", paper_page, Permission.OWN, takes_forms=True, limit="paper", budget=BOXES
+    ),
     Route(
         "/assignments/{number:int}/keep",
-        keep,
+        save_draft,
         Permission.OWN,
         takes_forms=True,
         limit="paper",

@@ -17,30 +17,32 @@ from coursework.making.issued import Issued
 from coursework.sheets.paper import FeedbackPaper
 from coursework.site.frame.requests import Request
 from coursework.site.frame.times import length_text
-from coursework.site.papers.own_assignment import State
-from coursework.site.papers.own_paper import OwnPaper
+from coursework.site.papers.assignment_state import AssignmentState
+from coursework.site.papers.student_paper import StudentPaper
 
 
 def feedback_of(
-    request: Request, state: State, own: OwnPaper, chosen: Delivery
+    request: Request, state: AssignmentState, own: StudentPaper, chosen: Delivery
 ) -> tuple[FeedbackPaper, list[str]]:
     """Return the feedback on a submission, and the notes above it: for a late one, the penalty."""
     mark_delivery(request.site.course, request.site.store, chosen.id)
     with request.site.store.reading() as connection:
         sheets = [
-            one for one in graded(connection, state.place.id, own.student) if one.sitting == chosen.number
+            one
+            for one in graded(connection, state.assignment.id, own.student)
+            if one.sitting == chosen.number
         ]
-        content = issued_content(connection, state.place.id, request.user.id)
-    issued = Issued(_allowed(content, state), state.place.name)
+        content = issued_content(connection, state.assignment.id, request.user.id)
+    issued = Issued(_allowed(content, state), state.assignment.name)
     telling = Telling(solutions=_shows_solutions(issued, state))
     told = feedback_paper(request.site.course, issued, own.student, sheets, request.lang, telling=telling)
     return told, _charged(request, state, issued, told, chosen)
 
 
-def _allowed(content: dict[str, Any], state: State) -> dict[str, Any]:
+def _allowed(content: dict[str, Any], state: AssignmentState) -> dict[str, Any]:
     """Return the issued content, without the right answers before their release."""
-    stated = content.get("assignment") or {"name": state.place.name, "exercises": _exercises(content)}
-    if not state.tells("answers"):
+    stated = content.get("assignment") or {"name": state.assignment.name, "exercises": _exercises(content)}
+    if not state.releases("answers"):
         stated = {**stated, "answers": "never"}
     return {**content, "assignment": stated}
 
@@ -49,25 +51,25 @@ def _exercises(content: dict[str, Any]) -> list[str]:
     return list(dict.fromkeys(str(item["record"]["exercise"]) for item in content["issued"]))
 
 
-def _shows_solutions(issued: Issued, state: State) -> bool:
+def _shows_solutions(issued: Issued, state: AssignmentState) -> bool:
     """Return True if the worked solutions are released: with the right answers, and not before the day that
     the assignment states."""
     stated = issued.assignment or {}
-    if not state.tells("answers") or stated.get("answers") == "never":
+    if not state.releases("answers") or stated.get("answers") == "never":
         return False
     today = state.now.astimezone().date()
     return not stated.get("solutions_after") or shows_solutions(issued, Form(today=today))
 
 
 def _charged(
-    request: Request, state: State, issued: Issued, told: FeedbackPaper, chosen: Delivery
+    request: Request, state: AssignmentState, issued: Issued, told: FeedbackPaper, chosen: Delivery
 ) -> list[str]:
     """Return notes on the penalty for lateness, which is separate from the marks of the answers."""
     if not chosen.late:
         return []
     said = request.words["assignments"]
     late = length_text(timedelta(seconds=chosen.late), request.lang)
-    share = state.place.own.charged(min(chosen.late, state.place.own.late_seconds(chosen.came)))
+    share = state.assignment.own.charged(min(chosen.late, state.assignment.own.late_seconds(chosen.came)))
     if not share:
         return [said["was_late"].format(late)]
     left = round(told.points * (1 - share), 9)

@@ -16,10 +16,10 @@ from coursework.database.prepared import Pieces, prepare_later, prepared_state, 
 from coursework.database.publication import Phase, is_over, places
 from coursework.database.tables import person
 from coursework.errors import BadInput
-from coursework.site.frame.drafts import held
+from coursework.site.frame.drafts import box_values
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.settings import Site
-from coursework.site.papers.own_paper import OwnPaper, Texts, own_paper
+from coursework.site.papers.student_paper import StudentPaper, Texts, student_paper
 
 _BOX = re.compile(r"<(?:input|textarea)\b[^>]*>")
 _ATTRIBUTE = re.compile(r' ([a-z-]+)="([^"]*)"')
@@ -27,13 +27,13 @@ _AFTER_NAME = re.compile(r' name="[^"]*"(?: class="[^"]*")?')
 _AFTER_VALUE = re.compile(r' value="[^"]*"')
 
 
-def made(site: Site, number: int, person_id: int, own: OwnPaper, *, keeps: bool) -> Pieces:
-    """Make the parts of a page; cache them if ``keeps``.
+def make_pieces(site: Site, number: int, person_id: int, own: StudentPaper, *, stores: bool) -> Pieces:
+    """Make the parts of a page; cache them if ``stores``.
 
     A database that takes nothing refuses no reader, and of who was erased meanwhile nothing is kept.
     """
     pieces = own.pieces()
-    if keeps:
+    if stores:
         with suppress(BadInput, IntegrityError), site.store.begin() as connection:
             put_prepared(connection, number, person_id, own.lang, own.state, pieces)
     return pieces
@@ -59,10 +59,10 @@ def prepare(site: Site, number: int, person_id: int, at: datetime, cache: LRUCac
                 return count
             if place.own.phase(place.publication.now(at)) is Phase.CLOSED:
                 return count
-            own = own_paper(connection, site.course, place, person_id, lang, cache)
+            own = student_paper(connection, site.course, place, person_id, lang, cache)
             stands = prepared_state(connection, number, person_id, lang)
         if stands != own.state:
-            made(site, number, person_id, own, keeps=True)
+            make_pieces(site, number, person_id, own, stores=True)
             count += 1
     return count
 
@@ -75,7 +75,7 @@ def _langs(site: Site, person_id: int) -> tuple[str, ...]:
 
 def filled_in(body: str, texts: Texts) -> str:
     """Return the body of a page with texts in its boxes, by their names."""
-    stands = {name: held(text) for name, text in texts.items() if text}
+    stands = {name: box_values(text) for name, text in texts.items() if text}
     return _BOX.sub(partial(_filled, stands), body) if stands else body
 
 

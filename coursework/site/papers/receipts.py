@@ -17,10 +17,10 @@ from coursework.database.permissions import Permission
 from coursework.language.words import words
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.site.frame.times import exact_text, length_text, zone_name
-from coursework.site.papers.handing_in import digest, receipt_called
+from coursework.site.papers.submission import digest, submission_of_receipt
 
 
-def told_of(connection: Connection, row: Any, assignment: str, student: str) -> dict[str, Any]:
+def receipt_content(connection: Connection, row: Any, assignment: str, student: str) -> dict[str, Any]:
     """Return the content of a submission's receipt."""
     handed = answers_of(connection, row.id)
     return {
@@ -72,10 +72,12 @@ def find(done: Sequence[Delivery], code: str) -> Delivery:
 def file(request: Request) -> Response:
     """Return a receipt as a file, as text or as JSON."""
     with request.site.store.reading() as connection:
-        row = receipt_called(connection, str(request.path_params["code"]), int(request.path_params["number"]))
+        row = submission_of_receipt(
+            connection, str(request.path_params["code"]), int(request.path_params["number"])
+        )
         if row is None or row.person_id != request.user.id:
             raise HTTPException("own", 404)
-        told = told_of(connection, row, row.assignment, row.student)
+        told = receipt_content(connection, row, row.assignment, row.student)
     if request.path_params["ending"] == "json":
         data = json.dumps(told, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
         return Response(media_type="application/json", content=data, filename=f"receipt-{row.receipt}.json")
@@ -96,7 +98,7 @@ def verify(request: Request) -> Response:
     row = told = None
     if code:
         with request.site.store.begin() as connection:
-            row = receipt_called(connection, code)
+            row = submission_of_receipt(connection, code)
             if row is not None and not _is_theirs(request, connection, row):
                 row = None
             note(
@@ -107,7 +109,7 @@ def verify(request: Request) -> Response:
                 code=code,
                 found=row is not None,
             )
-            told = None if row is None else told_of(connection, row, row.assignment, row.student)
+            told = None if row is None else receipt_content(connection, row, row.assignment, row.student)
     names: dict[str, Any] = {"code": code, "row": row, "told": told, "digest": told_digest}
     if row is not None:
         names |= {"came": exact_text(row.came, request.lang), "zone": zone_name(row.came)}

@@ -62,7 +62,7 @@ def sign_in(request: Request) -> Response:
     guessing.fitted(request, login)
     if passwords.is_dated(found.secret):
         with request.site.store.begin() as connection:
-            set_secret(connection, found.id, passwords.kept(password))
+            set_secret(connection, found.id, passwords.hashed(password))
     device = Devices(request.site.secret).after_sign_in(request.device, login)
     return Response(redirect=after, signed_in=found.person_id, device=device)
 
@@ -145,7 +145,7 @@ def _chosen(request: Request, mine: Any) -> tuple[str, str]:
     """Return the hash of the chosen password, or the reason for which it is refused."""
     password, again = request.form.text("password"), request.form.text("again")
     wrong = passwords.weakness(password, mine.login, mine.name) or ("again" if password != again else "")
-    return ("", wrong) if wrong else (passwords.kept(password), "")
+    return ("", wrong) if wrong else (passwords.hashed(password), "")
 
 
 # ---------------------------------------------------------------------- account
@@ -166,7 +166,7 @@ def account(request: Request) -> Response:
                 Storage(request.site.lti).end_sessions(subject, issuer)
         return Response(redirect="/", signed_in=0)
     if "session" in request.form.texts:
-        return _end_one(request)
+        return _end_chosen_session(request)
     return _other_password(request, mine)
 
 
@@ -179,7 +179,7 @@ def account_attempt(request: Request) -> Attempt:
     return guessing.attempt_of(request, mine.login) if mine is not None else Attempt()
 
 
-def _end_one(request: Request) -> Response:
+def _end_chosen_session(request: Request) -> Response:
     """End one of one's own sessions; the present one is signed out."""
     number = request.form.text("session")
     if not (number.isascii() and number.isdecimal() and len(number) < 10):

@@ -17,7 +17,7 @@ def tracks_of(request: Request, login: str) -> tuple[Track, ...]:
     A class behind one address mistypes less than the network is free to.
     """
     devices, here = Devices(request.site.secret), network(request.client_address)
-    device = devices.known(request.device, login)
+    device = devices.name_for_login(request.device, login)
     if device:
         return (Track(devices.digest("device", device, login), 5, 20.0, 3),)
     return (

@@ -29,7 +29,7 @@ def weakness(password: str, *known: str) -> str:
     return "common" if is_common(told, *known) else ""
 
 
-def kept(password: str) -> str:
+def hashed(password: str) -> str:
     """Return the hash of a password, from which the password cannot be recovered."""
     with _AT_A_TIME:
         return _HASHER.hash(_plain(password))

@@ -20,7 +20,7 @@ from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Ar
 from coursework.lti.storage import Storage
 from coursework.making.identity import EMAIL, LOGIN, plain
 from coursework.making.roster import Student, read_roster
-from coursework.site.desk.class_cache import called
+from coursework.site.desk.class_cache import assignment_title
 from coursework.site.frame.budgets import DESK_FILE, read_apart
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
 from coursework.site.people.accounts import DAYS, as_login, invited
@@ -29,7 +29,7 @@ from coursework.system.tables import csv_file
 _ANY = "*"  #: of a form: every assignment, or the whole class
 
 
-class Line(NamedTuple):
+class PersonRow(NamedTuple):
     """A person of the table."""
 
     id: int
@@ -40,7 +40,7 @@ class Line(NamedTuple):
     has_account: bool = False
 
 
-class Link(NamedTuple):
+class InvitationLink(NamedTuple):
     """An invitation that was made just now."""
 
     name: str
@@ -71,21 +71,21 @@ def _staff_roles(request: Request) -> list[str]:
     )
 
 
-def _lines(request: Request, connection: Connection) -> list[Line]:
+def _lines(request: Request, connection: Connection) -> list[PersonRow]:
     mine = accounts(connection)
     return [
         _line(request, one, mine.get(one.id)) for one in {one.id: one for one in people(connection)}.values()
     ]
 
 
-def _line(request: Request, one: Any, account: Any) -> Line:
+def _line(request: Request, one: Any, account: Any) -> PersonRow:
     if account is None:
-        return Line(one.id, one.name, login_of(one), STUDENT, "none")
+        return PersonRow(one.id, one.name, login_of(one), STUDENT, "none")
     waits = account.invited_until is not None
     state = "joined" if account.secret else "none" if not waits else "invited"
     if state == "invited" and account.invited_until < request.received_at:
         state = "over"
-    return Line(one.id, one.name, account.login, account.role, state, True)
+    return PersonRow(one.id, one.name, account.login, account.role, state, True)
 
 
 def login_of(person: Any) -> str:
@@ -114,7 +114,7 @@ def _invite(request: Request) -> Response:
     return request.render("site_links", links=links, days=DAYS)
 
 
-def _link(request: Request, connection: Connection, one: Line) -> Link:
+def _link(request: Request, connection: Connection, one: PersonRow) -> InvitationLink:
     """Make a link for somebody whom the person who asks may invite; every link of the site's pages is made here.
 
     Raises
@@ -126,7 +126,7 @@ def _link(request: Request, connection: Connection, one: Line) -> Link:
     _check_login(connection, one.login, one.id)
     address = invited(request.site, connection, one.id, one.login, one.role)
     note(connection, request.received_at, request.actor, "invited", person=one.id, role=one.role)
-    return Link(one.name, one.login, address)
+    return InvitationLink(one.name, one.login, address)
 
 
 def _check_login(connection: Connection, login: str, person: int) -> None:
@@ -135,7 +135,7 @@ def _check_login(connection: Connection, login: str, person: int) -> None:
         raise HTTPException("login_taken", 409, login)
 
 
-def _as_csv(links: Sequence[Link]) -> bytes:
+def _as_csv(links: Sequence[InvitationLink]) -> bytes:
     columns = ("student", "login", "invitation")
     return csv_file((dict(zip(columns, link, strict=True)) for link in links), columns)
 
@@ -149,13 +149,13 @@ def add(request: Request) -> Response:
     students = _of_roster(request, uploads[0]) if uploads else [_of_fields(request)]
     with request.site.store.begin() as connection:
         before = {one.id for one in people(connection)}
-        ids = [_put(request, connection, one) for one in students]
+        ids = [_add_student(request, connection, one) for one in students]
         new = sorted(set(ids) - before)
         note(connection, request.received_at, request.actor, "people added", people=new)
     return Response(redirect=f"/desk/people?added={len(new)}")
 
 
-def _put(request: Request, connection: Connection, one: Student) -> int:
+def _add_student(request: Request, connection: Connection, one: Student) -> int:
     """Add somebody, or take in what a roster says of somebody who is known; a roster renames nobody of the staff.
 
     Raises
@@ -188,17 +188,17 @@ def _of_fields(request: Request) -> Student:
 
 def add_staff(request: Request) -> Response:
     """Add somebody of the staff by name and login, with the link by which they come in."""
-    _posted(request)
+    _check_is_post(request)
     one, role = _of_fields(request), request.form.text("role")
     if role not in STAFF:
         raise HTTPException("bad_request", 422)
     with request.site.store.begin() as connection:
-        person = _put(request, connection, one)
+        person = _add_student(request, connection, one)
         note(connection, request.received_at, request.actor, "people added", people=[person])
         known = accounts(connection).get(person)
         if known is not None:
             raise HTTPException("login_taken", 409, known.login)
-        line = Line(person, one.name, login_of(person_by_id(connection, person)), role, "none")
+        line = PersonRow(person, one.name, login_of(person_by_id(connection, person)), role, "none")
         link = _link(request, connection, line)
     return request.render("site_links", links=[link], days=DAYS)
 
@@ -206,7 +206,7 @@ def add_staff(request: Request) -> Response:
 # ------------------------------------------------------------------------ a person
 
 
-def one_person(request: Request) -> Response:
+def person_page(request: Request) -> Response:
     """Return the page of a person: the account, the role, and the available actions."""
     with request.site.store.reading() as connection:
         one = somebody(request, connection)
@@ -214,7 +214,7 @@ def one_person(request: Request) -> Response:
         last = is_last_administrator(connection, one.id)
         areas = areas_of(connection, one.id)
         groups = groups_known(connection)
-        assignments = [(about.id, called(about, request.lang)) for about in listed(connection)]
+        assignments = [(about.id, assignment_title(about, request.lang)) for about in listed(connection)]
         ties = _ties(connection, one.id)
     return request.render(
         "site_person", line=line, last=last, columns=one.columns or {}, roles=ROLES,
@@ -240,7 +240,7 @@ def _ties(connection: Connection, person: int) -> list[tuple[Any, str]]:
 
 def separate_tie(request: Request) -> Response:
     """Separate an account of a platform from a person, and end its sessions."""
-    _posted(request)
+    _check_is_post(request)
     with request.site.store.begin() as connection:
         one = somebody(request, connection)
         gone = separate(connection, one.id, number(request.form.text("tie")))
@@ -253,9 +253,9 @@ def separate_tie(request: Request) -> Response:
     return Response(redirect=f"/desk/people/{one.id}")
 
 
-def invite_one(request: Request) -> Response:
+def invite_person(request: Request) -> Response:
     """Make a link by which one person chooses a password."""
-    _posted(request)
+    _check_is_post(request)
     with request.site.store.begin() as connection:
         one = somebody(request, connection)
         link = _link(request, connection, _line(request, one, accounts(connection).get(one.id)))
@@ -264,7 +264,7 @@ def invite_one(request: Request) -> Response:
 
 def change_role(request: Request) -> Response:
     """Give a person another role, and an assistant the groups and assignments that are ticked."""
-    _posted(request)
+    _check_is_post(request)
     role = request.form.text("role")
     with request.site.store.begin() as connection:
         one = somebody(request, connection)
@@ -276,7 +276,7 @@ def change_role(request: Request) -> Response:
         needs_link = set_role(connection, line.id, role)
         areas = _areas_of_form(request, connection) if role == ASSISTANT else []
         put_areas(connection, line.id, areas)
-        about = {"areas": "; ".join(map(_told, areas)) or "–"} if role == ASSISTANT else {}
+        about = {"areas": "; ".join(map(_area_text, areas)) or "–"} if role == ASSISTANT else {}
         note(
             connection,
             request.received_at,
@@ -305,7 +305,7 @@ def _areas_of_form(request: Request, connection: Connection) -> list[Area]:
     return [Area(assignment, group) for assignment in where for group in whose]
 
 
-def _told(area: Area) -> str:
+def _area_text(area: Area) -> str:
     """Return an area as the audit records it: the assignment's number and the group, ``*`` for all."""
     return f"{area.assignment or _ANY} / {_ANY if area.group is None else area.group}"
 
@@ -333,7 +333,7 @@ def _count(text: str) -> int | None:
     return number(text) if text else None
 
 
-def _posted(request: Request) -> None:
+def _check_is_post(request: Request) -> None:
     if not request.is_post:
         raise HTTPException("method", 405)
 
@@ -345,9 +345,9 @@ ROUTES = (
     ),
     Route("/desk/people/add", add, Permission.PEOPLE_ADD, takes_forms=True, limit="upload", budget=DESK_FILE),
     Route("/desk/people/add-staff", add_staff, Permission.PEOPLE_INVITE_STAFF, takes_forms=True),
-    Route("/desk/people/{person}", one_person, Permission.PEOPLE_READ),
+    Route("/desk/people/{person}", person_page, Permission.PEOPLE_READ),
     Route(
-        "/desk/people/{person}/invitation", invite_one, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True,
+        "/desk/people/{person}/invitation", invite_person, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True,
         staff_permission=Permission.PEOPLE_INVITE_STAFF,
     ),
     Route(

@@ -23,7 +23,7 @@ from coursework.language.words import words
 from coursework.lti.storage import Storage
 from coursework.making.students import file_stems
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
-from coursework.site.papers.telling import Told, all_told, told_to
+from coursework.site.papers.release import Release, full_release, release_to
 from coursework.site.people import scrubbing
 from coursework.site.people.people_page import number, somebody
 from coursework.system.tables import csv_text
@@ -37,20 +37,20 @@ Rows = Sequence[Mapping[str, Any]]
 # ---------------------------------------------------------------- what is kept
 
 
-def own_data(request: Request) -> Response:
+def user_data(request: Request) -> Response:
     """Return all stored data of the current user; content that is not released yet is only mentioned."""
     with request.site.store.reading() as connection:
-        return _given(request, connection, request.user.id, told_to(connection, request))
+        return _given(request, connection, request.user.id, release_to(connection, request))
 
 
 def their_data(request: Request) -> Response:
     """Return all stored data of a person, for staff."""
     with request.site.store.reading() as connection:
         one = somebody(request, connection)
-        return _given(request, connection, one.id, all_told)
+        return _given(request, connection, one.id, full_release)
 
 
-def _given(request: Request, connection: Connection, person: int, told: Callable[[int], Told]) -> Response:
+def _given(request: Request, connection: Connection, person: int, told: Callable[[int], Release]) -> Response:
     who = whose(connection, person)
     if who is None:
         raise HTTPException("own", 404)
@@ -61,7 +61,7 @@ def _given(request: Request, connection: Connection, person: int, told: Callable
     )
 
 
-def _withheld(tables: Mapping[str, Rows], told: Callable[[int], Told]) -> dict[str, Rows]:
+def _withheld(tables: Mapping[str, Rows], told: Callable[[int], Release]) -> dict[str, Rows]:
     """Return the tables without the content that is not released yet."""
     markings = {row["id"]: row["assignment_id"] for row in tables["marking"]}
     seen = {
@@ -175,7 +175,7 @@ def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:
 
 
 ROUTES: tuple[Route, ...] = (
-    Route("/account/data", own_data, Permission.OWN, limit="upload"),
+    Route("/account/data", user_data, Permission.OWN, limit="upload"),
     Route(
         "/desk/people/{person}/data",
         their_data,

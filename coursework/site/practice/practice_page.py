@@ -15,12 +15,12 @@ from coursework.selfstudy.attempt import CheckedAnswers
 from coursework.selfstudy.store import is_blank
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.site.frame.budgets import BOXES, PLAIN
-from coursework.site.frame.drafts import kept
+from coursework.site.frame.drafts import save_drafts
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
-from coursework.site.papers.own_assignment import to_hand_in
-from coursework.site.practice.begun import begun
-from coursework.site.practice.contents import called, contents, next_of
-from coursework.site.practice.worksheet import OWN, Hinted, Worksheet
+from coursework.site.papers.assignment_state import to_hand_in
+from coursework.site.practice.begun_variants import begun
+from coursework.site.practice.contents import contents, exercise_title, next_of
+from coursework.site.practice.worksheet import BOX_PREFIX, QuestionHints, Worksheet
 
 
 def course(request: Request) -> Response:
@@ -32,7 +32,7 @@ def course(request: Request) -> Response:
         title=request.words["practice"]["title"],
         chapters=contents(request, progress),
         going=going,
-        going_title=going and called(request.site.course[going.exercise], request.lang),
+        going_title=going and exercise_title(request.site.course[going.exercise], request.lang),
         next=next_of(request, progress),
         due=to_hand_in(request),
     )
@@ -48,7 +48,7 @@ def exercise(request: Request) -> Response:
     if going is not None:
         return Response(redirect=going.address)
     seeds = {int(one["seed"]) for one in progress}
-    return Response(redirect=f"/practice/{name}/{site.pool.own(name, request.user.id, seeds)}")
+    return Response(redirect=f"/practice/{name}/{site.pool.choose_seed(name, request.user.id, seeds)}")
 
 
 def sheet(request: Request) -> Response:
@@ -56,9 +56,9 @@ def sheet(request: Request) -> Response:
     predictions."""
     work = _worksheet(request)
     if request.is_post:
-        return _asked(request, work)
+        return _form_response(request, work)
     _warm(request, work)
-    return _page(request, work, work.attempt.marked(), work.stands())
+    return _page(request, work, work.attempt.marked(), work.box_contents())
 
 
 def _worksheet(request: Request) -> Worksheet:
@@ -71,13 +71,13 @@ def _warm(request: Request, work: Worksheet) -> None:
     request.site.ahead(("keys", work.variant), partial(mark, work.variant, wrong))
 
 
-def _asked(request: Request, work: Worksheet) -> Response:
-    others = {} if request.is_fragment else _keep_typed(request, work)
-    _keep_predictions(request, work)
+def _form_response(request: Request, work: Worksheet) -> Response:
+    others = {} if request.is_fragment else _save_typed(request, work)
+    _save_predictions(request, work)
     if place := request.form.text("go"):
         return _gone(request, work, place)
     texts = request.form.texts
-    hinted: dict[str, tuple[Hinted, ...]] = {}
+    hinted: dict[str, tuple[QuestionHints, ...]] = {}
     shown: tuple[str, ...] = ()
     if "hint" in texts or "reveal" in texts:
         checked, hinted = work.attempt.marked(), _hinted(request, work)
@@ -87,7 +87,7 @@ def _asked(request: Request, work: Worksheet) -> Response:
         checked = work.attempt.marked()
     if request.is_fragment:
         return _pieces(request, work, checked, shown, hinted)
-    names = {"others": {OWN + n: box for n, box in others.items()}, "came": shown}
+    names = {"others": {BOX_PREFIX + n: box for n, box in others.items()}, "came": shown}
     return _page(request, work, checked, work.typed, hinted, **names)
 
 
@@ -109,7 +109,7 @@ def _checked(request: Request, work: Worksheet) -> tuple[CheckedAnswers, tuple[s
     return checked, tuple(dict.fromkeys((*answered, *checked.changed)))
 
 
-def _hinted(request: Request, work: Worksheet) -> dict[str, tuple[Hinted, ...]]:
+def _hinted(request: Request, work: Worksheet) -> dict[str, tuple[QuestionHints, ...]]:
     """Return the hints of a question, and below them those of the requested step towards it."""
     what = "hint" if "hint" in request.form.texts else "reveal"
     under, _, name = request.form.text(what).partition(" ")
@@ -119,14 +119,14 @@ def _hinted(request: Request, work: Worksheet) -> dict[str, tuple[Hinted, ...]]:
     return {under: (new,) if name == under else (work.hinted(under), new)}
 
 
-def _keep_predictions(request: Request, work: Worksheet) -> None:
+def _save_predictions(request: Request, work: Worksheet) -> None:
     said = {name: request.form.text(f"predict-{name}") for name in work.parts}
-    work.kept.add(work.seed, "predictions", dict(said))
+    work.store.add(work.seed, "predictions", dict(said))
 
 
 def _page(
     request: Request, work: Worksheet, checked: CheckedAnswers, stands: dict[str, str],
-    hinted: dict[str, tuple[Hinted, ...]] | None = None, **more: Any,
+    hinted: dict[str, tuple[QuestionHints, ...]] | None = None, **more: Any,
 ) -> Response:  # fmt: skip
     names = {"others": {}, "came": (), **work.names(checked, stands), **more}
     names["hinted"] = {**names["hinted"], **(hinted or {})}
@@ -143,7 +143,7 @@ def _pieces(
     summary = work.summary(checked, work.typed)
     return request.render(
         "site_practice_pieces",
-        own=OWN,
+        own=BOX_PREFIX,
         sheet_page=work,
         results={name: results.get(name) for name in shown},
         compared=work.compared(checked) if shown else {},
@@ -158,9 +158,9 @@ def _pieces(
 def _focus(request: Request, hinted: dict[str, Any]) -> str:
     """Return the id of the new element that receives the keyboard focus."""
     if hinted:
-        return f"hints-{OWN}{next(iter(hinted))}"
+        return f"hints-{BOX_PREFIX}{next(iter(hinted))}"
     one = request.form.text("check")
-    return f"told-{OWN}{one}" if one else "summary" if "check" in request.form.texts else ""
+    return f"told-{BOX_PREFIX}{one}" if one else "summary" if "check" in request.form.texts else ""
 
 
 def _after(request: Request, summary: dict[str, Any]) -> dict[str, Any]:
@@ -177,9 +177,9 @@ def _after(request: Request, summary: dict[str, Any]) -> dict[str, Any]:
 # ------------------------------------------------------------------- what is typed
 
 
-def _keep_typed(request: Request, work: Worksheet) -> dict[str, Any]:
+def _save_typed(request: Request, work: Worksheet) -> dict[str, Any]:
     """Keep what a form without script brings; gives the boxes that another page wrote to since."""
-    others = work.keep_typed(request.form.text("versions"))
+    others = work.save_typed(request.form.text("versions"))
     return {n: box for n, box in others.items() if box.text != work.typed[n]}
 
 
@@ -187,7 +187,7 @@ def draft(request: Request) -> Response:
     """Keep what a script sends while one types."""
     _only_posted(request)
     work = _worksheet(request)
-    return kept(request, work.name, work.parts)
+    return save_drafts(request, work.name, work.parts)
 
 
 def read(request: Request) -> Response:
@@ -246,6 +246,12 @@ ROUTES = (
     Route("/practice/{exercise}/{seed}", sheet, Permission.OWN, takes_forms=True, budget=BOXES),
     Route("/practice/{exercise}/{seed}/draft", draft, Permission.OWN, takes_forms=True, budget=BOXES),
     Route("/practice/{exercise}/{seed}/read", read, Permission.OWN, takes_forms=True, budget=BOXES),
-    Route("/practice/{exercise}/{seed}/solution", solution, Permission.OWN, takes_forms=True, budget=PLAIN),
+    Route(
+        "/practice/{exercise}/{seed}/solution",
+        solution,
+        Permission.OWN,
+        takes_forms=True,
+        budget=PLAIN,
+    ),
     Route("/practice/{exercise}/{seed}/motion", motion, Permission.OWN),
 )

@@ -13,17 +13,17 @@ from coursework.selfstudy.progress import LaterVersion, TooLong, read_brought
 from coursework.selfstudy.store import FILE
 from coursework.site.frame.budgets import PROGRESS_FILE, read_apart
 from coursework.site.frame.requests import Request, Response, Route
-from coursework.site.practice.contents import called, contents, next_of
+from coursework.site.practice.contents import contents, exercise_title, next_of
 
 _MOST = 6_000  #: entries of a file that is brought
-_MOST_KEPT = 30_000  #: entries of a person, with those that are brought
+_MOST_STORED = 30_000  #: entries of a person, with those that are brought
 
 
 def progress(request: Request) -> Response:
     """Return the page of the person's progress; a form uploads a file, whose entries are added."""
     kept = PersonProgress(request.site.store, request.user.id, request.site.clock)
     brought = _brought(request, kept) if request.is_post else None
-    skills = told_skills(request.site.course, kept.progress, request.lang, called)
+    skills = told_skills(request.site.course, kept.progress, request.lang, exercise_title)
     begun = [c for c in contents(request, kept.progress) if c.begun]
     return request.render(
         "site_progress",
@@ -60,8 +60,8 @@ def _brought(request: Request, kept: PersonProgress) -> int:
     if fault is not None:
         raise BadInput(said["not_progress"].format(found.name))
     before = len(kept.progress)
-    if before + len(theirs) > _MOST_KEPT:
-        raise BadInput(said["too_long"].format(found.name, max(0, _MOST_KEPT - before)))
+    if before + len(theirs) > _MOST_STORED:
+        raise BadInput(said["too_long"].format(found.name, max(0, _MOST_STORED - before)))
     kept.add(theirs)
     kept.refresh()
     return len(kept.progress) - before

@@ -28,7 +28,7 @@ from coursework.selfstudy.reading_back import read_back
 from coursework.selfstudy.store import ExerciseStore, is_blank
 from coursework.selfstudy.theory import theory
 from coursework.sheets.handout import handout
-from coursework.site.frame.drafts import LONGEST, keep_form, keeper
+from coursework.site.frame.drafts import LONGEST, draft_attributes, save_form_drafts
 from coursework.site.frame.requests import HTTPException
 
 if TYPE_CHECKING:
@@ -37,11 +37,11 @@ if TYPE_CHECKING:
     from coursework.model import Part
     from coursework.site.frame.requests import Request
 
-OWN = "a-"  #: before the names of boxes, which no other field of the form has
+BOX_PREFIX = "a-"  #: before the names of boxes, which no other field of the form has
 _ASKS = re.compile(r'<a href="#(hint|reveal)-([^"]+)">(.*?)</a>')
 
 
-class Told(NamedTuple):
+class AnswerFeedback(NamedTuple):
     """Feedback on an answer."""
 
     sign: str
@@ -50,7 +50,7 @@ class Told(NamedTuple):
     is_right: bool = False
 
 
-class Hinted(NamedTuple):
+class QuestionHints(NamedTuple):
     """The hints of a question, or of a step on the way to it, that were asked for."""
 
     name: str
@@ -81,14 +81,14 @@ class Worksheet:
             raise BadInput(words(request.lang)["study"]["no_solutions"])
         self.exercise, self.seed = exercise, int(seed)
         progress = PersonProgress(site.store, request.user.id, site.clock, exercise)
-        self.kept = ExerciseStore(progress, exercise)
-        self.variant: Variant = self._asked()
-        self.attempt = StudyAttempt(self.variant, self.kept)
+        self.store = ExerciseStore(progress, exercise)
+        self.variant: Variant = self._open_variant()
+        self.attempt = StudyAttempt(self.variant, self.store)
 
-    def _asked(self) -> Variant:
+    def _open_variant(self) -> Variant:
         """Return the variant; without its theory questions if another variant was begun before."""
         whole: Variant = self.request.site.variant(self.exercise, self.seed, self.request.lang)
-        begun = list(self.kept.progress)
+        begun = list(self.store.progress)
         known = theory(whole.exercise) if begun and begun[0]["seed"] != self.seed else frozenset()
         known -= {e["part"] for e in begun if e["seed"] == self.seed}
         if not known:
@@ -130,7 +130,7 @@ class Worksheet:
     def typed(self) -> dict[str, str]:
         """Texts of a form, by part; empty for a blank box, and if nothing is ticked."""
         texts = self.request.form.texts
-        return {name: ", ".join(texts.get(OWN + name, ()))[:LONGEST] for name in self.parts}
+        return {name: ", ".join(texts.get(BOX_PREFIX + name, ()))[:LONGEST] for name in self.parts}
 
     @cached_property
     def drafts(self) -> dict[str, Box]:
@@ -138,7 +138,7 @@ class Worksheet:
         with self.request.site.store.reading() as connection:
             return drafts(connection, self.request.user.id, self.name)
 
-    def stands(self) -> dict[str, str]:
+    def box_contents(self) -> dict[str, str]:
         """Content of each box: the draft, or else the last answer, in the form that the box uses."""
         answers = self.attempt.answers
         found = {
@@ -149,25 +149,27 @@ class Worksheet:
             name: ", ".join(_ticked(self.variant, self.parts[name], text)) for name, text in found.items()
         }
 
-    def keep_typed(self, versions: str) -> dict[str, Box]:
+    def save_typed(self, versions: str) -> dict[str, Box]:
         """Keep what a form without script brings; gives the boxes that another page wrote to since."""
-        self.drafts, others = keep_form(self.request, self.name, self.typed, self.stands(), versions)
+        self.drafts, others = save_form_drafts(
+            self.request, self.name, self.typed, self.box_contents(), versions
+        )
         return others
 
     # -------------------------------------------------------------------- what is said
 
-    def told(self, mark: Mark) -> Told:
+    def feedback(self, mark: Mark) -> AnswerFeedback:
         """Return the feedback on an answer."""
         said = sentence_of(self.variant, mark, self._asks("reveal", mark.part))
         html = self._with_buttons(markdown.html_inline(said, self.variant.lang), mark.part)
         says_all = mark.verdict in ("correct", "to_mark")
         word = "" if says_all else verdict_word(mark.verdict, self.variant.lang)
-        return Told(sign_of(mark), word, html, mark.verdict == "correct")
+        return AnswerFeedback(sign_of(mark), word, html, mark.verdict == "correct")
 
-    def results(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Told]:
+    def results(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, AnswerFeedback]:
         """Return the feedback on the answers that are still in their boxes."""
         return {
-            name: self.told(mark)
+            name: self.feedback(mark)
             for name, mark in checked.marking.items()
             if not is_blank(checked.answers.get(name)) and self._is_same(name, checked.answers[name], stands)
         }
@@ -188,7 +190,7 @@ class Worksheet:
             told = readings[0]
         return Markup(markdown.html_inline(told, self.variant.lang))
 
-    def hinted(self, name: str, most: int | None = None) -> Hinted:
+    def hinted(self, name: str, most: int | None = None) -> QuestionHints:
         """Return the first hints for a question or for a step towards it, by default those that were seen.
 
         Raises
@@ -210,7 +212,7 @@ class Worksheet:
             quantity
         )
         title = "" if number else f"${symbol}$"
-        return Hinted(
+        return QuestionHints(
             name,
             Markup(markdown.html_inline(title, lang)),
             tuple(self._with_buttons(markdown.to_html(text, lang), name) for text in texts[:seen]),
@@ -218,7 +220,7 @@ class Worksheet:
             Markup(markdown.to_html(solution, lang)) if solution else Markup(""),
         )
 
-    def hint(self, name: str) -> Hinted:
+    def hint(self, name: str) -> QuestionHints:
         """Return the hints with one more, and record it."""
         before = self.hinted(name, 0)
         step = min(self.attempt.hints_seen(name) + 1, before.of)
@@ -226,14 +228,14 @@ class Worksheet:
             self.attempt.note(HINT, name, step=step)
         return self.hinted(name, step)
 
-    def reveal(self, name: str) -> Hinted:
+    def reveal(self, name: str) -> QuestionHints:
         """Return the hints with the solution of the step, and record it."""
         self.hinted(name, 0)
         self.attempt.note(REVEAL, name)
         return self.hinted(name)
 
     def _is_revealed(self, name: str) -> bool:
-        return any(e["what"] == REVEAL and e["part"] == name for e in self.kept.happened(self.variant.seed))
+        return any(e["what"] == REVEAL and e["part"] == name for e in self.store.happened(self.variant.seed))
 
     def _asks(self, what: str, name: str) -> str:
         """Return a link in Markdown that :meth:`_with_buttons` turns into a button."""
@@ -242,13 +244,13 @@ class Worksheet:
     def _with_buttons(self, html: str, under: str) -> Markup:
         def button(found: re.Match[str]) -> str:
             what, name, text = found.groups()
-            return f'<button class="plain" name="{what}" value="{escape(under)} {name}" formaction="#hints-{OWN}{escape(under)}">{text}</button>'
+            return f'<button class="plain" name="{what}" value="{escape(under)} {name}" formaction="#hints-{BOX_PREFIX}{escape(under)}">{text}</button>'
 
         return Markup(_ASKS.sub(button, html))
 
     # ------------------------------------------------------------------ predictions
 
-    def asked_before(self) -> list[dict[str, Any]]:
+    def predictions_to_make(self) -> list[dict[str, Any]]:
         """Return the predictions to make before the computation, each with its options and the person's
         choice."""
         said = self.attempt.predictions
@@ -327,8 +329,10 @@ class Worksheet:
         said = self.request.words["practice"]["keeping"]
         return {
             **shown,
-            "own": OWN,
-            "filled": {OWN + n: _ticked(self.variant, self.parts[n], text) for n, text in stands.items()},
+            "own": BOX_PREFIX,
+            "filled": {
+                BOX_PREFIX + n: _ticked(self.variant, self.parts[n], text) for n, text in stands.items()
+            },
             "before_questions": "_site_practice_before.html.j2",
             "below_question": "_site_practice_below.html.j2",
             "sheet_page": self,
@@ -336,12 +340,14 @@ class Worksheet:
             "reads": {n: self.read_as(n, text) for n, text in stands.items()},
             "hinted": {n: (self.hinted(n),) for n in self._hinted_before()},
             "compared": self.compared(checked),
-            "predicted": self.asked_before(),
+            "predicted": self.predictions_to_make(),
             "summary": self.summary(checked, stands),
             "is_shown": self.attempt.is_example,
             "moves": self.variant.exercise.is_animated,
             "lessons": self._lessons(),
-            "form": keeper(self.request, f"{self.address}/draft", self.name, self.drafts, OWN, **said),
+            "form": draft_attributes(
+                self.request, f"{self.address}/draft", self.name, self.drafts, BOX_PREFIX, **said
+            ),
         }
 
     def _lessons(self) -> Sequence[Lesson]:
@@ -352,7 +358,7 @@ class Worksheet:
         return found
 
     def _hinted_before(self) -> Iterable[str]:
-        happened = self.kept.happened(self.variant.seed)
+        happened = self.store.happened(self.variant.seed)
         seen = {e["part"] for e in happened if e["what"] in (HINT, REVEAL)}
         return [name for name in self.parts if name in seen and not self.attempt.is_example]
 

@@ -15,8 +15,8 @@ from starlette.routing import Route
 from coursework.course.folder import course_folder
 from coursework.language.words import languages, words
 from coursework.site.frame.pages import Pages
-from coursework.site.preview.previewed import Asked
-from coursework.site.preview.under_work import Shown, UnderWork
+from coursework.site.preview.previewed import ViewRequest
+from coursework.site.preview.under_work import EditedExercise, View
 
 #: What may be looked at, in order: its name, the view and the form of it.
 VIEWS = {
@@ -29,7 +29,7 @@ VIEWS = {
 }
 _LARGEST = 2**31  #: seed
 _DIGITS = 12  #: of a seed in an address: more is beyond the largest, whatever they are
-_OWN = {
+_PAGE_HEADERS = {
     "content-security-policy": "default-src 'none'; img-src 'self' data:; style-src 'self'; script-src 'self'; connect-src 'self'; "
     "frame-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
     "cache-control": "no-store",
@@ -43,9 +43,9 @@ _FRAMED = {
 }
 
 
-def preview(work: UnderWork, lang: str) -> Starlette:
+def preview(work: EditedExercise, lang: str) -> Starlette:
     """Return the application; ``lang`` is the default language."""
-    pages = _Pages(work, lang)
+    pages = _PreviewPages(work, lang)
     routes = [
         Route("/", _local(pages.page)),
         Route("/state", _local(pages.state)),
@@ -80,8 +80,8 @@ class _Choice:
         return f"/?{urlencode({**vars(self), **other})}"
 
 
-class _Pages:
-    def __init__(self, work: UnderWork, lang: str):
+class _PreviewPages:
+    def __init__(self, work: EditedExercise, lang: str):
         self._work, self._lang = work, lang
         self._pages = Pages(course_folder(None))
 
@@ -90,11 +90,11 @@ class _Pages:
         differ."""
         work, choice = self._work, _Choice(request.query_params, self._lang)
         stamp = work.stamp
-        about = work.shown(Asked("about"))
+        about = work.view(ViewRequest("about"))
         known: Any = about.content or {"languages": [choice.lang], "version": ""}
         if choice.lang not in known["languages"]:
             choice.lang = known["languages"][0]
-        shown = self._shown(choice, about)
+        shown = self._view(choice, about)
         said = words(choice.lang, "site")["preview"]
         names = {
             "lang": choice.lang, "said": said, "exercise": work.exercise, "choice": choice, "stamp": stamp,
@@ -102,23 +102,25 @@ class _Pages:
             "framed": VIEWS[choice.view][1] and shown.content is not None, "check": work.check, "file": self._pages.file,
             "worked": _clock(shown.worked), "words": words(choice.lang),
         }  # fmt: skip
-        return Response(self._pages.rendered("site_preview", choice.lang, names), 200, _OWN, "text/html")
+        return Response(
+            self._pages.rendered("site_preview", choice.lang, names), 200, _PAGE_HEADERS, "text/html"
+        )
 
-    def _shown(self, choice: _Choice, about: Shown) -> Shown:
+    def _view(self, choice: _Choice, about: View) -> View:
         view, form = VIEWS[choice.view]
         if view == "check":
             made = self._work.check
-            return Shown(made and made.content, made.fault if made else about.fault, None)
-        return self._work.shown(Asked(view, choice.seed, choice.lang, form or "html"))
+            return View(made and made.content, made.fault if made else about.fault, None)
+        return self._work.view(ViewRequest(view, choice.seed, choice.lang, form or "html"))
 
     def state(self, request: Request) -> Response:
-        return JSONResponse({"stamp": self._work.stamp}, headers=_OWN)
+        return JSONResponse({"stamp": self._work.stamp}, headers=_PAGE_HEADERS)
 
     def view(self, request: Request) -> Response:
         """Return a sheet by itself, in its current state or its last valid one."""
         choice = _Choice({**request.query_params, "view": request.path_params["view"]}, self._lang)
         view, form = VIEWS[choice.view]
-        found = self._work.shown(Asked(view, choice.seed, choice.lang, form)) if form else None
+        found = self._work.view(ViewRequest(view, choice.seed, choice.lang, form)) if form else None
         if found is None or not isinstance(found.content, bytes):
             return Response("", 404, _FRAMED)
         kind = "application/pdf" if form == "pdf" else "text/html; charset=utf-8"
@@ -127,8 +129,8 @@ class _Pages:
     def static(self, request: Request) -> Response:
         found = self._pages.static(str(request.path_params["name"]))
         if found is None:
-            return Response("", 404, _OWN)
-        return Response(found[1], 200, {**_OWN, "cache-control": "max-age=3600"}, found[0])
+            return Response("", 404, _PAGE_HEADERS)
+        return Response(found[1], 200, {**_PAGE_HEADERS, "cache-control": "max-age=3600"}, found[0])
 
 
 def _clock(at: datetime | None) -> str:

@@ -17,10 +17,10 @@ from coursework.sheets.handout import handout
 from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.ending import follow_parent
 
-_SAID = 20  #: promises that do not hold, of one check
+_MOST_FAILURES = 20  #: promises that do not hold, of one check
 
 
-class Asked(NamedTuple):
+class ViewRequest(NamedTuple):
     """A view of a variant: ``about``, ``sheet``, ``solution``, each as a page or ``pdf``, ``key``; or ``check``."""
 
     view: str
@@ -30,7 +30,7 @@ class Asked(NamedTuple):
     variants: int = 0  #: of a check
 
 
-class Made(NamedTuple):
+class ViewResult(NamedTuple):
     """Requested content, or the reason in one line for which it cannot be shown."""
 
     content: Any = None
@@ -46,7 +46,7 @@ def work(pipe: Connection, folder: str | None, exercise: str) -> None:
             asked = pipe.recv()
         except (EOFError, KeyboardInterrupt):
             return
-        pipe.send(_made(folder, exercise, asked))
+        pipe.send(_result(folder, exercise, asked))
 
 
 def _warm_up() -> None:
@@ -57,16 +57,16 @@ def _warm_up() -> None:
     sys.pycache_prefix = str(Path(__file__).parent / "no such folder")
 
 
-def _made(folder: str | None, exercise: str, asked: Asked) -> Made:
+def _result(folder: str | None, exercise: str, asked: ViewRequest) -> ViewResult:
     try:
-        return Made(_VIEWS[asked.view](folder, exercise, asked))
+        return ViewResult(_VIEWS[asked.view](folder, exercise, asked))
     except CourseworkError as fault:
-        return Made(fault=str(fault))
+        return ViewResult(fault=str(fault))
     except Exception as fault:  # an author's slip in a function of the course
-        return Made(fault=_told(fault, folder))
+        return ViewResult(fault=_fault_text(fault, folder))
 
 
-def _told(fault: Exception, folder: str | None) -> str:
+def _fault_text(fault: Exception, folder: str | None) -> str:
     said = f"{type(fault).__name__}: {fault}"
     root = open_course(folder).folder.root
     frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]
@@ -75,30 +75,30 @@ def _told(fault: Exception, folder: str | None) -> str:
     return f"{Path(frames[-1].filename).relative_to(root).as_posix()}, line {frames[-1].lineno}: {said}"
 
 
-def _about(folder: str | None, exercise: str, asked: Asked) -> Any:
+def _about(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
     found = open_course(folder)[exercise]
     return {"languages": list(found.languages), "version": found.spec.version}
 
 
-def _sheet(folder: str | None, exercise: str, asked: Asked) -> Any:
+def _sheet(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
     return _printed(folder, handout(_variant(folder, exercise, asked)), asked)
 
 
-def _solution(folder: str | None, exercise: str, asked: Asked) -> Any:
+def _solution(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
     return _printed(folder, answer_sheet(_variant(folder, exercise, asked)), asked)
 
 
-def _printed(folder: str | None, sheet: Handout | AnswerSheet, asked: Asked) -> bytes:
+def _printed(folder: str | None, sheet: Handout | AnswerSheet, asked: ViewRequest) -> bytes:
     renderer = renderer_of(open_course(folder).folder)
     return renderer.pdf(sheet) if asked.form == "pdf" else renderer.html(sheet).encode()
 
 
-def _variant(folder: str | None, exercise: str, asked: Asked) -> Any:
+def _variant(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
     found = open_course(folder)[exercise]
     return found.variant(asked.seed, asked.lang if asked.lang in found.languages else found.languages[0])
 
 
-def _key(folder: str | None, exercise: str, asked: Asked) -> Any:
+def _key(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
     """Given values; a row a part; and what each known mistake gives."""
     variant = _variant(folder, exercise, asked)
     key = variant.key
@@ -116,11 +116,11 @@ def _key(folder: str | None, exercise: str, asked: Asked) -> Any:
     }  # fmt: skip
 
 
-def _check(folder: str | None, exercise: str, asked: Asked) -> Any:
+def _check(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
     report = checks.check(open_course(folder)[exercise], asked.variants)
     (row,) = check_report.table([report])
     told = [str(note) for note in check_report.notes([report])]
-    return {"passed": report.passed, "failures": report.failures[:_SAID], "more": max(0, len(report.failures) - _SAID),
+    return {"passed": report.passed, "failures": report.failures[:_MOST_FAILURES], "more": max(0, len(report.failures) - _MOST_FAILURES),
             "row": {k: str(v) for k, v in row.items()}, "notes": told}  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from coursework.course.folder import course_folder
-from coursework.site.preview.previewed import Asked, Made, work
+from coursework.site.preview.previewed import ViewRequest, ViewResult, work
 
 _EVERY = 0.12  #: seconds between two looks at the files
 _PAGE_FIRST = 0.6  #: seconds before a check begins
@@ -27,7 +27,7 @@ _SPAWN = multiprocessing.get_context("spawn")
 _Files = dict[str, tuple[int, int]]
 
 
-class Shown(NamedTuple):
+class View(NamedTuple):
     """A view as it is now, or as it last was where it cannot be made now."""
 
     content: object
@@ -45,17 +45,17 @@ class _Process:
         other.close()
         self._lock = threading.Lock()
 
-    def made(self, asked: Asked, seconds: float = _LONGEST) -> Made | None:
+    def result(self, asked: ViewRequest, seconds: float = _LONGEST) -> ViewResult | None:
         """Return a view; None if the process was ended meanwhile."""
         with self._lock:
             try:
                 self._pipe.send(asked)
                 if not self._pipe.poll(seconds):
                     self.end()
-                    return Made(
+                    return ViewResult(
                         fault=f"this took more than {seconds:g} s, and was stopped: a loop that does not end?"
                     )
-                found: Made = self._pipe.recv()
+                found: ViewResult = self._pipe.recv()
                 return found
             except (EOFError, OSError):
                 return None
@@ -67,7 +67,7 @@ class _Process:
             self._pipe.close()
 
 
-class UnderWork:
+class EditedExercise:
     """An exercise whose files somebody is writing."""
 
     def __init__(self, folder: str | None, exercise: str, variants: int):
@@ -75,11 +75,11 @@ class UnderWork:
         self._folder, self._variants = folder, variants
         self._root = course_folder(folder).root
         self._lock = threading.Lock()
-        self._good: dict[Asked, tuple[object, datetime]] = {}
+        self._good: dict[ViewRequest, tuple[object, datetime]] = {}
         self._spare = [self._begun(), self._begun()]
         self._views = self._checks = self._spare[0]
         self.state = 0
-        self.check: Made | None = None  #: None while it is under way
+        self.check: ViewResult | None = None  #: None while it is under way
         self._ended = threading.Event()
         self._take()
         threading.Thread(target=self._watch, daemon=True).start()
@@ -94,11 +94,11 @@ class UnderWork:
         """Another one whenever there is something new to show."""
         return f"{self.state}.{int(self.check is not None)}"
 
-    def shown(self, asked: Asked) -> Shown:
+    def view(self, asked: ViewRequest) -> View:
         """Return a view of the current state; if it cannot be made, the last valid one, with the reason."""
         while True:
             state, process = self.state, self._views
-            made = process.made(asked)
+            made = process.result(asked)
             if made is not None and state == self.state:
                 break
             if (
@@ -106,12 +106,12 @@ class UnderWork:
             ):  # it was stopped, or fell
                 self._views = self._begun()
             if self._ended.is_set():
-                return Shown(None, "the preview has ended", None)
+                return View(None, "the preview has ended", None)
         if not made.fault:
             self._good[asked] = made.content, datetime.now().astimezone()
-            return Shown(made.content, "", None)
+            return View(made.content, "", None)
         content, worked = self._good.get(asked, (None, None))
-        return Shown(content, made.fault, worked)
+        return View(content, made.fault, worked)
 
     def _take(self) -> None:
         """Start new processes for the current state of the files."""
@@ -128,7 +128,7 @@ class UnderWork:
         """Once the page is there: it comes first where processors are few."""
         if self._ended.wait(_PAGE_FIRST) or not self._make_ready(state):
             return
-        made = process.made(Asked("check", variants=self._variants), 10 * _LONGEST)
+        made = process.result(ViewRequest("check", variants=self._variants), 10 * _LONGEST)
         with self._lock:
             if made is not None and state == self.state:
                 self.check = made

@@ -50,22 +50,22 @@ from coursework.making.roster import Student
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.requests import Form, HTTPException, Request, Response, Route
 from coursework.site.frame.times import exact_text, field_text, from_field, moment_text, zone_name
+from coursework.site.papers.assignment_state import AssignmentState, state_of
 from coursework.site.papers.opening import prepare_soon
-from coursework.site.papers.own_assignment import State, state_of
-from coursework.site.papers.own_paper import OwnPaper, own_paper
-from coursework.site.publication import dealings, handing_out
-from coursework.site.publication.dealings import Wanted
+from coursework.site.papers.student_paper import StudentPaper, student_paper
+from coursework.site.publication import assigning, new_assignment
+from coursework.site.publication.assigning import AssignmentRequest
 
 _NOTED = 30  #: lines of what was done that a page shows
 
 
-class Handed(NamedTuple):
+class ListedAssignment(NamedTuple):
     """Assignment, as the instructor's pages list it."""
 
     id: int
     name: str
     stated: Mapping[str, Any]
-    asked: Mapping[str, Any] | None
+    definition: Mapping[str, Any] | None
     publication: Publication | None
     students: int
     handed_in: int  #: how many students have
@@ -74,7 +74,7 @@ class Handed(NamedTuple):
         return text_in(self.stated.get("title") or {}, lang) or self.name
 
 
-def handed_out(connection: Connection, number: int | None = None) -> list[Handed]:
+def listed_assignments(connection: Connection, number: int | None = None) -> list[ListedAssignment]:
     """Return the assignments, the latest first; or one of them."""
     columns = (
         assignment.c.id,
@@ -96,7 +96,7 @@ def handed_out(connection: Connection, number: int | None = None) -> list[Handed
     )
     handed = _by_number(connection, came)
     return [
-        Handed(
+        ListedAssignment(
             row.id, row.name, row.stated or {}, row.asked,
             None if row.published is None else Publication.of(row.published),
             students.get(row.id, 0), handed.get(row.id, 0),
@@ -110,8 +110,8 @@ def _by_number(connection: Connection, counted: Select[Any]) -> dict[int, int]:
     return {row[0]: row[1] for row in connection.execute(counted)}
 
 
-def assignment_here(request: Request, connection: Connection) -> Handed:
-    found = handed_out(connection, int(request.path_params["number"]))
+def assignment_here(request: Request, connection: Connection) -> ListedAssignment:
+    found = listed_assignments(connection, int(request.path_params["number"]))
     if not found:
         raise HTTPException("page", 404)
     return found[0]
@@ -120,9 +120,9 @@ def assignment_here(request: Request, connection: Connection) -> Handed:
 # ------------------------------------------------------------------------- lists
 
 
-def listed(request: Request) -> Response:
+def list_page(request: Request) -> Response:
     with request.site.store.reading() as connection:
-        found = handed_out(connection)
+        found = listed_assignments(connection)
     phases = {one.id: _phase(one.publication, request.received_at) for one in found}
     return request.render("site_publish_list", found=found, phases=phases, lang_of=request.lang)
 
@@ -136,25 +136,25 @@ def new(request: Request) -> Response:
     if not request.is_post:
         return _new_page(request)
     try:
-        made = handing_out.read(request)
+        made = new_assignment.read(request)
     except BadInput as fault:
         return _new_page(request, str(fault), 422)
     if made.issued is not None:
         return Response(redirect=f"/desk/assignments/{_take_in(request, made)}")
     assert made.wanted is not None
-    token = dealings.begin(request.site, made.wanted, request.user.name, "assignment dealt")
+    token = assigning.begin(request.site, made.wanted, request.user.name, "assignment dealt")
     return Response(redirect=f"/desk/assignments/dealing/{token}")
 
 
 def _new_page(request: Request, problem: str = "", status: int = 200) -> Response:
-    shelves = handing_out.shelves(request.site.course, request.lang)
+    exercise_groups = new_assignment.exercise_groups(request.site.course, request.lang)
     return request.render(
-        "site_publish_new", status, shelves=shelves, problem=problem, sent=request.form, most_versions=MOST_VERSIONS,
-        accounts=len(handing_out.students_with_accounts(request)),
+        "site_publish_new", status, exercise_groups=exercise_groups, problem=problem, sent=request.form, most_versions=MOST_VERSIONS,
+        accounts=len(new_assignment.students_with_accounts(request)),
     )  # fmt: skip
 
 
-def _take_in(request: Request, made: handing_out.HandOut) -> int:
+def _take_in(request: Request, made: new_assignment.NewAssignment) -> int:
     """Store an assignment that was issued elsewhere; return its id."""
     assert made.issued is not None
     with request.site.store.begin() as connection:
@@ -163,12 +163,12 @@ def _take_in(request: Request, made: handing_out.HandOut) -> int:
     return number
 
 
-def dealing(request: Request) -> Response:
+def assigning_page(request: Request) -> Response:
     """Return the state of a job; redirect to the assignment when it is done, unless there is a message."""
-    found = dealings.dealing(request.site, str(request.path_params["token"]))
+    found = assigning.assigning_job(request.site, str(request.path_params["token"]))
     if found is None:
         raise HTTPException("page", 404)
-    if found.state == dealings.DONE and not found.told:
+    if found.state == assigning.DONE and not found.messages:
         return Response(redirect=f"/desk/assignments/{found.number}")
     return request.render("site_publish_dealing", dealing=found)
 
@@ -176,14 +176,18 @@ def dealing(request: Request) -> Response:
 # ------------------------------------------------------------------- one assignment
 
 
-def shown(request: Request) -> Response:
+def assignment_page(request: Request) -> Response:
     with request.site.store.reading() as connection:
         one = assignment_here(request, connection)
     return _page(request, one, one.publication or Publication())
 
 
 def _page(
-    request: Request, one: Handed, publication: Publication, faults: Sequence[Fault] = (), problem: str = ""
+    request: Request,
+    one: ListedAssignment,
+    publication: Publication,
+    faults: Sequence[Fault] = (),
+    problem: str = "",
 ) -> Response:
     with request.site.store.reading() as connection:
         people = holders(connection, one.id)
@@ -198,7 +202,7 @@ def _page(
     )  # fmt: skip
 
 
-class Holder(NamedTuple):
+class PaperHolder(NamedTuple):
     """Somebody who was issued a paper."""
 
     person: int
@@ -209,7 +213,7 @@ class Holder(NamedTuple):
     done: int  #: hand-ins on the site
 
 
-def holders(connection: Connection, number: int) -> list[Holder]:
+def holders(connection: Connection, number: int) -> list[PaperHolder]:
     """Return the students with a paper, in the order of issue."""
     found = (
         select(
@@ -224,7 +228,7 @@ def holders(connection: Connection, number: int) -> list[Holder]:
     came = select(delivery.c.person_id, func.count()).where(delivery.c.assignment_id == number)
     done = _by_number(connection, came.group_by(delivery.c.person_id))
     return [
-        Holder(row[0], row[1], row[2], row[3], row[4], done.get(row[0], 0))
+        PaperHolder(row[0], row[1], row[2], row[3], row[4], done.get(row[0], 0))
         for row in connection.execute(found)
     ]
 
@@ -236,20 +240,20 @@ def _noted(connection: Connection, name: str) -> list[Any]:
     return own[:_NOTED]
 
 
-def _noting(request: Request, connection: Connection, one: Handed, what: str, **about: Any) -> None:
+def _note(request: Request, connection: Connection, one: ListedAssignment, what: str, **about: Any) -> None:
     note(connection, request.received_at, request.user.name, what, assignment=one.name, **about)
 
 
-def _back(one: Handed) -> Response:
+def _redirect(one: ListedAssignment) -> Response:
     return Response(redirect=f"/desk/assignments/{one.id}")
 
 
 # --------------------------------------------------------------------- publishing
 
 
-def put_out(request: Request) -> Response:
+def publish_assignment(request: Request) -> Response:
     """Publish it with what the form says, or say what makes no sense; published again, by the new dates."""
-    _posted(request)
+    _check_is_post(request)
     with request.site.store.reading() as connection:
         one = assignment_here(request, connection)
     publication, faults = publication_of(request.form)
@@ -263,8 +267,8 @@ def put_out(request: Request) -> Response:
         publish(connection, one.id, publication)
         say_sittings(connection, one.id, sittings)
         prepare_soon(request.site, connection, one.id)
-        _noting(request, connection, one, "assignment published", **publication.as_json(), sittings=sittings)
-    return _back(one)
+        _note(request, connection, one, "assignment published", **publication.as_json(), sittings=sittings)
+    return _redirect(one)
 
 
 def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
@@ -312,20 +316,20 @@ def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
     return found, faults
 
 
-def take_back(request: Request) -> Response:
+def unpublish(request: Request) -> Response:
     """Unpublish it: no student sees it any more; what was handed in stays."""
-    _posted(request)
+    _check_is_post(request)
     with request.site.store.begin() as connection:
         one = assignment_here(request, connection)
         publish(connection, one.id, None)
         drop_prepared(connection, one.id)
-        _noting(request, connection, one, "assignment unpublished")
-    return _back(one)
+        _note(request, connection, one, "assignment unpublished")
+    return _redirect(one)
 
 
-def give_more(request: Request) -> Response:
+def extend_assignment(request: Request) -> Response:
     """Give one person an extension, with its reason."""
-    _posted(request)
+    _check_is_post(request)
     with request.site.store.reading() as connection:
         one = assignment_here(request, connection)
         holder = next(
@@ -347,13 +351,11 @@ def give_more(request: Request) -> Response:
         extend(connection, one.id, holder.person, more)
         prepare_soon(request.site, connection, one.id, holder.person)
         closes = told.closes.isoformat() if told.closes else ""
-        _noting(
-            request, connection, one, "extension", student=holder.student, closes=closes, tries=told.tries
-        )
-    return _back(one)
+        _note(request, connection, one, "extension", student=holder.student, closes=closes, tries=told.tries)
+    return _redirect(one)
 
 
-def _posted(request: Request) -> None:
+def _check_is_post(request: Request) -> None:
     if not request.is_post:
         raise HTTPException("method", 405)
 
@@ -363,13 +365,13 @@ def _posted(request: Request) -> None:
 
 def add_late(request: Request) -> Response:
     """Assign variants to the new students of a longer roster; all other papers remain as they are."""
-    _posted(request)
-    return _deal_more(request, handing_out.roster(request), (), "late ones added")
+    _check_is_post(request)
+    return _deal_more(request, new_assignment.roster(request), (), "late ones added")
 
 
 def make_up(request: Request) -> Response:
     """Another variant for one person, for a second sitting."""
-    _posted(request)
+    _check_is_post(request)
     return _deal_more(request, [], (request.form.text("student"),), "make-up dealt")
 
 
@@ -377,16 +379,18 @@ def _deal_more(request: Request, students: Sequence[Student], names: Sequence[st
     with request.site.store.reading() as connection:
         one = assignment_here(request, connection)
         content = issued_content(connection, one.id, secret=True)
-    if one.asked is None:
+    if one.definition is None:
         return _page(
             request, one, one.publication or Publication(), problem=request.words["publishing"]["no_file"]
         )
-    issued = dealings.holders(content)
+    issued = assigning.holders(content)
     known = {student.who for student in issued}
     everybody = [*issued, *(student for student in students if student.who not in known)]
-    wanted = Wanted(one.name, one.asked, everybody, request.site.languages[0], content, tuple(names))
+    wanted = AssignmentRequest(
+        one.name, one.definition, everybody, request.site.languages[0], content, tuple(names)
+    )
     return Response(
-        redirect=f"/desk/assignments/dealing/{dealings.begin(request.site, wanted, request.user.name, what)}"
+        redirect=f"/desk/assignments/dealing/{assigning.begin(request.site, wanted, request.user.name, what)}"
     )
 
 
@@ -398,16 +402,16 @@ def preview(request: Request) -> Response:
     with request.site.store.reading() as connection:
         one = assignment_here(request, connection)
         issued = issued_of(connection, one.id)
-    asked = _as_asked(request, one, issued)
+    asked = _definition(request, one, issued)
     made = deal(
         request.site.course,
         asked,
         [Student(request.words["publishing"]["nobody"])],
-        [handing_out.spoken(request, asked)],
+        [new_assignment.spoken(request, asked)],
         secret=Secret(request.site.secret[:16]).under("preview"),
     )
     student = made.issues[0].student
-    own = OwnPaper(
+    own = StudentPaper(
         request.site.course,
         content_of(made.issues, asked),
         student,
@@ -415,7 +419,7 @@ def preview(request: Request) -> Response:
         asked.instructions,
     )
     said = one.publication or Publication()
-    state = State(
+    state = AssignmentState(
         Place(one.id, one.name, asked.stated(), student, said, None),
         request.lang,
         said.now(request.received_at),
@@ -425,10 +429,10 @@ def preview(request: Request) -> Response:
     return _seen(request, one, state, own, request.words["publishing"]["look_preview"])
 
 
-def _as_asked(request: Request, one: Handed, issued: Issued) -> Assignment:
+def _definition(request: Request, one: ListedAssignment, issued: Issued) -> Assignment:
     """Return the assignment as its file states it; for one issued elsewhere, as its records state it."""
-    if one.asked is not None:
-        return assignment_of(one.name, one.asked, request.site.course)
+    if one.definition is not None:
+        return assignment_of(one.name, one.definition, request.site.course)
     exercises = []
     for exercise in issued.exercises:
         record = next(record for (name, _), record in issued.records.items() if name == exercise)
@@ -445,9 +449,9 @@ def as_somebody(request: Request) -> Response:
         found = places(connection, person_id, one.id)
         if not found:
             raise HTTPException("page", 404)
-        _noting(request, connection, one, "seen as a student", student=found[0].student)
+        _note(request, connection, one, "seen as a student", student=found[0].student)
         place = found[0]._replace(publication=found[0].publication or Publication())
-        own = own_paper(connection, request.site.course, place, person_id, request.lang)
+        own = student_paper(connection, request.site.course, place, person_id, request.lang)
         theirs = state_of(replace(request, person=request.user._replace(id=person_id)), place, connection)
     look = request.words["publishing"]["look_as"].format(place.student)
     if theirs.phase is Phase.TO_COME or one.publication is None:
@@ -455,7 +459,9 @@ def as_somebody(request: Request) -> Response:
     return _seen(request, one, theirs, own, look)
 
 
-def _seen(request: Request, one: Handed, state: State, own: OwnPaper, look: str) -> Response:
+def _seen(
+    request: Request, one: ListedAssignment, state: AssignmentState, own: StudentPaper, look: str
+) -> Response:
     pieces = own.pieces()
     return request.render(
         "site_assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(request.received_at),
@@ -475,7 +481,7 @@ def issued_file(request: Request) -> Response:
 
 
 ROUTES = (
-    Route("/desk/assignments", listed, Permission.ASSIGNMENTS_READ),
+    Route("/desk/assignments", list_page, Permission.ASSIGNMENTS_READ),
     Route(
         "/desk/assignments/new",
         new,
@@ -484,19 +490,25 @@ ROUTES = (
         limit="upload",
         budget=DESK_FILE,
     ),
-    Route("/desk/assignments/dealing/{token}", dealing, Permission.ASSIGNMENTS_PUBLISH),
-    Route("/desk/assignments/{number:int}", shown, Permission.ASSIGNMENTS_READ),
+    Route("/desk/assignments/dealing/{token}", assigning_page, Permission.ASSIGNMENTS_PUBLISH),
+    Route("/desk/assignments/{number:int}", assignment_page, Permission.ASSIGNMENTS_READ),
     Route(
-        "/desk/assignments/{number:int}/publish", put_out, Permission.ASSIGNMENTS_PUBLISH, takes_forms=True
-    ),
-    Route(
-        "/desk/assignments/{number:int}/unpublish",
-        take_back,
+        "/desk/assignments/{number:int}/publish",
+        publish_assignment,
         Permission.ASSIGNMENTS_PUBLISH,
         takes_forms=True,
     ),
     Route(
-        "/desk/assignments/{number:int}/extend", give_more, Permission.ASSIGNMENTS_PUBLISH, takes_forms=True
+        "/desk/assignments/{number:int}/unpublish",
+        unpublish,
+        Permission.ASSIGNMENTS_PUBLISH,
+        takes_forms=True,
+    ),
+    Route(
+        "/desk/assignments/{number:int}/extend",
+        extend_assignment,
+        Permission.ASSIGNMENTS_PUBLISH,
+        takes_forms=True,
     ),
     Route(
         "/desk/assignments/{number:int}/roster",

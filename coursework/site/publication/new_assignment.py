@@ -24,27 +24,27 @@ from coursework.making.issued import Issued
 from coursework.making.roster import Student, read_roster
 from coursework.site.frame.budgets import DESK_FILE, read_apart
 from coursework.site.frame.requests import Request, Upload
-from coursework.site.publication.dealings import Wanted
+from coursework.site.publication.assigning import AssignmentRequest
 
 _LONGEST = 80  #: characters of a name
 
 
-class HandOut(NamedTuple):
+class NewAssignment(NamedTuple):
     """Assignment to hand out: with variants to draw here, or as issued elsewhere."""
 
     name: str
-    wanted: Wanted | None = None
+    wanted: AssignmentRequest | None = None
     issued: Mapping[str, Any] | None = None
 
 
-class Shelf(NamedTuple):
+class ExerciseGroup(NamedTuple):
     """Exercises that stand together: name and title of each."""
 
     title: str
     exercises: tuple[tuple[str, str], ...]
 
 
-def read(request: Request) -> HandOut:
+def read(request: Request) -> NewAssignment:
     """Return the assignment that the form states.
 
     Raises
@@ -55,13 +55,13 @@ def read(request: Request) -> HandOut:
     said = request.words["publishing"]["faults"]
     if sent := _sent(request, "issued"):
         return _issued(request, sent)
-    name, table, source = _asked(request)
+    name, table, source = _stated(request)
     _check_new(request, name)
     asked = assignment_of(name, table, request.site.course, source)
     students = roster(request)
     if not students:
         raise BadInput(said["nobody"])
-    return HandOut(name, Wanted(name, table, students, spoken(request, asked)))
+    return NewAssignment(name, AssignmentRequest(name, table, students, spoken(request, asked)))
 
 
 def spoken(request: Request, asked: Assignment) -> str:
@@ -74,7 +74,7 @@ def _sent(request: Request, field: str) -> Upload | None:
     return next((one for one in request.form.files.get(field, ()) if one.data), None)
 
 
-def _issued(request: Request, sent: Upload) -> HandOut:
+def _issued(request: Request, sent: Upload) -> NewAssignment:
     issued = Issued.of(sent.data, "issued.json")
     name = str((issued.assignment or {}).get("name") or _name(request.form.text("name")))
     if not name:
@@ -83,7 +83,7 @@ def _issued(request: Request, sent: Upload) -> HandOut:
         if exercise not in request.site.course:
             raise BadInput(request.words["publishing"]["faults"]["no_exercise"].format(exercise[:80]))
         request.site.course[exercise].from_record(record)
-    return HandOut(name, issued=json.loads(sent.data.decode("utf-8")))
+    return NewAssignment(name, issued=json.loads(sent.data.decode("utf-8")))
 
 
 def _check_new(request: Request, name: str) -> None:
@@ -95,7 +95,7 @@ def _check_new(request: Request, name: str) -> None:
 # ------------------------------------------------------------------------ the asked
 
 
-def _asked(request: Request) -> tuple[str, dict[str, Any], str]:
+def _stated(request: Request) -> tuple[str, dict[str, Any], str]:
     """Name, table and text of the assignment: of a file, else of what was chosen."""
     if sent := _sent(request, "file"):
         name = _name(PurePosixPath(sent.name.replace("\\", "/")).stem)
@@ -197,18 +197,20 @@ def _student(one: Any, *, apart: bool) -> Student:
 # ------------------------------------------------------------------------ exercises
 
 
-def shelves(course: Course[Any], lang: str) -> list[Shelf]:
+def exercise_groups(course: Course[Any], lang: str) -> list[ExerciseGroup]:
     """Return the exercises by chapter, then the others."""
-    return [shelf for shelf in _shelves(course, lang) if shelf.exercises]
+    return [group for group in _exercise_groups(course, lang) if group.exercises]
 
 
-def _shelves(course: Course[Any], lang: str) -> Iterator[Shelf]:
+def _exercise_groups(course: Course[Any], lang: str) -> Iterator[ExerciseGroup]:
     folder = course.folder
     placed: set[str] = set()
     for chapter in folder.chapters:
         placed |= set(chapter.exercises)
-        yield Shelf(f"{chapter.number}. {chapter.title(lang)}", _titled(course, chapter.exercises, lang))
-    yield Shelf("…", _titled(course, [name for name in folder.names if name not in placed], lang))
+        yield ExerciseGroup(
+            f"{chapter.number}. {chapter.title(lang)}", _titled(course, chapter.exercises, lang)
+        )
+    yield ExerciseGroup("…", _titled(course, [name for name in folder.names if name not in placed], lang))
 
 
 def _titled(course: Course[Any], found: Sequence[str], lang: str) -> tuple[tuple[str, str], ...]:

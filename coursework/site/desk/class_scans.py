@@ -27,7 +27,7 @@ _GONE = PageKept(REFUSED, "read by another version: send its file again", has_pi
 
 
 @dataclass(frozen=True)
-class ScansNow:
+class ClassScans:
     """The pages that were scanned, and what people typed."""
 
     papers: Papers
@@ -35,16 +35,16 @@ class ScansNow:
     typed: tuple[Typed, ...]
 
     @cached_property
-    def asked(self) -> Any:
+    def expected(self) -> Any:
         return papers_asked(self.papers, self.pages)
 
     @cached_property
-    def found(self) -> Gathered:
-        return together(self.papers, self.asked, self.pages, self.typed)
+    def gathered(self) -> Gathered:
+        return together(self.papers, self.expected, self.pages, self.typed)
 
     @cached_property
     def queue(self) -> Queue:
-        return Queue(self.papers, self.asked, self.found, Joins(self.papers, self.asked), Path())
+        return Queue(self.papers, self.expected, self.gathered, Joins(self.papers, self.expected), Path())
 
     @property
     def cards(self) -> Sequence[Card]:
@@ -66,14 +66,14 @@ class ScansNow:
     @property
     def answers(self) -> list[Answer]:
         """Answers of papers of which it is known whose they are."""
-        return [one for one in self.found.answers if one.student not in self.papers.papers]
+        return [one for one in self.gathered.answers if one.student not in self.papers.papers]
 
     @cached_property
     def by_id(self) -> dict[str, Scanned]:
         return {one.id: one for one in self.pages}
 
 
-def scans_now(site: Site, number: int) -> ScansNow:
+def class_scans(site: Site, number: int) -> ClassScans:
     """Return the scans of an assignment."""
     with site.store.reading() as connection:
         content = issued_content(connection, number)
@@ -90,7 +90,7 @@ def scans_now(site: Site, number: int) -> ScansNow:
         )
         for row in rows
     )  # fmt: skip
-    return ScansNow(papers, tuple(pages), typed)
+    return ClassScans(papers, tuple(pages), typed)
 
 
 def _stamp(content: dict[str, Any]) -> int:
@@ -103,10 +103,10 @@ def _stamp(content: dict[str, Any]) -> int:
     )
 
 
-def hand_over(site: Site, number: int, now: ScansNow) -> int:
+def hand_over(site: Site, number: int, now: ClassScans) -> int:
     """Let the answers that are known be marked, in place of those of the scans before; gives how many they are."""
     rows = [
-        Row(one.student, one.exercise, str(one.seed), one.part, answer_told(one), _source(now, one))
+        Row(one.student, one.exercise, str(one.seed), one.part, answer_reference(one), _source(now, one))
         for one in now.answers
     ]
     if not rows:
@@ -117,15 +117,15 @@ def hand_over(site: Site, number: int, now: ScansNow) -> int:
     return len(rows)
 
 
-def answer_told(one: Answer) -> str:
+def answer_reference(one: Answer) -> str:
     """Return the text of an answer; for one that is marked from its picture, a reference to the picture."""
     return "; ".join(f"scan {s.page}/{s.index}" for s in one.pictures) or one.answer
 
 
-def _source(now: ScansNow, one: Answer) -> str:
+def _source(now: ClassScans, one: Answer) -> str:
     return "; ".join(
         f"{now.by_id[name].file.name} p. {now.by_id[name].number}" for name in one.pages if name in now.by_id
     )
 
 
-__all__ = ["ANSWERS", "LOST", "SOURCE", "ScansNow", "hand_over", "scans_now"]
+__all__ = ["ANSWERS", "LOST", "SOURCE", "ClassScans", "class_scans", "hand_over"]

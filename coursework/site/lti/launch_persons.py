@@ -21,7 +21,7 @@ from coursework.making.students import folded
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
 from coursework.site.lti import connecting
-from coursework.site.publication.dealings import holders
+from coursework.site.publication.assigning import holders
 
 if TYPE_CHECKING:
     from coursework.lti.launch import Launch
@@ -35,28 +35,28 @@ def platform_name(launch: Launch) -> str:
     return urlsplit(launch.issuer).hostname or launch.issuer
 
 
-def comer(site: Site, launch: Launch, lang: str) -> Any:
+def launch_person(site: Site, launch: Launch, lang: str) -> Any:
     """Return the person of a launch, with its name and language; add a new one."""
     with site.store.reading() as connection:
         known = person_known(connection, launch.issuer, launch.person)
-    if known is not None and _is_as_told(known, launch, lang):
+    if known is not None and _is_current(known, launch, lang):
         return known
     with site.store.begin() as connection:
         known = person_known(connection, launch.issuer, launch.person)
         if known is None:
-            _put(site, connection, launch, lang)
+            _add_person(site, connection, launch, lang)
         elif not known.login:
             take_over(connection, known.id, launch.name, lang)
         return person_known(connection, launch.issuer, launch.person)
 
 
-def _is_as_told(known: Any, launch: Launch, lang: str) -> bool:
+def _is_current(known: Any, launch: Launch, lang: str) -> bool:
     """Return True if nothing is to be updated from the launch; a person with an account keeps the account's
     name."""
     return bool(known.login) or (launch.name in ("", known.name) and lang == known.lang)
 
 
-def _put(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
+def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
     """Tie the one person of the rosters whom the platform's e-mail or number tells, else a new one.
 
     Raises
@@ -96,7 +96,7 @@ def _new(connection: Connection, launch: Launch) -> Student:
 # ------------------------------------------------------------------------- dealing
 
 
-def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> None:
+def assign_paper(site: Site, number: int, known: Any, launch: Launch, lang: str) -> None:
     """Assign a paper to somebody who joins late; all other papers remain as they are.
 
     Raises

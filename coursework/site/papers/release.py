@@ -10,32 +10,34 @@ from sqlalchemy import Connection
 from coursework.database.permissions import Permission
 from coursework.database.publication import Phase, places
 from coursework.site.frame.requests import Request
-from coursework.site.papers.own_assignment import state_of
+from coursework.site.papers.assignment_state import state_of
 
 
-class Told(NamedTuple):
+class Release(NamedTuple):
     """Released content of an assignment."""
 
     paper: bool = True
     marks: bool = True
 
 
-def all_told(number: int) -> Told:
+def full_release(number: int) -> Release:
     """Return the content that staff may see: all of it."""
-    return Told()
+    return Release()
 
 
-def told_to(connection: Connection, request: Request) -> Callable[[int], Told]:
+def release_to(connection: Connection, request: Request) -> Callable[[int], Release]:
     """Return the function that gives the released content of an assignment to the current user; nothing of an
     unpublished one."""
     if request.user.may(Permission.ASSIGNMENTS_READ):
-        return all_told
+        return full_release
     states = [
         state_of(request, one, connection) for one in places(connection, request.user.id) if one.publication
     ]
     # A mark's sentence may say what is right.
     known = {
-        one.place.id: Told(one.phase is not Phase.TO_COME, one.tells("feedback") and one.tells("answers"))
+        one.assignment.id: Release(
+            one.phase is not Phase.TO_COME, one.releases("feedback") and one.releases("answers")
+        )
         for one in states
     }
-    return lambda number: known.get(number, Told(False, False))
+    return lambda number: known.get(number, Release(False, False))

@@ -38,13 +38,13 @@ from coursework.gradebook.rows import Collected, Row
 from coursework.site.frame.clock import is_steady
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
-from coursework.site.papers.own_paper import OwnPaper, Texts, own_paper
+from coursework.site.papers.student_paper import StudentPaper, Texts, student_paper
 
 LOG = logging.getLogger("coursework.site")
 ON_THE_PAGE, IN_A_FILE, AS_SAVED = "site", "site: a file", "site: as saved when it closed"
 
 
-class HandedIn(NamedTuple):
+class SubmissionResult(NamedTuple):
     """Result of a submitted form."""
 
     delivery: Delivery
@@ -52,21 +52,21 @@ class HandedIn(NamedTuple):
     differs: bool = False  #: it holds something else than what was handed in under its number
 
 
-def sheet_of(place: Place, paper: OwnPaper) -> str:
+def sheet_of(place: Place, paper: StudentPaper) -> str:
     """Return the key under which drafts of the paper are stored."""
     return f"assignment/{place.id}" if paper.sitting == 1 else f"assignment/{place.id}/{paper.sitting}"
 
 
-def hand_in(
+def submit(
     site: Site,
     place: Place,
-    paper: OwnPaper,
+    paper: StudentPaper,
     person_id: int,
     texts: Texts,
     number: int,
     at: datetime,
     source: str,
-) -> HandedIn:
+) -> SubmissionResult:
     """Hand in what was typed, as which of the person's hand-ins the form says.
 
     Raises
@@ -77,23 +77,23 @@ def hand_in(
     with site.store.begin() as connection:
         hold(connection, person_id)
         (fresh,) = places(connection, person_id, place.id)
-        found = store(connection, site, fresh, paper, person_id, texts, number, at, source)
+        found = store_submission(connection, site, fresh, paper, person_id, texts, number, at, source)
     if found.is_new:
         mark(site, found.delivery.id)
     return found
 
 
-def store(
+def store_submission(
     connection: Connection,
     site: Site,
     place: Place,
-    paper: OwnPaper,
+    paper: StudentPaper,
     person_id: int,
     texts: Texts,
     number: int,
     at: datetime,
     source: str,
-) -> HandedIn:
+) -> SubmissionResult:
     """Store a submission, in a transaction that locked the person's row before it read place and paper.
 
     Raises
@@ -106,16 +106,16 @@ def store(
     if before is not None:
         is_same = _holds(connection, before, paper, texts)
         if is_same or before.source != AS_SAVED or not _takes(place, at, site.clock()):
-            return HandedIn(before, False, not is_same)
+            return SubmissionResult(before, False, not is_same)
     if done and _holds(connection, done[-1], paper, texts):
-        return HandedIn(done[-1], False)  # what stands already costs no try
+        return SubmissionResult(done[-1], False)  # what stands already costs no try
     now = _check(connection, place, person_id, at, site.clock(), done)
     made = _deliver(connection, place, paper, person_id, texts, now, source)
     put_job(connection, MARK, place.id, site.clock(), delivery=made.id)
-    return HandedIn(made, True)
+    return SubmissionResult(made, True)
 
 
-def _holds(connection: Connection, made: Delivery, paper: OwnPaper, texts: Texts) -> bool:
+def _holds(connection: Connection, made: Delivery, paper: StudentPaper, texts: Texts) -> bool:
     return answers_of(connection, made.id) == content_of(paper, texts)
 
 
@@ -150,7 +150,7 @@ def _check(
 def _deliver(
     connection: Connection,
     place: Place,
-    paper: OwnPaper,
+    paper: StudentPaper,
     person_id: int,
     texts: Texts,
     came: datetime,
@@ -177,7 +177,7 @@ def mark(site: Site, made: int) -> None:
         LOG.error("delivery %d is not marked yet: %s", made, type(fault).__name__)
 
 
-def rows_for(paper: OwnPaper, texts: Texts, number: int, came: datetime, source: str) -> list[Row]:
+def rows_for(paper: StudentPaper, texts: Texts, number: int, came: datetime, source: str) -> list[Row]:
     """Return a row for every question, including blank ones, so that the submission records the questions
     left blank."""
     origin = Collected(sitting=number, submitted=came.isoformat(timespec="seconds"))
@@ -193,7 +193,7 @@ def rows_for(paper: OwnPaper, texts: Texts, number: int, came: datetime, source:
 # ---------------------------------------------------------------------- content
 
 
-def content_of(paper: OwnPaper, texts: Texts) -> list[list[str]]:
+def content_of(paper: StudentPaper, texts: Texts) -> list[list[str]]:
     """Return the answers in the form of :func:`coursework.database.deliveries.answers_of`."""
     return [
         [one.exercise, str(one.seed), one.part, texts.get(name, "")] for name, one in paper.fields.items()
@@ -241,7 +241,7 @@ def close_passed(
         passed = [one for one in dates if one < at]
         if not passed or (said.reached is not None and passed[-1] < said.reached):
             return
-        wrote = who_saved(connection, number) if said.takes_saved else []
+        wrote = unsubmitted_persons(connection, number) if said.takes_saved else []
     for person_id in wrote:
         try:
             rescue(site, number, person_id, at)
@@ -261,7 +261,7 @@ def close_passed(
             drop_prepared(connection, number)
 
 
-def who_saved(connection: Connection, number: int) -> list[int]:
+def unsubmitted_persons(connection: Connection, number: int) -> list[int]:
     """Return who has answers in the boxes of an assignment and handed in nothing."""
     theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
     wrote = select(draft.c.person_id).where(draft.c.sheet.like(f"assignment/{number}%"), draft.c.text != "")
@@ -292,7 +292,7 @@ def _saved(site: Site, connection: Connection, number: int, person_id: int, at: 
     if deliveries(connection, number, person_id):
         return None
     lang = str(connection.execute(select(person.c.lang).where(person.c.id == person_id)).scalar() or "")
-    paper = own_paper(
+    paper = student_paper(
         connection, site.course, place, person_id, lang if lang in site.languages else site.languages[0]
     )
     boxes = drafts(connection, person_id, sheet_of(place, paper))
@@ -302,10 +302,10 @@ def _saved(site: Site, connection: Connection, number: int, person_id: int, at: 
     of_it = draft.c.person_id == person_id, draft.c.sheet == sheet_of(place, paper)
     came = connection.execute(select(func.max(draft.c.changed)).where(*of_it)).scalar()
     ends = place.own.ends or at
-    return _deliver(connection, place, paper, person_id, texts, min(_known(came, ends), ends), AS_SAVED)
+    return _deliver(connection, place, paper, person_id, texts, min(_as_datetime(came, ends), ends), AS_SAVED)
 
 
-def _known(came: Any, otherwise: datetime) -> datetime:
+def _as_datetime(came: Any, otherwise: datetime) -> datetime:
     """Return a time that the database computed; ``otherwise`` if it computed none."""
     if isinstance(came, str):
         came = datetime.fromisoformat(came)
@@ -317,7 +317,7 @@ def _known(came: Any, otherwise: datetime) -> datetime:
 # ------------------------------------------------------------------------- papers
 
 
-def receipt_called(connection: Connection, code: str, number: int | None = None) -> Any | None:
+def submission_of_receipt(connection: Connection, code: str, number: int | None = None) -> Any | None:
     """Return the submission of a receipt, with its assignment and its person; None for an unknown receipt."""
     from coursework.database.tables import assignment
 

@@ -14,26 +14,26 @@ if TYPE_CHECKING:
     from coursework.site.frame.requests import Request
 
 
-class Begun(NamedTuple):
+class BegunVariant(NamedTuple):
     """A variant that was begun, and is not done."""
 
     exercise: str
     seed: int
     right: int
-    asked: int
+    questions: int
 
     @property
     def address(self) -> str:
         return f"/practice/{self.exercise}/{self.seed}"
 
 
-def begun(request: Request, progress: Progress, exercise: str = "") -> Iterator[Begun]:
+def begun(request: Request, progress: Progress, exercise: str = "") -> Iterator[BegunVariant]:
     """Yield the variants to continue with, of one exercise if given."""
     for name, seed in _touched(request, progress, exercise):
         if name not in request.site.course or not request.site.pool.holds(name, seed):
             continue
         found = _standing(request, progress, name, seed)
-        if found is not None and found.right < found.asked:
+        if found is not None and found.right < found.questions:
             yield found
 
 
@@ -51,7 +51,7 @@ def _touched(request: Request, progress: Progress, exercise: str) -> list[tuple[
     return sorted(when, key=lambda place: when[place], reverse=True)
 
 
-def _standing(request: Request, progress: Progress, exercise: str, seed: int) -> Begun | None:
+def _standing(request: Request, progress: Progress, exercise: str, seed: int) -> BegunVariant | None:
     """Return the progress on a variant; None if it was shown with its solution."""
     mine = [e for e in progress.of(exercise) if e["seed"] == seed]
     if any(e["what"] == EXAMPLE for e in mine):
@@ -59,4 +59,4 @@ def _standing(request: Request, progress: Progress, exercise: str, seed: int) ->
     last = {e["part"]: e.get("verdict") for e in mine if e["what"] == ANSWER}
     variant = request.site.variant(exercise, seed, request.lang)
     asked = [part.id for part in variant.parts if not part.sort.is_open]
-    return Begun(exercise, seed, sum(last.get(name) in RIGHT for name in asked), len(asked))
+    return BegunVariant(exercise, seed, sum(last.get(name) in RIGHT for name in asked), len(asked))

@@ -16,14 +16,14 @@ _SOON, _EACH, _LONGEST = (
 )  #: seconds until a page looks again: at least, for each before it, at most
 
 
-class Marking(NamedTuple):
+class PendingMarking(NamedTuple):
     """Hand-in that has no marks yet."""
 
-    says: str
+    message: str
     seconds: int  #: until the page looks again; 0 where that is of no use
 
 
-def being_marked(request: Request, delivery: int) -> Marking | None:
+def pending_marking(request: Request, delivery: int) -> PendingMarking | None:
     """Return the message for a submission that waits for its marks; None if it is marked."""
     said = request.words["assignments"]
     with request.site.store.reading() as connection:
@@ -31,8 +31,8 @@ def being_marked(request: Request, delivery: int) -> Marking | None:
         if one is None or not request.site.has_worker:
             return None
         if one.fault:
-            return Marking(str(said["not_marked"]), 0)
+            return PendingMarking(str(said["not_marked"]), 0)
         seconds = round(min(_LONGEST, _SOON + _EACH * before(connection, one)))
-    return Marking(
+    return PendingMarking(
         str(said["being_marked"]).format(length_text(timedelta(seconds=seconds), request.lang)), seconds
     )

@@ -1,4 +1,4 @@
-"""Dealing: variants drawn for a class by a process of its own, so that no page of a student waits for it.
+"""Assignment of variants: drawn for a class by a process of its own, so that no page of a student waits for it.
 
 What is asked for stands in the database until it is done, and so does what became of it: whoever serves the next page can tell.
 """
@@ -36,7 +36,7 @@ RUNNING, DONE, FAILED = "running", "done", "failed"
 
 
 @dataclass(frozen=True)
-class Wanted:
+class AssignmentRequest:
     """Request to assign variants: an assignment as its file states it, and the students."""
 
     name: str
@@ -51,14 +51,14 @@ class Wanted:
         return len(self.students) * len(self.table.get("exercises", ()))
 
 
-class Dealing(NamedTuple):
+class AssigningJob(NamedTuple):
     """State of a job that assigns variants."""
 
     state: str
     name: str
     papers: int
     number: int = 0  #: of the assignment, when it is done
-    told: tuple[str, ...] = ()  #: what is to be known of it, or why it failed
+    messages: tuple[str, ...] = ()  #: what is to be known of it, or why it failed
 
     @property
     def is_over(self) -> bool:
@@ -77,17 +77,17 @@ def holders(content: Mapping[str, Any]) -> list[Student]:
     return [Student(name, columns=content.get("students", {}).get(name, {})) for name in names if name]
 
 
-def begin(site: Site, wanted: Wanted, by: str, what: str) -> str:
+def begin(site: Site, wanted: AssignmentRequest, by: str, what: str) -> str:
     """Deal, as ``by`` asks, and note it as ``what``; gives a name to ask after it by. Back at once, or when it is over."""
     token = secrets.token_hex(8)
-    _put(site, token, Dealing(RUNNING, wanted.name, wanted.papers))
+    _store_state(site, token, AssigningJob(RUNNING, wanted.name, wanted.papers))
     thread = threading.Thread(target=_run, args=(site, token, wanted, by, what), daemon=True)
     thread.start()
     thread.join(_PATIENCE)
     return token
 
 
-def dealing(site: Site, token: str) -> Dealing | None:
+def assigning_job(site: Site, token: str) -> AssigningJob | None:
     """Return the state of a job; None for an unknown one. An interrupted job counts as failed: none of its
     variants were issued."""
     with site.store.reading() as connection:
@@ -95,7 +95,7 @@ def dealing(site: Site, token: str) -> Dealing | None:
     if kept is None:
         return None
     state, name, papers, number, told = kept["dealing"]
-    found = Dealing(state, name, papers, number, tuple(told))
+    found = AssigningJob(state, name, papers, number, tuple(told))
     if not found.is_over and site.clock() - datetime.fromisoformat(kept["at"]) > _GIVEN_UP:
         return found._replace(state=FAILED)
     return found
@@ -105,41 +105,41 @@ def _key(token: str) -> str:
     return f"dealing {token[:40]}"
 
 
-def _put(site: Site, token: str, now: Dealing) -> None:
+def _store_state(site: Site, token: str, now: AssigningJob) -> None:
     with site.store.begin() as connection:
         put_value(connection, _key(token), {"dealing": list(now), "at": site.clock().isoformat()})
 
 
-def _run(site: Site, token: str, wanted: Wanted, by: str, what: str) -> None:
-    begun = Dealing(RUNNING, wanted.name, wanted.papers)
+def _run(site: Site, token: str, wanted: AssignmentRequest, by: str, what: str) -> None:
+    begun = AssigningJob(RUNNING, wanted.name, wanted.papers)
     try:
-        found = _dealt_apart(site, wanted)
-        number = _keep(site, wanted, found, by, what)
-        _put(site, token, begun._replace(state=DONE, number=number, told=tuple(found.notes)))
+        found = _assigned_in_process(site, wanted)
+        number = _store(site, wanted, found, by, what)
+        _store_state(site, token, begun._replace(state=DONE, number=number, messages=tuple(found.notes)))
     except CourseworkError as fault:
-        _put(site, token, begun._replace(state=FAILED, told=(str(fault),)))
+        _store_state(site, token, begun._replace(state=FAILED, messages=(str(fault),)))
     except Exception as fault:  # nobody waits for this thread: what happened is told on the page
-        _put(site, token, begun._replace(state=FAILED, told=(type(fault).__name__,)))
+        _store_state(site, token, begun._replace(state=FAILED, messages=(type(fault).__name__,)))
 
 
-def _dealt_apart(site: Site, wanted: Wanted) -> _Outcome:
+def _assigned_in_process(site: Site, wanted: AssignmentRequest) -> _Outcome:
     """Assign variants, in another process if there are many."""
     root = str(site.course.folder.root)
     if wanted.papers <= _ALONE or workers(2) < 2:
-        return _dealt(root, wanted)
+        return _assigned(root, wanted)
     with processes(1) as submit:
-        found: _Outcome = submit(_dealt, root, wanted).result()
+        found: _Outcome = submit(_assigned, root, wanted).result()
         return found
 
 
-def _dealt(root: str, wanted: Wanted) -> _Outcome:
+def _assigned(root: str, wanted: AssignmentRequest) -> _Outcome:
     course = opened(root, Variant)
     asked = assignment_of(wanted.name, wanted.table, course)
     found = deal(course, asked, wanted.students, [wanted.lang], wanted.before, wanted.make_up)
     return _Outcome(issued_content(found.issues, asked, asked.secret or found.secret), found.notes)
 
 
-def _keep(site: Site, wanted: Wanted, found: _Outcome, by: str, what: str) -> int:
+def _store(site: Site, wanted: AssignmentRequest, found: _Outcome, by: str, what: str) -> int:
     """Store all issued variants in one transaction; return the assignment's id."""
     with site.store.begin() as connection:
         number = put_issued(connection, found.content, wanted.name)

@@ -32,7 +32,7 @@ _VARIANTS = 100  #: of one paper
 Texts = Mapping[str, str]  #: what stands in the boxes, by their names
 
 
-class Field(NamedTuple):
+class BoxRecord(NamedTuple):
     """A box of the paper, as the record of its variant has it: nothing is drawn to know it."""
 
     exercise: str
@@ -41,7 +41,7 @@ class Field(NamedTuple):
     lang: str
 
 
-class Box(NamedTuple):
+class PaperBox(NamedTuple):
     """A question of the paper, and where its answer is typed."""
 
     name: str  #: on the page
@@ -52,7 +52,7 @@ class Box(NamedTuple):
 
 
 @dataclass(frozen=True)
-class OwnPaper:
+class StudentPaper:
     """Paper of a student: a variant of each exercise, in one language."""
 
     course: Course[Any]
@@ -100,25 +100,25 @@ class OwnPaper:
         return self.lang if self.lang in spoken else spoken[0]
 
     @cached_property
-    def fields(self) -> dict[str, Field]:
+    def fields(self) -> dict[str, BoxRecord]:
         """The same boxes by their names, for what is stored and not shown."""
         found = {}
         for place, (exercise, seed) in enumerate(self.seeds.items(), 1):
             record, lang = self.issued.record_of(self.student, exercise, seed), self._spoken(exercise)
             for part in record["parts"]:
-                found[f"e{place}-{part['id']}"] = Field(exercise, seed, str(part["id"]), lang)
+                found[f"e{place}-{part['id']}"] = BoxRecord(exercise, seed, str(part["id"]), lang)
         return found
 
     @cached_property
-    def boxes(self) -> dict[str, Box]:
+    def boxes(self) -> dict[str, PaperBox]:
         """The boxes of the page by their names, in order."""
         return {box.name: box for box in self._boxes()}
 
-    def _boxes(self) -> Iterator[Box]:
+    def _boxes(self) -> Iterator[PaperBox]:
         for place, variant in enumerate(self.variants, 1):
             title = variant.exercise.title(variant.lang)
             for number, part in enumerate(variant.parts, 1):
-                yield Box(f"e{place}-{part.id}", f"{place}.{number}", title, variant, part)
+                yield PaperBox(f"e{place}-{part.id}", f"{place}.{number}", title, variant, part)
 
     @cached_property
     def heading(self) -> Heading:
@@ -153,16 +153,19 @@ class OwnPaper:
 
     def pieces(self) -> Pieces:
         """Return the parts of its page, with empty boxes."""
-        names, env = self.shown(self.paper), environment_of(self.course.folder.template_folders, self.lang)
+        names, env = (
+            self.template_names(self.paper),
+            environment_of(self.course.folder.template_folders, self.lang),
+        )
         return Pieces(render(env, "_paper_head.html.j2", names), render(env, "_paper_body.html.j2", names))
 
-    def shown(self, one: Paper | FeedbackPaper) -> dict[str, Any]:
+    def template_names(self, one: Paper | FeedbackPaper) -> dict[str, Any]:
         """Return the names for the template of a paper, or of its feedback."""
         env = environment_of(self.course.folder.template_folders, self.lang)
         return {**papers.context(one, "html.j2", partial(render, env)), "image": papers.image, "keeping": ""}
 
 
-def own_paper(
+def student_paper(
     connection: Connection,
     course: Course[Any],
     place: Place,
@@ -171,7 +174,7 @@ def own_paper(
     cache: LRUCache | None = None,
     *,
     heads: bool = True,
-) -> OwnPaper:
+) -> StudentPaper:
     """Return the paper of a person; its variants are cached in ``cache``, if given.
 
     Without ``heads`` the roster's columns are not loaded, which its heading needs: of a whole class they are long.
@@ -183,17 +186,17 @@ def own_paper(
     told = place.asked.get("instructions") or {}
     instructions = {"": told} if isinstance(told, str) else told
     kept = LRUCache(_VARIANTS) if cache is None else cache
-    return OwnPaper(course, content, place.student, lang, instructions, kept)
+    return StudentPaper(course, content, place.student, lang, instructions, kept)
 
 
-def read_lines(paper: OwnPaper, texts: Texts) -> list[tuple[Box, str, ReadBack]]:
+def read_lines(paper: StudentPaper, texts: Texts) -> list[tuple[PaperBox, str, ReadBack]]:
     """Each question, what was typed, and how it is read."""
     return [
         (box, texts.get(name, ""), paper.read(name, texts.get(name, ""))) for name, box in paper.boxes.items()
     ]
 
 
-def counts(lines: Sequence[tuple[Box, str, ReadBack]]) -> dict[str, int]:
+def counts(lines: Sequence[tuple[PaperBox, str, ReadBack]]) -> dict[str, int]:
     """Return the number of answered, doubtful, blank, and all questions."""
     doubt = sum(one.is_in_doubt for _, _, one in lines)
     blank = sum(one.status == "missing" for _, _, one in lines)

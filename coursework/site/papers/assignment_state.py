@@ -14,15 +14,15 @@ from coursework.language.numbers import localise, plain
 from coursework.making.assignment import text_in
 from coursework.site.frame.requests import HTTPException, Request
 from coursework.site.frame.times import length_text, moment_text
-from coursework.site.papers.handing_in import pass_dates
-from coursework.site.papers.own_paper import OwnPaper, own_paper
+from coursework.site.papers.student_paper import StudentPaper, student_paper
+from coursework.site.papers.submission import pass_dates
 
 
 @dataclass(frozen=True)
-class State:
+class AssignmentState:
     """State of an assignment for the current user."""
 
-    place: Place
+    assignment: Place
     lang: str
     now: datetime
     done: Sequence[Delivery]
@@ -31,11 +31,11 @@ class State:
 
     @property
     def phase(self) -> Phase:
-        return self.place.own.phase(self.now)
+        return self.assignment.own.phase(self.now)
 
     @property
     def tries_left(self) -> int | None:
-        tries = self.place.own.tries
+        tries = self.assignment.own.tries
         return None if tries is None else max(0, tries - self.used)
 
     @property
@@ -44,23 +44,23 @@ class State:
 
     @property
     def title(self) -> str:
-        return text_in(self.place.stated.get("title") or {}, self.lang) or self.place.name
+        return text_in(self.assignment.stated.get("title") or {}, self.lang) or self.assignment.name
 
     @property
     def address(self) -> str:
-        return f"/assignments/{self.place.id}"
+        return f"/assignments/{self.assignment.id}"
 
     @property
     def closed_for_both(self) -> datetime | None:
         """Time at which it has closed for the class and for this person; None if that never happens."""
-        assert self.place.publication is not None
-        ends = self.place.own.ends, self.place.publication.ends
+        assert self.assignment.publication is not None
+        ends = self.assignment.own.ends, self.assignment.publication.ends
         return None if ends[0] is None or ends[1] is None else max(ends[0], ends[1])
 
-    def tells(self, what: str) -> bool:
+    def releases(self, what: str) -> bool:
         """Return True if ``feedback`` or ``answers`` are released now."""
         ends = self.closed_for_both if what == "feedback" else self.everybody_ends
-        return self.place.own.tells(what, self.now, ends)
+        return self.assignment.own.tells(what, self.now, ends)
 
     def moment(self, at: datetime | None) -> str:
         return "" if at is None else moment_text(at, self.lang)
@@ -71,21 +71,21 @@ class State:
     @property
     def left(self) -> str:
         """Remaining time as text; empty if the assignment does not close, or has closed."""
-        own = self.place.own
+        own = self.assignment.own
         ends = own.closes if self.phase is Phase.OPEN else own.ends if self.phase is Phase.LATE else None
         return "" if ends is None else length_text(ends - self.now, self.lang)
 
 
-def state_of(request: Request, place: Place, connection: Connection) -> State:
+def state_of(request: Request, place: Place, connection: Connection) -> AssignmentState:
     assert place.publication is not None
     done = deliveries(connection, place.id, request.user.id)
     ends = last_end(place.publication, list(extensions(connection, place.id).values()))
     used = tries_used(connection, place.id, request.user.id, done)
     now = place.publication.counted(request.received_at, request.site.clock())
-    return State(place, request.lang, now, done, ends, used)
+    return AssignmentState(place, request.lang, now, done, ends, used)
 
 
-def to_hand_in(request: Request) -> list[State]:
+def to_hand_in(request: Request) -> list[AssignmentState]:
     """Return the assignments that a person may submit now and has not submitted yet."""
     with request.site.store.reading() as connection:
         published = [one for one in places(connection, request.user.id) if one.publication is not None]
@@ -93,7 +93,7 @@ def to_hand_in(request: Request) -> list[State]:
     return [one for one in found if one.may_hand_in and not one.done]
 
 
-def own_place(request: Request, connection: Connection) -> Place:
+def user_assignment(request: Request, connection: Connection) -> Place:
     """Return the requested assignment, if it is published and the person was issued a paper of it.
 
     Raises
@@ -107,21 +107,23 @@ def own_place(request: Request, connection: Connection) -> Place:
     return found[0]
 
 
-def own_assignment(request: Request) -> tuple[State, OwnPaper]:
+def state_and_paper(request: Request) -> tuple[AssignmentState, StudentPaper]:
     """Return the state of the assignment and the paper; refuse it before it opens."""
     pass_dates(request.site, int(request.path_params["number"]), request.received_at)
     with request.site.store.reading() as connection:
-        place, own = own_sheet(request, connection, heads=True)
+        place, own = assignment_and_paper(request, connection, heads=True)
         return state_of(request, place, connection), own
 
 
-def own_sheet(request: Request, connection: Connection, *, heads: bool = False) -> tuple[Place, OwnPaper]:
+def assignment_and_paper(
+    request: Request, connection: Connection, *, heads: bool = False
+) -> tuple[Place, StudentPaper]:
     """Return the assignment and the paper; refuse it before it opens. The heading needs ``heads``."""
-    site, place = request.site, own_place(request, connection)
+    site, place = request.site, user_assignment(request, connection)
     assert place.publication is not None
     if place.own.phase(place.publication.counted(request.received_at, site.clock())) is Phase.TO_COME:
         opens = place.own.opens
         raise HTTPException("not_yet", 409, moment_text(opens, request.lang) if opens else "")
-    return place, own_paper(
+    return place, student_paper(
         connection, site.course, place, request.user.id, request.lang, site.cache, heads=heads
     )
