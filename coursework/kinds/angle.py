@@ -38,13 +38,13 @@ class Angle(Number):
         turns = [abs(value) / self.turn for value in reading.values]
         if len(turns) == 1 and turns[0] <= MOST_TURNS:
             return reading
-        kept = _places(turns, _FEW_TURNS) or _places(turns, MOST_TURNS)[:1]
-        if not kept:
+        places = _places(turns, _FEW_TURNS) or _places(turns, MOST_TURNS)[:1]
+        if not places:
             return Reading(reading.text, "unreadable", code="too_many_turns", found=shorten(reading.text))
         return replace(
             reading,
-            values=tuple(reading.values[i] for i in kept),
-            read_as=tuple(reading.read_as[i] for i in kept),
+            values=tuple(reading.values[i] for i in places),
+            read_as=tuple(reading.read_as[i] for i in places),
         )
 
     def distance(

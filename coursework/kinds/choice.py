@@ -37,8 +37,8 @@ class Choice(Kind):
     def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
         return lettered_ticks(part, asking)
 
-    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
-        return by_letters(found, part, asking)
+    def from_paper(self, boxes: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+        return by_letters(boxes, part, asking)
 
     def kept(self, read_as: str) -> Any:
         return read_as

@@ -35,17 +35,16 @@ class Choices(Kind):
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         letters = asking.letters(part)
-        own = {
-            case: (*called, *filter(None, [letters.get(case)]))
-            for case, called in asking.labels(part).items()
+        labels = {
+            case: (*label, *filter(None, [letters.get(case)])) for case, label in asking.labels(part).items()
         }
-        return read_choices(answer, own)
+        return read_choices(answer, labels)
 
     def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
         return (*lettered_ticks(part, asking), Tick(_NONE, ""))
 
-    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
-        return by_letters(found, part, asking)
+    def from_paper(self, boxes: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+        return by_letters(boxes, part, asking)
 
     def kept(self, read_as: str) -> Any:
         return cases_of(read_as)

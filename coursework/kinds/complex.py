@@ -45,8 +45,8 @@ class Complex(Kind):
             ("radians", cmath.rect(modulus, math.degrees(angle))),
             ("radians", cmath.rect(modulus, math.radians(angle))),
         )
-        found = (slip for slip, other in wrong if self.distance(part, value, other) <= 1)
-        yield from dict.fromkeys(found)
+        slips = (slip for slip, other in wrong if self.distance(part, value, other) <= 1)
+        yield from dict.fromkeys(slips)
 
     def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
         return value + 1.3 * half_width, 1.13 * value
@@ -54,9 +54,9 @@ class Complex(Kind):
     def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
         return r"\mathrm{Re}", r"\mathrm{Im}"
 
-    def joined(self, found: Sequence[str], part: Stated, asking: Asking) -> str:
-        sign = "-" if found[1].startswith("-") else "+"
-        return f"({found[0]} {sign} {found[1].removeprefix('-')}i)"
+    def joined(self, texts: Sequence[str], part: Stated, asking: Asking) -> str:
+        sign = "-" if texts[1].startswith("-") else "+"
+        return f"({texts[0]} {sign} {texts[1].removeprefix('-')}i)"
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         value = complex(value)

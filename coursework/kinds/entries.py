@@ -1,4 +1,4 @@
-"""What kinds of many entries have in common: each entry is judged, all within one half-width."""
+"""Base of the kinds with many entries: each entry is judged, all within one half-width."""
 
 from __future__ import annotations
 

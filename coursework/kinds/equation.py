@@ -49,9 +49,13 @@ class Equation(Kind):
         from coursework.reading.equations import parse_equation
         from coursework.reading.equivalence import same_equation
 
-        asked = parse_equation(reference, part.variables)
-        put_in = {n: float(numbers[n]) for n in asked.variables - value.variables if n in numbers}
-        if put_in and same_equation(value, asked.with_numbers(put_in), parameters=part.parameters):
+        reference_equation = parse_equation(reference, part.variables)
+        put_in = {
+            n: float(numbers[n]) for n in reference_equation.variables - value.variables if n in numbers
+        }
+        if put_in and same_equation(
+            value, reference_equation.with_numbers(put_in), parameters=part.parameters
+        ):
             yield "numbers"
 
     def latex(self, value: str, symbols: Mapping[str, str]) -> str:
@@ -73,10 +77,10 @@ def _same(value: Read, reference: str, variables: tuple[str, ...], parameters: t
     """Equations are dear to compare, and many students write the same."""
     from coursework.reading.equivalence import same_equation
 
-    asked = _parsed(reference, variables)
+    reference_equation = _parsed(reference, variables)
     opened = value.without_inverse()
-    return same_equation(value, asked, parameters=parameters) or (
-        opened is not None and same_equation(opened, asked, parameters=parameters)
+    return same_equation(value, reference_equation, parameters=parameters) or (
+        opened is not None and same_equation(opened, reference_equation, parameters=parameters)
     )
 
 

@@ -52,7 +52,7 @@ class JointGraph(Kind):
         return read_as
 
     def compared(self, value: Any, reference: Any) -> Compared:
-        """What is right of an answer, joint by joint."""
+        """Return the comparison of an answer with the reference, joint by joint."""
         return _compared(_graph(value), _graph(reference))
 
     def distance(
@@ -65,18 +65,18 @@ class JointGraph(Kind):
         return max(by_joints, _RENAMED) if self._is_renamed(value, reference) else by_joints
 
     def _is_renamed(self, value: Any, reference: Any) -> bool:
-        """Whether it is the right graph under other names of the bodies."""
+        """Return whether the answer is the right graph under other names of the bodies."""
         return self.named and names_that_fit(_graph(value), _graph(reference), {}) is not None
 
     def remarks(self, part: Stated, value: Any, reference: Any, lang: str) -> Iterator[tuple[str, str]]:
         if self._is_renamed(value, reference):
             yield words(lang)["marking"]["graph"]["renamed"], ""
             return
-        found = self.compared(value, reference)
-        for what, sentence in words(lang)["marking"]["graph"].items():
-            if what == "missing" and found.missing:
-                yield sentence, str(found.missing)
-            elif joints := getattr(found, what, None):
+        comparison = self.compared(value, reference)
+        for remark, sentence in words(lang)["marking"]["graph"].items():
+            if remark == "missing" and comparison.missing:
+                yield sentence, str(comparison.missing)
+            elif joints := getattr(comparison, remark, None):
                 yield sentence, ", ".join(dict.fromkeys(map(str, joints)))
 
     def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:

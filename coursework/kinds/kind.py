@@ -1,4 +1,4 @@
-"""What every kind of part says: how its answers are read, judged, printed, and written by students.
+"""Interface of all kinds of parts: reading, judging, printing, and the spellings of students.
 
 A part says its kind by a word, and the word is the stem of a file of this room: ``number`` is :mod:`coursework.kinds.number`.
 A course may bring kinds of its own: a class derived from :class:`Kind` that an exercise imports is known by its ``name``.
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Stated(Protocol):
-    """What a kind needs to know of a part."""
+    """Attributes of a part that a kind reads."""
 
     @property
     def id(self) -> str: ...
@@ -43,10 +43,10 @@ class Stated(Protocol):
 
 
 class Asking(Protocol):
-    """What a kind may need to know of the variant that asks a part."""
+    """Attributes of the variant of a part that a kind may read."""
 
     def labels(self, part: Any) -> Mapping[str, Any]:
-        """What each case of a choice is called."""
+        """Return the labels of each case of a choice."""
 
     def letters(self, part: Any) -> Mapping[str, str]:
         """The letters of a choice by case, in the order printed; none where the sheet has none."""
@@ -142,14 +142,14 @@ class Kind(ABC):
 
     @property
     def follows(self) -> bool:
-        """Whether a value may follow from what a student answered before."""
+        """Return whether a value may follow from a student's earlier answers."""
         return self.is_followed or self.goes_on_only
 
     # ------------------------------------------------------------------ reading
 
     @abstractmethod
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        """What was understood of an answer."""
+        """Return the reading of an answer."""
 
     def kept(self, read_as: str) -> Any:
         """The value of an answer that is known to be right, from its echo."""
@@ -161,23 +161,24 @@ class Kind(ABC):
     def distance(
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
     ) -> float:
-        """How far a value is from a reference, as a multiple of the accepted half-width: right up to 1.
+        """Return the distance of a value from a reference, as a multiple of the accepted half-width: right up
+        to 1.
 
         The half-width is the part's own, or the ``envelope`` where that is wider.
         """
 
     def accepted(self, values: np.ndarray, references: np.ndarray, half_widths: np.ndarray) -> np.ndarray:
-        """Which values of a column in plain digits are right, as :meth:`distance` says of one, shapes ``(n,)``; NaN never
-        is, and nothing of a kind that does not mark columns."""
+        """Return which values of a column in plain digits are right, by the rule of :meth:`distance`, shapes
+        ``(n,)``; NaN is never right, and a kind that does not mark columns accepts none."""
         return np.zeros(np.shape(values), dtype=bool)
 
     @classmethod
     def marks_columns(cls) -> bool:
-        """Whether the column's rule is that of a kind which reads and measures as this one: who says otherwise of one
-        answer says nothing of a column."""
-        own = next(base for base in cls.__mro__ if "accepted" in vars(base))
-        return own is not Kind and all(
-            getattr(cls, rule) is getattr(own, rule) for rule in ("read", "distance")
+        """Return whether the rule for columns belongs to the class that also defines reading and distance; a
+        subclass that changes these for one answer must not mark columns."""
+        definer = next(base for base in cls.__mro__ if "accepted" in vars(base))
+        return definer is not Kind and all(
+            getattr(cls, rule) is getattr(definer, rule) for rule in ("read", "distance")
         )
 
     def apart(
@@ -187,11 +188,11 @@ class Kind(ABC):
         return self.distance(part, value, reference, along, envelope)
 
     def size(self, reference: Any) -> float:
-        """What a relative tolerance is taken of."""
+        """Return the size that a relative tolerance is a share of."""
         return float(np.linalg.norm(reference))
 
     def is_trivial(self, value: Any) -> bool:
-        """Whether nothing follows from such a value."""
+        """Return whether nothing follows from such a value."""
         return not self.is_exact and not value
 
     def share(self, part: Stated, value: Any, reference: Any) -> float:
@@ -211,13 +212,14 @@ class Kind(ABC):
         return ()
 
     def remarks(self, part: Stated, value: Any, reference: Any, lang: str) -> Iterator[tuple[str, str]]:
-        """What is told besides of an answer that nothing explains: sentences, each with what fills its ``{list}``."""
+        """Yield further sentences on an unexplained answer, each with the filling of its ``{list}``."""
         yield from ()
 
     # ----------------------------------------------------------------- printing
 
     def called(self, case: str, lang: str) -> str:
-        """What the engine calls a case for which the statement of this kind of part has no word; nothing if it must."""
+        """Return the engine's label for a case that the statement need not name; an empty text if the
+        statement must."""
         return ""
 
     def words(self, value: Any, label: Callable[[str], str]) -> str:
@@ -239,22 +241,22 @@ class Kind(ABC):
     # ------------------------------------------------- paper that is read back
 
     def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
-        """What stands before each row of boxes, LaTeX; nothing before the one row of a plain number."""
+        """Return the LaTeX before each row of boxes; empty before the one row of a plain number."""
         return ("",)
 
     def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
         """The boxes to tick, in the order printed."""
         return ()
 
-    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+    def from_paper(self, boxes: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
         """The answer that a page says, as :meth:`read` takes it: of the number of each row, or of the ticked cases;
         ``unit``: the box beside the printed unit is ticked."""
         behind = f" {part.unit}" if unit and part.unit != "1" else ""
-        return f"{self.joined(found, part, asking)}{behind}"
+        return f"{self.joined(boxes, part, asking)}{behind}"
 
-    def joined(self, found: Sequence[str], part: Stated, asking: Asking) -> str:
+    def joined(self, texts: Sequence[str], part: Stated, asking: Asking) -> str:
         """The numbers of the rows as one text."""
-        return found[0] if len(found) == 1 else "(" + " ; ".join(found) + ")"
+        return texts[0] if len(texts) == 1 else "(" + " ; ".join(texts) + ")"
 
     # ----------------------------------------------------------------- students
 

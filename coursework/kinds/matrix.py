@@ -28,9 +28,9 @@ class Matrix(Entries):
         rows, columns = np.shape(asking.reference(part.quantity))
         return tuple(rf"({row};\ {column})" for row in range(1, rows + 1) for column in range(1, columns + 1))
 
-    def joined(self, found: Sequence[str], part: Stated, asking: Asking) -> str:
+    def joined(self, texts: Sequence[str], part: Stated, asking: Asking) -> str:
         columns = np.shape(asking.reference(part.quantity))[1]
-        rows = (found[start : start + columns] for start in range(0, len(found), columns))
+        rows = (texts[start : start + columns] for start in range(0, len(texts), columns))
         return "[" + "; ".join(" ".join(row) for row in rows) + "]"
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:

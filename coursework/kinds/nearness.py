@@ -22,17 +22,18 @@ def in_half_widths(gap: float, half_width: float, scale: float) -> float:
 
 
 def gaps(values: np.ndarray, others: Any, turn: float) -> np.ndarray:
-    """How far values are from others, each at its place; modulo a ``turn`` where that is not 0."""
+    """Return the distances of values from others, element by element; modulo a ``turn`` where that is not
+    0."""
     gap = np.abs(values - others)
     return np.abs(gap - turn * np.rint(gap / turn)) if turn else gap
 
 
 def is_fine(value: float, half_width: float) -> bool:
-    """Whether the spacing of floats about a value is far below a half-width. Where that is 0, nothing is said."""
+    """Return whether the spacing of floats about a value is far below a half-width; true where that is 0."""
     return math.ulp(value) <= TRUSTED * half_width or half_width == 0
 
 
 def offset(point: Any, reference: Any) -> np.ndarray | None:
     """From a reference to a point, shape ``(n,)``; none where it is too far to compute with."""
-    found = np.asarray(point, dtype=float) - reference
-    return None if float(np.max(np.abs(found))) > _FAR else found
+    difference = np.asarray(point, dtype=float) - reference
+    return None if float(np.max(np.abs(difference))) > _FAR else difference

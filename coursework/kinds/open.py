@@ -1,4 +1,4 @@
-"""What questions have in common that a person marks: they are printed with room, collected, and never judged here."""
+"""Base of the kinds of questions that a person marks: printed with room, collected, and never judged here."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What kinds whose cases are ticked have in common, on paper that is read back."""
+"""Base of the kinds whose cases are ticked, on paper that is read back."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ def lettered_ticks(part: Stated, asking: Asking) -> tuple[Tick, ...]:
     return tuple(Tick(case, letters.get(case, case)) for case in letters or part.choices)
 
 
-def by_letters(found: Sequence[str], part: Stated, asking: Asking) -> str:
+def by_letters(boxes: Sequence[str], part: Stated, asking: Asking) -> str:
     """Ticked cases as students write them: by their letters, or by name where the sheet prints none."""
     letters = asking.letters(part)
-    return ", ".join(letters.get(case, case) for case in found)
+    return ", ".join(letters.get(case, case) for case in boxes)
 
 
 def share_of_named(named: Set[str], right: Set[str], count: int) -> float:

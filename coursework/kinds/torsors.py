@@ -1,4 +1,4 @@
-"""What twists and wrenches have in common: two columns, each judged by its own largest component, and what exchanges them.
+"""Base of twists and wrenches: two columns, each judged by its own largest component, and their exchange.
 
 A torsor is an array of six: the resultant in the basis of the question before the moment at its point. A plane one, in
 the plane xy, is an array of three: ``(vx, vy, wz)`` of a twist, ``(X, Y, N)`` of a wrench.
@@ -54,22 +54,22 @@ class Torsor(Kind):
     # ------------------------------------------------------------------ judging
 
     def _places(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Where an array of 6, or of 3, holds the resultant, and where the moments."""
+        """Return the indices of the resultant and of the moments in an array of 6, or of 3."""
         order = np.array(self.form.plane if count == 3 else range(6))
         return np.flatnonzero(order < 3), np.flatnonzero(order >= 3)
 
     def _gaps(self, part: Stated, value: Any, reference: Any, envelope: float) -> np.ndarray:
-        """How far each component is off, in half-widths of its column."""
+        """Return the deviation of each component, in half-widths of its column."""
         reference = np.asarray(reference, dtype=float)
         gaps = None if np.shape(value) != reference.shape else offset(value, reference)
         if gaps is None:
             return np.full(reference.shape, math.inf)
-        found, whole = np.zeros(reference.shape), float(np.max(np.abs(reference)))
+        scaled, largest = np.zeros(reference.shape), float(np.max(np.abs(reference)))
         for places, room in zip(self._places(len(reference)), (0.0, envelope), strict=True):
             size = float(np.max(np.abs(reference[places])))
             width = max(part.half_width(size), room)
-            found[places] = [in_half_widths(abs(float(g)), width, size or whole) for g in gaps[places]]
-        return found
+            scaled[places] = [in_half_widths(abs(float(g)), width, size or largest) for g in gaps[places]]
+        return scaled
 
     def distance(
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
@@ -78,8 +78,8 @@ class Torsor(Kind):
 
     def size(self, reference: Any) -> float:
         """The largest moment: the margin that is told is that of the second column; of a torsor without moments, the resultant."""
-        whole = np.abs(np.asarray(reference, dtype=float))
-        return float(np.max(whole[self._places(len(whole))[1]])) or float(np.max(whole))
+        absolute = np.abs(np.asarray(reference, dtype=float))
+        return float(np.max(absolute[self._places(len(absolute))[1]])) or float(np.max(absolute))
 
     def is_trivial(self, value: Any) -> bool:
         return not np.any(value)
@@ -114,7 +114,8 @@ class Torsor(Kind):
             yield "unit", scaled
 
     def _is_at_another_point(self, part: Stated, value: np.ndarray, reference: np.ndarray) -> bool:
-        """Whether it is the same torsor at some other point: its resultant, and moments that differ at right angles to it."""
+        """Return whether the answer is the same torsor at some other point: its resultant is right, and the
+        moments differ perpendicularly to it."""
         (resultant, moment), (_, moved) = self._vectors(reference), self._vectors(value)
         size = float(np.linalg.norm(resultant))
         places = self._places(len(reference))[0]
@@ -127,11 +128,11 @@ class Torsor(Kind):
 
     def _vectors(self, value: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Resultant and moment in space."""
-        whole = value
+        spatial = value
         if len(value) == 3:
-            whole = np.zeros(6)
-            whole[list(self.form.plane)] = value
-        return whole[:3], whole[3:]
+            spatial = np.zeros(6)
+            spatial[list(self.form.plane)] = value
+        return spatial[:3], spatial[3:]
 
     def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
         just_off = np.array(value, dtype=float)
@@ -145,8 +146,10 @@ class Torsor(Kind):
 
     def formula(self, value: np.ndarray, number: Callable[[float], str]) -> str:
         cells: list[str] = ["-"] * 6
-        for place, one in zip(self.form.plane if len(value) == 3 else range(6), value.tolist(), strict=True):
-            cells[place] = number(one)
+        for index, component in zip(
+            self.form.plane if len(value) == 3 else range(6), value.tolist(), strict=True
+        ):
+            cells[index] = number(component)
         return _table(cells)
 
     # ------------------------------------------------- paper that is read back
@@ -156,23 +159,23 @@ class Torsor(Kind):
 
     def _names(self, count: int) -> tuple[str, ...]:
         """The components of an array of 6, or of a plane one of 3."""
-        return tuple(self.form.names[place] for place in (self.form.plane if count == 3 else range(6)))
+        return tuple(self.form.names[index] for index in (self.form.plane if count == 3 else range(6)))
 
-    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+    def from_paper(self, texts: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
         """Components by name; the ticked unit is that of both columns, and stands behind each of them."""
-        names = self._names(len(found))
+        names = self._names(len(texts))
         units = self.units(part.unit) if unit else ("", "")
         behind = [units[self.form.names.index(name) // 3] for name in names]
-        told = zip(names, found, behind, strict=True)
-        return "; ".join(f"{name} = {value} {own}".strip() for name, value, own in told)
+        cells = zip(names, texts, behind, strict=True)
+        return "; ".join(f"{name} = {value} {text}".strip() for name, value, text in cells)
 
     # ----------------------------------------------------------------- students
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
-        told = [significant(v, digits) for v in np.asarray(value).tolist()]
-        if len(told) == 3:
-            return "(" + " ; ".join(told) + ")"
-        return "{" + "; ".join(f"{a} {b}" for a, b in zip(told[:3], told[3:], strict=True)) + "}"
+        numbers = [significant(v, digits) for v in np.asarray(value).tolist()]
+        if len(numbers) == 3:
+            return "(" + " ; ".join(numbers) + ")"
+        return "{" + "; ".join(f"{a} {b}" for a, b in zip(numbers[:3], numbers[3:], strict=True)) + "}"
 
     def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
         yield from super().spellings(part, value, label)
@@ -190,7 +193,7 @@ class Torsor(Kind):
 
 
 class Pattern(Kind):
-    """Which components of a torsor may differ from zero: right where exactly those are named.
+    """Components of a torsor that may differ from zero: right where exactly those are named.
 
     The solution gives their names in one text, ``"wz vx"``; ``"0"`` where all vanish.
     """
@@ -214,8 +217,8 @@ class Pattern(Kind):
     def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
         return (*(Tick(name, f"${_symbol(name)}$") for name in self.form.names), Tick("0", ""))
 
-    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
-        return ", ".join(found)
+    def from_paper(self, boxes: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+        return ", ".join(boxes)
 
     def components(self, value: Any) -> frozenset[str]:
         """The names that a reference holds, ``"wz vx"``, or a set of them."""
@@ -223,7 +226,7 @@ class Pattern(Kind):
             return frozenset(map(str, value))
         names = str(value).replace(",", " ").replace(";", " ").split()
         places = {component_place(name, self.form) for name in names if name != "0"}
-        return frozenset(self.form.names[place] for place in places if place is not None)
+        return frozenset(self.form.names[index] for index in places if index is not None)
 
     def distance(
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
@@ -245,18 +248,18 @@ class Pattern(Kind):
         return (" ".join(sorted(self.components(value) ^ {self.form.names[0]})) or "0",)
 
     def latex(self, value: str, symbols: Mapping[str, str]) -> str:
-        found = self.components(value)
-        return _table([_symbol(name) if name in found else "0" for name in self.form.names])
+        components = self.components(value)
+        return _table([_symbol(name) if name in components else "0" for name in self.form.names])
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
-        found = self.components(value)
-        cells = [name if name in found else "0" for name in self.form.names]
+        components = self.components(value)
+        cells = [name if name in components else "0" for name in self.form.names]
         return "{" + "; ".join(f"{a} {b}" for a, b in zip(cells[:3], cells[3:], strict=True)) + "}"
 
     def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
-        found = self.components(value)
-        marks = [int(name in found) for name in self.form.names]
-        yield Spelling("exact", ", ".join(sorted(found)) or "0")
+        components = self.components(value)
+        marks = [int(name in components) for name in self.form.names]
+        yield Spelling("exact", ", ".join(sorted(components)) or "0")
         yield Spelling("printed", self.written(value, 4, label))
         yield Spelling("marks", [marks[:3], marks[3:]])
 

@@ -1,4 +1,4 @@
-"""Which components of a twist may differ from zero: ``wz vx``."""
+"""Components of a twist that may differ from zero: ``wz vx``."""
 
 from coursework.kinds.torsors import Pattern
 from coursework.reading.torsors import TWIST

@@ -23,7 +23,7 @@ class UnnamedGraph(JointGraph):
 
 @lru_cache(maxsize=4096)
 def _compared_best(value: Graph, reference: Graph) -> Compared:
-    """What is right by the names that suit the answer best."""
+    """Return the comparison under the renaming of the bodies that suits the answer best."""
     held = held_names(value, reference)
     names = names_that_fit(value, reference, held) or nearest_names(value, reference, held)
     return compare(renamed(value, names), reference)

@@ -21,7 +21,7 @@ class Vector(Entries):
         return read_vector(answer, part.unit, len(asking.reference(part.quantity)))
 
     def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
-        return tuple(str(place) for place in range(1, len(asking.reference(part.quantity)) + 1))
+        return tuple(str(index) for index in range(1, len(asking.reference(part.quantity)) + 1))
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return "(" + " ; ".join(significant(v, digits) for v in value.tolist()) + ")"

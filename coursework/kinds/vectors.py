@@ -1,4 +1,4 @@
-"""What kinds of coordinates have in common."""
+"""Base of the kinds of coordinates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def axes(count: int) -> tuple[str, ...]:
-    """What coordinates are called: x, y and z, or by number where there are more."""
+    """Return the names of the coordinates: x, y and z, or numbers where there are more."""
     return ("x", "y", "z")[:count] if count <= 3 else tuple(map(str, range(1, count + 1)))
 
 

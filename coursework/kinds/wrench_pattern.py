@@ -1,4 +1,4 @@
-"""Which components of a wrench may differ from zero: ``X Y M``."""
+"""Components of a wrench that may differ from zero: ``X Y M``."""
 
 from coursework.kinds.torsors import Pattern
 from coursework.reading.torsors import WRENCH

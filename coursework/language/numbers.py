@@ -106,6 +106,6 @@ def unit_latex(unit: str) -> str:
 
 def with_unit(number: str, unit: str, lang: str) -> str:
     """A number and its unit as running text: ``228,6 mm``, ``135°``."""
-    shown = unit_text(unit, lang)
-    space = "" if not shown or shown == "°" else words(lang)["numbers"]["unit_space"]
-    return localise(number, lang) + space + shown
+    unit_shown = unit_text(unit, lang)
+    space = "" if not unit_shown or unit_shown == "°" else words(lang)["numbers"]["unit_space"]
+    return localise(number, lang) + space + unit_shown

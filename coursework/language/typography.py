@@ -1,4 +1,4 @@
-"""How a language sets its running text: apostrophes, and the spaces that must not break."""
+"""Typography of a language's running text: apostrophes, and the spaces that must not break."""
 
 from __future__ import annotations
 

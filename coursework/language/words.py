@@ -40,27 +40,27 @@ def words(lang: str, of: str = "") -> Mapping[str, Any]:
     """
     if lang not in languages():
         raise no_language(lang)
-    files = [file_of(one, of) for one in dict.fromkeys((lang, "en"))]
-    found: Mapping[str, Any] = made_of(
+    files = [file_of(code, of) for code in dict.fromkeys((lang, "en"))]
+    tables: Mapping[str, Any] = made_of(
         [*files, Path(__file__)], f"words-{of}-{lang}.json", partial(_compared, lang, of)
     )
-    return found
+    return tables
 
 
 def _compared(lang: str, of: str) -> Mapping[str, Any]:
-    found = _read(file_of(lang, of))
+    texts = _read(file_of(lang, of))
     if lang != "en":
-        _compare(dict(texts_of(found)), dict(texts_of(words("en", of))), file_of(lang, of))
-    return found
+        _compare(dict(texts_of(texts)), dict(texts_of(words("en", of))), file_of(lang, of))
+    return texts
 
 
 def file_of(lang: str, of: str = "") -> Path:
-    """Where the words of a language are, or would be."""
+    """Return the path of the words of a language, whether it exists or not."""
     return Path(str(_FOLDER / of / f"{lang}.toml"))
 
 
 def no_language(lang: str) -> UnknownName:
-    """What is said of a language that the engine does not speak."""
+    """Return the error for a language that the engine does not speak."""
     return UnknownName(
         f"no language {lang!r}; there is {', '.join(languages())}; the words of another would be {file_of(lang)}"
     )
@@ -94,9 +94,9 @@ def _compare(texts: Mapping[str, object], english: Mapping[str, object], file: P
             if type(texts[name]) is not type(text)
         ),
         *(
-            f"{name} has {_told(found)} where the English text has {_told(wanted)}"
+            f"{name} has {_told(places)} where the English text has {_told(wanted)}"
             for name, text in english.items()
-            if (found := _places(texts[name])) != (wanted := _places(text))
+            if (places := _places(texts[name])) != (wanted := _places(text))
         ),
     ]
     if faults:
@@ -107,7 +107,8 @@ def _compare(texts: Mapping[str, object], english: Mapping[str, object], file: P
 
 
 def _places(text: object) -> frozenset[str]:
-    """What is filled into a text: ``{names}``, ``{0}``; a brace that is not closed is a place of its own."""
+    """Return the fields of a text: ``{names}``, ``{0}``; a brace that is not closed counts as a field of its
+    own."""
     return frozenset(_PLACE.findall(text)) if isinstance(text, str) else frozenset()
 
 
@@ -131,7 +132,8 @@ def listed(items: Iterable[str], lang: str, joint: str = "and") -> str:
 
 
 def is_whole(text: str) -> bool:
-    """Whether a text ends with a sentence, or is empty; else something is to follow: ``Here the guide``."""
+    """Return whether a text ends with a sentence, or is empty; else something is to follow: ``Here the
+    guide``."""
     end = text.rstrip(' \n*_)»”"')
     return not end or end[-1] in ".!?…"
 

@@ -32,8 +32,8 @@ def read_choice(text: Any, choices: Choices, letters: Letters = MappingProxyType
     if isinstance(text, Real) and not isinstance(text, (bool, float)):
         text = text_of(text)
     if not (text is None or isinstance(text, str)):
-        said = text_of(text)
-        return Reading(said, "unreadable", code="not_a_choice", found=shorten(said))
+        text_read = text_of(text)
+        return Reading(text_read, "unreadable", code="not_a_choice", found=shorten(text_read))
     return reading_of(text, lambda _: _choice(str(text), choices, letters))
 
 
@@ -86,8 +86,8 @@ def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:
 
 def _letters_of_remark(remark: str) -> list[str]:
     """The letters that a remark in brackets speaks of: alone, at its end, ``not c``, or as its subject, ``c is wrong``."""
-    found = _LETTER_IN_REMARK.fullmatch(remark.strip())
-    return [letter for letter in found.groups() if letter] if found else []
+    match = _LETTER_IN_REMARK.fullmatch(remark.strip())
+    return [letter for letter in match.groups() if letter] if match else []
 
 
 def _said_with_letters(text: str, choices: Choices, letters: Letters) -> list[str]:
@@ -95,25 +95,25 @@ def _said_with_letters(text: str, choices: Choices, letters: Letters) -> list[st
         return _together(_of_letter(alone["letter"], letters), by_label(text, choices))
     if is_verbatim(text, choices):  # "A and B are at rest" begins with no letter of a choice
         return in_words(text, choices)
-    if (found := _BEFORE.fullmatch(text)) and (keys := _of_letter(found["letter"], letters)):
-        if found["mark"] == "=" and _ALONE.fullmatch(found["said"]):
+    if (match := _BEFORE.fullmatch(text)) and (keys := _of_letter(match["letter"], letters)):
+        if match["mark"] == "=" and _ALONE.fullmatch(match["said"]):
             return []  # a = a says nothing of b
-        if said := _said(found["said"], choices, letters):
-            return _together(keys, said)
-        if (remark := _IN_BRACKETS.fullmatch(found["said"])) and not names_any(remark[1], choices):
+        if named := _said(match["said"], choices, letters):
+            return _together(keys, named)
+        if (remark := _IN_BRACKETS.fullmatch(match["said"])) and not names_any(remark[1], choices):
             return [] if _CALL.fullmatch(text) else keys  # b (r2 < r1)
-        if found["bracket"] or found["mark"]:
+        if match["bracket"] or match["mark"]:
             return []
-    if found := _BEHIND.fullmatch(text):
-        keys = _of_letter(found["inner"] or found["bare"], letters)
-        said = _said(found["said"], choices, letters) if keys else []
-        if said:
-            return _together(keys, said)
+    if match := _BEHIND.fullmatch(text):
+        keys = _of_letter(match["inner"] or match["bare"], letters)
+        named = _said(match["said"], choices, letters) if keys else []
+        if named:
+            return _together(keys, named)
     return in_words(text, choices) or _by_place(text, choices, letters)
 
 
-def _together(*found: Sequence[str]) -> list[str]:
-    return list(dict.fromkeys(key for keys in found for key in keys))
+def _together(*named: Sequence[str]) -> list[str]:
+    return list(dict.fromkeys(key for keys in named for key in keys))
 
 
 def _of_letter(letter: str, letters: Letters) -> list[str]:
@@ -121,7 +121,8 @@ def _of_letter(letter: str, letters: Letters) -> list[str]:
 
 
 def _said(text: str, choices: Choices, letters: Letters) -> list[str]:
-    """What stands beside a letter, in brackets or not: the words of a choice, or one more letter."""
+    """Return the texts that stand beside a letter, in brackets or not: the words of a choice, or one more
+    letter."""
     inner = _IN_BRACKETS.fullmatch(text)
     text = inner[1] if inner else text
     alone = _ALONE.fullmatch(text)
@@ -148,15 +149,15 @@ _PLACE = re.compile(r"[(\[#]?\s*(?:n\s*°\s*)?(?P<number>[0-9]{1,2})\s*[)\].:]?"
 
 def _by_place(text: str, choices: Choices, letters: Letters) -> list[str]:
     """The choice at a place: ``2``. Where labels begin with numbers, a number is one of these, or it is two things."""
-    found = _PLACE.fullmatch(text)
-    if found is None:
+    match = _PLACE.fullmatch(text)
+    if match is None:
         return []
-    number = int(found["number"])
-    place = [*letters][number - 1 : number] if number else []
+    number = int(match["number"])
+    keys = [*letters][number - 1 : number] if number else []
     if not any(counts(labels) for labels in choices.values()):
-        return place
+        return keys
     named = [key for key, labels in choices.items() if number in numbers_of(labels)]
-    return _together(named, place) if named else []
+    return _together(named, keys) if named else []
 
 
 # --- boxes ------------------------------------------------------------------------------
@@ -168,7 +169,8 @@ _BOX = re.compile(
 
 
 def _ticked(text: str) -> str:
-    """What is ticked among others, the text itself where nothing is: ``b`` of ``☐ a ☒ b ☐ c``.
+    """Return the ticked choice of a list, ``b`` of ``☐ a ☒ b ☐ c``; return the text itself where nothing is
+    ticked.
 
     Boxes stand before all that they belong to, or behind it all; one alone belongs to what it touches.
     """
@@ -179,15 +181,15 @@ def _ticked(text: str) -> str:
     ends = [0, *(end for box in boxes for end in box.span()), len(text)]
     pieces = [text[a:b] for a, b in zip(ends[::2], ends[1::2], strict=True)]
     if not pieces[0].strip():
-        beside = pieces[1:]
+        texts = pieces[1:]
     elif not pieces[-1].strip():
-        beside = pieces[:-1]
+        texts = pieces[:-1]
     else:
-        beside = [_touched(*pieces)] if len(boxes) == 1 else []
-    found = [piece.strip(" \t\r\n,;|/") for piece, tick in zip(beside, ticks, strict=False) if tick]
-    if len(found) != 1:
-        raise Stop("two_values" if found else "not_a_choice", text)
-    return found[0]
+        texts = [_touched(*pieces)] if len(boxes) == 1 else []
+    ticked = [piece.strip(" \t\r\n,;|/") for piece, tick in zip(texts, ticks, strict=False) if tick]
+    if len(ticked) != 1:
+        raise Stop("two_values" if ticked else "not_a_choice", text)
+    return ticked[0]
 
 
 def _touched(before: str, behind: str) -> str:

@@ -42,8 +42,8 @@ def read_complex(answer: Any, unit: str) -> Reading:
     if isinstance(answer, (int, float, complex)) and not isinstance(answer, bool):
         return _from_number(answer)
     if isinstance(answer, (list, tuple)):
-        said = text_of(answer)
-        return Reading(said, "unreadable", code="two_values", found=shorten(said))
+        text = text_of(answer)
+        return Reading(text, "unreadable", code="two_values", found=shorten(text))
     target = target_unit(unit)
     return reading_of(answer, lambda plain: _read(plain, answer, target))
 
@@ -54,8 +54,8 @@ def _from_number(answer: complex) -> Reading:
     except OverflowError:
         value = complex(math.inf)
     if not cmath.isfinite(value):
-        said = text_of(answer)
-        return Reading(said, "unreadable", code="not_finite", found=shorten(said))
+        text = text_of(answer)
+        return Reading(text, "unreadable", code="not_finite", found=shorten(text))
     return Reading(str(answer).strip("()"), "read", (value,), (spelled(value),))
 
 
@@ -88,10 +88,10 @@ def _read(plain: str, text: Any, target: Unit) -> Reading:
 def _polar(plain: str, target: Unit) -> tuple[complex, str, bool] | None:
     """The value of a modulus and an angle, its echo, whether a unit is written; nothing where it is none."""
     unit = ""
-    if found := _BRACKETED.fullmatch(plain):
-        plain, unit = (found[1], found[2]) if ";" not in found[1] else (plain, "")
-    if found := _PAIR.fullmatch(plain):
-        modulus, angle, unit = found[1], found[2], found[3]
+    if match := _BRACKETED.fullmatch(plain):
+        plain, unit = (match[1], match[2]) if ";" not in match[1] else (plain, "")
+    if match := _PAIR.fullmatch(plain):
+        modulus, angle, unit = match[1], match[2], match[3]
     elif _ANGLE_SIGN.search(plain):
         modulus, angle = _ANGLE_SIGN.split(plain, maxsplit=1)
     else:
@@ -102,18 +102,18 @@ def _polar(plain: str, target: Unit) -> tuple[complex, str, bool] | None:
     if abs(turned.value) > MOST_TURNS * 360.0:
         raise Stop("too_many_turns", plain)
     value = cmath.rect(size.value, math.radians(turned.value))
-    shown = turned.echo if turned.unit else f"{turned.echo} °"
-    return value, f"{size.echo} ∠ {shown}", bool(size.unit)
+    angle_echo = turned.echo if turned.unit else f"{turned.echo} °"
+    return value, f"{size.echo} ∠ {angle_echo}", bool(size.unit)
 
 
 def _angle_and_unit(angle: str, unit: str) -> tuple[str, str]:
     """``53,1° V`` is an angle and the unit of the modulus."""
-    found = re.fullmatch(r"(.*?(?:°|deg(?:re+s?)?|degrés?|rad|[\d)]))\s*\*?\s*([^\W\d_].*)?", angle, re.I)
-    if unit or found is None or not found[2] or plain_unit(found[2]) is None:
+    match = re.fullmatch(r"(.*?(?:°|deg(?:re+s?)?|degrés?|rad|[\d)]))\s*\*?\s*([^\W\d_].*)?", angle, re.I)
+    if unit or match is None or not match[2] or plain_unit(match[2]) is None:
         return angle, unit
-    if target_unit("deg").dimension == plain_unit(found[2]).dimension:  # type: ignore[union-attr]
+    if target_unit("deg").dimension == plain_unit(match[2]).dimension:  # type: ignore[union-attr]
         return angle, unit
-    return found[1], found[2]
+    return match[1], match[2]
 
 
 def _one(amounts: list[Amount]) -> Amount:
@@ -151,8 +151,8 @@ def _formula(plain: str, text: Any, target: Unit) -> Reading:
 
 def _without(unit: str, formula: str) -> str:
     """A formula without the unit that stands behind its other terms as well: ``3 V + 4i V``."""
-    said = re.escape(unit.strip())
-    return re.sub(rf"(?<=[0-9ij)])\s*{said}(?=\s*[-+])", "", formula) if said else formula
+    pattern = re.escape(unit.strip())
+    return re.sub(rf"(?<=[0-9ij)])\s*{pattern}(?=\s*[-+])", "", formula) if pattern else formula
 
 
 def _value(formula: str) -> complex:
@@ -166,5 +166,5 @@ def _value(formula: str) -> complex:
     spaced = _GLUED_E.sub(" e", _PREFIXED.sub(r"\1*", formula))
     value = complex(plain_expression(spaced, _IMAGINARY).evaluate())
     if not cmath.isfinite(value):
-        raise Unreadable(f"{shorten(formula)!r} has no finite value", code="not_finite", found=formula)
+        raise Unreadable(f"{shorten(formula)!r} has no finite value", code="not_finite", piece=formula)
     return value

@@ -83,8 +83,8 @@ def _decimal_texts(number: str) -> tuple[str, ...]:
     last = max(number.rfind(","), number.rfind("."))
     if last < 0 or number.count(number[last]) > 1:  # repeated, it separates thousands
         return (number.replace(",", "").replace(".", ""),)
-    whole, fraction = number[:last].replace(",", "").replace(".", ""), number[last + 1 :]
-    return ((whole or "0") + ("." + fraction if fraction else ""),)
+    integer_part, fraction = number[:last].replace(",", "").replace(".", ""), number[last + 1 :]
+    return ((integer_part or "0") + ("." + fraction if fraction else ""),)
 
 
 _ALONE = re.compile(r"(?:^|(?<=[\s*/.\[])|(?<=(?<!\^)\())1(?![0-9.,])(?!\s*/\s*[^\W\d_°%(\[])")
@@ -123,19 +123,19 @@ def _float(digits: str) -> float:
 
 def literal(text: str, target: Unit, thousands: bool = True) -> list[Amount] | None:
     """A number written in digits with its unit, or ``None`` when the text is something else."""
-    found = LITERAL.fullmatch(text)
-    if found is None:
+    match = LITERAL.fullmatch(text)
+    if match is None:
         return None
-    exponent = found["e"] or found["bracketed"] or found["bare"]
-    rest = found["rest"]
+    exponent = match["e"] or match["bracketed"] or match["bare"]
+    rest = match["rest"]
     unit = _rest_unit(rest) if rest else target
     if unit is None:
         if exponent is None or not WORD.match(rest):
             return None
         raise Stop("unknown_unit", rest)
-    texts = _decimal_texts(found["number"])
+    texts = _decimal_texts(match["number"])
     texts = texts if thousands and exponent is None else texts[:1]
-    sign = "-" if found["sign"] == "-" else ""
+    sign = "-" if match["sign"] == "-" else ""
     amounts = []
     for digits in texts:
         digits = sign + digits + (f"e{int(exponent)}" if exponent else "")
@@ -148,14 +148,14 @@ def literal(text: str, target: Unit, thousands: bool = True) -> list[Amount] | N
 
 def _sexagesimal(text: str, target: Unit) -> list[Amount] | None:
     """Degrees, minutes and seconds; below 60 each of the latter two."""
-    found = _SEXAGESIMAL.fullmatch(text)
-    if found is None:
+    match = _SEXAGESIMAL.fullmatch(text)
+    if match is None:
         return None
-    minutes, seconds = (Fraction((found[part] or "0").replace(",", ".")) for part in ("minutes", "seconds"))
+    minutes, seconds = (Fraction((match[part] or "0").replace(",", ".")) for part in ("minutes", "seconds"))
     if minutes >= 60 or seconds >= 60:
         raise Stop("not_a_number", text)
-    degrees = int(found["degrees"]) + minutes / 60 + seconds / 3600
-    if found["sign"] == "-":
+    degrees = int(match["degrees"]) + minutes / 60 + seconds / 3600
+    if match["sign"] == "-":
         degrees = -degrees
     value = in_unit(degrees, parse_unit("deg"), target)
     return [written_amount(value, short_number(float(degrees)), "deg")]
@@ -163,15 +163,15 @@ def _sexagesimal(text: str, target: Unit) -> list[Amount] | None:
 
 def _mixed(text: str, target: Unit) -> list[Amount] | None:
     """A whole number and a proper fraction, ``1 1/2``; ``1 234/5`` is no such number."""
-    found = _MIXED.fullmatch(text)
-    if found is None or not 0 < int(found["above"]) < int(found["below"]):
+    match = _MIXED.fullmatch(text)
+    if match is None or not 0 < int(match["above"]) < int(match["below"]):
         return None
-    unit = _rest_unit(found["rest"]) if found["rest"] else target
+    unit = _rest_unit(match["rest"]) if match["rest"] else target
     if unit is None:
         return None
-    value = int(found["whole"]) + Fraction(int(found["above"]), int(found["below"]))
-    value = -value if found["sign"] == "-" else value
-    return [written_amount(in_unit(value, unit, target), short_number(float(value)), found["rest"])]
+    value = int(match["whole"]) + Fraction(int(match["above"]), int(match["below"]))
+    value = -value if match["sign"] == "-" else value
+    return [written_amount(in_unit(value, unit, target), short_number(float(value)), match["rest"])]
 
 
 def short_number(value: float) -> str:

@@ -94,7 +94,7 @@ def parse_equation(text: str, variables: Iterable[str]) -> Equation:
     """
     if len(text) > MAX_LENGTH:
         message = f"an equation of {len(text)} characters is not read; at most {MAX_LENGTH} are"
-        raise Unreadable(message, code="too_long", found=text)
+        raise Unreadable(message, code="too_long", piece=text)
     return plain_equation(plain_spelling(text), variables, text)
 
 
@@ -105,7 +105,7 @@ def plain_equation(plain: str, variables: Iterable[str], text: str = "") -> Equa
     if len(sides) != 2:
         code = "no_equals_sign" if len(sides) == 1 else "two_equals_signs"
         raise Unreadable(
-            f"an equation has one equals sign, {shorten(text)!r} has {len(sides) - 1}", code=code, found=text
+            f"an equation has one equals sign, {shorten(text)!r} has {len(sides) - 1}", code=code, piece=text
         )
     variables = tuple(variables)
     left, right = (plain_expression(side.strip(), variables) for side in sides)

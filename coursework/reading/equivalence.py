@@ -1,4 +1,4 @@
-"""Whether two equations say the same, judged by value at scattered points."""
+"""Equivalence of two equations, judged by value at scattered points."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _points(name: str, count: int) -> np.ndarray:
 
 
 def same_equation(a: Equation, b: Equation, *, parameters: Iterable[str] = (), rng_points: int = 32) -> bool:
-    """Whether two equations differ by a factor only, judged by value at scattered points.
+    """Return whether two equations differ by a factor only, judged by value at scattered points.
 
     The factor is a number, or an expression in the ``parameters`` alone (lengths, where angles and rates are
     the unknowns): ``omega = -(R + r)*phi_dot/r`` is ``r*omega + (R + r)*phi_dot = 0``. It may also hold what one
@@ -63,16 +63,16 @@ def _proportional(
     rng_points: int,
     divided: Iterable[tuple[Expression, int]] = (),
 ) -> bool:
-    """Whether ``a`` and ``b`` times powers of ``divided`` keep one ratio, finite and not zero."""
+    """Return whether ``a`` and ``b`` times powers of ``divided`` keep one ratio, finite and not zero."""
     with np.errstate(all="ignore"):
         (da, sa), (db, sb) = (e.gap(values, rng_points) for e in (a, b))
         for divisor, power in divided:
             factor = value_or_nan(divisor, values) ** float(power)
             db, sb = db * factor, sb * np.abs(factor)
-        kept = np.isfinite(da) & np.isfinite(db)
-    if kept.sum() < max(2, rng_points // 4):
+        finite = np.isfinite(da) & np.isfinite(db)
+    if finite.sum() < max(2, rng_points // 4):
         return False
-    da, sa, db, sb = da[kept], sa[kept], db[kept], sb[kept]
+    da, sa, db, sb = da[finite], sa[finite], db[finite], sb[finite]
     empty_a, empty_b = (bool(np.all(np.abs(d) <= 1e-12 * s)) for d, s in ((da, sa), (db, sb)))
     if empty_a or empty_b:
         return empty_a and empty_b
@@ -95,7 +95,8 @@ _OfValues = Callable[[Mapping[str, np.ndarray], int], np.ndarray]
 
 
 def _factors(node: Operation) -> Iterable[Operation]:
-    """What a product, a power or an opposite is made of, whatever the powers; a tangent is a quotient."""
+    """Yield the factors of a product, a power or an opposite, whatever the powers; a tangent counts as a
+    quotient."""
     if node.kind == "product":
         for arg in node.args:
             yield from _factors(arg)
@@ -110,7 +111,7 @@ def _factors(node: Operation) -> Iterable[Operation]:
 
 def _divisors(equation: Equation) -> list[Expression]:
     """The factors by which an equation divides: each vanishes only where the equation is not defined."""
-    found: dict[Operation, Expression] = {}
+    divisors: dict[Operation, Expression] = {}
     for node in (*equation.left.root.walk(), *equation.right.root.walk()):
         below: list[Operation] = []
         if node.kind == "product":
@@ -123,12 +124,13 @@ def _divisors(equation: Equation) -> list[Expression]:
             below = [_hypotenuse(*node.args[0].args)]
         for factor in itertools.chain.from_iterable(map(_factors, below)):
             if not factor.constant:
-                found.setdefault(factor, Expression(equation.text, factor))
-    return list(found.values())
+                divisors.setdefault(factor, Expression(equation.text, factor))
+    return list(divisors.values())
 
 
 def _hypotenuse(y: Operation, x: Operation | None = None) -> Operation:
-    """What the sine and the cosine of an arctangent divide by: of the triangle of sides y and x, 1 unless told."""
+    """Return the hypotenuse of the triangle of sides y and x (1 by default): the divisor in the sine and
+    cosine of an arctangent."""
     two, x = Operation("number", "2"), x or Operation("number", "1")
     squares = Operation("sum", "++", (Operation("power", args=(x, two)), Operation("power", args=(y, two))))
     return Operation("call", "sqrt", (squares,))
@@ -149,21 +151,21 @@ def _powers(
         da, db = (e.gap(values, rng_points)[0] for e in (a, b))
         ratio = np.log(np.abs(da / db))
         columns = [np.log(np.abs(np.broadcast_to(value_or_nan(d, values), (rng_points,)))) for d in divisors]
-    kept = np.isfinite(ratio) & np.all(np.isfinite(columns), axis=0)
-    if kept.sum() < len(divisors) + 4:
+    finite = np.isfinite(ratio) & np.all(np.isfinite(columns), axis=0)
+    if finite.sum() < len(divisors) + 4:
         return None
     powers = [0] * len(divisors)
-    table = np.array([column[kept] for column in columns]).T
-    table, ratio = table - table.mean(axis=0), ratio[kept] - ratio[kept].mean()
+    table = np.array([column[finite] for column in columns]).T
+    table, ratio = table - table.mean(axis=0), ratio[finite] - ratio[finite].mean()
     chosen: list[int] = []
-    for place, column in enumerate(table.T):
+    for index, column in enumerate(table.T):
         if all(np.max(np.abs(column - table[:, other])) > 1e-9 for other in chosen):
-            chosen.append(place)
-    found = np.linalg.lstsq(table[:, chosen], ratio, rcond=None)[0]
-    for place, power in zip(chosen, np.rint(found), strict=True):
+            chosen.append(index)
+    solution = np.linalg.lstsq(table[:, chosen], ratio, rcond=None)[0]
+    for index, power in zip(chosen, np.rint(solution), strict=True):
         if abs(power) > 4:
             return None
-        powers[place] = int(power)
+        powers[index] = int(power)
     return powers
 
 
@@ -192,16 +194,16 @@ class _Lines:
         finite = size[np.isfinite(size)]
         inside = size[:, 1:-1]
         smallest = (inside <= size[:, :-2]) & (inside <= size[:, 2:]) & np.isfinite(inside)
-        line, place = np.nonzero(smallest)
-        t, width = grid[place + 1], grid[1] - grid[0]
+        line, indices = np.nonzero(smallest)
+        t, width = grid[indices + 1], grid[1] - grid[0]
         for _ in range(_ZOOMS):
             fan = t[:, None] + width * np.linspace(-1.0, 1.0, 17)
             size = self.along(function, np.repeat(line, 17), fan.ravel()).reshape(fan.shape)
             t = fan[np.arange(t.size), size.argmin(axis=1)]
             width /= 8
         zero = _NEGLIGIBLE * float(np.median(finite)) if finite.size else 0.0
-        kept = self.along(function, line, t) <= zero
-        return line[kept], t[kept], zero
+        small = self.along(function, line, t) <= zero
+        return line[small], t[small], zero
 
 
 def _both_signs(name: str) -> np.ndarray:
@@ -209,7 +211,8 @@ def _both_signs(name: str) -> np.ndarray:
 
 
 def _apart(divisors: Sequence[Expression], equations: Sequence[Equation], lines: _Lines) -> bool:
-    """Whether divisors do not vanish at the solutions of the equations, nor the equations where they do.
+    """Return whether divisors and equations have no common root: neither vanishes at the solutions of the
+    other.
 
     An equation without a solution on the lines, or over complex numbers, is not said to be apart.
     """

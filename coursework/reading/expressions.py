@@ -56,11 +56,11 @@ class _Parser:
         self.depth = 0
         self.comma_separates = False
 
-    def fail(self, why: str, code: str, found: str = "") -> Unreadable:
-        found = found or self.text[self.at :]
-        place = f" at {shorten(found)!r}" if found else " at its end"
-        message = f"cannot read {shorten(self.text)!r}{place}: {why}"
-        return Unreadable(message, code=code, found=found or self.text)
+    def fail(self, why: str, code: str, piece: str = "") -> Unreadable:
+        piece = piece or self.text[self.at :]
+        location = f" at {shorten(piece)!r}" if piece else " at its end"
+        message = f"cannot read {shorten(self.text)!r}{location}: {why}"
+        return Unreadable(message, code=code, piece=piece or self.text)
 
     def peek(self) -> str:
         while self.at < len(self.text) and self.text[self.at] == " ":
@@ -223,8 +223,8 @@ class _Parser:
             raise self.fail(f"a bracket {opening!r} is not closed", "not_a_number")
 
     def number(self) -> Operation:
-        found = _NUMBER.match(self.text, self.at)
-        text = found[0] if found else ""
+        match = _NUMBER.match(self.text, self.at)
+        text = match[0] if match else ""
         if self.comma_separates and "," in text:
             text = text[: text.index(",")]
         digits = text.replace(" ", "").replace("'", "").replace(",", ".")
@@ -234,11 +234,11 @@ class _Parser:
         return Operation("number", digits)
 
     def named(self, run: str) -> Operation:
-        known = self.vocabulary.first(run)
-        if known is None or known[1] == "degree":
+        leading = self.vocabulary.first(run)
+        if leading is None or leading[1] == "degree":
             names = [*self.vocabulary.variables.values(), *FUNCTIONS, "pi"]
             raise self.fail(f"no such symbol{nearest(run, names)}", "unknown_symbol", run)
-        length, kind, name = known
+        length, kind, name = leading
         self.at += length
         return self.call(name) if kind == "function" else Operation(kind, name)
 
@@ -260,10 +260,10 @@ class _Parser:
     def inverse_of(self, name: str) -> str:
         """The inverse of a function of an angle, as calculators print it: ``sin^-1``, ``cos^(-1)``; nothing where none is written."""
         self.peek()
-        found = _MINUS_ONE.match(self.text, self.at)
-        if found is None or name not in ("sin", "cos", "tan"):
+        match = _MINUS_ONE.match(self.text, self.at)
+        if match is None or name not in ("sin", "cos", "tan"):
             return ""
-        self.at = found.end()
+        self.at = match.end()
         return f"a{name}"
 
     def exponent_of_function(self) -> Operation:
@@ -300,8 +300,8 @@ class _Parser:
         if argument.kind != "number" or name == "sqrt":
             return argument
         run = _RUN.match(self.text, self.at) if self.peek() else None
-        known = self.vocabulary.first(run[0]) if run else None
-        if known and known[1] in ("variable", "constant"):
+        leading = self.vocabulary.first(run[0]) if run else None
+        if leading and leading[1] in ("variable", "constant"):
             return Operation("product", "**", (argument, self.power()))
         return argument
 
@@ -328,7 +328,7 @@ def parse_expression(text: str, variables: Iterable[str] = ()) -> Expression:
     """
     if len(text) > MAX_LENGTH:
         message = f"a text of {len(text)} characters is not read; at most {MAX_LENGTH} are"
-        raise Unreadable(message, code="too_long", found=text)
+        raise Unreadable(message, code="too_long", piece=text)
     return plain_expression(plain_spelling(text), variables, text)
 
 

@@ -1,4 +1,5 @@
-"""What is right in a joint graph: joint by joint, where bodies are named; up to their names, where they are not."""
+"""Comparison of joint graphs: joint by joint where the bodies are named, up to renaming where they are
+not."""
 
 from __future__ import annotations
 
@@ -21,9 +22,9 @@ _CONTACTS = {
 }
 
 
-def same_kind(found: str, wanted: str) -> bool:
-    """Whether a kind says what is wanted: any contact is a higher pair of the plane."""
-    return found in _CONTACTS.get(wanted, (wanted,))
+def same_kind(kind: str, wanted: str) -> bool:
+    """Return whether a kind of joint is the wanted one; any contact is a higher pair of the plane."""
+    return kind in _CONTACTS.get(wanted, (wanted,))
 
 
 @dataclass
@@ -75,7 +76,8 @@ class _Pivot:
         self.groups = [{body} for body in joint.bodies]
 
     def joins(self, bodies: Sequence[str]) -> bool:
-        """Whether these bodies are of the pivot and not yet held together; they are from then on."""
+        """Join these bodies at the pivot, and return True, if they belong to it and are not joined there
+        yet."""
         touched = [group for group in self.groups if group & set(bodies)]
         if len(touched) != len(bodies) or not set(bodies) <= set(self.joint.bodies):
             return False
@@ -85,44 +87,45 @@ class _Pivot:
 
 def compare(answer: Graph, reference: Graph) -> Compared:
     """The joints of an answer against those of a mechanism with the same names."""
-    found = Compared(sum(joint.pairs for joint in reference))
-    known = set(bodies_of(reference))
+    result = Compared(sum(joint.pairs for joint in reference))
+    bodies = set(bodies_of(reference))
     pairs: dict[tuple[str, ...], list[str]] = {}
     for joint in reference:
         if joint.pairs == 1:
             pairs.setdefault(joint.bodies, []).append(joint.kind)
     pivots = [_Pivot(joint) for joint in reference if joint.pairs > 1]
-    rest = _told_of_all(answer, pivots, known, found)
-    rest = [joint for joint in rest if not _is_told_right(joint, pairs, pivots, found)]
+    rest = _told_of_all(answer, pivots, bodies, result)
+    rest = [joint for joint in rest if not _is_told_right(joint, pairs, pivots, result)]
     for joint in rest:
-        _tell(joint, pairs, pivots, reference, found)
-    return found
+        _tell(joint, pairs, pivots, reference, result)
+    return result
 
 
-def _told_of_all(answer: Graph, pivots: Sequence[_Pivot], known: set[str], found: Compared) -> list[Edge]:
-    """What is left once bodies that there are not, and pivots written with all their bodies, are seen to."""
+def _told_of_all(answer: Graph, pivots: Sequence[_Pivot], bodies: set[str], result: Compared) -> list[Edge]:
+    """Record unknown bodies, and pivots written with all their bodies; return the joints that are left to
+    compare."""
     rest = []
     for joint in sorted(answer, key=lambda joint: -joint.pairs):
-        if not known.issuperset(joint.bodies):
-            found.unknown.append(joint)
+        if not bodies.issuperset(joint.bodies):
+            result.unknown.append(joint)
         elif joint.pairs == 1:
             rest.append(joint)
         elif (pivot := next((p for p in pivots if p.joins(joint.bodies)), None)) is None:
-            found.not_shared.append(joint)
+            result.not_shared.append(joint)
         else:
-            _count(joint, pivot.joint.kind, found)
+            _count(joint, pivot.joint.kind, result)
     return rest
 
 
-def _count(joint: Edge, kind: str, found: Compared) -> None:
+def _count(joint: Edge, kind: str, result: Compared) -> None:
     if same_kind(joint.kind, kind):
-        found.right += joint.pairs
+        result.right += joint.pairs
     else:
-        (found.kind if joint.kind else found.no_kind).append(joint)
+        (result.kind if joint.kind else result.no_kind).append(joint)
 
 
 def _is_told_right(
-    joint: Edge, pairs: Mapping[tuple[str, ...], list[str]], pivots: Sequence[_Pivot], found: Compared
+    joint: Edge, pairs: Mapping[tuple[str, ...], list[str]], pivots: Sequence[_Pivot], result: Compared
 ) -> bool:
     wanted = pairs.get(joint.bodies, [])
     same = next((kind for kind in sorted(wanted, key=joint.kind.__ne__) if same_kind(joint.kind, kind)), None)
@@ -130,7 +133,7 @@ def _is_told_right(
         wanted.remove(same)
     elif not any(same_kind(joint.kind, p.joint.kind) and p.joins(joint.bodies) for p in pivots):
         return False
-    found.right += 1
+    result.right += 1
     return True
 
 
@@ -139,19 +142,20 @@ def _tell(
     pairs: Mapping[tuple[str, ...], list[str]],
     pivots: Sequence[_Pivot],
     reference: Graph,
-    found: Compared,
+    result: Compared,
 ) -> None:
-    """What a pair is that is not right: of another kind, written once too often, or of bodies that are not joined."""
+    """Record why a pair is not right: its kind is another, it is written once too often, or its bodies are
+    not joined."""
     if pairs.get(joint.bodies):
-        _count(joint, pairs[joint.bodies].pop(), found)
+        _count(joint, pairs[joint.bodies].pop(), result)
     elif any(p.joins(joint.bodies) for p in pivots):
-        (found.kind if joint.kind else found.no_kind).append(joint)
+        (result.kind if joint.kind else result.no_kind).append(joint)
     elif any(set(joint.bodies) <= set(p.joint.bodies) for p in pivots):
-        found.shared.append(joint)
+        result.shared.append(joint)
     elif any(joint.bodies == other.bodies for other in reference):
-        found.double.append(joint)
+        result.double.append(joint)
     else:
-        found.none.append(joint)
+        result.none.append(joint)
 
 
 # --- up to names ------------------------------------------------------------------------
@@ -210,8 +214,8 @@ def _better(
     tried = [({**names, a: names[b], b: names[a]}, list(spare)) for a, b in combinations(free, 2)]
     tried += [({**names, a: new}, [*(s for s in spare if s != new), names[a]]) for a in free for new in spare]
     for other, left in tried:
-        found = compare(renamed(answer, other), reference)
-        if (right := 2 * found.right + found.halves) > best:
+        result = compare(renamed(answer, other), reference)
+        if (right := 2 * result.right + result.halves) > best:
             yield other, right, left
 
 
@@ -227,8 +231,8 @@ class _Pairs:
     def __init__(self, pairs: Sequence[Edge]):
         self.kinds: dict[str, dict[str, list[str]]] = {}
         for pair in pairs:
-            for one, other in (pair.bodies, pair.bodies[::-1]):
-                kinds = self.kinds.setdefault(one, {}).setdefault(other, [])
+            for bodies, other in (pair.bodies, pair.bodies[::-1]):
+                kinds = self.kinds.setdefault(bodies, {}).setdefault(other, [])
                 kinds.append("higher" if pair.kind in _CONTACTS else pair.kind)
                 kinds.sort()
 

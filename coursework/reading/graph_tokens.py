@@ -28,13 +28,13 @@ def folded(text: str) -> str:
 def _kinds() -> Mapping[str, str]:
     """The kind of each name that a joint has in any language."""
     tables = [words(lang)["graph"]["kinds"] for lang in languages()]
-    found = {folded(kind): kind for table in tables for kind in table}
-    return found | {folded(name): kind for table in tables for kind, names in table.items() for name in names}
+    kinds = {folded(kind): kind for table in tables for kind in table}
+    return kinds | {folded(name): kind for table in tables for kind, names in table.items() for name in names}
 
 
 @lru_cache(maxsize=4)
-def _said(what: str) -> frozenset[str]:
-    return frozenset(folded(word) for lang in languages() for word in words(lang)["graph"][what])
+def _said(category: str) -> frozenset[str]:
+    return frozenset(folded(word) for lang in languages() for word in words(lang)["graph"][category])
 
 
 @lru_cache(maxsize=1)
@@ -89,66 +89,66 @@ def _untupled(match: re.Match[str]) -> str:
     return f";{bodies} {match[4]};" if match[4] else f" {bodies} "
 
 
-def tokens_of(text: str, known: Collection[str], named: bool) -> Iterator[Token]:
+def tokens_of(text: str, bodies: Collection[str], named: bool) -> Iterator[Token]:
     """The tokens of a plain text, its filling left out."""
     pieces = [m for m in _PIECE.finditer(text) if not m["rest"]]
     if stray := _PIECE.sub("", text).strip():
         raise Stop("no_joint", stray)
-    place = 0
-    while place < len(pieces):
-        found, used = _taken(pieces, place, known, named)
-        yield from found
-        place += used
+    index = 0
+    while index < len(pieces):
+        token, used = _taken(pieces, index, bodies, named)
+        yield from token
+        index += used
 
 
 def _taken(
-    pieces: Sequence[re.Match[str]], place: int, known: Collection[str], named: bool
+    pieces: Sequence[re.Match[str]], index: int, bodies: Collection[str], named: bool
 ) -> tuple[list[Token], int]:
     """The tokens of the next piece or pieces, and of how many."""
-    piece = pieces[place]
+    piece = pieces[index]
     sort, text = str(piece.lastgroup), piece[0]
     if piece["times"]:
         return [Token("times", piece["n"] or piece["m"], text)], 1
     if sort in ("stop", "comma", "link"):
         return [Token(sort, "", text)], 1
     if sort == "name":
-        return _numbered(text, _is_linked(pieces, place), known), 1
-    for length in range(min(_longest(), len(pieces) - place), 0, -1):
-        group = pieces[place : place + length]
+        return _numbered(text, _is_linked(pieces, index), bodies), 1
+    for length in range(min(_longest(), len(pieces) - index), 0, -1):
+        group = pieces[index : index + length]
         if all(p.lastgroup in ("word", "link") for p in group) and group[-1].lastgroup == "word":
             phrase = " ".join(p[0] for p in group if p.lastgroup == "word")
-            if (kind := kind_named(phrase)) is not None and (length > 1 or not _is_label(pieces, place)):
+            if (kind := kind_named(phrase)) is not None and (length > 1 or not _is_label(pieces, index)):
                 return [Token("kind", kind, phrase)], length
-    return _worded(pieces, place, named), 1
+    return _worded(pieces, index, named), 1
 
 
-def _is_linked(pieces: Sequence[re.Match[str]], place: int) -> bool:
-    around = pieces[max(0, place - 1) : place + 2]
+def _is_linked(pieces: Sequence[re.Match[str]], index: int) -> bool:
+    around = pieces[max(0, index - 1) : index + 2]
     return any(p.lastgroup == "link" for p in around)
 
 
-def _beside(pieces: Sequence[re.Match[str]], place: int) -> bool:
-    """Whether a link joins a piece to a number: ``0-a``."""
+def _beside(pieces: Sequence[re.Match[str]], index: int) -> bool:
+    """Return whether a hyphen joins a piece to a number: ``0-a``."""
     return any(
-        0 <= place + 2 * way < len(pieces)
-        and pieces[place + way].lastgroup == "link"
-        and pieces[place + 2 * way].lastgroup == "name"
-        for way in (-1, 1)
+        0 <= index + 2 * step < len(pieces)
+        and pieces[index + step].lastgroup == "link"
+        and pieces[index + 2 * step].lastgroup == "name"
+        for step in (-1, 1)
     )
 
 
-def _is_label(pieces: Sequence[re.Match[str]], place: int) -> bool:
-    """Whether a letter is the name of a point, ``en P``, ``pivot R``, and not that of a kind."""
-    if len(pieces[place][0]) > 1 or not place:
+def _is_label(pieces: Sequence[re.Match[str]], index: int) -> bool:
+    """Return whether a letter is the name of a point, ``en P``, ``pivot R``, and not that of a kind."""
+    if len(pieces[index][0]) > 1 or not index:
         return False
-    before = pieces[place - 1]
+    before = pieces[index - 1]
     if before.lastgroup != "word":
         return False
     word = before[0]
     return folded(word) in _said("at") or (len(word) > 1 and kind_named(word) is not None)
 
 
-def _numbered(text: str, is_linked: bool, known: Collection[str]) -> list[Token]:
+def _numbered(text: str, is_linked: bool, names: Collection[str]) -> list[Token]:
     """A body of a number, ``12`` as two bodies where there is none of that number; ``R12`` says its kind as well."""
     letters = text.rstrip("0123456789")
     number = text[len(letters) :]
@@ -157,26 +157,26 @@ def _numbered(text: str, is_linked: bool, known: Collection[str]) -> list[Token]
         tokens = [Token("kind", _LETTERS[letters], letters)]
     elif letters and letters.casefold() not in ("s", "l", "c") and not is_linked:
         return []  # a point's name
-    if number not in known and len(number) > 1 and not is_linked and set(number) <= set(known):
+    if number not in names and len(number) > 1 and not is_linked and set(number) <= set(names):
         bodies = [Token("body", digit, text) for digit in number]
         return tokens + [t for body in bodies for t in (Token("link"), body)][1:]
     return [*tokens, Token("body", str(int(number)), text)]
 
 
-def _worded(pieces: Sequence[re.Match[str]], place: int, named: bool) -> list[Token]:
-    text = pieces[place][0]
+def _worded(pieces: Sequence[re.Match[str]], index: int, named: bool) -> list[Token]:
+    text = pieces[index][0]
     plain = folded(text)
     if plain in _said("frame"):
         return [Token("body", FRAME, text)]
-    if (not named and _is_linked(pieces, place)) or (
-        text.isascii() and len(text) == 1 and _beside(pieces, place)
+    if (not named and _is_linked(pieces, index)) or (
+        text.isascii() and len(text) == 1 and _beside(pieces, index)
     ):
         return [Token("body", text.casefold(), text)]
     if plain in _said("and"):
         return [Token("comma", "", text)]
     if plain in _said("filling") | _said("at"):
         return []
-    if _is_linked(pieces, place):
+    if _is_linked(pieces, index):
         return [Token("body", text.casefold(), text)]
     near = get_close_matches(plain, _kinds(), 1, 0.8) if len(plain) > 4 else ()
     if near:

@@ -25,7 +25,7 @@ class Edge(NamedTuple):
 
     @property
     def pairs(self) -> int:
-        """How many pairs it counts: a pivot of k bodies is k - 1."""
+        """Return the number of pairs that the edge counts for: a pivot of k bodies is k - 1."""
         return len(self.bodies) - 1
 
     def __str__(self) -> str:
@@ -99,12 +99,14 @@ def _refuse_strangers(
 
     Where bodies have no names, words are bodies if something links them: ``not a slider either`` is a sentence.
     """
-    known = {*bodies_of(reference), FRAME}
+    body_names = {*bodies_of(reference), FRAME}
     has_kind = any(token.sort == "kind" and (len(token.text) > 1 or token.text.isupper()) for token in tokens)
     is_linked = has_kind and any(token.sort == "link" for token in tokens)
     for graph in values:
         bodies = bodies_of(graph)
-        is_known = not known.isdisjoint(bodies) if named else is_linked or all(len(b) < _WORD for b in bodies)
+        is_known = (
+            not body_names.isdisjoint(bodies) if named else is_linked or all(len(b) < _WORD for b in bodies)
+        )
         if not is_known or (len(graph) == 1 and not has_kind):
             raise Stop("no_joint", spelled(graph))
 
@@ -120,12 +122,12 @@ def _as_text(answer: Any) -> str:
     return "\n".join(map(_line, answer))
 
 
-def _line(one: Any) -> str:
-    if isinstance(one, Mapping):
-        one = (one.get("between", ()), one.get("kind", ""))
-    if not isinstance(one, (list, tuple)):
-        return text_of(one)
-    flat = [part for item in one for part in (item if isinstance(item, (list, tuple)) else (item,))]
+def _line(element: Any) -> str:
+    if isinstance(element, Mapping):
+        element = (element.get("between", ()), element.get("kind", ""))
+    if not isinstance(element, (list, tuple)):
+        return text_of(element)
+    flat = [part for item in element for part in (item if isinstance(item, (list, tuple)) else (item,))]
     bodies = [text_of(part) for part in flat if not _is_word(part)]
     return " - ".join(bodies) + " " + " ".join(text_of(part) for part in flat if _is_word(part))
 
@@ -138,7 +140,7 @@ def _is_word(part: Any) -> bool:
 
 
 class _Piece(NamedTuple):
-    """What stands between two separators: groups of bodies, and kinds, in the order written."""
+    """Text between two separators: groups of bodies, and kinds, in the order written."""
 
     content: tuple[tuple[str, ...] | Token, ...]
     is_closed: bool  #: a stop follows
@@ -157,7 +159,7 @@ class _Piece(NamedTuple):
 
     @property
     def is_leading(self) -> bool:
-        """Whether the kind stands first."""
+        """Return whether the kind stands first."""
         return isinstance(self.content[0], Token)
 
 
@@ -200,28 +202,29 @@ def _joints(group: tuple[str, ...], kind: str) -> Iterator[Edge]:
     if len(set(group)) == len(group):
         yield edge(group, kind)
         return
-    for one, other in pairwise(group):
-        if one == other or len(group) == 2:
+    for pair, other in pairwise(group):
+        if pair == other or len(group) == 2:
             raise Stop("one_body", "-".join(group))
-        yield edge((one, other), kind)
+        yield edge((pair, other), kind)
 
 
 def _pieces(tokens: Sequence[Token]) -> Iterator[_Piece]:
-    """What stands between separators; of a run without any, ``1-2 pivot 2-3 pivot``, joint by joint."""
+    """Yield the pieces between separators; split a run without any, ``1-2 pivot 2-3 pivot``, joint by
+    joint."""
     content: list[Any] = []
     singles: list[str] = []
-    times, place = 1, 0
+    times, start = 1, 0
 
     def close() -> None:
         if singles:
             content.append(tuple(singles))
             singles.clear()
 
-    while place < len(tokens):
-        token = tokens[place]
+    while start < len(tokens):
+        token = tokens[start]
         if token.sort == "body":
-            chain, used = _chain(tokens, place)
-            place += used
+            chain, used = _chain(tokens, start)
+            start += used
             if isinstance(chain, list):  # 1 -R- 2 -P- 3
                 yield from (_Piece((pair, kind), False) for pair, kind in chain)
             elif len(chain) == 1:
@@ -233,7 +236,7 @@ def _pieces(tokens: Sequence[Token]) -> Iterator[_Piece]:
                     content, times = [], 1
                 content.append(chain)
             continue
-        place += 1
+        start += 1
         if token.sort == "kind":
             close()
             if _is_full(content) and isinstance(content[0], Token) and not _is_point(content[0], token):
@@ -243,7 +246,7 @@ def _pieces(tokens: Sequence[Token]) -> Iterator[_Piece]:
             content.append(token)
         elif token.sort == "times":
             times = int(token.said)
-        elif token.sort == "stop" or (token.sort == "comma" and not _goes_on(tokens, place, singles)):
+        elif token.sort == "stop" or (token.sort == "comma" and not _goes_on(tokens, start, singles)):
             close()
             if content:
                 yield _Piece(tuple(content), token.sort == "stop", times)
@@ -260,26 +263,27 @@ def _is_full(content: Sequence[Any]) -> bool:
 
 
 def _is_point(letter: Token, word: Token) -> bool:
-    """Whether a letter that could be a kind is the name of a point, before a kind in words: ``P: 4-5 pivot``."""
+    """Return whether a letter that could be a kind is the name of a point, before a kind in words: ``P: 4-5
+    pivot``."""
     return len(letter.text) == 1 < len(word.text)
 
 
-def _goes_on(tokens: Sequence[Token], place: int, singles: Sequence[str]) -> bool:
-    """Whether bodies are listed one by one: ``1 and 2``, ``3, 4, 5``."""
-    if not singles or place >= len(tokens) or tokens[place].sort != "body":
+def _goes_on(tokens: Sequence[Token], index: int, singles: Sequence[str]) -> bool:
+    """Return whether a list of bodies goes on, each by itself: ``1 and 2``, ``3, 4, 5``."""
+    if not singles or index >= len(tokens) or tokens[index].sort != "body":
         return False
-    chain, _ = _chain(tokens, place)
+    chain, _ = _chain(tokens, index)
     return len(chain) == 1 and not isinstance(chain, list)
 
 
 def _chain(
-    tokens: Sequence[Token], place: int
+    tokens: Sequence[Token], index: int
 ) -> tuple[tuple[str, ...] | list[tuple[tuple[str, ...], Token]], int]:
     """Bodies that are linked, or stand side by side, and of how many tokens; a list of joints where kinds stand between."""
-    between, used = _with_kinds_between(tokens, place)
+    between, used = _with_kinds_between(tokens, index)
     if between:
         return between, used
-    bodies, end, is_linked = [tokens[place].said], place + 1, False
+    bodies, end, is_linked = [tokens[index].said], index + 1, False
     while end < len(tokens):
         step = 1 if tokens[end].sort == "link" else 0
         if end + step >= len(tokens) or tokens[end + step].sort != "body":
@@ -291,30 +295,30 @@ def _chain(
         end += step + 1
     while _sort(tokens, end) == "link":  # 1-2 - pivot
         end += 1
-    return tuple(bodies), end - place
+    return tuple(bodies), end - index
 
 
-def _sort(tokens: Sequence[Token], place: int) -> str:
-    return tokens[place].sort if place < len(tokens) else ""
+def _sort(tokens: Sequence[Token], index: int) -> str:
+    return tokens[index].sort if index < len(tokens) else ""
 
 
 def _with_kinds_between(
-    tokens: Sequence[Token], place: int
+    tokens: Sequence[Token], index: int
 ) -> tuple[list[tuple[tuple[str, ...], Token]], int]:
     """Joints whose kind stands between their bodies, ``1 -R- 2 -R- 3``, ``1 pivot 2``, and of how many tokens."""
-    found: list[tuple[tuple[str, ...], Token]] = []
-    start = place
+    edges: list[tuple[tuple[str, ...], Token]] = []
+    start = index
     while True:
-        middle = place + 1 + (_sort(tokens, place + 1) == "link")
+        middle = index + 1 + (_sort(tokens, index + 1) == "link")
         end = middle + 1 + (_sort(tokens, middle + 1) == "link")
-        is_bare = end - place == 2
+        is_bare = end - index == 2
         if _sort(tokens, middle) != "kind" or _sort(tokens, end) != "body":
             break
-        if is_bare and (tokens[end].said == tokens[place].said or _sort(tokens, end + 1) in ("link", "body")):
+        if is_bare and (tokens[end].said == tokens[index].said or _sort(tokens, end + 1) in ("link", "body")):
             break
-        found.append(((tokens[place].said, tokens[end].said), tokens[middle]))
-        place = end
-    return found, place + 1 - start
+        edges.append(((tokens[index].said, tokens[end].said), tokens[middle]))
+        index = end
+    return edges, index + 1 - start
 
 
 def _framed(tokens: list[Token], reference: Graph, named: bool) -> list[Token]:

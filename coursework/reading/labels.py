@@ -50,7 +50,8 @@ def by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
 
 
 def _is_called(text: str, label: str) -> bool:
-    """Whether a text is a label; one that is a formula is told from others by its operators too, not by its spaces."""
+    """Return whether a text is a label. In a label that is a formula the operators distinguish too, spaces
+    never do."""
     if _IN_WORDS.search(_COMMANDS.sub("", label)):
         return folded(text) == folded(label)
     if _squeezed(text) != _squeezed(label):
@@ -84,8 +85,8 @@ def _operators(formula: str) -> str:
 def _by_value(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices of whose formula this is the right-hand side: ``-1`` where ``w = -1`` is offered."""
     value = folded(f"= {text.strip('()[] ')}").removeprefix("=").strip()
-    found = [key for key, labels in choices.items() for s in labels if "=" in s and _value_of(s) == value]
-    return list(dict.fromkeys(found)) if value else []
+    keys = [key for key, labels in choices.items() for s in labels if "=" in s and _value_of(s) == value]
+    return list(dict.fromkeys(keys)) if value else []
 
 
 @lru_cache(maxsize=4096)
@@ -104,18 +105,18 @@ _ROMAN = ("i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x")
 @lru_cache(maxsize=1)
 def _numerals() -> Mapping[str, int]:
     """Numbers as labels have them: digits, Roman numerals, words of any language; folded."""
-    found = {str(n): n for n in range(100)} | {name: n for n, name in enumerate(_ROMAN, start=1)}
+    numerals = {str(n): n for n in range(100)} | {name: n for n, name in enumerate(_ROMAN, start=1)}
     for lang in languages():
         for n, names in enumerate(words(lang)["study"]["reads"]["numbers"]):
-            found |= {folded(name): n for name in names.split("|")}
-    return found
+            numerals |= {folded(name): n for name in names.split("|")}
+    return numerals
 
 
 @lru_cache(maxsize=1)
 def _nouns() -> tuple[str, ...]:
-    """What labels are called together, ``class``; folded, the longest first."""
-    found = {folded(noun) for lang in languages() for noun in words(lang)["choices"]["nouns"]}
-    return tuple(sorted(found, key=len, reverse=True))
+    """Return the common nouns of labels, such as ``class``, folded, the longest first."""
+    nouns = {folded(noun) for lang in languages() for noun in words(lang)["choices"]["nouns"]}
+    return tuple(sorted(nouns, key=len, reverse=True))
 
 
 @lru_cache(maxsize=4096)
@@ -142,7 +143,7 @@ def _by_core(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
 
 @lru_cache(maxsize=4096)
 def _beginnings(label: str) -> frozenset[str]:
-    """What a label begins with, two words or more, folded; ``and`` and ``or`` are not left to follow."""
+    """Return the beginnings of a label, of two words or more, folded; none ends with ``and`` or ``or``."""
     pieces = [] if "=" in label or label.startswith("$") else label.split()
     ends = (n for n in range(2, len(pieces)) if folded(pieces[n]) not in _conjunctions())
     return frozenset(folded(" ".join(pieces[:n])) for n in ends)
@@ -166,15 +167,17 @@ _REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
 
 def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that stand before a remark in brackets which neither names another nor is its own: ``oscille (r2 < r1)``."""
-    found = _REMARK.fullmatch(text)
-    if found is None:
+    match = _REMARK.fullmatch(text)
+    if match is None:
         return []
-    keys = _called(found["said"], choices)
-    if len(keys) != 1 or any(key not in keys for key in _called(found["remark"], choices)):
+    keys = _called(match["said"], choices)
+    if len(keys) != 1 or any(key not in keys for key in _called(match["remark"], choices)):
         return []
-    remark = f" {folded(found['remark'])} "
-    own, foreign = (_remarks(choices, [k for k in choices if (k in keys) == mine]) for mine in (True, False))
-    if remark in foreign and remark not in own:
+    remark = f" {folded(match['remark'])} "
+    own_remarks, foreign = (
+        _remarks(choices, [k for k in choices if (k in keys) == mine]) for mine in (True, False)
+    )
+    if remark in foreign and remark not in own_remarks:
         return []
     others = (
         s for key, labels in choices.items() if key not in keys for s in (key, *labels, *map(head, labels))
@@ -183,7 +186,7 @@ def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
 
 
 def _remarks(choices: Mapping[str, Sequence[str]], keys: Sequence[str]) -> str:
-    """What the labels of some choices say in brackets, folded."""
+    """Return the words in brackets in the labels of some choices, folded."""
     labels = " ".join(label for key in keys for label in choices[key])
     return f" {' | '.join(map(folded, re.findall(r'[(]([^()]+)[)]', labels)))} "
 
@@ -201,7 +204,7 @@ _OF_POINT = re.compile(r"\s*(?:\\vec\s*\{?\s*)?[ivx]+\s*\}?\([^()]*[∈/,]", re.
 
 
 def _is_no_numeral(text: str) -> bool:
-    """Whether a numeral stands in a text that states no number of a choice."""
+    """Return whether a numeral stands in a text that states no number of a choice."""
     if _OF_POINT.match(text):
         return True
     number, rest = _numbered(_BEFORE.sub("", text))
@@ -213,15 +216,15 @@ def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     number, rest = _numbered(text.strip("()[] "))
     if number is None:
         return []
-    found = {}
+    numbered = {}
     for key, labels in choices.items():
         heads = [_numbered(head(label)) for label in labels]
         if numbers := {n for n, _ in heads if n is not None}:
-            found[key] = numbers, {follows for n, follows in heads if n == number}
-    every = [n for numbers, _ in found.values() for n in numbers]
-    if len(found) < 2 or len(set(every)) < len(every):
+            numbered[key] = numbers, {follows for n, follows in heads if n == number}
+    every = [n for numbers, _ in numbered.values() for n in numbers]
+    if len(numbered) < 2 or len(set(every)) < len(every):
         return []
-    return [key for key, (ns, follows) in found.items() if number in ns and (not rest or rest in follows)]
+    return [key for key, (ns, follows) in numbered.items() if number in ns and (not rest or rest in follows)]
 
 
 _MARKED = re.compile(
@@ -238,28 +241,28 @@ def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     if marked and (
         marked["mark"].isdigit() or len(marked["label"].strip(" .")) > 1
     ):  # b) crossed, and not n.a.
-        called = _called(marked["label"], choices)
-        keys = list(dict.fromkeys((*called, *_by_number(marked["mark"], choices)))) if called else []
+        label = _called(marked["label"], choices)
+        keys = list(dict.fromkeys((*label, *_by_number(marked["mark"], choices)))) if label else []
     return keys or _called(text, choices)
 
 
 def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that a text may mean, its article left out if need be; the surest way to call one first."""
-    said = _BEFORE.sub("", text)
-    for words_said in dict.fromkeys((text, said)):
+    stripped = _BEFORE.sub("", text)
+    for words_said in dict.fromkeys((text, stripped)):
         keys = by_label(words_said, choices) or _by_core(words_said, choices)
         keys = keys or list(
             dict.fromkeys((*_by_number(words_said, choices), *_by_value(words_said, choices)))
         )
         if keys and words_said != text:  # une deux: an article may be a label as well
-            keys = list(dict.fromkeys((*keys, *by_label(text.removesuffix(said), choices))))
+            keys = list(dict.fromkeys((*keys, *by_label(text.removesuffix(stripped), choices))))
         if keys:
             return keys
-    return _by_beginning(said, choices) or _by_remark(text, choices)
+    return _by_beginning(stripped, choices) or _by_remark(text, choices)
 
 
 def is_verbatim(text: str, choices: Mapping[str, Sequence[str]]) -> bool:
-    """Whether a label begins with a text of some words as it is printed, its case and spaces apart."""
+    """Return whether a label begins with a text of some words as it is printed, its case and spaces apart."""
     plain = _plain(text)
     begins = re.compile(rf"{re.escape(plain)}(?!\w)")
     return " " in plain and any(begins.match(_plain(s)) for labels in choices.values() for s in labels)
@@ -270,7 +273,7 @@ def _plain(text: str) -> str:
 
 
 def names_any(text: str, choices: Mapping[str, Sequence[str]]) -> bool:
-    """Whether a choice is named within a text."""
+    """Return whether a text names a choice."""
     within = f" {folded(text)} "
     names = (s for key, labels in choices.items() for s in (key, *labels, *map(head, labels)))
     return any(f" {folded(s)} " in within for s in names if folded(s))
@@ -278,19 +281,19 @@ def names_any(text: str, choices: Mapping[str, Sequence[str]]) -> bool:
 
 def numbers_of(labels: Sequence[str]) -> set[int]:
     """The numbers that labels begin with, and the values that they state: ``two pairs``, ``class II``, ``w = 1``."""
-    found = set()
+    numbers = set()
     for label in labels:
         number, rest = _numbered(head(label))
         is_letter = _without_noun(head(label)).partition(" ")[0] in _ROMAN and rest  # V_e / V_s
         if number is not None and not is_letter:
-            found.add(number)
+            numbers.add(number)
         if "=" in label and _value_of(label).isdecimal():
-            found.add(int(_value_of(label)))
-    return found
+            numbers.add(int(_value_of(label)))
+    return numbers
 
 
 def counts(labels: Sequence[str]) -> bool:
-    """Whether labels begin with a number: one that is no article."""
+    """Return whether labels begin with a number: one that is no article."""
     return not numbers_of(labels) <= {1} or any(
         re.search(r"[0-9]|\bI\b", head(s)) for s in labels if numbers_of([s])
     )

@@ -49,13 +49,13 @@ def read_vector(answer: Any, unit: str, count: int) -> Reading:
         return Reading(text, reading.status, flat, echoes, reading.unit_given, reading.code, reading.found)
     if count == 1:
         return _as_arrays(text, _read(text, [rows[0]], behind, unit, (1, 1)), (1,))
-    called = _CALLED.fullmatch(text)
-    plain = f"{called[1]} {called[2]}" if called else text
+    match = _CALLED.fullmatch(text)
+    plain = f"{match[1]} {match[2]}" if match else text
     return _as_arrays(text, read_point(plain, unit, count), (count,))
 
 
 def _is_column(text: str) -> bool:
-    """Whether each entry stands in brackets of its own, on a line of its own, or in a row of LaTeX."""
+    """Return whether each entry stands in brackets of its own, on a line of its own, or in a row of LaTeX."""
     return bool(_IS_GRID.search(text) or "\n" in text.strip() or len(_INNER.findall(text)) > 1)
 
 
@@ -101,10 +101,10 @@ def _refused(text: str) -> Reading | None:
 def _rows(text: str) -> tuple[list[str], str]:
     """The rows of a text, each its entries as they stand, and what stands behind them all."""
     text = unwrapped(text).strip().strip("$").strip()
-    text = text[found.end() :] if (found := _NAMED.match(text)) else text
+    text = text[match.end() :] if (match := _NAMED.match(text)) else text
     if _IS_GRID.search(text):
         return _grid(text)
-    text, behind = (found[1], found[2]) if (found := _CALLED.fullmatch(text)) else (text, "")
+    text, behind = (match[1], match[2]) if (match := _CALLED.fullmatch(text)) else (text, "")
     outer = _OUTER.fullmatch(text)
     inside = outer[1] if outer else text
     inner = _INNER.findall(inside)

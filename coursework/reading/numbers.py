@@ -98,7 +98,8 @@ _WORKS = re.compile(r"[-+*/^]")  #: what a formula has, and a name seldom
 
 
 def _is_equation(name: str) -> bool:
-    """Whether what stands before an equals sign makes an equation or an inequality of it: ``f(x) =``, ``ΣF =``, ``x >=``."""
+    """Return whether the text before an equals sign makes an equation or an inequality: ``f(x) =``, ``ΣF =``,
+    ``x >=``."""
     if _NO_QUANTITY.match(name) or _COMPARES.search(name):
         return True
     left = name.rstrip(" =≈≃:")
@@ -116,9 +117,10 @@ def _is_equation(name: str) -> bool:
 
 
 def says_value(name: str) -> bool:
-    """Whether what stands before an equals sign or a colon says a value itself: ``not 3 :``, ``x or 2 =``, ``two =``."""
-    said = name.rstrip(" =≈≃:").casefold()
-    return bool(_NO_NAME.search(said)) or said in number_words()
+    """Return whether the text before an equals sign or a colon states a value itself: ``not 3 :``, ``x or 2
+    =``, ``two =``."""
+    stripped = name.rstrip(" =≈≃:").casefold()
+    return bool(_NO_NAME.search(stripped)) or stripped in number_words()
 
 
 def _formula(text: str, target: Unit) -> list[Amount]:
@@ -169,8 +171,8 @@ def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target
     return amounts
 
 
-def _alike(one: Expression, other: Expression) -> bool:
-    return math.isclose(one.evaluate(), other.evaluate(), rel_tol=1e-9)
+def _alike(first: Expression, other: Expression) -> bool:
+    return math.isclose(first.evaluate(), other.evaluate(), rel_tol=1e-9)
 
 
 # ------------------------------------------------------------------ angles
@@ -191,19 +193,19 @@ def _meant(expression: Expression) -> Expression:
     root = numbers_in_degrees(expression.root)
     if root == expression.root:
         return expression
-    shown = Expression(expression.text, root)
+    printed = Expression(expression.text, root)
     angles = [abs(angle) for angle in bare_angles(expression.root)]
     if any(angle > math.tau for angle in angles):
-        return shown
+        return printed
     if _are_parts_of_pi(angles):
         return expression
-    if math.isclose(shown.evaluate(), expression.evaluate(), rel_tol=1e-9, abs_tol=1e-12):
+    if math.isclose(printed.evaluate(), expression.evaluate(), rel_tol=1e-9, abs_tol=1e-12):
         return expression
     raise Stop("degrees_or_radians", expression.text)
 
 
 def _are_parts_of_pi(angles: Sequence[float]) -> bool:
-    """Whether angles are parts of pi in decimals, 1.571."""
+    """Return whether angles are fractions of pi in decimals, 1.571."""
     return bool(angles) and all(abs(n - _PART_OF_PI * round(n / _PART_OF_PI)) <= 1e-3 * n for n in angles)
 
 
@@ -224,12 +226,12 @@ def _of_angle(expression: Expression, unit: Unit | None, unit_text: str, target:
         calculated = in_degrees if in_degrees and unit.ratio == degree.ratio else expression
         value = calculated.evaluate()
         return written_amount(in_unit(value, unit, target), short_number(value), unit_text)
-    own = _unit_of(expression, in_degrees)
-    if own == "":
+    own_unit = _unit_of(expression, in_degrees)
+    if own_unit == "":
         value = _meant(expression).evaluate()
         return written_amount(value, short_number(value), assumed=target.text if root.speaks_of_pi else "")
-    value = (in_degrees if in_degrees and own == "deg" else _meant(expression)).evaluate()
-    return written_amount(in_unit(value, parse_unit(own), target), short_number(value), assumed=own)
+    value = (in_degrees if in_degrees and own_unit == "deg" else _meant(expression)).evaluate()
+    return written_amount(in_unit(value, parse_unit(own_unit), target), short_number(value), assumed=own_unit)
 
 
 def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
@@ -253,10 +255,10 @@ def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
     degrees, radians = in_degrees.evaluate(), expression.evaluate()
     if math.isclose(degrees, math.degrees(radians), rel_tol=1e-9, abs_tol=1e-9):
         return "deg"
-    told = [abs(number) for number in _told_of_angles(root)]
-    if abs(radians) > _FEW_TURNS or any(number > _FEW_TURNS for number in told):
+    angles = [abs(number) for number in _told_of_angles(root)]
+    if abs(radians) > _FEW_TURNS or any(number > _FEW_TURNS for number in angles):
         return "deg"
-    if _are_parts_of_pi(told):
+    if _are_parts_of_pi(angles):
         return "rad"
     raise Stop("two_values", expression.text)
 
@@ -284,12 +286,12 @@ _MARGIN = 0.05  #: the share of a number that what is written behind ± may be, 
 
 def _without_margin(text: str) -> str:
     """A number without the margin that is written with it: ``-414,6 ± 0,5 mm``."""
-    found = _PLUS_MINUS.fullmatch(text)
-    if found is None:
+    match = _PLUS_MINUS.fullmatch(text)
+    if match is None:
         return text
-    number, margin = (float(found[name].replace(",", ".").replace(" ", "")) for name in ("number", "margin"))
+    number, margin = (float(match[name].replace(",", ".").replace(" ", "")) for name in ("number", "margin"))
     return (
-        f"{found['number']} {found['unit'] or found['rest']}" if 0 < margin <= _MARGIN * abs(number) else text
+        f"{match['number']} {match['unit'] or match['rest']}" if 0 < margin <= _MARGIN * abs(number) else text
     )
 
 
@@ -312,13 +314,13 @@ def _refuse_ranges(text: str) -> None:
 
 def _named_unit_unknown(text: str) -> Stop | None:
     """When a number is clear and only words follow, it is the unit that is not understood."""
-    found = LITERAL.fullmatch(text)
-    if found is None or not WORD.match(found["rest"]):
+    match = LITERAL.fullmatch(text)
+    if match is None or not WORD.match(match["rest"]):
         return None
     try:
-        parse_unit(found["rest"])
+        parse_unit(match["rest"])
     except WrongUnit as error:
-        return Stop("unknown_unit", getattr(error, "found", found["rest"]))
+        return Stop("unknown_unit", getattr(error, "found", match["rest"]))
     return None
 
 
@@ -454,13 +456,13 @@ def _refuse_several(text: str) -> None:
 
 
 def _unit_starts(text: str) -> list[int]:
-    """Where a unit behind a formula may begin."""
+    """Return the indices at which a unit behind a formula may begin."""
     starts = [m.start() for m in _UNIT_START.finditer(text) if m.start() > 0 and len(text) - m.start() <= 60]
     return starts[-_MAX_PIECES:]
 
 
 def _inside(text: str) -> str:
-    """What stands between brackets that open at the start and close at the end; else nothing."""
+    """Return the text between brackets that open at the start and close at the end; else an empty text."""
     if text[:1] != "(" or text[-1:] != ")":
         return ""
     level = 0
@@ -525,31 +527,35 @@ def _way(text: str, target: Unit, thousands: bool) -> _Way:
     return (_calculated(text, target) if amounts is None else amounts), text
 
 
-def _agreeing(one: _Way, other: _Way, target: Unit) -> list[Amount]:
+def _agreeing(first: _Way, other: _Way, target: Unit) -> list[Amount]:
     """The readings of one way to write a number that the other confirms to the last digit of the shorter.
 
     An angle that does not say its unit may be in radians, where the other says what it is in degrees: then that is meant.
     """
-    kept, radian = [], 1 / target.factor
-    for a in one[0]:
+    agreeing, radian = [], 1 / target.factor
+    for a in first[0]:
         for b in other[0]:
-            own, its = _half_digit(a, one[1], target), _half_digit(b, other[1], target)
-            if _is_near(a.value, b.value, max(own, its)) or (
-                target.is_angle and not b.unit and _is_near(a.value, b.value * radian, max(own, its * radian))
+            margins, its = _half_digit(a, first[1], target), _half_digit(b, other[1], target)
+            if _is_near(a.value, b.value, max(margins, its)) or (
+                target.is_angle
+                and not b.unit
+                and _is_near(a.value, b.value * radian, max(margins, its * radian))
             ):
-                kept.append(a)
+                agreeing.append(a)
             elif (
-                target.is_angle and not a.unit and _is_near(a.value * radian, b.value, max(own * radian, its))
+                target.is_angle
+                and not a.unit
+                and _is_near(a.value * radian, b.value, max(margins * radian, its))
             ):
-                kept.append(b)
-    return kept
+                agreeing.append(b)
+    return agreeing
 
 
 _ROUNDED = 0.015  #: the share of a number that its last digit may be of, for it to confirm another
 
 
-def _is_near(one: float, other: float, half: float) -> bool:
-    return abs(one - other) <= min(half, _ROUNDED * abs(one)) + 1e-6 * abs(one)
+def _is_near(first: float, other: float, half: float) -> bool:
+    return abs(first - other) <= min(half, _ROUNDED * abs(first)) + 1e-6 * abs(first)
 
 
 def _half_digit(amount: Amount, text: str, target: Unit) -> float:
@@ -565,12 +571,12 @@ def _from_amounts(text: str, amounts: Sequence[Amount]) -> Reading:
     distinct: dict[float, Amount] = {}
     for amount in amounts:
         distinct.setdefault(amount.value, amount)
-    kept = list(distinct.values())[:2]
+    candidates = list(distinct.values())[:2]
     return Reading(
         text,
         "read",
-        tuple(a.value for a in kept),
-        tuple(a.echo for a in kept),
+        tuple(a.value for a in candidates),
+        tuple(a.echo for a in candidates),
         unit_given=any(a.unit for a in amounts),
     )
 
@@ -624,7 +630,7 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bo
         plain = with_signs(plain)
         refuse_no_number(plain, target)
         texts = restated(plain, unit) if is_of_paper(unit) else (plain,)
-        amounts = [a for one in texts for a in read_amounts(one, target, thousands, proportions)]
+        amounts = [a for piece in texts for a in read_amounts(piece, target, thousands, proportions)]
         return _from_amounts(text, amounts)
 
     return reading_of(text, read)

@@ -24,7 +24,7 @@ _SERIES = (list, tuple, set, frozenset)
 
 
 class Strange:
-    """What is no answer: printed as the name of what it was."""
+    """Value that is no answer, printed as the name of its type."""
 
     def __init__(self, answer: object) -> None:
         self._name = str(type(answer).__name__)
@@ -68,10 +68,10 @@ def _plain(value: Any, left: list[int], nesting: int) -> Any:
 def _of_numpy(value: Any, left: list[int], nesting: int) -> Any:
     if value.size > left[0]:
         raise OverflowError
-    found = value.tolist()
-    if isinstance(found, np.floating):  # longer than Python's
-        return float(found)
-    return Strange(value) if isinstance(found, np.generic) else _plain(found, left, nesting)
+    plain = value.tolist()
+    if isinstance(plain, np.floating):  # longer than Python's
+        return float(plain)
+    return Strange(value) if isinstance(plain, np.generic) else _plain(plain, left, nesting)
 
 
 def _each(values: Iterable[Any], left: list[int], nesting: int) -> list[Any]:

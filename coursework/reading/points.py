@@ -74,8 +74,8 @@ def _bare_point(text: str) -> tuple[str, str]:
         if says_value(named[0]):
             raise Stop("two_values", text)
         text = text[named.end() :]
-    found = _POINT.fullmatch(_OF_BASE.sub("", text.rstrip(" .;,"), count=1))
-    return (found["inside"], found["unit"].lstrip("*").strip()) if found else (text.rstrip(" .;,"), "")
+    match = _POINT.fullmatch(_OF_BASE.sub("", text.rstrip(" .;,"), count=1))
+    return (match["inside"], match["unit"].lstrip("*").strip()) if match else (text.rstrip(" .;,"), "")
 
 
 _AXIS = re.compile(
@@ -86,14 +86,14 @@ _AXIS = re.compile(
 
 def _axis(text: str, count: int) -> tuple[float, ...] | None:
     """The direction of an axis of coordinates that is named, or ``None``."""
-    found = _AXIS.fullmatch(text)
-    if found is None:
+    match = _AXIS.fullmatch(text)
+    if match is None:
         return None
-    place = "xyz".index(found["letter"].lower())
-    if place >= count:
+    index = "xyz".index(match["letter"].lower())
+    if index >= count:
         return None
-    one = -1.0 if found["sign"] == "-" else 1.0
-    return tuple(one if k == place else 0.0 for k in range(count))
+    sign = -1.0 if match["sign"] == "-" else 1.0
+    return tuple(sign if k == index else 0.0 for k in range(count))
 
 
 _VECTOR = re.compile(
@@ -110,7 +110,7 @@ def _combination(text: str, count: int) -> tuple[float, ...] | None:
     """The vector that a sum of vectors of the base is, ``x_a + 1.36 z``, ``(3x - 4y)/5``, or ``None``."""
     names = tuple("xyz"[:count])
     bare = _MULTIPLE.sub("", text, count=1)
-    spelled = _VECTOR.sub(lambda found: f" {found[1] or found[2]} ", bare)
+    spelled = _VECTOR.sub(lambda match: f" {match[1] or match[2]} ", bare)
     if spelled == bare or _TWO_SIGNS.search(bare):
         return None
     try:
@@ -129,14 +129,14 @@ _TOGETHER = (2.0, 3.0, 5.0)  #: what a square or a product would not pass
 
 
 def _trials(count: int) -> list[tuple[float, ...]]:
-    """Where a form is tried: at each vector of the base, at nothing, at a sum of all."""
-    each = [tuple(float(k == place) for k in range(count)) for place in range(count)]
+    """Return the points at which a form is tried: each vector of the base, zero, and the sum of all."""
+    each = [tuple(float(k == index) for k in range(count)) for index in range(count)]
     return [*each, (0.0,) * count, _TOGETHER[:count]]
 
 
 def _point(text: str, original: str, target: Unit, count: int) -> Reading:
-    said = text.rstrip(" .;,")
-    if target.dimension == RATIO and (axis := _axis(said, count) or _combination(said, count)):
+    stripped = text.rstrip(" .;,")
+    if target.dimension == RATIO and (axis := _axis(stripped, count) or _combination(stripped, count)):
         return Reading(original, "read", (axis,), ("(" + "; ".join(f"{c:g}" for c in axis) + ")",))
     inside, unit = _bare_point(text)
     source = target
@@ -153,11 +153,11 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
         if len(pieces) != count:
             continue
         try:
-            found = _coordinates(pieces, unit, source)
-            ways = [tuple(in_unit(v, source, target) for v in values) for values, _, _ in found]
+            coordinates = _coordinates(pieces, unit, source)
+            ways = [tuple(in_unit(v, source, target) for v in values) for values, _, _ in coordinates]
             if readings and not readings.keys() & set(ways):  # 12,3 456: cut in two places
                 raise _CutInTwo("two_values", text)
-            for values, (_, echo, written) in zip(ways, found, strict=True):
+            for values, (_, echo, written) in zip(ways, coordinates, strict=True):
                 readings.setdefault(values, written_amount(0.0, echo, unit).echo)
                 given = given or written
         except _CutInTwo:
@@ -166,8 +166,8 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
             stop = stop or error
     if not readings:
         raise stop or Stop("wrong_count", text)
-    kept = list(readings.items())[:2]
-    return Reading(original, "read", tuple(v for v, _ in kept), tuple(e for _, e in kept), given)
+    candidates = list(readings.items())[:2]
+    return Reading(original, "read", tuple(v for v, _ in candidates), tuple(e for _, e in candidates), given)
 
 
 def read_point(text: Any, unit: str, count: int) -> Reading:
@@ -181,8 +181,8 @@ def read_point(text: Any, unit: str, count: int) -> Reading:
     if isinstance(text, (list, tuple)):
         text = "[" + " ; ".join(map(text_of, text[: count + 1])) + "]"
     elif isinstance(text, Real) and not isinstance(text, bool):
-        said = text_of(text)
-        return Reading(said, "unreadable", code="wrong_count", found=shorten(said))
+        raw = text_of(text)
+        return Reading(raw, "unreadable", code="wrong_count", found=shorten(raw))
     return reading_of(text, lambda plain: _point_once(plain, text, target, count))
 
 

@@ -1,4 +1,4 @@
-"""What a printed formula of numbers gives, read off the LaTeX as a reader reads it off the paper.
+"""Values of printed formulas, read off the LaTeX as a reader reads them off the paper.
 
 The tree that every sheet is printed from (:mod:`coursework.rendering.formula_tree`) is evaluated, not the code that
 printed it: a sign, a bracket or a degree that is lost on the way gives another number. Angles marked with a degree sign
@@ -40,7 +40,7 @@ class NotEvaluable(CourseworkError, ValueError):
 
 @dataclass(frozen=True)
 class Reading:
-    """What a formula gives, and by how much the rounding of its numbers may move that.
+    """Value of a printed formula, and the amount by which the rounding of its numbers may move it.
 
     ``values`` holds a number, or a number a coordinate of a vector; complex where the formula is, NaN where it does
     not exist. ``widths`` holds as many bounds: the moves of a value when each number is moved by half of its last printed
@@ -80,8 +80,8 @@ def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> Reading:
 def _columns(tree: FormulaRow, numbers: Sequence[Num], halves: Sequence[float]) -> list[np.ndarray]:
     """The coordinates that a tree gives: as printed, then with each number moved up, and down."""
     with np.errstate(all="ignore"):
-        found = Evaluation(numbers, halves).of(tree)
-        coordinates = found if isinstance(found, tuple) else (found,)
+        value = Evaluation(numbers, halves).of(tree)
+        coordinates = value if isinstance(value, tuple) else (value,)
         return [np.broadcast_to(np.asarray(c), (1 + 2 * len(halves),)) for c in coordinates]
 
 
@@ -109,7 +109,7 @@ def _numbers(node: Any) -> list[Num]:
 
 
 def _half_step(number: Num, rounded_to: int) -> float:
-    """How far a printed number may be from the one that it stands for."""
+    """Return the greatest difference between a printed number and the one that was rounded to it."""
     exponent = int(number.exponent or 0)
     digits = number.digits.replace(".", "").lstrip("0")
     if len(digits) < rounded_to:
@@ -173,7 +173,7 @@ class Evaluation:
     def __init__(self, numbers: Sequence[Num], halves: Sequence[float]):
         self.halves = halves
         # By identity: a number that is printed twice is two, since either may be another quantity.
-        self.places = {id(number): place for place, number in enumerate(numbers)}
+        self.places = {id(number): index for index, number in enumerate(numbers)}
 
     def of(self, node: Node) -> Any:
         match node:
@@ -201,9 +201,9 @@ class Evaluation:
         column = np.full(1 + 2 * len(self.halves), float(f"{number.digits}e{number.exponent or 0}"))
         if number.negative:
             column = -column
-        place = self.places[id(number)]
-        half = self.halves[place]
-        column[1 + 2 * place : 3 + 2 * place] += (half, -half)
+        index = self.places[id(number)]
+        half = self.halves[index]
+        column[1 + 2 * index : 3 + 2 * index] += (half, -half)
         return column
 
     def _raised(self, base: Node, above: Node) -> Any:
@@ -246,9 +246,9 @@ class _Line:
         return self.items[self.at] if self.at < len(self.items) else None
 
     def _taken(self, *symbols: Symbol) -> bool:
-        found = self._next() in symbols
-        self.at += found
-        return found
+        is_next = self._next() in symbols
+        self.at += is_next
+        return is_next
 
     def _sum(self) -> Any:
         total = -_single(self._product()) if self._taken(_MINUS) else self._product()
@@ -290,7 +290,7 @@ class _Line:
         return self.evaluation.of(item)
 
     def _bracketed(self) -> Any:
-        """What stands in brackets of one size, as hand-written formulas may have them."""
+        """Return the value inside brackets of one size, which hand-written formulas may have."""
         value = self._sum()
         item = self._next()
         self.at += 1
@@ -319,7 +319,7 @@ def _is_digits(item: Node) -> bool:
 
 
 def _is_factor(item: Node) -> bool:
-    """Whether an item may follow another one as a factor, without a sign."""
+    """Return whether an item may follow another one as a factor, without a sign."""
     if isinstance(item, Script):
         return _is_factor(item.base)
     if isinstance(item, Symbol):

@@ -1,4 +1,4 @@
-"""What reading an answer gives, and what stops it."""
+"""Result of reading an answer, and the exception that stops a reading."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
 
 @dataclass(frozen=True)
 class Reading:
-    """What was understood of one answer.
+    """Value, unit and notes that were read in one answer.
 
     ``status``: ``read``, ``missing``, ``unreadable`` or ``wrong_unit``. ``values``: one or two honest
     readings in the canonical unit (floats; integers; tuples of floats for a point; a key for a choice; an
@@ -46,9 +46,9 @@ class Reading:
 class Stop(Exception):
     """Why a text is not read."""
 
-    def __init__(self, code: str, found: str, status: str = "unreadable") -> None:
+    def __init__(self, code: str, piece: str, status: str = "unreadable") -> None:
         super().__init__(code)
-        self.code, self.found, self.status = code, found, status
+        self.code, self.found, self.status = code, piece, status
 
 
 def text_of(answer: object) -> str:
@@ -65,7 +65,8 @@ def text_of(answer: object) -> str:
 
 
 def bare_value(answer: Any) -> Any:
-    """What a cell's value holds: an array, or a list of one, is its number; a number of NumPy is Python's."""
+    """Return the single number of an array or a list of one, as Python's own number; return any other value
+    as it is."""
     if answer.__class__ is str:
         return answer
     for _ in range(_MAX_NESTING):
@@ -97,7 +98,7 @@ def reading_of(answer: object, read: Callable[[str], Reading]) -> Reading:
         plain = plain_spelling(unwrapped(text))
         return read(plain) if plain else Reading(text, "missing")
     except Stop as stop:
-        found = as_typed(stop.found or plain, text)
-        return Reading(text, stop.status, code=stop.code, found=shorten(found))
+        piece = as_typed(stop.found or plain, text)
+        return Reading(text, stop.status, code=stop.code, found=shorten(piece))
     except Unreadable as error:
         return Reading(text, "unreadable", code=error.code, found=shorten(as_typed(error.found, text)))

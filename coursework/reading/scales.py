@@ -15,7 +15,7 @@ _RATIO = re.compile(rf"{_NAME}({_NUMBER})(?:\s*:\s*|/)({_NUMBER})", re.I)
 
 
 def is_of_paper(unit: str) -> bool:
-    """Whether a unit says how much a millimetre stands for: ``mm/mm``, ``mm/s/mm``."""
+    """Return whether a unit belongs to a scale of paper, so much for a millimetre: ``mm/mm``, ``mm/s/mm``."""
     return unit.endswith("/mm")
 
 
@@ -25,8 +25,8 @@ def restated(text: str, unit: str) -> tuple[str, ...]:
     A ratio of lengths has two honest readings, ``1:2`` or ``1/2`` is 2 mm for one of paper, or half of one.
     """
     if unit == "mm/mm" and (ratio := _RATIO.fullmatch(text)):
-        one, other = ratio.groups()
-        return f"{other}:{one}", f"{one}:{other}"
+        numbers, other = ratio.groups()
+        return f"{other}:{numbers}", f"{numbers}:{other}"
     stated = _STATED.fullmatch(text) or _TURNED.fullmatch(text)
     if stated is None:
         return (text,)

@@ -33,11 +33,11 @@ def read_choices(answer: Any, choices: Mapping[str, Sequence[str]]) -> Reading:
         return Reading(text, "missing")
     if len(text) > _MOST:
         return Reading(text, "unreadable", code="too_long", found=shorten(text))
-    found = _keys(_squeezed(unwrapped(text)), choices)
-    if isinstance(found, str):
-        return Reading(text, "unreadable", code="not_a_choice", found=shorten(found))
-    order = [key for key in choices if key in found]
-    return Reading(text, "read", (frozenset(found),), (", ".join(order) or _none_words()[0],))
+    keys = _keys(_squeezed(unwrapped(text)), choices)
+    if isinstance(keys, str):
+        return Reading(text, "unreadable", code="not_a_choice", found=shorten(keys))
+    order = [key for key in choices if key in keys]
+    return Reading(text, "read", (frozenset(keys),), (", ".join(order) or _none_words()[0],))
 
 
 def _squeezed(text: str) -> str:
@@ -55,13 +55,13 @@ def _keys(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | s
         return frozenset()
     else:
         return _split(text, choices)
-    found: set[str] = set()
+    keys: set[str] = set()
     for piece in pieces:
-        one = _split(piece, choices)
-        if isinstance(one, str):
-            return one
-        found |= one
-    return frozenset(found)
+        piece_keys = _split(piece, choices)
+        if isinstance(piece_keys, str):
+            return piece_keys
+        keys |= piece_keys
+    return frozenset(keys)
 
 
 def _ticked(text: str) -> list[str] | None:
@@ -74,26 +74,26 @@ def _ticked(text: str) -> list[str] | None:
 
 @lru_cache(maxsize=1)
 def _none_words() -> tuple[str, ...]:
-    """What is said where nothing is ticked, in any language; English first."""
+    """Return the words that mean that nothing is ticked, in every language, English first."""
     langs = ("en", *(lang for lang in languages() if lang != "en"))
     return tuple(word.casefold() for lang in langs for word in words(lang)["choices"]["none"])
 
 
 def _split(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | str:
     """The cases of a text, whose labels may themselves hold commas: the longest piece that is one is taken."""
-    whole = read_choice(text.strip(" \"'."), choices) if len(text) <= _longest(choices) else None
-    if whole is not None and whole.status == "read":
-        return frozenset(whole.values)
+    reading = read_choice(text.strip(" \"'."), choices) if len(text) <= _longest(choices) else None
+    if reading is not None and reading.status == "read":
+        return frozenset(reading.values)
     ends = [(m.start(), m.end()) for m in _SEPARATOR.finditer(text)][:_MOST_PIECES]
     if not ends and (tokens := text.split()) and set(tokens) <= set(choices):
         return frozenset(tokens)
-    found: set[str] = set()
+    keys: set[str] = set()
     start = 0
     for piece, start in _pieces(text, ends, choices):
         if piece is None:
             return text[start:].strip() or text
-        found |= {piece} if piece else set()
-    return frozenset(found) or text  # punctuation alone names no case, and does not say that there is none
+        keys |= {piece} if piece else set()
+    return frozenset(keys) or text  # punctuation alone names no case, and does not say that there is none
 
 
 def _longest(choices: Mapping[str, Sequence[str]]) -> int:

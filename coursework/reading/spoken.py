@@ -15,55 +15,59 @@ _A_PHRASE = 2  #: words of what says so wherever it stands: ``sorry, I do not kn
 
 
 @lru_cache(maxsize=8)
-def _said(what: str) -> tuple[str, ...]:
+def _said(category: str) -> tuple[str, ...]:
     """Words of every language, folded, the longest first."""
-    found = {folded(word) for lang in languages() for word in words(lang)["answers"][what]}
-    return tuple(sorted(found, key=len, reverse=True))
+    phrases = {folded(word) for lang in languages() for word in words(lang)["answers"][category]}
+    return tuple(sorted(phrases, key=len, reverse=True))
 
 
 def says_nothing(text: str) -> bool:
-    """Whether a text says that there is no answer: ``?``, ``NSP``, ``je ne sais pas``, ``no time``."""
+    """Return whether a text says that there is no answer: ``?``, ``NSP``, ``je ne sais pas``, ``no time``."""
     if len(text) > _LONGEST:
         return False
     if _MARKS.fullmatch(text):
         return True
-    said = folded(text)
-    if said in _said("nothing"):
+    text_folded = folded(text)
+    if text_folded in _said("nothing"):
         return True
     phrases = (s for s in _said("nothing") if len(s.split()) >= _A_PHRASE)
-    return not re.search(r"[0-9]", said) and any(f" {phrase} " in f" {said} " for phrase in phrases)
+    return not re.search(r"[0-9]", text_folded) and any(
+        f" {phrase} " in f" {text_folded} " for phrase in phrases
+    )
 
 
 def refers_elsewhere(text: str) -> bool:
-    """Whether a text says that the answer stands elsewhere: ``voir feuille``, ``see sheet``."""
-    said = folded(text.replace(".", " "))
-    return len(text) <= _LONGEST and f"{said} ".startswith(tuple(f"{s} " for s in _said("elsewhere")))
+    """Return whether a text says that the answer stands elsewhere: ``voir feuille``, ``see sheet``."""
+    text_folded = folded(text.replace(".", " "))
+    return len(text) <= _LONGEST and f"{text_folded} ".startswith(tuple(f"{s} " for s in _said("elsewhere")))
 
 
 # ------------------------------------------------------------------- beside a number
 
 
-def _either(what: str) -> str:
+def _either(category: str) -> str:
     """The words of every language as a pattern, their spaces of any length, with accents and without."""
-    found = {w for lang in languages() for word in words(lang)["answers"][what] for w in (word, folded(word))}
-    return "|".join(re.escape(w).replace(r"\ ", r"[\s-]+") for w in sorted(found, key=len, reverse=True))
+    phrases = {
+        w for lang in languages() for word in words(lang)["answers"][category] for w in (word, folded(word))
+    }
+    return "|".join(re.escape(w).replace(r"\ ", r"[\s-]+") for w in sorted(phrases, key=len, reverse=True))
 
 
 @lru_cache(maxsize=8)
-def _before(what: str) -> re.Pattern[str]:
-    return re.compile(rf"(?:{_either(what)})(?![^\W\d_])\s*(?=\S)", re.I)
+def _before(category: str) -> re.Pattern[str]:
+    return re.compile(rf"(?:{_either(category)})(?![^\W\d_])\s*(?=\S)", re.I)
 
 
 @lru_cache(maxsize=2)
-def _sense(what: str) -> re.Pattern[str]:
+def _sense(category: str) -> re.Pattern[str]:
     """Words for a sense at the end of a text: ``20,54 rad/s (sens horaire)``, ``201.5 mm/s to the right``."""
-    return re.compile(rf"[(\[]?(?<![^\W\d_])(?:{_either(what)})\s{{0,9}}[)\]]?[.!]?$", re.I)
+    return re.compile(rf"[(\[]?(?<![^\W\d_])(?:{_either(category)})\s{{0,9}}[)\]]?[.!]?$", re.I)
 
 
-def _number_before(what: str, text: str) -> str:
+def _number_before(category: str, text: str) -> str:
     """The number that stands before words for a sense; nothing where none does."""
-    found = _sense(what).search(text) if len(text) <= _LONGEST else None
-    number = text[: found.start()].strip(" ,;(") if found else ""
+    match = _sense(category).search(text) if len(text) <= _LONGEST else None
+    number = text[: match.start()].strip(" ,;(") if match else ""
     return number if re.match(r"[+-]?\s*[0-9]", number) else ""
 
 
@@ -90,24 +94,26 @@ def with_signs(text: str) -> str:
         return text
     if about := _before("about").match(text):
         text = text[about.end() :]
-    for what, sign in (("minus", "-"), ("plus", "")):
-        if found := _before(what).match(text):
-            text = sign + text[found.end() :]
+    for category, sign in (("minus", "-"), ("plus", "")):
+        if match := _before(category).match(text):
+            text = sign + text[match.end() :]
     number = number_words().get(text.lstrip("-").casefold())
     if number is not None:
         return f"{'-' if text[0] == '-' else ''}{number}"
-    for what in ("negative", "positive"):  # counterclockwise ends as clockwise does, and is no part of it
-        if number_text := _number_before(what, text):
+    for category in ("negative", "positive"):  # counterclockwise ends as clockwise does, and is no part of it
+        if number_text := _number_before(category, text):
             is_negative = number_text.startswith("-")
-            if what == "positive" and is_negative:
+            if category == "positive" and is_negative:
                 raise Stop("two_values", text)
-            return f"-{number_text.lstrip('+ ')}" if what == "negative" and not is_negative else number_text
+            return (
+                f"-{number_text.lstrip('+ ')}" if category == "negative" and not is_negative else number_text
+            )
     return text
 
 
 def has_sense(text: str) -> bool:
-    """Whether a number is followed by words for its sense."""
-    return any(_number_before(what, text) for what in ("negative", "positive"))
+    """Return whether words for its sense follow a number."""
+    return any(_number_before(category, text) for category in ("negative", "positive"))
 
 
 @lru_cache(maxsize=1)

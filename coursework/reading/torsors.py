@@ -24,8 +24,8 @@ _MOST_NESTED = 8  #: brackets about all of it
 
 
 class Form(NamedTuple):
-    """What a sort of torsor is made of: the names of its cells, the places of those that a plane one keeps, in the
-    order in which they are asked, and the words for its two columns."""
+    """Layout of a sort of torsor: the names of its cells, the cells of a plane one in the order in which they
+    are asked, and the words for its two columns."""
 
     names: tuple[str, ...]
     plane: tuple[int, ...]
@@ -68,8 +68,10 @@ def read_torsor(answer: Any, form: Form, units: tuple[str, str], count: int) -> 
 
     def read(text: str) -> Reading:
         cells = _cells(text, form, plane=count == 3, symbols=False)
-        own = _units_behind(cells.behind, units)
-        columns = [_column(cells.texts[3 * half : 3 * half + 3], own[half], units[half]) for half in (0, 1)]
+        own_units = _units_behind(cells.behind, units)
+        columns = [
+            _column(cells.texts[3 * half : 3 * half + 3], own_units[half], units[half]) for half in (0, 1)
+        ]
         for column in columns:
             if column is not None and column.status != "read":
                 return Reading(
@@ -89,17 +91,18 @@ def read_pattern(answer: Any, form: Form) -> Reading:
     """
 
     def read(text: str) -> Reading:
-        found = _named_components(text, form)
-        if found is None:
-            found = _marked(text, form)
-        order = [name for name in form.names if name in found]
-        return Reading(text, "read", (frozenset(found),), (", ".join(order) or "0",))
+        components = _named_components(text, form)
+        if components is None:
+            components = _marked(text, form)
+        order = [name for name in form.names if name in components]
+        return Reading(text, "read", (frozenset(components),), (", ".join(order) or "0",))
 
     return _once(answer, read)
 
 
 def _once(answer: Any, read: Callable[[str], Reading]) -> Reading:
-    """What all torsors have in common: what is missing, too long, or stops on the way."""
+    """Read any torsor with ``read``; treat a missing answer, one that is too long, and one that breaks
+    off."""
     text = _as_text(answer)
     if not text.strip():
         return Reading(text, "missing")
@@ -163,62 +166,63 @@ def _cells(text: str, form: Form, *, plane: bool, symbols: bool) -> _Cells:
     rows = groups or [row for row in re.split(r"[;\n]", inside) if row.strip(" ,")]
     if len(rows) == 1 and [len(row.split()) for row in re.split(_COMMA_OF_ROWS, inside)] == [2, 2, 2]:
         rows = re.split(_COMMA_OF_ROWS, inside)  # {0 vx, wy 0, 0 vz}
-    found = _of_rows(rows, plane=plane, symbols=symbols)
-    if found is None:
+    cells = _of_rows(rows, plane=plane, symbols=symbols)
+    if cells is None:
         raise Stop("wrong_torsor", text)
-    if len(found) == 3:
-        places = dict(zip(form.plane, found, strict=True))
-        return _Cells(tuple(_by_name([places.get(place) for place in range(6)], form)), behind)
-    return _Cells(_kept(_by_name(found, form), form, plane=plane), behind)
+    if len(cells) == 3:
+        places = dict(zip(form.plane, cells, strict=True))
+        return _Cells(tuple(_by_name([places.get(index) for index in range(6)], form)), behind)
+    return _Cells(_kept(_by_name(cells, form), form, plane=plane), behind)
 
 
 def _kept(cells: Sequence[str | None], form: Form, *, plane: bool) -> tuple[str | None, ...]:
     """The cells that count: in the plane, those that a plane torsor has."""
-    return tuple(cell if place in form.plane or not plane else None for place, cell in enumerate(cells))
+    return tuple(cell if index in form.plane or not plane else None for index, cell in enumerate(cells))
 
 
 def _laid_out(text: str) -> str:
     """Rows on lines and columns parted by bars, without LaTeX's and Python's own marks."""
     text = unwrapped(text).strip().strip("$").strip()
-    text = _GRID.sub(lambda found: _BRACE[found["side"]], _ROW_END.sub("\n", text))
+    text = _GRID.sub(lambda groups: _BRACE[groups["side"]], _ROW_END.sub("\n", text))
     text = _BAR.sub("|", text).replace(r"\{", "{").replace(r"\}", "}").replace("&", "|")
     text = "\n".join(map(tidy, text.splitlines())).strip()
-    if called := _CALLED.fullmatch(text):
-        text = called[1]
+    if match := _CALLED.fullmatch(text):
+        text = match[1]
     text = text[title.end() :] if (title := _TITLE.match(text)) and _is_title(title[0]) else text
     text = text[point.end() :] if (point := _POINT_BEFORE.match(text)) else text
     return text.strip()
 
 
 def _is_title(text: str) -> bool:
-    """Whether what stands before an equals sign names the whole, and holds no cells itself."""
+    """Return whether the text before an equals sign names the torsor as a whole, and holds no cells
+    itself."""
     return not re.search(r"(?<![\w/_{])\d", text)
 
 
 def _opened(text: str, nested: int = 0) -> tuple[str, str]:
-    """What stands inside the brackets about all of it, and the units behind."""
+    """Return the text inside the outer brackets, and the units behind them."""
     if nested > _MOST_NESTED:
         raise Stop("wrong_torsor", text)
-    place = _end_of_first(text)
-    behind = text[place + 1 :]
-    if text[:1] not in ("[", "(", "{") or place < 0 or _ANOTHER_GROUP.match(behind):
+    end = _end_of_first(text)
+    behind = text[end + 1 :]
+    if text[:1] not in ("[", "(", "{") or end < 0 or _ANOTHER_GROUP.match(behind):
         return text, ""
-    if not any(mark in text[1:place] for mark in " ;,|\n[({"):
+    if not any(mark in text[1:end] for mark in " ;,|\n[({"):
         return text, ""
     behind = _INDEX.sub("", behind, count=1) if _INDEX.match(behind) else behind
-    inside, more = _opened(text[1:place].strip(), nested + 1)
+    inside, more = _opened(text[1:end].strip(), nested + 1)
     return inside, f"{more} {behind}".strip(" .")
 
 
 def _end_of_first(text: str) -> int:
-    """Where the bracket that a text begins with is closed; -1 where it is not."""
+    """Return the index at which the bracket that a text begins with closes; -1 where it does not."""
     depth = accumulate((char in "[({") - (char in "])}") for char in text)
-    return next((place for place, open_ in enumerate(depth) if open_ == 0), -1)
+    return next((index for index, open_ in enumerate(depth) if open_ == 0), -1)
 
 
 def _groups(text: str, form: Form) -> list[str] | None:
     """Cells that stand in brackets, a column or a row each; the resultant first where they are named."""
-    inner = [found[1] for found in _GROUP.finditer(text)]
+    inner = [match[1] for match in _GROUP.finditer(text)]
     between = [piece.strip(" ,;|\n=:") for piece in _GROUP.split(text)[::2]]
     if len(inner) not in (2, 3) or any(re.search(r"\d", piece) and "/" not in piece for piece in between):
         return None
@@ -243,13 +247,13 @@ def _of_rows(rows: Sequence[str], *, plane: bool, symbols: bool) -> list[str] | 
     if len(rows) == 1:
         return _entries(rows[0], (6, 3) if plane else (6,), symbols=symbols)
     for wanted in {2: (3,), 3: (2, 1) if plane else (2,), 6: (1,)}.get(len(rows), ()):
-        found = [_entries(row, (wanted,), symbols=symbols) for row in rows]
-        if None not in found:
-            known = [row for row in found if row is not None]
+        entries = [_entries(row, (wanted,), symbols=symbols) for row in rows]
+        if None not in entries:
+            readable = [row for row in entries if row is not None]
             return (
-                [c for r in known for c in r]
+                [c for r in readable for c in r]
                 if len(rows) != 3
-                else [c for k in zip(*known, strict=True) for c in k]
+                else [c for k in zip(*readable, strict=True) for c in k]
             )
     return None
 
@@ -261,9 +265,9 @@ def _entries(text: str, counts: Sequence[int], *, symbols: bool) -> list[str] | 
         text = bare[1]
     text = re.sub(r"\s*=\s*", "=", text.strip(" ,;\n"))
     for pieces in _cuts(text, symbols=symbols):
-        found = [piece.strip() for piece in pieces]
-        if len(found) in counts:
-            return found
+        entries = [piece.strip() for piece in pieces]
+        if len(entries) in counts:
+            return entries
     return None
 
 
@@ -287,29 +291,29 @@ _GOES_ON = re.compile(r"[^\W\d_]|[°%/*^)\]]")
 
 def _merged(tokens: Sequence[str], *, signs: bool) -> list[str]:
     """Tokens between blanks, units and operators put back behind the number that they belong to."""
-    found: list[str] = []
+    merged: list[str] = []
     for token in tokens:
         begins = not _GOES_ON.match(token) or ("=" in token and token[-1] != "=")
-        open_before = bool(found) and (found[-1][-1] in "*/(^" or (signs and found[-1] in "+-"))
-        if found and (not begins or open_before):
-            found[-1] = f"{found[-1]}{'' if found[-1] in '+-' else ' '}{token}"
+        open_before = bool(merged) and (merged[-1][-1] in "*/(^" or (signs and merged[-1] in "+-"))
+        if merged and (not begins or open_before):
+            merged[-1] = f"{merged[-1]}{'' if merged[-1] in '+-' else ' '}{token}"
         else:
-            found.append(token)
-    return found
+            merged.append(token)
+    return merged
 
 
 def _by_name(cells: Sequence[str | None], form: Form) -> list[str | None]:
     """The cells at the places that they name, where each of them names one: ``wz = 5``."""
     named = [cell.partition("=")[0] if cell and "=" in cell else "" for cell in cells]
     places = [component_place(name, form) if name else None for name in named]
-    known = [place for place in places if place is not None]
-    if len(known) != sum(cell is not None for cell in cells) or len(set(known)) != len(known):
+    placed = [index for index in places if index is not None]
+    if len(placed) != sum(cell is not None for cell in cells) or len(set(placed)) != len(placed):
         return list(cells)
-    found: list[str | None] = [None] * 6
-    for place, cell in zip(places, cells, strict=True):
-        if place is not None and cell is not None:
-            found[place] = cell
-    return found
+    by_index: list[str | None] = [None] * 6
+    for index, cell in zip(places, cells, strict=True):
+        if index is not None and cell is not None:
+            by_index[index] = cell
+    return by_index
 
 
 def component_place(text: str, form: Form) -> int | None:
@@ -318,10 +322,10 @@ def component_place(text: str, form: Form) -> int | None:
     if not re.fullmatch(r"[^{}]*(?:\{[^{}]*\}[^{}]*)*", spelled):
         return None
     name = re.sub(r"[\s{}\\$]", "", spelled)
-    found = form.component.fullmatch(name)
-    if found is None:
+    match = form.component.fullmatch(name)
+    if match is None:
         return None
-    parts = found.groupdict()
+    parts = match.groupdict()
     if parts.get("name"):
         return "XYZLMN".index(parts["name"])
     return 3 * (parts["half"] in "vVM") + "xyz".index(parts["axis"].lower())
@@ -335,7 +339,7 @@ def _units_behind(text: str, units: tuple[str, str]) -> tuple[str, str]:
     text = plain_spelling(text).strip(" ()[]{}.")
     if text.upper() in ("SI", "S.I", "USI"):
         return units[0], units[1].replace("mm", "m")
-    own = ["", ""]
+    own_units = ["", ""]
     for piece in re.split(r"\s*[;,|&]\s*|\s+(?:et|and|puis)\s+|\s+", text):
         unit = plain_unit(piece) if piece else None
         if piece and unit is None:
@@ -344,37 +348,45 @@ def _units_behind(text: str, units: tuple[str, str]) -> tuple[str, str]:
             fits = [half for half in (0, 1) if same_dimension(unit, parse_unit(units[half]))]
             if not fits:
                 in_unit(0.0, unit, parse_unit(units[1]))
-            own[fits[0]] = piece
-    return own[0], own[1]
+            own_units[fits[0]] = piece
+    return own_units[0], own_units[1]
 
 
 def _column(cells: Sequence[str | None], stated: str, unit: str) -> Reading | None:
     """The cells of one column that there are, in its unit."""
-    kept = [cell for cell in cells if cell is not None]
-    if not kept:
+    filled = [cell for cell in cells if cell is not None]
+    if not filled:
         return None
-    empty = next((cell for cell in kept if cell in ("", "-", "+")), None)
+    empty = next((cell for cell in filled if cell in ("", "-", "+")), None)
     if empty is not None:
-        raise Stop("wrong_torsor", " ".join(kept))
-    if len(kept) == 1:
+        raise Stop("wrong_torsor", " ".join(filled))
+    if len(filled) == 1:
         from coursework.reading.numbers import read_number
 
-        one = read_number(f"{kept[0]} {stated}".strip(), unit)
-        values = tuple((value,) for value in one.values)
-        return Reading(one.text, one.status, values, one.read_as, one.unit_given, one.code, one.found)
-    return read_point(f"({' ; '.join(kept)}) {stated}".strip(), unit, len(kept))
+        reading = read_number(f"{filled[0]} {stated}".strip(), unit)
+        values = tuple((value,) for value in reading.values)
+        return Reading(
+            reading.text,
+            reading.status,
+            values,
+            reading.read_as,
+            reading.unit_given,
+            reading.code,
+            reading.found,
+        )
+    return read_point(f"({' ; '.join(filled)}) {stated}".strip(), unit, len(filled))
 
 
 def _both(text: str, columns: Sequence[Reading | None], order: Sequence[int], behind: bool) -> Reading:
     """Both columns as one array in an order of cells; two readings where a column has two."""
     ways: dict[bytes, tuple[np.ndarray, str]] = {}
-    places = [sorted(place for place in order if place // 3 == half) for half in (0, 1)]
+    places = [sorted(index for index in order if index // 3 == half) for half in (0, 1)]
     for which in (0, -1):
-        found = np.zeros(6)
-        for column, own in zip(columns, places, strict=True):
+        components = np.zeros(6)
+        for column, column_places in zip(columns, places, strict=True):
             if column is not None:
-                found[own] = column.values[which]
-        value = found[list(order)]
+                components[column_places] = column.values[which]
+        value = components[list(order)]
         ways.setdefault(value.tobytes(), (value, _echo(columns, which, order)))
     values, echoes = zip(*ways.values(), strict=True)
     given = behind or any(column.unit_given for column in columns if column is not None)
@@ -383,10 +395,10 @@ def _both(text: str, columns: Sequence[Reading | None], order: Sequence[int], be
 
 def _echo(columns: Sequence[Reading | None], which: int, order: Sequence[int]) -> str:
     """Both columns as they were read, ``{0; 0; 5} {10; 20; 0}``; three components in the order in which they are asked."""
-    said = [re.sub(r"^\(|\)", "", column.read_as[which]) for column in columns if column is not None]
+    echoes = [re.sub(r"^\(|\)", "", column.read_as[which]) for column in columns if column is not None]
     if len(order) == 3:
-        return "(" + "; ".join(said if order[0] < 3 else said[::-1]) + ")"
-    return " ".join(f"{{{one}}}" for one in said)
+        return "(" + "; ".join(echoes if order[0] < 3 else echoes[::-1]) + ")"
+    return " ".join(f"{{{echo}}}" for echo in echoes)
 
 
 # ---------------------------------------------------------------------- patterns
@@ -417,8 +429,8 @@ def _named_components(text: str, form: Form) -> set[str] | None:
         return None
     pieces = [piece for piece in re.split(r"\s*[,;|\n]\s*|\s+(?:et|and)\s+|\s+", plain) if piece]
     places = [component_place(piece, form) for piece in pieces]
-    known = [place for place in places if place is not None]
-    return {form.names[place] for place in known} if known and len(known) == len(pieces) else None
+    named = [index for index in places if index is not None]
+    return {form.names[index] for index in named} if named and len(named) == len(pieces) else None
 
 
 def _marked(text: str, form: Form) -> set[str]:
@@ -429,12 +441,12 @@ def _marked(text: str, form: Form) -> set[str]:
         (cells, behind), plane = _cells(text, form, plane=True, symbols=True), True
     if behind:
         raise Stop("wrong_torsor", text)
-    told = [None if cell is None else cell.strip(" ()[]{}") for cell in cells]
+    stripped = [None if cell is None else cell.strip(" ()[]{}") for cell in cells]
     is_table = bool(_TABLE.search(text))
-    has_dashes = any(cell in _DASHES for cell in told)
+    has_dashes = any(cell in _DASHES for cell in stripped)
     if has_dashes and not (is_table and (plane or _dashed_as_plane(cells, form))):
         raise Stop("wrong_torsor", text)
-    written = {form.names[place]: cell for place, cell in enumerate(told) if cell and cell not in _DASHES}
+    written = {form.names[index]: cell for index, cell in enumerate(stripped) if cell and cell not in _DASHES}
     if not written or ("≠" in written.values() and not is_table):  # && says nothing, 0 ≠ 1 is no row
         raise Stop("wrong_torsor", text)
     marked = {name: cell for name, cell in written.items() if not _ZERO.fullmatch(cell)}
@@ -449,7 +461,8 @@ def _marked(text: str, form: Form) -> set[str]:
 
 
 def _is_mark(cell: str) -> bool:
-    """Whether a cell says that something may stand there: a symbol, a product of some, a number, a star, ``free``."""
+    """Return whether a cell marks a component that may differ from zero: a symbol, a product of symbols, a
+    number, a star, ``free``."""
     if _FREE.fullmatch(cell):
         return True
     return bool(_MARK.fullmatch(cell)) and all(map(_SYMBOL.fullmatch, _LETTERS.findall(_plain_symbols(cell))))
@@ -462,6 +475,6 @@ def _plain_symbols(cell: str) -> str:
 
 
 def _dashed_as_plane(cells: Sequence[str | None], form: Form) -> bool:
-    """Whether dashes stand where a plane torsor says nothing, and there alone."""
-    dashed = {place for place, cell in enumerate(cells) if cell is not None and cell.strip() in _DASHES}
+    """Return whether dashes stand exactly in the cells that a plane torsor leaves empty."""
+    dashed = {index for index, cell in enumerate(cells) if cell is not None and cell.strip() in _DASHES}
     return dashed.isdisjoint(form.plane)

@@ -46,7 +46,7 @@ class Operation:
 
     @property
     def has_inverse(self) -> bool:
-        """Whether an inverse trigonometric function gives an angle in it."""
+        """Return whether an inverse trigonometric function gives an angle in the operation."""
         return any(node.kind == "call" and node.name in INVERSE for node in self.walk())
 
     @property
@@ -59,16 +59,17 @@ class Operation:
         if (self.kind, self.name) == ("constant", "pi"):
             return frozenset({1})
         if self.kind == "product":
-            found = frozenset({0})
+            powers = frozenset({0})
             for sign, arg in zip(self.name, self.args, strict=True):
-                own = arg.powers_of_pi
-                found = frozenset(p + (q if sign == "*" else -q) for p in found for q in own)
-            return found
+                arg_powers = arg.powers_of_pi
+                powers = frozenset(p + (q if sign == "*" else -q) for p in powers for q in arg_powers)
+            return powers
         return frozenset({0})
 
     @property
     def turns(self) -> bool:
-        """Whether it is an angle in radians by itself: ``acos(0.5)``, or so many times that."""
+        """Return whether the operation is an angle in radians by itself: ``acos(0.5)``, or a multiple of
+        one."""
         if self.kind == "call":
             return self.name in INVERSE
         if self.kind == "neg":
@@ -89,7 +90,7 @@ _CONSTANTS = {"pi": _number(math.pi), "e": _number(math.e), "i": _number(1j)}
 def _power(base: Value, exponent: Value) -> Value:
     if np.any(np.abs(exponent) > MAX_EXPONENT):
         raise Unreadable(
-            f"an exponent beyond {MAX_EXPONENT} is not computed", code="too_complex", found=f"^{exponent}"
+            f"an exponent beyond {MAX_EXPONENT} is not computed", code="too_complex", piece=f"^{exponent}"
         )
     return base**exponent
 
@@ -129,8 +130,8 @@ def without_idle(node: Operation) -> Operation:
     if node.kind == "power" and (_is_number(args[1], 1) or _is_number(args[0], 0) or _is_number(args[0], 1)):
         return args[0]
     if node.kind == "sum":
-        kept = [arg for arg in args if not _is_number(arg, 0)] or [args[0]]
-        return kept[0] if len(kept) == 1 else replace(node, args=args)
+        terms = [arg for arg in args if not _is_number(arg, 0)] or [args[0]]
+        return terms[0] if len(terms) == 1 else replace(node, args=args)
     if node.kind == "product":
         above = [
             arg for sign, arg in zip(node.name, args, strict=True) if sign == "*" and not _is_number(arg, 1)
@@ -222,14 +223,15 @@ def _calculated_in_degrees(node: Operation) -> Operation:
 
 
 def _is_conversion(node: Operation) -> bool:
-    """Whether a product of an inverse function makes radians into degrees, ``acos(0.5)*180/3.14``."""
+    """Return whether a product of an inverse function converts radians into degrees,
+    ``acos(0.5)*180/3.14``."""
     pairs = [(s, arg) for s, arg in zip(node.name, node.args, strict=True) if not arg.turns]
     if not pairs or not all(arg.constant for _, arg in pairs):
         return False
     signs, args = zip(*pairs, strict=True)
-    one = Operation("number", "1")
+    unity = Operation("number", "1")
     with np.errstate(all="ignore"):
-        factor = compute(Operation("product", "*" + "".join(signs), (one, *args)), {})
+        factor = compute(Operation("product", "*" + "".join(signs), (unity, *args)), {})
     return bool(abs(factor / _A_RADIAN - 1) < 0.01)
 
 
@@ -284,5 +286,5 @@ class Expression:
             return result
         if not np.isfinite(result):
             message = f"{shorten(self.text)!r} has no finite value"
-            raise Unreadable(message, code="not_finite", found=self.text)
+            raise Unreadable(message, code="not_finite", piece=self.text)
         return result.item()

@@ -40,9 +40,9 @@ _MAX_DECADES = 100
 class UnknownUnit(WrongUnit):
     """A text that is no unit; ``found`` is the piece that is not known."""
 
-    def __init__(self, message: str, found: str) -> None:
+    def __init__(self, message: str, piece: str) -> None:
         super().__init__(message)
-        self.found = found
+        self.found = piece
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Unit:
 
     @property
     def is_angle(self) -> bool:
-        """Whether it measures an angle and nothing else."""
+        """Return whether the unit measures an angle and nothing else."""
         return self.dimension == _ANGLE_ALONE
 
 
@@ -230,7 +230,7 @@ def _product(a: Unit, b: Unit, power: int) -> Unit:
 
 
 def _spellings() -> Iterator[str]:
-    """What a misspelled piece may have meant, for a message."""
+    """Yield the known spellings that a misspelled piece may stand for, for a message."""
     yield from _PLAIN
     for symbol in _PREFIXED:
         for prefix in ("", "m", "c", "k", "μ", "M"):
@@ -263,7 +263,8 @@ def _named(name: str) -> Unit:
 
 
 def _may_have_power(token: re.Match[str]) -> bool:
-    """Whether the power of a token, if any, is in its place: ``90°-5`` is a difference, not a power."""
+    """Return whether the power of a token, if any, may stand there: ``90°-5`` is a difference, not a
+    power."""
     if not token["power"]:
         return True
     return (
@@ -275,16 +276,16 @@ def _may_have_power(token: re.Match[str]) -> bool:
 
 def _tokens(text: str) -> list[tuple[str, int]]:
     """Names, signs and brackets, each with its power (1 unless written)."""
-    found, at = [], 0
+    tokens, at = [], 0
     while at < len(text):
         token = _TOKEN.match(text, at)
         if token is None or not _may_have_power(token):
             raise _UnknownPiece(text[at:].strip())
         power = token["in"] or token["bare"] or token["glued"] or "1"
         name = token["name"] and token["name"].replace("° ", "°")
-        found.append((name or token["one"] or token["sign"], int(power)))
+        tokens.append((name or token["one"] or token["sign"], int(power)))
         at = token.end()
-    return found
+    return tokens
 
 
 def _chain(tokens: list[tuple[str, int]], text: str, depth: int = 0) -> Unit:
@@ -369,21 +370,21 @@ def parse_unit(text: str) -> Unit:
     unit, piece = _analyse(text)
     if unit is None:
         piece = shorten(piece)
-        known = list(_spellings())
-        near = [s for s in known if s.casefold() == piece.casefold()]
-        near = near or difflib.get_close_matches(piece, known, n=1, cutoff=0.5)
+        spellings = list(_spellings())
+        near = [s for s in spellings if s.casefold() == piece.casefold()]
+        near = near or difflib.get_close_matches(piece, spellings, n=1, cutoff=0.5)
         hint = f"; did you mean {near[0]!r}?" if near else "; units are such as mm, rad/s, N.m, kg.m^2"
         where = f" in {shorten(text)!r}" if piece != shorten(text) else ""
-        raise UnknownUnit(f"no unit {piece!r}{where}{hint}", found=piece)
+        raise UnknownUnit(f"no unit {piece!r}{where}{hint}", piece=piece)
     return unit
 
 
-def check_unit(whose: str, text: str) -> None:
-    """Refuse a course that states a unit that is none; ``whose`` begins the message."""
+def check_unit(owner: str, text: str) -> None:
+    """Refuse a course that states a unit that is none; ``owner`` begins the message."""
     try:
         parse_unit(text)
     except WrongUnit as fault:
-        raise BadCourse(f"{whose}: {fault}") from fault
+        raise BadCourse(f"{owner}: {fault}") from fault
 
 
 # --- converting -------------------------------------------------------------------------
@@ -406,13 +407,13 @@ def _as_unit(unit: str | Unit) -> Unit:
 
 
 def same_dimension(a: str | Unit, b: str | Unit) -> bool:
-    """Whether a value in one unit can be converted to the other."""
+    """Return whether a value in one unit can be converted to the other."""
     return _compatible(_as_unit(a), _as_unit(b))
 
 
 def meant_otherwise(unit: Unit, target: Unit) -> bool:
-    """Whether a unit of another kind is the right one but for its capitals or its degree sign: ``3 S`` for seconds,
-    ``20 C`` for a temperature."""
+    """Return whether a unit of another dimension is the right one but for its capitals or its degree sign:
+    ``3 S`` for seconds, ``20 C`` for a temperature."""
     if unit.text in ("C", "F") and target.dimension == _PLAIN["°C"].dimension:
         return True
     small = find_unit(unit.text.lower()) if unit.text != unit.text.lower() else None
@@ -421,7 +422,7 @@ def meant_otherwise(unit: Unit, target: Unit) -> bool:
 
 @lru_cache(maxsize=4096)
 def _scale(source: Unit, target: Unit) -> tuple[Fraction, int]:
-    """What multiplies a number of ``source``: a rational and a power of pi."""
+    """Return the factor from ``source`` to ``target``, as a rational and a power of pi."""
     ratio, pi = source.ratio / target.ratio, source.pi - target.pi
     turns = source.dimension[_CYCLE] - target.dimension[_CYCLE]
     if turns and source.dimension[_ANGLE] != target.dimension[_ANGLE]:

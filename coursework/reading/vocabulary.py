@@ -24,10 +24,10 @@ class Unreadable(CourseworkError, ValueError):
     ``code`` is a short key for the reason, ``found`` the piece that stops the reading.
     """
 
-    def __init__(self, message: str, *, code: str, found: str = "") -> None:
+    def __init__(self, message: str, *, code: str, piece: str = "") -> None:
         super().__init__(message)
         self.code = code
-        self.found = shorten(found)
+        self.found = shorten(piece)
 
 
 # --- vocabulary -------------------------------------------------------------------------
@@ -66,7 +66,8 @@ _VARIANT = re.compile(r"var(?=phi|theta|epsilon|rho|sigma|kappa)")
 
 
 def _key(name: str) -> str:
-    """What all spellings of one name share: no underscore, the dots of a derivative last, one ``phi``."""
+    """Return the common form of all spellings of one name: no underscore, the dots of a derivative last, one
+    ``phi``."""
     name = _VARIANT.sub("", name.replace("_", ""), count=1)
     for dots in ("ddot", "dot"):
         if dots in name and name != dots:
@@ -125,18 +126,18 @@ class Vocabulary:
 
         def piece(start: int) -> tuple[int, str, str] | None:
             for end in range(len(run), start, -1):
-                known = self.find(run[start:end])
-                if known is None or (run[start:end] == "e" and len(run) > 1):
+                name = self.find(run[start:end])
+                if name is None or (run[start:end] == "e" and len(run) > 1):
                     continue
                 rest = end
-                while rest < len(run) and known[0] == "function" and run[rest].isdigit():
+                while rest < len(run) and name[0] == "function" and run[rest].isdigit():
                     rest += 1  # cos2theta: the digits belong to the argument
                 if rest < len(run) and run[rest] == "_":
                     continue
                 if rest < len(run) and run[rest].isdigit():
                     continue
                 if fits(rest):
-                    return end - start, *known
+                    return end - start, *name
             dead.add(start)
             return None
 
