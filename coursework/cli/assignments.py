@@ -1,4 +1,4 @@
-"""What ``build`` does with an assignment's file."""
+"""Building an assignment from its file, for ``build``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def is_assignment(exercises: Sequence[str]) -> bool:
-    """Whether a file is named in place of exercises."""
+    """Return whether a file is named in place of exercises."""
     return len(exercises) == 1 and exercises[0].endswith(".toml")
 
 
@@ -48,11 +48,11 @@ class _Settings:
             raise BadInput(f"{self.base / self.assignment.name}.toml: {name}: {fault.message}") from fault
 
     def path(self, name: str) -> Path | None:
-        found = self.of(name)
-        if found is None:
+        path_text = self.of(name)
+        if path_text is None:
             return None
-        told = self.context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
-        return Path(found) if told else self.base / found
+        is_given = self.context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
+        return Path(path_text) if is_given else self.base / path_text
 
 
 def codes_ready() -> None:
@@ -148,7 +148,7 @@ def build_assignment(
     content = issued_content(dealt.issues, assignment, dealt.secret)
     keeping(context, settings.of("db"), settings.of("name"), course.folder.root.name)(content)
     same = json_text(content).encode("utf-8")
-    kept = before is not None and (out / "issued.json").read_bytes() == same
+    is_unchanged = before is not None and (out / "issued.json").read_bytes() == same
     shared_by_cluster(context, context.params["cluster"])
     with progress_bar("building", len(wanted)) as advance:
         notes = list(write_tree(out, wanted, advance, anew=overwrite))
@@ -156,8 +156,10 @@ def build_assignment(
         notes += unprinted_names(renderer_of(course.folder), names if only is None else only)
     tell(notes)
     count = len({(i.stem, i.sitting) for i in dealt.issues if only is None or i.student in only})
-    what = "as it was issued" if kept or again else "to give away, issued.json and answers.csv to keep"
-    click.echo(f"{counted(count, 'paper')} in {out}: {counted(len(wanted), 'file')}, {what}")
+    description = (
+        "as it was issued" if is_unchanged or again else "to give away, issued.json and answers.csv to keep"
+    )
+    click.echo(f"{counted(count, 'paper')} in {out}: {counted(len(wanted), 'file')}, {description}")
     if course.folder.has_solutions:
         click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
     if with_nbgrader:
@@ -166,11 +168,11 @@ def build_assignment(
         )
 
 
-def secret_made(path: Path, kept: Path, lang: str) -> str:
+def secret_made(path: Path, secret_path: Path, lang: str) -> str:
     """Return the line that says that an assignment's file has no secret, and where the new one is kept."""
     from coursework.language.words import words
 
-    return str(words(lang)["assignment"]["secret_made"]).format(file=path, kept=kept)
+    return str(words(lang)["assignment"]["secret_made"]).format(file=path, kept=secret_path)
 
 
 def for_practice(lang: str) -> str:
@@ -197,10 +199,10 @@ def _issued_before(path: Path, *, anew: bool) -> Mapping[str, Any] | None:
 def _known(name: str, names: set[str]) -> str:
     from coursework.making.students import called
 
-    found = called(name, names)
-    if found is None:
+    column = called(name, names)
+    if column is None:
         raise BadInput(f"no student {name!r} was issued a paper{nearest(name, names)}")
-    return found
+    return column
 
 
 def _check_identity(assignment: Assignment, students: Sequence[Any], notes: list[str]) -> None:
@@ -208,11 +210,11 @@ def _check_identity(assignment: Assignment, students: Sequence[Any], notes: list
     from coursework.making.students import folded
 
     columns = list(dict.fromkeys(title for student in students for title in student.columns))
-    known = set(map(folded, columns))
-    asked = [(title, "a box to fill in by hand is printed") for title in assignment.identity]
+    folded_columns = set(map(folded, columns))
+    wanted = [(title, "a box to fill in by hand is printed") for title in assignment.identity]
     if assignment.sort:
-        asked.append((assignment.sort, "a booklet stands as the roster does"))
-    for title, then in asked:
-        if folded(title) not in known:
+        wanted.append((assignment.sort, "a booklet stands as the roster does"))
+    for title, then in wanted:
+        if folded(title) not in folded_columns:
             near = nearest(title, columns) if columns else ""
             notes.append(f"the roster has no column {title!r}{near}: {then}")

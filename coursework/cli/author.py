@@ -127,12 +127,12 @@ def new(
     spoken = langs or languages_around(os.environ)
     there: list[Path] = []
     if source is not None:
-        made, there = _copied(context, folder, source, renamed or source, spoken)
+        written, there = _copied(context, folder, source, renamed or source, spoken)
     elif exercise is not None:
-        made = new_exercise(folder, exercise, spoken)
+        written = new_exercise(folder, exercise, spoken)
     else:
-        made = new_course(folder, spoken)
-    for path in made:
+        written = new_course(folder, spoken)
+    for path in written:
         click.echo(f"wrote {path}")
     for path in there:
         click.echo(f"{path} is there already, the same")
@@ -150,15 +150,15 @@ def _new_example(folder: Path, name: str, more: object) -> None:
 
 
 def _new_assignment(
-    context: click.Context, path: Path, asked: Sequence[str], langs: Sequence[str] | None
+    context: click.Context, path: Path, exercises: Sequence[str], langs: Sequence[str] | None
 ) -> None:
     from coursework.authoring.new_assignment import new_assignment
     from coursework.language.environment import language_of
 
-    made = new_assignment(path, opened(context), asked, langs, language_of(os.environ))
-    own = f"--course {context.obj} " if context.obj else ""
-    click.echo(f"wrote {made}")
-    click.echo(f"try: coursework {own}build {made}")
+    written = new_assignment(path, opened(context), exercises, langs, language_of(os.environ))
+    course_option = f"--course {context.obj} " if context.obj else ""
+    click.echo(f"wrote {written}")
+    click.echo(f"try: coursework {course_option}build {written}")
 
 
 def _copied(

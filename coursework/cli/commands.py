@@ -61,12 +61,12 @@ class _Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands with what each does, as :mod:`click` does; their files are loaded where one has changed."""
         files = sorted(Path(__file__).parent.glob("*.py"))
-        told = made_of(files, "commands.json", lambda: {n: self._help(ctx, n) for n in COMMANDS})
+        summaries = made_of(files, "commands.json", lambda: {n: self._help(ctx, n) for n in COMMANDS})
         limit = formatter.width - 6 - max(map(len, COMMANDS))
         with formatter.section("Commands"):
             formatter.write_dl(
                 [
-                    (n, click.Command(n, help=told[n]).get_short_help_str(limit))
+                    (n, click.Command(n, help=summaries[n]).get_short_help_str(limit))
                     for n in self.list_commands(ctx)
                 ]
             )
@@ -94,5 +94,5 @@ def commands(context: click.Context, folder: str | None) -> None:
 
 def named_command(arguments: Sequence[str]) -> str:
     """The command that some arguments name, and a space; nothing where they name none."""
-    known = [a for a in arguments if a in COMMANDS]
-    return f"{known[0]} " if known else ""
+    named = [a for a in arguments if a in COMMANDS]
+    return f"{named[0]} " if named else ""

@@ -1,4 +1,5 @@
-"""What a shell completes: names of exercises, languages, formats; of a course, its folder's files alone are looked at."""
+"""Shell completion of exercises, languages and formats; of a course it reads only the names of its folder's
+files."""
 
 from __future__ import annotations
 

@@ -62,7 +62,8 @@ def _beside(file: Path) -> str:
 def keeping(
     context: click.Context, url: str | None, name: str, course: str
 ) -> Callable[[Mapping[str, Any]], None]:
-    """What keeps an ``issued.json`` in a database, under a name unless it is of an assignment; nothing where there is none."""
+    """Return a function that stores an ``issued.json`` in a database, under a name unless it is of an
+    assignment; one that does nothing without a database."""
     if url is None:
         return lambda content: None
     store = store_at(context, url, new=True)
@@ -92,9 +93,9 @@ def grade_stored(
     decimal: str,
     form: Form,
     replaces: bool,
-    told: Callable[[Gradebook, Path], int],
+    writer: Callable[[Gradebook, Path], int],
 ) -> int:
-    """Keep what is new, mark what changed, and write the files where a folder is named; ``told`` says what is in them."""
+    """Keep what is new, mark what changed, and write the files where a folder is named; ``writer`` says what is in them."""
     course = opened(context)
     store = store_at(context, url, new=issued is not None)
     from coursework.database.assignments import assignment_called, name_of, put_issued
@@ -106,8 +107,8 @@ def grade_stored(
         Issued.read(issued)
         content = _json_of(issued)
         with store.begin() as connection:
-            whole = name or name_of(content) or issued.resolve().parent.name
-            number = put_issued(connection, content, whole, course.folder.root.name)
+            assignment = name or name_of(content) or issued.resolve().parent.name
+            number = put_issued(connection, content, assignment, course.folder.root.name)
     else:
         with store.reading() as connection:
             number = assignment_called(connection, name)
@@ -129,7 +130,7 @@ def grade_stored(
             progress=advance,
             form=form,
         )
-    return told(book, out)
+    return writer(book, out)
 
 
 def _json_of(path: Path) -> Any:
@@ -139,10 +140,10 @@ def _json_of(path: Path) -> Any:
 
 
 def _tell_new(now: GradedNow) -> None:
-    """What came, and what of it was marked."""
-    known = [one for one in now.deliveries if not one.is_new]
+    """Print the submissions that arrived, and how many answers of them were marked."""
+    earlier = [delivery for delivery in now.deliveries if not delivery.is_new]
     if now.deliveries:
-        click.echo(f"{counted(now.new, 'new file')}{f', {len(known)} that came before' if known else ''}")
+        click.echo(f"{counted(now.new, 'new file')}{f', {len(earlier)} that came before' if earlier else ''}")
     if now.decided:
         click.echo(f"{counted(now.decided, 'decision')} taken in")
     click.echo(
@@ -151,7 +152,7 @@ def _tell_new(now: GradedNow) -> None:
 
 
 def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
-    """What changed, and what waits."""
+    """Print the changed marks and the pending decisions."""
     from coursework.database.standing import waiting
 
     for change in now.marked.changes[:_TOLD]:
@@ -161,8 +162,8 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     sheets = now.work.sheets
     tell(sheets.warnings)
     rejected = sheets.rejected
-    for one in rejected[:_TOLD]:
-        click.echo(f"coursework: {one.source}: {one.reason}", err=True)
+    for row in rejected[:_TOLD]:
+        click.echo(f"coursework: {row.source}: {row.reason}", err=True)
     if len(rejected) > _TOLD:
         click.echo(
             f"coursework: and {len(rejected) - _TOLD} more rejected rows: grade with --out DIR", err=True
@@ -175,10 +176,10 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
 
 
 def _change(change: Change) -> str:
-    place = f"{change.student}, {change.exercise}, {change.part}"
+    location = f"{change.student}, {change.exercise}, {change.part}"
     before = f"{change.verdict_before} {change.points_before}".strip() or "nothing"
     now = f"{change.verdict_now} {change.points_now}".strip() or "nothing"
-    return f"{place}: {before} before, {now} now"
+    return f"{location}: {before} before, {now} now"
 
 
 # ----------------------------------------------------------------------- report
@@ -228,7 +229,7 @@ def show(context: click.Context, url: str, as_json: bool) -> None:
 
     store = store_at(context, url)
     with store.reading() as connection:
-        rows = [one._asdict() for one in summaries(connection)]
+        rows = [summary._asdict() for summary in summaries(connection)]
     if as_json:
         print_json(rows)
     elif rows:
@@ -261,22 +262,22 @@ def history(
     store = store_at(context, url)
     with store.reading() as connection:
         number = assignment_called(connection, assignment)
-        found = history_of(connection, number, student, exercise, part)
-        if student is not None and not found:
+        entries = history_of(connection, number, student, exercise, part)
+        if student is not None and not entries:
             _check_student(connection, number, student)
     if as_json:
         print_json(
             [
-                {"student": s, "exercise": e, "part": p, **one._asdict(), "at": one.at.isoformat()}
-                for s, e, p, one in found
+                {"student": s, "exercise": e, "part": p, **entry._asdict(), "at": entry.at.isoformat()}
+                for s, e, p, entry in entries
             ]
         )
         return
-    if not found:
+    if not entries:
         click.echo("nothing was marked")
-    for who, where, of, one in found:
+    for author, where, of, entry in entries:
         click.echo(
-            f"{one.at:%Y-%m-%d %H:%M:%S} UTC  {who}, {where} {one.seed}, {of}: {_happened(one)}".rstrip()
+            f"{entry.at:%Y-%m-%d %H:%M:%S} UTC  {author}, {where} {entry.seed}, {of}: {_happened(entry)}".rstrip()
         )
 
 
@@ -284,17 +285,17 @@ def _check_student(connection: Any, number: int, student: str) -> None:
     from coursework.database.assignments import issued_of
     from coursework.errors import nearest
 
-    known = issued_of(connection, number).students
-    if known and student not in known:
-        raise BadInput(f"no student {student!r} was issued anything{nearest(student, known)}")
+    students = issued_of(connection, number).students
+    if students and student not in students:
+        raise BadInput(f"no student {student!r} was issued anything{nearest(student, students)}")
 
 
-def _happened(one: Any) -> str:
-    points = "" if one.points is None else f" {one.points:g}"
-    if not one.by:
-        return f"{one.answer!r} marked {one.verdict},{points}"
-    reason = f": {one.reason}" if one.reason else ""
-    return f"{one.kind}{points} by {one.by}{reason}"
+def _happened(entry: Any) -> str:
+    points = "" if entry.points is None else f" {entry.points:g}"
+    if not entry.by:
+        return f"{entry.answer!r} marked {entry.verdict},{points}"
+    reason = f": {entry.reason}" if entry.reason else ""
+    return f"{entry.kind}{points} by {entry.by}{reason}"
 
 
 @database.command("new-key", cls=NeedingExtra, ready=database_ready)
@@ -336,11 +337,11 @@ def sign_out(context: click.Context, url: str, login: str | None) -> None:
             note(connection, datetime.now(UTC), "command line", "signed out")
             click.echo(f"{counted(count, 'session')} ended")
             return
-        found = account_by_login(connection, login.strip().casefold())
-        if found is None:
+        account = account_by_login(connection, login.strip().casefold())
+        if account is None:
             raise BadInput(f"nobody signs in as {login!r}")
-        end_sessions(connection, found.person_id)
-        note(connection, datetime.now(UTC), "command line", "signed out", person=found.person_id)
+        end_sessions(connection, account.person_id)
+        note(connection, datetime.now(UTC), "command line", "signed out", person=account.person_id)
     click.echo(f"the sessions of {login} ended")
 
 

@@ -46,16 +46,16 @@ def _right(variant: Variant, key: Key, part: Part, digits: int = 5) -> str:
     return part.sort.written(key.reference[part.quantity], digits, label)
 
 
-def careful(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def careful(variant: Variant, key: Key, part: Part, index: int) -> Any:
     return _right(variant, key, part)
 
 
-def decimal_commas(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def decimal_commas(variant: Variant, key: Key, part: Part, index: int) -> Any:
     text = _right(variant, key, part)
     return text if part.sort.is_text else text.replace(".", ",").replace("-", "−")
 
 
-def with_units(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def with_units(variant: Variant, key: Key, part: Part, index: int) -> Any:
     written = {
         "deg": "°",
         "mm/s^2": " mm.s⁻²",
@@ -65,61 +65,61 @@ def with_units(variant: Variant, key: Key, part: Part, place: int) -> Any:
         "1": "",
     }
     if not part.sort.is_number:
-        return careful(variant, key, part, place)
+        return careful(variant, key, part, index)
     return _right(variant, key, part) + written.get(part.unit, f" {part.unit}")
 
 
-def in_metres(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def in_metres(variant: Variant, key: Key, part: Part, index: int) -> Any:
     if not part.sort.is_number or not part.unit.startswith("mm") or part.unit.startswith("mm^2"):
-        return careful(variant, key, part, place)
+        return careful(variant, key, part, index)
     return f"{key.reference[part.quantity] / 1000:.6f} {part.unit.replace('mm', 'm', 1)}".replace(".", ",", 1)
 
 
-def in_radians(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def in_radians(variant: Variant, key: Key, part: Part, index: int) -> Any:
     if part.unit != "deg":
-        return careful(variant, key, part, place)
+        return careful(variant, key, part, index)
     return f"{np.radians(key.reference[part.quantity]):.5f} rad"
 
 
-def with_blanks(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    return "" if place % 3 == 2 else careful(variant, key, part, place)
+def with_blanks(variant: Variant, key: Key, part: Part, index: int) -> Any:
+    return "" if index % 3 == 2 else careful(variant, key, part, index)
 
 
-def with_nonsense(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def with_nonsense(variant: Variant, key: Key, part: Part, index: int) -> Any:
     nonsense = ("12,,5", "je sais pas", "trop long", "see notebook", "9**9**9")
-    return nonsense[place % len(nonsense)] if place % 4 == 1 else careful(variant, key, part, place)
+    return nonsense[index % len(nonsense)] if index % 4 == 1 else careful(variant, key, part, index)
 
 
-def known_mistakes(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def known_mistakes(variant: Variant, key: Key, part: Part, index: int) -> Any:
     for values in key.wrong.values():
         wrong = values.get(part.quantity)
-        if wrong is not None and place % 2 == 0:
+        if wrong is not None and index % 2 == 0:
             if isinstance(wrong, np.ndarray):
                 return str(wrong.tolist()) if wrong.ndim > 1 else "; ".join(map(repr, wrong.tolist()))
             return str(wrong).strip("()") if isinstance(wrong, complex) else wrong
-    return careful(variant, key, part, place)
+    return careful(variant, key, part, index)
 
 
-def wrong_units(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    if not part.sort.is_number or place % 3:
-        return careful(variant, key, part, place)
+def wrong_units(variant: Variant, key: Key, part: Part, index: int) -> Any:
+    if not part.sort.is_number or index % 3:
+        return careful(variant, key, part, index)
     return _right(variant, key, part) + " kg"
 
 
-def just_off(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    if not part.sort.is_number or place % 2:
-        return careful(variant, key, part, place)
+def just_off(variant: Variant, key: Key, part: Part, index: int) -> Any:
+    if not part.sort.is_number or index % 2:
+        return careful(variant, key, part, index)
     value = key.reference[part.quantity]
     return significant(value + 3 * part.half_width(value), 6)
 
 
-def three_digits(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def three_digits(variant: Variant, key: Key, part: Part, index: int) -> Any:
     return _right(variant, key, part, digits=3)
 
 
-def as_a_formula(variant: Variant, key: Key, part: Part, place: int) -> Any:
+def as_a_formula(variant: Variant, key: Key, part: Part, index: int) -> Any:
     if part.sort.prediction != "size":
-        return careful(variant, key, part, place)
+        return careful(variant, key, part, index)
     return f"{significant(key.reference[part.quantity] * 2, 6)}/2"
 
 
@@ -199,7 +199,7 @@ def _hand_in(course: Any, issued: Issued, folder: Path) -> list[str]:
             seed = issued.seeds[student, name]
             variant = course[name].from_record(issued.records[name, seed])
             key = variant.key
-            answers = {p.id: habit(variant, key, p, place) for place, p in enumerate(variant.parts)}
+            answers = {p.id: habit(variant, key, p, index) for index, p in enumerate(variant.parts)}
             if number % 3 == 0:
                 rows += [[student, name, seed, part, answer] for part, answer in answers.items()]
             elif number % 3 == 1:

@@ -38,7 +38,7 @@ _EXERCISES = 3  #: of another course, in each assignment
 TEACHER = "Ada Keller"
 
 
-def demo_database(folder: str | None, place: Path) -> str:
+def demo_database(folder: str | None, target: Path) -> str:
     """The database of a demonstration of a course in a folder; as it was left where it is there.
 
     Raises
@@ -46,19 +46,19 @@ def demo_database(folder: str | None, place: Path) -> str:
     CourseworkError
         The course cannot be opened, or the folder cannot be written.
     """
-    file = place / FILE
-    with only_writer(place, "serve"):
+    file = target / FILE
+    with only_writer(target, "serve"):
         course, store = open_course(folder), Store(str(file))
         with store.reading() as connection:
             is_new = not names(connection)
         if is_new:
-            _fill(course, store, folder is None, place)
+            _fill(course, store, folder is None, target)
         store.close()
     return str(file)
 
 
-def _fill(course: Course[Any], store: Store, is_own: bool, place: Path) -> None:
-    done, now = (_assignment(course, name, k, is_own, place) for k, name in enumerate((DONE, NOW)))
+def _fill(course: Course[Any], store: Store, is_own: bool, folder: Path) -> None:
+    done, now = (_assignment(course, name, k, is_own, folder) for k, name in enumerate((DONE, NOW)))
     students = read_roster(ROSTER)
     number, content = _issue(course, store, done, students)
     other, _ = _issue(course, store, now, students)
@@ -70,23 +70,23 @@ def _fill(course: Course[Any], store: Store, is_own: bool, place: Path) -> None:
         publish(connection, other, Publication(tries=None, feedback=AT_ONCE))
 
 
-def _assignment(course: Course[Any], name: str, place: int, is_own: bool, folder: Path) -> Assignment:
+def _assignment(course: Course[Any], name: str, index: int, is_own: bool, folder: Path) -> Assignment:
     """That of the built-in course, or one of some exercises of another."""
     path = CLASS / f"{name}.toml"
     if not is_own:
         path = folder / f"{name}.toml"
         chosen = (
-            course.folder.in_order[_EXERCISES * place :][:_EXERCISES] or course.folder.in_order[:_EXERCISES]
+            course.folder.in_order[_EXERCISES * index :][:_EXERCISES] or course.folder.in_order[:_EXERCISES]
         )
         path.unlink(missing_ok=True)
         new_assignment(path, course, chosen, course.folder.languages)
-    return replace(read_assignment(path, course), secret=Secret(f"demonstration  {place:1d}".encode()))
+    return replace(read_assignment(path, course), secret=Secret(f"demonstration  {index:1d}".encode()))
 
 
 def _issue(
     course: Course[Any], store: Store, assignment: Assignment, students: list[Student]
 ) -> tuple[int, dict[str, Any]]:
-    spoken = [_in_language(course, one) for one in students]
+    spoken = [_in_language(course, student) for student in students]
     dealt = deal(course, assignment, spoken, course.folder.languages[:1])
     content = issued_content(dealt.issues, assignment)
     with store.begin() as connection:
@@ -101,21 +101,23 @@ def _in_language(course: Course[Any], student: Student) -> Student:
 def _hand_in(course: Course[Any], store: Store, number: int, issued: Issued) -> None:
     """Each hands in once, by their habit, an hour after another."""
     with store.begin() as connection:
-        ids = {one.name: one.id for one in people(connection)}
+        ids = {person.name: person.id for person in people(connection)}
         for k, student in enumerate(issued.students[:-1]):  # the last one has not handed in
-            came = _CLOSED - timedelta(days=2) + timedelta(hours=k)
-            rows = list(_rows(course, issued, student, k, came))
-            deliver(connection, number, rows, source="site", came=came, person_id=ids[student], number=1)
+            received_at = _CLOSED - timedelta(days=2) + timedelta(hours=k)
+            rows = list(_rows(course, issued, student, k, received_at))
+            deliver(
+                connection, number, rows, source="site", came=received_at, person_id=ids[student], number=1
+            )
 
 
-def _rows(course: Course[Any], issued: Issued, student: str, k: int, came: datetime) -> Iterator[Row]:
+def _rows(course: Course[Any], issued: Issued, student: str, k: int, received_at: datetime) -> Iterator[Row]:
     habit = HABITS[k % len(HABITS)]
-    origin = Collected(sitting=1, submitted=came.isoformat())
+    origin = Collected(sitting=1, submitted=received_at.isoformat())
     for exercise in issued.exercises:
         seed = issued.seeds[student, exercise]
         variant = course[exercise].from_record(issued.records[exercise, seed])
-        for place, part in enumerate(variant.parts):
-            answer = habit(variant, variant.key, part, place)
+        for index, part in enumerate(variant.parts):
+            answer = habit(variant, variant.key, part, index)
             text = answer if isinstance(answer, str) else str(answer)
             yield Row(student, exercise, str(seed), part.id, text, "site", "", variant.lang, origin)
 

@@ -76,7 +76,7 @@ def gradebook(
     if template is None:
         if platform != "moodle":
             raise BadInput(f"--template takes the gradebook as {chosen.called} exports it: {chosen.download}")
-        return _write_xml(out, item, [one for one in scored if one.has_answered or zeros], out_of)
+        return _write_xml(out, item, [entry for entry in scored if entry.has_answered or zeros], out_of)
     from coursework.gradebook.filling import fill
     from coursework.system.writing import write_whole
 
@@ -99,7 +99,7 @@ def _check_out(out: Path, template: Path) -> None:
 def _of(filled: Filled, scored: Sequence[Scored]) -> str:
     if filled.most is not None:
         return f", out of {filled.most:g}"
-    totals = {one.out_of for one in scored if one.out_of}
+    totals = {score.out_of for score in scored if score.out_of}
     return (
         f", out of {totals.pop()}: that must be the item's maximum (--out-of says another)" if totals else ""
     )
@@ -107,7 +107,7 @@ def _of(filled: Filled, scored: Sequence[Scored]) -> str:
 
 def _told(filled: Filled, out: Path) -> int:
     """Say who is left as they were, and why; whether somebody must look."""
-    for what, names in (
+    for description, names in (
         ("marks, but no line in the export, and not written", filled.strangers),
         ("marks, but several lines or none that is surely theirs, and not written", filled.unclear),
         ("no marks, and left as they were", filled.absent),
@@ -115,7 +115,7 @@ def _told(filled: Filled, out: Path) -> int:
     ):
         if names:
             listed = ", ".join(names[:10]) + (f", and {len(names) - 10} more" if len(names) > 10 else "")
-            click.echo(f"coursework: {counted(len(names), 'student')} with {what}: {listed}", err=True)
+            click.echo(f"coursework: {counted(len(names), 'student')} with {description}: {listed}", err=True)
     return FOUND if filled.strangers or filled.unclear else DONE
 
 

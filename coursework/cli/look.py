@@ -43,19 +43,20 @@ def list_exercises(context: click.Context, as_json: bool) -> int:
         print_json(rows)
     else:
         for chapter in (*folder.chapters, None):
-            own = [r for r in rows if r["chapter"] == (chapter and chapter.number)]
+            in_chapter = [r for r in rows if r["chapter"] == (chapter and chapter.number)]
             print_table(
-                [_row(r) for r in own], f"{chapter.number}. {_titled(folder, chapter)}" if chapter else ""
+                [_row(r) for r in in_chapter],
+                f"{chapter.number}. {_titled(folder, chapter)}" if chapter else "",
             )
         if not folder.names:
             click.echo("This course has no exercise yet.")
-    for name, told in faults.items():
-        complain(f"{name} cannot be listed: {told.removeprefix(f'{name}: ')}")
+    for name, fault in faults.items():
+        complain(f"{name} cannot be listed: {fault.removeprefix(f'{name}: ')}")
     return FOUND if faults else DONE
 
 
 def _listed(exercise: Any) -> dict[str, Any]:
-    """What ``list`` says of an exercise."""
+    """Return the entry of an exercise in ``list``."""
     return {
         "exercise": exercise.name,
         "title": {lang: exercise.title(lang) for lang in exercise.languages},
@@ -66,7 +67,7 @@ def _listed(exercise: Any) -> dict[str, Any]:
 
 
 def _place(folder: Any, exercise: str) -> dict[str, Any]:
-    """Where an exercise stands in the chapters: nothing of one that stands in none."""
+    """Return the chapter and lesson of an exercise; empty for one that no chapter lists."""
     chapter = next((c for c in folder.chapters if exercise in c.exercises), None)
     section = folder.section_of(exercise)
     return {
@@ -78,8 +79,8 @@ def _place(folder: Any, exercise: str) -> dict[str, Any]:
 
 def _row(listed: dict[str, Any]) -> dict[str, Any]:
     """A row of the table: the chapter stands above it, and the lesson is the first thing needed."""
-    told = {k: v for k, v in listed.items() if k not in ("chapter", "lesson")}
-    return {**told, "title": "\n".join(listed["title"].values()), "needs": "\n".join(listed["needs"])}
+    cells = {k: v for k, v in listed.items() if k not in ("chapter", "lesson")}
+    return {**cells, "title": "\n".join(listed["title"].values()), "needs": "\n".join(listed["needs"])}
 
 
 def _titled(folder: Any, chapter: Any) -> str:
@@ -103,13 +104,13 @@ def show(context: click.Context, exercise: str, seed: int, lang: str, parts: str
 
 def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[Any]:
     """Variants that ask the parts named."""
-    found = exercise.variants(seeds, lang, split_list(parts) or None)
-    for one in found:
-        if not one.parts:
+    variants = exercise.variants(seeds, lang, split_list(parts) or None)
+    for item in variants:
+        if not item.parts:
             raise WrongValue(
-                f"{exercise.name}, seed {one.seed}, asks none of the parts {parts}; try another seed"
+                f"{exercise.name}, seed {item.seed}, asks none of the parts {parts}; try another seed"
             )
-    return found
+    return variants
 
 
 @click.command()
@@ -177,20 +178,26 @@ def solve(
     from coursework.language.numbers import significant, unit_text
     from coursework.making.issued import plain_value
 
-    one = opened(context)[exercise]
+    chosen_exercise = opened(context)[exercise]
     given = settings_given(settings)
     try:
-        called = None if effects is None else split_list(effects)
-        found = one.solve(**given, only=split_list(only) or None, effects=called)
+        effect_names = None if effects is None else split_list(effects)
+        quantities = chosen_exercise.solve(**given, only=split_list(only) or None, effects=effect_names)
     except MissingQuantity as fault:
         raise BadInput(fault.advising(" ".join(f"--set {n}=…" for n in fault.names))) from fault
-    used = {n: one.spec.given[n].default for n in one.spec.given if one.spec.given[n].default is not None}
-    used |= {n: one.intake.value(n, v) for n, v in given.items()}
-    units = one.units
+    used = {
+        n: chosen_exercise.spec.given[n].default
+        for n in chosen_exercise.spec.given
+        if chosen_exercise.spec.given[n].default is not None
+    }
+    used |= {n: chosen_exercise.intake.value(n, v) for n, v in given.items()}
+    units = chosen_exercise.units
     content = {
         "exercise": exercise,
         "given": {n: {"value": plain_value(v), "unit": units.get(n, "1")} for n, v in used.items()},
-        "quantities": {n: {"value": _json_value(v), "unit": units.get(n, "1")} for n, v in found.items()},
+        "quantities": {
+            n: {"value": _json_value(v), "unit": units.get(n, "1")} for n, v in quantities.items()
+        },
     }
     if as_json:
         print_json(content)
@@ -202,7 +209,7 @@ def solve(
                 "value": significant(v, 6) if isinstance(v, (int, float)) else str(v),
                 "unit": unit_text(units.get(n, "1"), "en"),
             }
-            for n, v in found.items()
+            for n, v in quantities.items()
         ]
     )
 

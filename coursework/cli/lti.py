@@ -94,8 +94,8 @@ def platform(
     settings = read_settings(folder)
     settings = replace(settings, url=checked_url(url, "--url")) if url else settings
     if assignments:
-        known = dict.fromkeys([*settings.assignments, *(path.resolve() for path in assignments)])
-        settings = replace(settings, assignments=tuple(known))
+        paths = dict.fromkeys([*settings.assignments, *(path.resolve() for path in assignments)])
+        settings = replace(settings, assignments=tuple(paths))
     if kind is None:
         if url or assignments:
             _write(settings)
@@ -132,20 +132,20 @@ def _platform(
     if site is None:
         raise BadInput(f"where is it? coursework lti platform {kind} https://{kind}.example.org")
     base = checked_url(site, "the site")
-    told: dict[str, Any] = known[kind](base) if kind in known else {"issuer": base}
-    told |= {key: text for key, text in addresses.items() if text}
+    endpoints: dict[str, Any] = known[kind](base) if kind in known else {"issuer": base}
+    endpoints |= {key: text for key, text in addresses.items() if text}
     if client_id is None and not deployments:
         return None
     if not client_id or not deployments:
         raise BadInput("a platform has a --client-id and a --deployment; its registration page shows both")
     for key in ("auth_url", "token_url", "jwks_url"):
-        if not told.get(key):
+        if not endpoints.get(key):
             raise BadInput(f"--{key.replace('_', '-')} is missing, which {kind} does not say")
-        told[key] = checked_url(str(told[key]), f"--{key.replace('_', '-')}")
-    origins = tuple(origin(checked_url(one, "the site")) for one in told.pop("origins", ()))
+        endpoints[key] = checked_url(str(endpoints[key]), f"--{key.replace('_', '-')}")
+    origins = tuple(origin(checked_url(address, "the site")) for address in endpoints.pop("origins", ()))
     host = urlsplit(base).hostname or base
     return Platform(
-        name=name or host, client_id=client_id, deployments=tuple(deployments), origins=origins, **told
+        name=name or host, client_id=client_id, deployments=tuple(deployments), origins=origins, **endpoints
     )
 
 
@@ -161,7 +161,7 @@ def _write(settings: Settings) -> None:
 
 
 def _tell_registration(settings: Settings, kind: str) -> None:
-    """What to fill in on the page where a platform registers a tool."""
+    """Print the values to fill in on the page where a platform registers a tool."""
     url = settings.url or "https://WHERE-THIS-SERVICE-IS"
     click.echo("On the platform, register an LTI 1.3 tool with:")
     rows = [
@@ -173,8 +173,8 @@ def _tell_registration(settings: Settings, kind: str) -> None:
         ("services", "grades (with columns), names and roles"),
         ("privacy", "share the name; the e-mail where the roster is to have it"),
     ]
-    for what, value in rows:
-        click.echo(f"  {what:<38}{value}")
+    for label, value in rows:
+        click.echo(f"  {label:<38}{value}")
     click.echo(
         f"It then shows a client ID and a deployment ID: coursework lti platform {kind} … --client-id ID --deployment ID"
     )
@@ -185,35 +185,37 @@ def _tell_registration(settings: Settings, kind: str) -> None:
 def _list(settings: Settings, check: bool, as_json: bool) -> int:
     from dataclasses import asdict
 
-    found = {one: _checked(settings, one) if check else "" for one in settings.platforms}
+    faults = {
+        registered: _checked(settings, registered) if check else "" for registered in settings.platforms
+    }
     if as_json:
         print_json(
             [
-                {**asdict(one), **({"answers": not why, "said": why} if check else {})}
-                for one, why in found.items()
+                {**asdict(registered), **({"answers": not why, "said": why} if check else {})}
+                for registered, why in faults.items()
             ]
         )
-    elif not found:
+    elif not faults:
         click.echo(
             f"no platform in {settings.folder}: coursework lti platform moodle https://moodle.example.org"
         )
     else:
         rows = [
             {
-                "platform": one.name,
-                "issuer": one.issuer,
-                "client": one.client_id,
-                "deployments": ", ".join(one.deployments),
+                "platform": registered.name,
+                "issuer": registered.issuer,
+                "client": registered.client_id,
+                "deployments": ", ".join(registered.deployments),
                 **({"answers": why or "yes"} if check else {}),
             }
-            for one, why in found.items()
+            for registered, why in faults.items()
         ]
         print_table(rows, settings.url)
-    return FOUND if any(found.values()) else DONE
+    return FOUND if any(faults.values()) else DONE
 
 
-def _checked(settings: Settings, one: Platform) -> str:
-    """What is wrong with a platform; nothing where it gives its keys, and a token for ours."""
+def _checked(settings: Settings, registered: Platform) -> str:
+    """Return the fault of a platform; an empty text where it gives its keys, and a token for ours."""
     import httpx
 
     from coursework.errors import CourseworkError
@@ -222,12 +224,12 @@ def _checked(settings: Settings, one: Platform) -> str:
 
     with httpx.Client(timeout=8.0, trust_env=False) as client:
         try:
-            answer = client.get(one.jwks_url)
+            answer = client.get(registered.jwks_url)
             if not answer.is_success or not answer.json().get("keys"):
-                return f"no keys at {one.jwks_url}: it answers {answer.status_code}"
-            Services(client, KeyFolder(settings.folder / "keys")).token(one, [SCORE])
+                return f"no keys at {registered.jwks_url}: it answers {answer.status_code}"
+            Services(client, KeyFolder(settings.folder / "keys")).token(registered, [SCORE])
         except (httpx.HTTPError, ValueError, AttributeError) as fault:
-            return f"{one.jwks_url}: {type(fault).__name__}"
+            return f"{registered.jwks_url}: {type(fault).__name__}"
         except CourseworkError as fault:
             return f"{fault}; can it read {settings.url}/jwks?"
     return ""
@@ -241,7 +243,7 @@ def _checked(settings: Settings, one: Platform) -> str:
 @click.argument("kid", required=False)
 @folder_option
 @json_option
-def keys(what: str, kid: str | None, folder: Path, as_json: bool) -> None:
+def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
     """Make the tool's key, another one, list them, or take an old one away.
 
     'rotate' makes a key that signs from now on; the one before stays public, since platforms keep keys for a while, until
@@ -249,32 +251,34 @@ def keys(what: str, kid: str | None, folder: Path, as_json: bool) -> None:
     """
     from coursework.lti.keys import KeyFolder
 
-    kept = KeyFolder(folder / "keys")
-    if what not in ("list", "new", "rotate", "retire"):
+    key_folder = KeyFolder(folder / "keys")
+    if action not in ("list", "new", "rotate", "retire"):
         raise BadInput(
-            f"keys knows list, new, rotate and retire; found {what!r}{nearest(what, ('list', 'new', 'rotate', 'retire'))}"
+            f"keys knows list, new, rotate and retire; found {action!r}{nearest(action, ('list', 'new', 'rotate', 'retire'))}"
         )
-    if (kid is None) == (what == "retire"):
+    if (kid is None) == (action == "retire"):
         raise BadInput(
-            "which key? coursework lti keys retire KID" if what == "retire" else f"'keys {what}' takes no key"
+            "which key? coursework lti keys retire KID"
+            if action == "retire"
+            else f"'keys {action}' takes no key"
         )
-    if what == "new" and kept.keys:
-        raise BadInput(f"{kept.folder} has a key already; 'coursework lti keys rotate' makes another")
-    if what in ("new", "rotate"):
-        click.echo(f"{kept.new().kid} signs from now on")
-    elif what == "retire":
-        click.echo(f"{kept.retire(kid or '').kid} is taken away: what it signed is refused from now on")
+    if action == "new" and key_folder.keys:
+        raise BadInput(f"{key_folder.folder} has a key already; 'coursework lti keys rotate' makes another")
+    if action in ("new", "rotate"):
+        click.echo(f"{key_folder.new().kid} signs from now on")
+    elif action == "retire":
+        click.echo(f"{key_folder.retire(kid or '').kid} is taken away: what it signed is refused from now on")
     else:
         rows = [
-            {"key": one.kid, "made": one.made, "signs": "yes" if one == kept.keys[-1] else ""}
-            for one in kept.keys
+            {"key": key.kid, "made": key.made, "signs": "yes" if key == key_folder.keys[-1] else ""}
+            for key in key_folder.keys
         ]
         if as_json:
             print_json(rows)
         elif rows:
             print_table(rows, "")
         else:
-            click.echo(f"no key in {kept.folder}: coursework lti keys new")
+            click.echo(f"no key in {key_folder.folder}: coursework lti keys new")
 
 
 # ------------------------------------------------------------------------ serve
@@ -346,17 +350,17 @@ def _application(
         raise BadInput(
             f"--host {host} is open to others, in plain http: put a proxy that speaks https in front, and say --behind-proxy"
         )
-    told = url or settings.url or (f"http://{host}:{port}" if is_loopback(host) else "")
-    if not told:
+    public_url = url or settings.url or (f"http://{host}:{port}" if is_loopback(host) else "")
+    if not public_url:
         raise BadInput(
             "where do browsers find it? --url https://exercises.example.org, or url in platforms.toml"
         )
-    settings = replace(settings, url=checked_url(told, "the service's url"))
+    settings = replace(settings, url=checked_url(public_url, "the service's url"))
     if not settings.platforms:
         tell([f"no platform in {folder}: 'coursework lti platform moodle https://…' adds one"])
-    kept = KeyFolder(folder / "keys")
-    if not kept.keys:
-        tell([f"a key was made: {kept.new().kid}"])
+    key_folder = KeyFolder(folder / "keys")
+    if not key_folder.keys:
+        tell([f"a key was made: {key_folder.new().kid}"])
     course, storage = opened(context), Storage(folder)
     crowd = CourseHost(course, storage, settings.assignments)
     return service(settings, crowd, Pages(course.folder), storage=storage), settings.url
@@ -379,14 +383,14 @@ def scores(folder: Path, send: bool, as_json: bool) -> int:
     every = storage.scores().values()
     rows = [
         {
-            "link": one.title or one.link,
-            "person": one.person,
-            "points": f"{one.score.given:g}/{one.score.maximum:g}",
-            "tries": one.failures,
-            "why": one.said,
+            "link": entry.title or entry.link,
+            "person": entry.person,
+            "points": f"{entry.score.given:g}/{entry.score.maximum:g}",
+            "tries": entry.failures,
+            "why": entry.said,
         }
-        for one in every
-        if one.due is not None
+        for entry in every
+        if entry.due is not None
     ]
     if as_json:
         print_json(rows)
@@ -430,25 +434,27 @@ def roster(course_title: str | None, folder: Path, out: Path | None) -> None:
     from coursework.lti.settings import read_settings
     from coursework.lti.storage import Storage
 
-    known = Storage(folder).courses()
+    courses = Storage(folder).courses()
     if course_title is None:
-        for (issuer, *_), title, _ in known:
+        for (issuer, *_), title, _ in courses:
             click.echo(f"{title}  ({issuer})")
-        if not known:
+        if not courses:
             click.echo("no course yet: open a link of this tool from one, as its teacher")
         return
-    found = [one for one in known if one[1].casefold().startswith(course_title.casefold())]
-    if len(found) != 1:
-        titles = [title for _, title, _ in known]
+    matches = [
+        registered for registered in courses if registered[1].casefold().startswith(course_title.casefold())
+    ]
+    if len(matches) != 1:
+        titles = [title for _, title, _ in courses]
         raise BadInput(
-            f"{len(found)} courses begin with {course_title!r}{nearest(course_title, titles) if not found else ''}"
+            f"{len(matches)} courses begin with {course_title!r}{nearest(course_title, titles) if not matches else ''}"
         )
-    ((issuer, client_id, *_), _, address) = found[0]
-    one = read_settings(folder).platform(issuer, client_id)
-    if one is None:
+    ((issuer, client_id, *_), _, address) = matches[0]
+    registered = read_settings(folder).platform(issuer, client_id)
+    if registered is None:
         raise BadInput(f"{issuer} is no longer in {folder}")
     with httpx.Client(timeout=8.0, trust_env=False) as client:
-        text = as_csv(Services(client, KeyFolder(folder / "keys")).roster(one, address))
+        text = as_csv(Services(client, KeyFolder(folder / "keys")).roster(registered, address))
     if out is None:
         click.echo(text, nl=False)
     else:

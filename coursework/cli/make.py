@@ -179,10 +179,10 @@ def build(
     writes(context, out)
     notes: list[str] = []
     students = read_roster(roster, notes.append, columns) if roster else []
-    own = sum(bool(student.lang) for student in students)
-    if own and not _is_untold(context, "langs"):
+    with_language = sum(bool(student.lang) for student in students)
+    if with_language and not _is_untold(context, "langs"):
         notes.append(
-            f"the roster says the language of {own} of its {counted(len(students), 'student')}, which counts; "
+            f"the roster says the language of {with_language} of its {counted(len(students), 'student')}, which counts; "
             f"--lang {','.join(langs)} is for those of whom it says none"
         )
     tell(notes)
@@ -206,7 +206,7 @@ def build(
         overwrite=overwrite,
         issued=issued,
         issued_langs=() if _is_untold(context, "langs") else langs,
-        keep=keeping(context, db, name or out.resolve().name, course.folder.root.name),
+        store=keeping(context, db, name or out.resolve().name, course.folder.root.name),
     )
     if roster:
         tell([for_practice(langs[0])])
@@ -248,9 +248,9 @@ def build_files(
     overwrite: bool = False,
     issued: Issued | None = None,
     issued_langs: Sequence[str] = (),
-    keep: Callable[[Mapping[str, Any]], None] = lambda content: None,
+    store: Callable[[Mapping[str, Any]], None] = lambda content: None,
 ) -> int:
-    """Issue and write a build, or one of what was ``issued``; gives how many files were written. ``keep`` is handed what ``issued.json`` says, before
+    """Issue and write a build, or one of what was ``issued``; gives how many files were written. ``store`` is handed what ``issued.json`` says, before
     anything is written."""
     from coursework.making import build as building
     from coursework.making.issued import issued_content
@@ -290,21 +290,22 @@ def build_files(
         from coursework.nbgrader import tree as nbgrader
 
         wanted[:0] = nbgrader.files(course, issues, None, out)
-    keep(content)
+    store(content)
     with progress_bar("building", len(wanted)) as advance:
         notes = write_tree(out, wanted, advance, anew=overwrite)
     if booklet or "pdf" in formats:
-        notes += unprinted_names(renderer_of(course.folder), (one.student for one in issues))
+        notes += unprinted_names(renderer_of(course.folder), (pair.student for pair in issues))
     tell(notes)
     return len(wanted)
 
 
 def _goes_on(before: Path, issued: str) -> bool:
-    """Whether all that was issued before is issued as it was: to a longer roster, say."""
+    """Return whether every sheet that was issued before is unchanged in the new record, which may have more
+    students."""
     from coursework.making.issued import Issued
 
-    known, found = _by_place(Issued.stood(before)), _by_place(json.loads(issued))
-    return all(found.get(place) == record for place, record in known.items())
+    old, new = _by_place(Issued.stood(before)), _by_place(json.loads(issued))
+    return all(new.get(index) == record for index, record in old.items())
 
 
 def _by_place(content: Mapping[str, Any]) -> dict[tuple[Any, ...], Any]:
@@ -325,7 +326,7 @@ def demo(context: click.Context, out: Path) -> None:
     from coursework.cli.mark import grade_with_bar
 
     writes(context, out)
-    rows, told = class_of_twelve(out, build_files, grade_with_bar)
+    rows, lines = class_of_twelve(out, build_files, grade_with_bar)
     print_table(rows, title="What became of the answers")
-    for line in told:
+    for line in lines:
         click.echo(line)

@@ -157,7 +157,7 @@ def grade(
             decimal=decimal,
             form=form,
             replaces=replace,
-            told=_told,
+            writer=_told,
         )
     assert issued is not None
     if marks is not None:
@@ -185,22 +185,26 @@ def _told(book: Gradebook, out: Path) -> int:
     """Say what a folder of marks holds."""
     for line in book.seen:
         click.echo(one_line(line))
-    told = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
-    told += f", {book.blanks} blank beside another" if book.blanks else ""
-    click.echo(f"{told}; see {out}")
+    summary = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
+    summary += f", {book.blanks} blank beside another" if book.blanks else ""
+    click.echo(f"{summary}; see {out}")
     if book.unreadable:
-        what = "1 unreadable answer" if book.unreadable == 1 else f"{book.unreadable} unreadable answers"
-        click.echo(f"{what} to look at: verdict unreadable in {out / 'marks.csv'}")
+        unreadable = (
+            "1 unreadable answer" if book.unreadable == 1 else f"{book.unreadable} unreadable answers"
+        )
+        click.echo(f"{unreadable} to look at: verdict unreadable in {out / 'marks.csv'}")
     if book.waiting:
-        what = "1 answer waits" if book.waiting == 1 else f"{book.waiting} answers wait"
-        click.echo(f"{what} to be marked by a person: give points in {out / 'to_mark.csv'}, and grade again")
+        unreadable = "1 answer waits" if book.waiting == 1 else f"{book.waiting} answers wait"
+        click.echo(
+            f"{unreadable} to be marked by a person: give points in {out / 'to_mark.csv'}, and grade again"
+        )
     if book.changes:
-        what = (
+        unreadable = (
             "1 mark is not what it was"
             if book.changes == 1
             else f"{book.changes} marks are not what they were"
         )
-        click.echo(f"{what} before; see {out / 'changes.csv'}")
+        click.echo(f"{unreadable} before; see {out / 'changes.csv'}")
     for warning in book.warnings:
         click.echo(f"coursework: note: {one_line(warning)}", err=True)
     for fault in book.faults:
@@ -216,7 +220,8 @@ def _told(book: Gradebook, out: Path) -> int:
 def _check_source(
     submissions: Sequence[Path], marks: Path | None, accepted: Path | None, *, in_database: bool
 ) -> None:
-    """What is marked: submissions, marks as they stand, or what a database has."""
+    """Raise where the source of the marks is not exactly one: submissions, marks as they stand, or a
+    database."""
     if marks is not None and in_database:
         raise BadInput(
             f"--from takes the marks as they stand in {marks}, and --db those of the database: what is to count there is named "
@@ -256,8 +261,8 @@ def _grade_standing(
 def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
     click.echo(f"{counted(book.rows_in, 'mark')} as they stand in {marks}; see {out}")
     if book.changes:
-        what = "1 mark was" if book.changes == 1 else f"{book.changes} marks were"
-        click.echo(f"{what} changed by hand; see {out / 'changes.csv'}")
+        changed = "1 mark was" if book.changes == 1 else f"{book.changes} marks were"
+        click.echo(f"{changed} changed by hand; see {out / 'changes.csv'}")
     for warning in book.warnings:
         click.echo(f"coursework: note: {one_line(warning)}", err=True)
     return FOUND if book.needs_a_look else DONE
@@ -337,9 +342,9 @@ def report(
 
     from coursework.cli.database import written_marks
 
-    with TemporaryDirectory() as place:
-        written_marks(context, db, assignment, Path(place), decimal)
-        _report(context, Path(place), lang, out, decimal, as_json)
+    with TemporaryDirectory() as temporary:
+        written_marks(context, db, assignment, Path(temporary), decimal)
+        _report(context, Path(temporary), lang, out, decimal, as_json)
 
 
 def _report(
@@ -362,19 +367,19 @@ def _report(
                 "makes summary and feedback agree with it"
             ]
         )
-    told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
+    measures = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:
-        print_json(told.as_json())
-    place = out or folder / "report"
+        print_json(measures.as_json())
+    target = out or folder / "report"
     if out is not None or not as_json:
-        writes(context, place)
-        _write_report(course, told, lang, place, decimal)
-        _tell_alike(folder, place, decimal)
+        writes(context, target)
+        _write_report(course, measures, lang, target, decimal)
+        _tell_alike(folder, target, decimal)
         tell_lack_of_charts()
     if not as_json:
         click.echo(
-            f"{counted(told.students, 'student')}, {counted(told.answers, 'answer')}, {told.needs_a_look} to be looked at; "
-            f"see {place / 'report'}.html, .pdf, parts.csv, mistakes.csv"
+            f"{counted(measures.students, 'student')}, {counted(measures.answers, 'answer')}, {measures.needs_a_look} to be looked at; "
+            f"see {target / 'report'}.html, .pdf, parts.csv, mistakes.csv"
         )
 
 
@@ -388,7 +393,7 @@ def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
     if not (copied := alike(folder)):
         path.unlink(missing_ok=True)
         return
-    write_whole(path, csv_file((one.row() for one in copied), COLUMNS, SPREADSHEETS[decimal]))
+    write_whole(path, csv_file((pair.row() for pair in copied), COLUMNS, SPREADSHEETS[decimal]))
     tell(
         [
             f"{counted(len(copied), 'sheet')} of answers that are right on another student's variant, see {path}"
@@ -396,7 +401,7 @@ def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
     )
 
 
-def _write_report(course: Course, told: Any, lang: str, out: Path, decimal: str) -> None:
+def _write_report(course: Course, measures: Any, lang: str, out: Path, decimal: str) -> None:
     """Everything is made before the first file is written."""
     from coursework.rendering.renderer import renderer_of
     from coursework.statistics import measures as statistics
@@ -405,9 +410,9 @@ def _write_report(course: Course, told: Any, lang: str, out: Path, decimal: str)
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
-    page, renderer = statistics_page.report(course, told, lang), renderer_of(course.folder)
+    page, renderer = statistics_page.report(course, measures, lang), renderer_of(course.folder)
     spreadsheet = SPREADSHEETS[decimal]
-    mistakes = statistics_page.mistake_rows(course, told, lang)
+    mistakes = statistics_page.mistake_rows(course, measures, lang)
     pages = [
         Task("report.html", renderer.report_html, (page,)),
         Task("report.pdf", renderer.report_pdf, (page,)),
@@ -416,7 +421,7 @@ def _write_report(course: Course, told: Any, lang: str, out: Path, decimal: str)
     files = {
         "report.html": html.encode("utf-8"),
         "report.pdf": pdf,
-        "parts.csv": csv_file((p.row() for p in told.parts), statistics.PART_COLUMNS, spreadsheet),
+        "parts.csv": csv_file((p.row() for p in measures.parts), statistics.PART_COLUMNS, spreadsheet),
         "mistakes.csv": csv_file(mistakes, statistics.MISTAKE_COLUMNS, spreadsheet),
     }
     for name, content in files.items():

@@ -130,13 +130,13 @@ def overview_text(line: Any) -> str:
         return "      –" if value is None else f"{value:7.1e}"
 
     times = f"{1e9 * line.stable_ns.median:8,.0f} ns, textbook {1e9 * line.textbook_ns.median:8,.0f} ns"
-    kept = "all that the data allow"
+    digits = "all that the data allow"
     if line.beyond > 1:
         lost = ", ".join(f"{name} by {times:.0e}" for name, times in line.losing.items())
         unasked = "" if line.asked_losing else "; the asked answers keep all that the data allow"
-        kept = f"beyond what the data explain: {lost} times{unasked}"
+        digits = f"beyond what the data explain: {lost} times{unasked}"
     hard = (
-        f"hard {error(line.hard)} (textbook {error(line.hard_textbook)}), {kept}"
+        f"hard {error(line.hard)} (textbook {error(line.hard_textbook)}), {digits}"
         if line.places
         else "no hard place"
     )
@@ -144,7 +144,7 @@ def overview_text(line: Any) -> str:
 
 
 def _on_paper(course: Any, names: Sequence[str], quick: bool, lang: str, silent: bool) -> tuple[list, Any]:
-    """What students' digits and the course's margin do to right and to wrong answers."""
+    """Measure the effect of students' digits and of the course's margin on right and on wrong answers."""
     from coursework.accuracy.pages import paper_report
     from coursework.accuracy.paper import PLAIN, on_paper, total
 

@@ -83,20 +83,20 @@ def simulate(
     out: Path | None,
     decimal: str,
     as_json: bool,
-    **told: Any,
+    **options: Any,
 ) -> None:
     """Move a mechanism over a cycle or in time, with only the effects named.
 
     A scene is a file, or an exercise with options; values that are not set are those of the variant of --seed.
     """
-    typed = {name for name in (*told, "tolerance") if is_typed(context, name)}
+    typed = {name for name in (*options, "tolerance") if is_typed(context, name)}
     if plan and budget:
         raise WrongValue("--plan says what would be done, --budget does it; give one of them")
     if "tolerance" in typed and not budget:
         raise WrongValue("--tolerance is of --budget")
     if out is not None:
         writes(context, out)
-    told_file = _scene_file(opened(context), exercise, told, typed)
+    told_file = _scene_file(opened(context), exercise, options, typed)
     if plan:
         _tell_plan(told_file.scene, as_json)
     elif budget:
@@ -105,7 +105,7 @@ def simulate(
         _tell_table(told_file, out, decimal, as_json)
 
 
-def _scene_file(course: Any, exercise: str, told: dict[str, Any], typed: set[str]) -> SceneFile:
+def _scene_file(course: Any, exercise: str, settings: dict[str, Any], typed: set[str]) -> SceneFile:
     """The scene of a file, or that of the options."""
     from coursework.motion.scene_files import SceneFile, read_scene
     from coursework.motion.scenes import Scene
@@ -116,17 +116,22 @@ def _scene_file(course: Any, exercise: str, told: dict[str, Any], typed: set[str
                 name = "set" if option == "settings" else option
                 raise WrongValue(f"{exercise} says what the scene is; leave --{name} out, or write it there")
         return read_scene(Path(exercise), course)
-    one = course[exercise]
-    given = {**one.variant(told["seed"]).given, **settings_given(told["settings"])}
-    scene = Scene(one, given, split_list(told["effects"]), tuple(told["show"]))
-    if told["drive"] is None:
-        if told["duration"] is not None:
+    chosen_exercise = course[exercise]
+    given = {**chosen_exercise.variant(settings["seed"]).given, **settings_given(settings["settings"])}
+    scene = Scene(chosen_exercise, given, split_list(settings["effects"]), tuple(settings["show"]))
+    if settings["drive"] is None:
+        if settings["duration"] is not None:
             raise WrongValue("--duration is of a motion in time: give its drive too, --drive torque=5")
-        return SceneFile(exercise, scene, told["steps"] or 360)
+        return SceneFile(exercise, scene, settings["steps"] or 360)
     for option in ("steps", "over"):
         if option in typed:
             raise WrongValue(f"--{option} is of a cycle; with --drive the motion is in time")
-    return SceneFile(exercise, scene, drive=_drive(one, told["drive"]), duration=_seconds(told["duration"]))
+    return SceneFile(
+        exercise,
+        scene,
+        drive=_drive(chosen_exercise, settings["drive"]),
+        duration=_seconds(settings["duration"]),
+    )
 
 
 def _seconds(text: str | None) -> float:
@@ -140,17 +145,17 @@ def _seconds(text: str | None) -> float:
     return reading.values[0]
 
 
-def _run(told: SceneFile, scene: Scene) -> SceneTable:
+def _run(scene_file: SceneFile, scene: Scene) -> SceneTable:
     """A scene as its file says: over a cycle, or in time."""
-    if told.drive is None:
-        return scene.over_cycle(told.steps)
-    return scene.in_time(told.drive, told.duration)
+    if scene_file.drive is None:
+        return scene.over_cycle(scene_file.steps)
+    return scene.in_time(scene_file.drive, scene_file.duration)
 
 
-def _tell_table(told: SceneFile, out: Path | None, decimal: str, as_json: bool) -> None:
-    table = _run(told, told.scene)
+def _tell_table(scene_file: SceneFile, out: Path | None, decimal: str, as_json: bool) -> None:
+    table = _run(scene_file, scene_file.scene)
     if as_json:
-        name = told.scene.exercise.name
+        name = scene_file.scene.exercise.name
         print_json(
             {"exercise": name, "evaluated": table.evaluated, "rows": table.rows(), "notes": table.notes}
         )
@@ -159,10 +164,10 @@ def _tell_table(told: SceneFile, out: Path | None, decimal: str, as_json: bool) 
         for note in table.notes:
             click.echo(f"note: {note}")
     if out is not None:
-        stem = out / f"{told.name}-{'cycle' if told.drive is None else 'motion'}"
+        stem = out / f"{scene_file.name}-{'cycle' if scene_file.drive is None else 'motion'}"
         _write_rows(table.rows(), stem, decimal)
         if not (bare := tell_lack_of_charts()):
-            _write_plot(table, told.name, stem)
+            _write_plot(table, scene_file.name, stem)
         if not as_json:
             click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
     elif not as_json:
@@ -180,25 +185,32 @@ def _tell_plan(scene: Scene, as_json: bool) -> None:
         print_table([{"evaluated at every instant": a, "why": b} for a, b in steps])
 
 
-def _tell_budget(told: SceneFile, tolerance: float, out: Path | None, decimal: str, as_json: bool) -> None:
+def _tell_budget(
+    scene_file: SceneFile, tolerance: float, out: Path | None, decimal: str, as_json: bool
+) -> None:
     from coursework.motion.worth import budget
 
-    found = budget(told.scene, partial(_run, told), tolerance)
-    said, rows = list(found.said()), list(_budget_rows(found))
+    effect_budget = budget(scene_file.scene, partial(_run, scene_file), tolerance)
+    summary, rows = list(effect_budget.said()), list(_budget_rows(effect_budget))
     if as_json:
         print_json(
-            {"exercise": told.scene.exercise.name, "seconds": found.seconds, "effects": rows, "said": said}
+            {
+                "exercise": scene_file.scene.exercise.name,
+                "seconds": effect_budget.seconds,
+                "effects": rows,
+                "said": summary,
+            }
         )
     else:
         print_table(list(_each_effect_once(rows)))
-        click.echo(f"the whole scene: {1e3 * found.seconds:.3g} ms")
-        for sentence in said:
+        click.echo(f"the whole scene: {1e3 * effect_budget.seconds:.3g} ms")
+        for sentence in summary:
             click.echo(sentence)
     if out is not None:
-        stem = out / f"{told.name}-budget"
+        stem = out / f"{scene_file.name}-budget"
         _write_rows(rows, stem, decimal)
         if not (bare := tell_lack_of_charts()):
-            _write_budget_plot(found, told.name, stem)
+            _write_budget_plot(effect_budget, scene_file.name, stem)
         if not as_json:
             click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
 
@@ -207,18 +219,18 @@ def _each_effect_once(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, str]
     """Rows to be read: an effect and its time stand in its first row alone."""
     last = None
     for row in rows:
-        shown = {h: _short_number(v, 3) for h, v in row.items()}
+        texts = {h: _short_number(v, 3) for h, v in row.items()}
         if row["time [ms]"] is None:
-            shown["time [ms]"] = _below(row["spread [ms]"])
+            texts["time [ms]"] = _below(row["spread [ms]"])
         if row["effect"] == last:
-            shown |= dict.fromkeys(("effect", "time [ms]", "spread [ms]"), "")
+            texts |= dict.fromkeys(("effect", "time [ms]", "spread [ms]"), "")
         last = row["effect"]
-        yield shown
+        yield texts
 
 
-def _budget_rows(found: EffectBudget) -> Iterator[dict[str, Any]]:
+def _budget_rows(effect_budget: EffectBudget) -> Iterator[dict[str, Any]]:
     """Yield a row for each effect and output; without a time where it does not stand out of its spread."""
-    for worth in found.worths:
+    for worth in effect_budget.worths:
         time = {
             "effect": worth.effect,
             "time [ms]": _cost(worth),
@@ -251,19 +263,19 @@ def _below(spread: float | None) -> str:
     return "" if spread is None else f"< {_rounded(spread)}"
 
 
-def _write_budget_plot(found: EffectBudget, title: str, stem: Path) -> None:
+def _write_budget_plot(effect_budget: EffectBudget, title: str, stem: Path) -> None:
     """A bar an effect: what leaving it out changes at most, and what it costs."""
     from coursework.figures.charts import bars
     from coursework.system.writing import write_whole
 
     rows = []
-    for worth in found.worths:
+    for worth in effect_budget.worths:
         most = worth.most
         part = 100 * most.largest_part if most else 0.0
-        what = f"{most.output}, " if most and part else ""
+        prefix = f"{most.output}, " if most and part else ""
         cost = _cost(worth)
         time = _rounded(cost) if cost is not None else "–" if worth.needed else _below(1e3 * worth.spread)
-        rows.append((worth.effect, part, f"{_rounded(part)} % ({what}{time} ms)"))
+        rows.append((worth.effect, part, f"{_rounded(part)} % ({prefix}{time} ms)"))
     plot = bars(rows, title, "largest change without the effect, % of the output")
     write_whole(stem.parent / f"{stem.name}.svg", plot)
 
@@ -287,8 +299,8 @@ def _write_plot(table: SceneTable, title: str, stem: Path) -> None:
     from coursework.system.writing import write_whole
 
     first, *others = table.columns
-    shown = {n: table.columns[n] for n in others if n != "dead_centre"}
-    plot = curves((f"{first} [{table.units[first]}]", table.columns[first]), shown, table.units, title)
+    columns = {n: table.columns[n] for n in others if n != "dead_centre"}
+    plot = curves((f"{first} [{table.units[first]}]", table.columns[first]), columns, table.units, title)
     write_whole(stem.parent / f"{stem.name}.svg", plot)
 
 

@@ -1,4 +1,4 @@
-"""What the commands share: options, how something is told or complained of."""
+"""Options and messages that the commands share."""
 
 from __future__ import annotations
 
@@ -128,13 +128,15 @@ class Lists(click.ParamType):
         if isinstance(value, tuple):
             return value
         words = tuple(dict.fromkeys(w.strip() for w in value.split(",") if w.strip()))
-        known = tuple(self.known())
+        accepted = tuple(self.known())
         for word in words:
-            if word not in known:
-                told = self.refusal(word) if self.refusal else f"no {word!r}; there is {', '.join(known)}"
-                self.fail(told, param, ctx)
+            if word not in accepted:
+                message = (
+                    self.refusal(word) if self.refusal else f"no {word!r}; there is {', '.join(accepted)}"
+                )
+                self.fail(message, param, ctx)
         if not words:
-            self.fail(f"nothing named; there is {', '.join(known)}", param, ctx)
+            self.fail(f"nothing named; there is {', '.join(accepted)}", param, ctx)
         return words
 
     def shell_complete(
@@ -175,19 +177,19 @@ class Columns(click.ParamType):
     def convert(self, value: Any, param: Any, ctx: Any) -> dict[str, str]:
         from coursework.making.roster import COLUMNS
 
-        told = (
+        pairs = (
             value.items()
             if isinstance(value, dict)
             else (p.partition("=")[::2] for p in str(value).split(",") if p.strip())
         )
-        found = {str(what).strip().casefold(): str(which).strip() for what, which in told}
-        if not found or not all(found.values()) or not found.keys() <= COLUMNS.keys():
+        columns = {str(key).strip().casefold(): str(which).strip() for key, which in pairs}
+        if not columns or not all(columns.values()) or not columns.keys() <= COLUMNS.keys():
             self.fail(
                 f"takes pairs such as name=3,first=4, of {', '.join(COLUMNS)}; found {str(value)[:60]!r}",
                 param,
                 ctx,
             )
-        return found
+        return columns
 
 
 columns_option = click.option(

@@ -45,7 +45,7 @@ _VARIANTS = 20  #: of a pool, where nothing says how many
 
 
 class _Wanted(NamedTuple):
-    """What is to be exported, as the command tells it."""
+    """Options of an export."""
 
     context: click.Context
     exercises: Sequence[str]  #: names, or the file of an assignment
@@ -149,16 +149,16 @@ def export(
         _export_autograder(course, wanted, issued, students, out)
         return
     drawn = _drawn(course, wanted, students, out)
-    made = exported(chosen, drawn, students, SPREADSHEETS[decimal])
-    lines = list(told(made.lost, drawn.langs[0]))
+    exported_files = exported(chosen, drawn, students, SPREADSHEETS[decimal])
+    lines = list(told(exported_files.lost, drawn.langs[0]))
     if strict and lines:
         raise BadInput(
             f"--strict: {platform} loses {counted(len(lines), 'feature')}, and nothing is written: {' | '.join(lines)}"
         )
     if not overwrite:
         _check_folder(out, drawn)
-    with progress_bar("exporting", len(made.files)) as advance:
-        notes += write_tree(out, made.files, advance, anew=overwrite)
+    with progress_bar("exporting", len(exported_files.files)) as advance:
+        notes += write_tree(out, exported_files.files, advance, anew=overwrite)
     if not is_assignment(wanted.exercises):
         notes.append(for_practice(langs[0]))
     tell(notes)
@@ -252,10 +252,10 @@ def _secret_beside(wanted: _Wanted, out: Path, lang: str) -> Secret:
     from coursework.making.issued import Issued, secret_of
 
     path = out / "issued.json"
-    found = secret_of(Issued.stood(path), str(path)) if path.is_file() else None
-    if found is None:
+    secret = secret_of(Issued.stood(path), str(path)) if path.is_file() else None
+    if secret is None:
         tell([secret_made(Path(wanted.exercises[0]), path, lang)])
-    return found or Secret.new()
+    return secret or Secret.new()
 
 
 def _assignment(course: Course[Any], wanted: _Wanted) -> tuple[Assignment, Sequence[str]]:

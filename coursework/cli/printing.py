@@ -1,4 +1,4 @@
-"""What the command line prints: JSON, tables, and a bar while it works."""
+"""Output of the command line: JSON, tables, and a progress bar."""
 
 from __future__ import annotations
 
@@ -52,10 +52,10 @@ _ASKING = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "JUPYTER_COLUMNS"
 
 
 def _fits_a_terminal() -> bool:
-    """Whether a table is fitted and coloured for who looks at it, or drawn with less than Unicode's lines."""
+    """Return whether the table needs a layout for the terminal: fitted and coloured, or without Unicode lines."""
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
-    asked = any(os.environ.get(name) for name in _ASKING)
-    return asked or sys.stdout.isatty() or not encoding.lower().startswith("utf")
+    is_forced = any(os.environ.get(name) for name in _ASKING)
+    return is_forced or sys.stdout.isatty() or not encoding.lower().startswith("utf")
 
 
 def _ruled(cells: Sequence[Sequence[str]], right: Sequence[bool], title: str) -> list[str]:
@@ -66,8 +66,8 @@ def _ruled(cells: Sequence[Sequence[str]], right: Sequence[bool], title: str) ->
     split = [[cell.split("\n") for cell in row] for row in cells]
     texts = [title, *(line for row in split for cell in row for line in cell)]
     widths = [max(len(line) for row in split for line in row[k]) for k in range(len(right))]
-    whole = sum(widths) + 3 * len(widths) + 1
-    if whole > _PIPED or len(title) > whole or not all(map(_is_plain, texts)):
+    total = sum(widths) + 3 * len(widths) + 1
+    if total > _PIPED or len(title) > total or not all(map(_is_plain, texts)):
         return []
 
     def rule(left: str, line: str, cross: str, end: str) -> str:
@@ -88,7 +88,7 @@ def _ruled(cells: Sequence[Sequence[str]], right: Sequence[bool], title: str) ->
     tall = max(map(len, head))
     head = [[""] * (tall - len(cell)) + cell for cell in head]  # a short heading stands at the foot
     return [
-        *([title.ljust(whole)] if title else []),
+        *([title.ljust(total)] if title else []),
         rule("┏", "━", "┳", "┓"),
         *lines(head, "┃"),
         rule("┡", "━", "╇", "┩"),
@@ -110,7 +110,7 @@ def print_note(text: str) -> None:
 
 
 @contextmanager
-def progress_bar(what: str, total: int | None) -> Iterator[Callable[..., None]]:
+def progress_bar(label: str, total: int | None) -> Iterator[Callable[..., None]]:
     """A progress bar on a terminal; nothing elsewhere."""
     if not sys.stderr.isatty():
         yield lambda *_: None
@@ -120,7 +120,7 @@ def progress_bar(what: str, total: int | None) -> Iterator[Callable[..., None]]:
 
     # What is said meanwhile goes through the bar, and from there to the terminal.
     with Progress(console=Console(file=plain(sys.stderr)), transient=True) as bar, visible_streams():
-        task = bar.add_task(what, total=total)
+        task = bar.add_task(label, total=total)
 
         def advance(*progress: Any) -> None:
             """One more, or so many of so many."""

@@ -91,14 +91,14 @@ def scan(
 
 def _told(book: ScanBook, out: Path) -> int:
     """Say what a folder of scans holds."""
-    beside = [(book.statements, "of statements"), (book.blank, "blank"), (book.copies, "copied")]
-    more = "".join(f", {number} {what}" for number, what in beside if number)
+    counts = [(book.statements, "of statements"), (book.blank, "blank"), (book.copies, "copied")]
+    more = "".join(f", {number} {waiting}" for number, waiting in counts if number)
     click.echo(
         f"{counted(book.pages, 'page')}{more}: {counted(book.answers, 'answer')}; see {out / 'answers.csv'}"
     )
     if book.waiting:
-        what = "1 place waits" if book.waiting == 1 else f"{book.waiting} places wait"
-        click.echo(f"{what} for a person: open {out / 'queue' / 'index.html'}")
+        waiting = "1 place waits" if book.waiting == 1 else f"{book.waiting} places wait"
+        click.echo(f"{waiting} for a person: open {out / 'queue' / 'index.html'}")
     if book.absent:
         click.echo(f"{counted(book.absent, 'paper')} not scanned; see {out / 'missing.csv'}")
     if book.unused:
@@ -106,8 +106,8 @@ def _told(book: ScanBook, out: Path) -> int:
             f"coursework: note: {counted(book.unused, 'line')} of typed.csv fit nothing that was scanned",
             err=True,
         )
-    _told_some([f"{whose} missing" for whose in book.missing], out / "missing.csv")
-    _told_some([f"{place}: {why}" for place, why in book.rejected], out / "rejected.csv")
+    _told_some([f"{owner} missing" for owner in book.missing], out / "missing.csv")
+    _told_some([f"{row}: {why}" for row, why in book.rejected], out / "rejected.csv")
     return FOUND if book.needs_a_look else DONE
 
 

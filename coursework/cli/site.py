@@ -111,17 +111,17 @@ def serve(
         if login is not None:
             _invite(context.obj, db, login, role, _told(url) if url else f"http://{host}:{port}")
             return
-    with _kept(context.obj, db, demo) as place, server.listening(host, port) as at:
-        own = _told(url) if url else _address(host, at)
+    with _kept(context.obj, db, demo) as database, server.listening(host, port) as at:
+        public_url = _told(url) if url else _address(host, at)
         if lti is not None:
-            _check_lti(lti, own)
-        entrance = _entrance(host, own, demo, told=url is not None)
-        serving = server.ServerSettings(context.obj, place, entrance, own, lti, server.worker_name())
-        shown = serving.check()
+            _check_lti(lti, public_url)
+        entrance = _entrance(host, public_url, demo, is_stated=url is not None)
+        serving = server.ServerSettings(context.obj, database, entrance, public_url, lti, server.worker_name())
+        report = serving.check()
         if entrance is Entrance.ACCOUNTS:
-            _check_private(place)
+            _check_private(database)
         with server.filling(serving), server.working(serving):
-            server.serve(serving, at, workers, partial(_say, own, f"kept in {shown}", opens))
+            server.serve(serving, at, workers, partial(_say, public_url, f"kept in {report}", opens))
 
 
 def _check_private(db: str) -> None:
@@ -150,8 +150,8 @@ def _check_lti(folder: Path, url: str) -> None:
 
     if not settings_of(folder, url).platforms:
         tell([f"no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one"])
-    if not (kept := KeyFolder(folder / "keys")).keys:
-        tell([f"a key was made: {kept.new().kid}"])
+    if not (key_folder := KeyFolder(folder / "keys")).keys:
+        tell([f"a key was made: {key_folder.new().kid}"])
 
 
 def _invite(course: str | None, db: str | None, login: str, role: str, url: str) -> None:
@@ -185,7 +185,7 @@ def _kept(course: str | None, db: str | None, demo: str | None) -> Iterator[str]
 
 
 def _address(host: str, at: socket.socket) -> str:
-    """Where browsers find what listens there.
+    """Return the URL at which browsers reach a listening socket.
 
     Raises
     ------
@@ -215,8 +215,8 @@ def _told(url: str) -> str:
     return url.rstrip("/")
 
 
-def _entrance(host: str, url: str, demo: str | None, *, told: bool) -> Entrance:
-    """How people come in: without an account on this machine alone, unless an address is told.
+def _entrance(host: str, url: str, demo: str | None, *, is_stated: bool) -> Entrance:
+    """Return the way of signing in: without an account on this machine alone, unless an address is stated.
 
     Raises
     ------
@@ -229,7 +229,7 @@ def _entrance(host: str, url: str, demo: str | None, *, told: bool) -> Entrance:
     from coursework.site.frame.settings import Entrance
 
     is_own = is_loopback(host) and is_loopback(urlsplit(url).hostname or "")
-    if is_own and not (told and demo is None):
+    if is_own and not (is_stated and demo is None):
         return Entrance.LOCAL if demo is None else Entrance.DEMO
     if demo is not None:
         raise BadInput(
@@ -286,7 +286,7 @@ def preview(context: click.Context, exercise: str, port: int, variants: int, lan
     with server.listening(_LOOPBACK, port) as at:
         work = EditedExercise(context.obj, exercise, variants)
         try:
-            says = partial(_say, _address(_LOOPBACK, at), f"follows {folder.root}", opens)
-            server.run(lambda: pages(work, lang), at, ready=says)
+            announce = partial(_say, _address(_LOOPBACK, at), f"follows {folder.root}", opens)
+            server.run(lambda: pages(work, lang), at, ready=announce)
         finally:
             work.end()

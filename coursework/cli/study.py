@@ -48,26 +48,28 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
     for path in sorted(folder.glob(f"*{EARLIER}")):
         ExerciseStore(file, path.name.removesuffix(EARLIER))
     mark_what_came_unmarked(course, file)
-    said = words(lang)["study"]
+    study_words = words(lang)["study"]
     if file.trouble:
-        tell([said["trouble"][file.trouble].format(file=file.troubled)])
+        tell([study_words["trouble"][file.trouble].format(file=file.troubled)])
     step = advice.next_step(course, file.progress, on.date())
     if as_json:
         print_json(
             {
-                "exercises": [_plain(asdict(one)) for one in standings(file.progress)],
-                "skills": [_plain(asdict(one)) for one in skills(file.progress)],
+                "exercises": [_plain(asdict(standing)) for standing in standings(file.progress)],
+                "skills": [_plain(asdict(standing)) for standing in skills(file.progress)],
                 "next": None if step is None else _plain(asdict(step)),
             }
         )
         return
     lines = advice.told_standings(course, file.progress, on.date(), lang)
-    pieces = [lines or said["progress"]["nothing"], advice.told_skills(course, file.progress, lang)]
+    pieces = [lines or study_words["progress"]["nothing"], advice.told_skills(course, file.progress, lang)]
     if step is not None:
         pieces.append(advice.told_advice(course, step, lang))
     click.echo(str(NotebookDisplay(lang, *pieces)))
 
 
-def _plain(told: dict[str, object]) -> dict[str, object]:
+def _plain(fields: dict[str, object]) -> dict[str, object]:
     """The same with dates as texts."""
-    return {name: value.isoformat() if hasattr(value, "isoformat") else value for name, value in told.items()}
+    return {
+        name: value.isoformat() if hasattr(value, "isoformat") else value for name, value in fields.items()
+    }

@@ -54,21 +54,21 @@ def lesson(
     from coursework.course.lessons import lesson_file
 
     course = opened(context)
-    asked = lessons or course.folder.lessons
+    names = lessons or course.folder.lessons
     if check:
         return _check_lessons(course, lessons)
     _check_language(lang)
-    for name in asked:
+    for name in names:
         lesson_file(course.folder, name, lang)
     if out is None:
-        for name in asked:
+        for name in names:
             click.echo(name)
         return DONE
     from coursework.system.writing import write_whole
     from coursework.workbook.notebooks import lesson_notebook, notebook_name
 
     writes(context, out)
-    paths = {name: out / notebook_name(name, lang) for name in asked}
+    paths = {name: out / notebook_name(name, lang) for name in names}
     _spare(list(paths.values()), overwrite)
     for name, path in paths.items():
         write_whole(path, lesson_notebook(course, name, lang).encode("utf-8"))
@@ -82,35 +82,35 @@ def _check_language(lang: str) -> None:
         raise BadInput(unknown_language(lang))
 
 
-def _check_lessons(course: Course, asked: Sequence[str]) -> int:
+def _check_lessons(course: Course, chosen: Sequence[str]) -> int:
     from coursework.workbook.lessons import faults, order_faults
 
-    names = asked or course.folder.lessons
-    for name in asked:
+    names = chosen or course.folder.lessons
+    for name in chosen:
         if name not in course.folder.lessons:
             raise unknown("lesson", name, course.folder.lessons, course.folder.label)
-    found = [] if asked else list(order_faults(course))
+    order = [] if chosen else list(order_faults(course))
     with progress_bar("checking", len(names)) as advance:
         for name in names:
-            found += faults(course, name)
+            order += faults(course, name)
             advance()
-    for fault in found:
+    for fault in order:
         click.echo(fault)
-    if not found:
+    if not order:
         click.echo(
             f"{counted(len(names), 'lesson')} read, drawn and run in {', '.join(course.folder.languages)}"
         )
-    return FOUND if found else DONE
+    return FOUND if order else DONE
 
 
 def _spare(paths: Sequence[Path], overwrite: bool) -> None:
     """Notebooks that somebody may have written in are not replaced unasked."""
     there = [] if overwrite else [path for path in paths if path.exists()]
     if there:
-        told = str(there[0]) if len(there) == 1 else f"{there[0]} and {len(there) - 1} more"
+        existing = str(there[0]) if len(there) == 1 else f"{there[0]} and {len(there) - 1} more"
         exist = "exists" if len(there) == 1 else "exist"
         raise BadInput(
-            f"{told} {exist} already, and may hold what somebody wrote; choose another --out, or --overwrite to "
+            f"{existing} {exist} already, and may hold what somebody wrote; choose another --out, or --overwrite to "
             "replace"
         )
 
@@ -161,18 +161,19 @@ def notebook(
     names = exercise_names(course, exercises)
     paths = {(name, lang): out / notebook_name(name, lang) for name in names for lang in langs}
     _spare(list(paths.values()), overwrite)
-    beside = {
-        lang: {one.name for name in names for one in taught_by(course.folder, name, lang)} for lang in langs
+    taught = {
+        lang: {exercise.name for name in names for exercise in taught_by(course.folder, name, lang)}
+        for lang in langs
     }
     other: dict[str, int] = {}
     for (name, lang), path in paths.items():
         (variant,) = distinct_variants(course[name], seed, 1, lang)
         if variant.seed != seed:
             other[name] = variant.seed
-        sheet = variant.study_sheet(beside=beside[lang])
+        sheet = variant.study_sheet(beside=taught[lang])
         write_whole(path, renderer_of(course.folder).study(sheet).encode("utf-8"))
         click.echo(str(path))
-    for lang, lessons in beside.items():
+    for lang, lessons in taught.items():
         for name in sorted(lessons):
             path = out / notebook_name(name, lang)
             if overwrite or not path.exists():  # somebody may have written in one that is there
@@ -181,8 +182,8 @@ def notebook(
     if is_typed(context, "seed"):
         tell(
             [
-                f"{name}: seed {seed} is not worth issuing; the notebook has seed {found}, the next that is"
-                for name, found in other.items()
+                f"{name}: seed {seed} is not worth issuing; the notebook has seed {missing}, the next that is"
+                for name, missing in other.items()
             ]
         )
     if wheel is not None:
@@ -256,26 +257,26 @@ def workbook(
         )
     with progress_bar("reading", pieces_of(course)) as advance:
         book = bound(course, lang, seed, chapters=wanted, solved=solutions == "end", advance=advance)
-    made = list(files(course, book, formats, paper=paper, apart=solutions == "apart"))
-    with progress_bar("writing", len(made)) as advance:
-        notes = write_tree(out, made, advance, anew=overwrite)
+    written = list(files(course, book, formats, paper=paper, apart=solutions == "apart"))
+    with progress_bar("writing", len(written)) as advance:
+        notes = write_tree(out, written, advance, anew=overwrite)
     tell(notes)
     click.echo(
-        f"{counted(len(made), 'file')} in {out}: {', '.join(_first([str(file.path) for file in made]))}"
+        f"{counted(len(written), 'file')} in {out}: {', '.join(_first([str(file.path) for file in written]))}"
     )
 
 
-def _numbers(told: str) -> tuple[int, ...]:
+def _numbers(text: str) -> tuple[int, ...]:
     """The chapters asked for."""
-    found = [one.strip() for one in told.split(",") if one.strip()]
-    for one in found:
-        if not one.isdecimal():
-            raise BadInput(f"--chapters takes numbers, as 1,2; found {one!r}")
-    return tuple(map(int, found))
+    pieces = [piece.strip() for piece in text.split(",") if piece.strip()]
+    for piece in pieces:
+        if not piece.isdecimal():
+            raise BadInput(f"--chapters takes numbers, as 1,2; found {piece!r}")
+    return tuple(map(int, pieces))
 
 
 def _first(paths: Sequence[str]) -> list[str]:
-    """What to open first, of each format."""
+    """Return the file to open first, of each format."""
     pages = [path for path in paths if path == "pages/index.html"]
     notebooks = ["notebooks/"] if any(path.endswith(".ipynb") for path in paths) else []
     return [*(path for path in paths if path.endswith(".pdf")), *pages, *notebooks]

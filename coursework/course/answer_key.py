@@ -1,5 +1,4 @@
-"""What the answers to a variant are marked by: reference values, accepted widths, and the wrong values that
-are known.
+"""Answer key of a variant: reference values, accepted widths, and the wrong values that are known.
 
 Everything is computed when it is first asked for, of one variant alone; or of many variants of an
 exercise at once (:class:`Batch`), which costs a hundredth each.
@@ -39,7 +38,7 @@ class Slip(NamedTuple):
     factor: float
 
     def made(self, reference: float) -> float:
-        """What it makes of the right value."""
+        """Return the wrong value that the slip makes of the right one."""
         return reference * self.factor
 
     def mended(self, answer: float) -> float:
@@ -79,14 +78,14 @@ class Key:
         if self._known is not None:
             return self._known.envelope
         variant = self.variant
-        found = envelopes(
+        widths = envelopes(
             variant.exercise, self._quantities, variant.used, variant.effects, self.rules.digits
         )
-        return {name: self._bounded(name, float(np.ravel(width)[0])) for name, width in found.items()}
+        return {name: self._bounded(name, float(np.ravel(width)[0])) for name, width in widths.items()}
 
     @property
     def numbers(self) -> KeyNumbers:
-        """What is known without the solution's mistakes."""
+        """Return the part of the key that needs none of the solution's mistakes."""
         return KeyNumbers(self.reference, self.envelope)
 
     def half_width(self, part: Part) -> float:
@@ -127,8 +126,8 @@ class Key:
 
     def _mistaken(self, name: str, quantities: tuple[str, ...]) -> dict[str, Any]:
         graph = self.solution.mistaken(name)
-        found = graph.evaluate(quantities, self.variant.used, self.variant.effects)
-        return {quantity: plain_scalar(value) for quantity, value in found.items()}
+        values = graph.evaluate(quantities, self.variant.used, self.variant.effects)
+        return {quantity: plain_scalar(value) for quantity, value in values.items()}
 
     def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
         """The named mistakes that reach a quantity, each with its wrong value, in the solution's order."""
@@ -150,11 +149,14 @@ class Key:
         return errors, values[:, 0]
 
     def usual_ways_from(
-        self, quantity: str, own: Mapping[str, Any]
+        self, quantity: str, own_answers: Mapping[str, Any]
     ) -> tuple[tuple[UsualError, ...], np.ndarray]:
         """The errors in a quantity's own formula, and what they give from a student's own earlier answers."""
         variant = self.variant
-        given = {**variant.used, **{q: v for q, v in own.items() if q != quantity and np.ndim(v) == 0}}
+        given = {
+            **variant.used,
+            **{q: v for q, v in own_answers.items() if q != quantity and np.ndim(v) == 0},
+        }
         values = ErrorValues(variant.exercise, (quantity,), given, variant.effects, 1)
         errors, columns = values.in_own_formula(quantity)
         return errors, columns[:, 0] if len(errors) else np.array([])
@@ -169,19 +171,19 @@ class Key:
         """By quantity, what comes out of a calculator that is set to radians, where that is a number."""
         return {q: list(self.followed_in_radians(q, {})) for q in self._quantities}
 
-    def followed_in_radians(self, quantity: str, own: Mapping[str, Any]) -> Iterator[float]:
+    def followed_in_radians(self, quantity: str, own_answers: Mapping[str, Any]) -> Iterator[float]:
         """The same from a student's own earlier answers."""
-        given = {**self.variant.used, **{q: v for q, v in own.items() if q != quantity}}
+        given = {**self.variant.used, **{q: v for q, v in own_answers.items() if q != quantity}}
         for graph in self.solution.in_radians:
             with suppress(CourseworkError):
                 value = plain_scalar(graph.evaluate((quantity,), given, self.variant.effects)[quantity])
                 if is_real(value):
                     yield float(value)
 
-    def followed(self, part: Part, own: Mapping[str, Any], wrong: Collection[str]) -> Any:
-        """What a right method gives from a student's own earlier answers, or None.
+    def followed(self, part: Part, own_answers: Mapping[str, Any], wrong: Collection[str]) -> Any:
+        """Return the value that a right method gives from a student's own earlier answers, or None.
 
-        ``own`` holds them by quantity, right ones too: a student goes on from what they wrote. None where
+        ``own_answers`` holds them by quantity, right ones too: a student goes on from what they wrote. None where
         no ``wrong`` one bears on this quantity, and where nothing comes of it: the linkage does not
         close, the value is not finite, or within the margin of 0. A count of 0 is not trivial.
         """
@@ -189,21 +191,22 @@ class Key:
         sorts = {p.quantity: p.sort for p in self.variant.parts}
         before = {
             q: v
-            for q, v in own.items()
+            for q, v in own_answers.items()
             if q != quantity and (q not in wrong or q not in sorts or not sorts[q].is_trivial(v))
         }
         if not any(quantity in self.solution.depending_on(q) for q in wrong if q in before):
             return None
         with suppress(CourseworkError):
             given = {**self.variant.used, **before}
-            found = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
-            value = plain_scalar(found[quantity])
+            values = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
+            value = plain_scalar(values[quantity])
             if isinstance(value, str) or (exists(value) and not self._is_nothing(part, value)):
                 return value
         return None
 
     def _is_nothing(self, part: Part, value: Any) -> bool:
-        """Whether a value cannot be told from 0, which follows from whatever is small enough; a count of 0 can."""
+        """Return whether a value cannot be distinguished from 0, which follows from anything small enough; a
+        count of 0 can."""
         if not part.sort.is_scalar:
             return not isinstance(value, str) and not np.any(value)
         if part.sort.is_trivial(value):
@@ -247,13 +250,13 @@ class Key:
 
     @cached_property
     def _other_cases(self) -> dict[str, list[Any]]:
-        found: dict[str, list[Any]] = {}
+        cases: dict[str, list[Any]] = {}
         for given in with_other_cases(self.variant.exercise, self.variant.used):
             for quantity in self._quantities:
                 with suppress(CourseworkError):
                     value = self.solution.graph.evaluate((quantity,), given, self.variant.effects)[quantity]
-                    found.setdefault(quantity, []).append(plain_scalar(value))
-        return found
+                    cases.setdefault(quantity, []).append(plain_scalar(value))
+        return cases
 
 
 @lru_cache(maxsize=256)
@@ -281,26 +284,26 @@ def envelopes(
     parts = {p.quantity: p for p in exercise.spec.parts}
     numeric = tuple(q for q in quantities if parts[q].has_margin and parts[q].sort.rounds)
     directions = {q for q in numeric if parts[q].sort.turn}
-    found = envelope(exercise.solution.graph, numeric, given, effects, digits, directions)
-    return {q: found.get(q, 0.0) for q in quantities}
+    widths = envelope(exercise.solution.graph, numeric, given, effects, digits, directions)
+    return {q: widths.get(q, 0.0) for q in quantities}
 
 
 def with_other_cases(exercise: CourseExercise[Any], given: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Given values, of one variant or of many, with one case of two exchanged for the other, case by case."""
     for name, spec in exercise.spec.given.items():
         if len(spec.choices) == 2 and name in given:
-            one, other = spec.choices
-            exchanged = np.where(np.asarray(given[name]) == one, other, one)
+            cases, other = spec.choices
+            exchanged = np.where(np.asarray(given[name]) == cases, other, cases)
             yield {**given, name: exchanged if exchanged.ndim else str(exchanged)}
 
 
 def is_real(value: Any) -> bool:
-    """Whether a value is a finite real number."""
+    """Return whether a value is a finite real number."""
     return isinstance(value, (int, float)) and math.isfinite(value)
 
 
 def exists(value: Any) -> bool:
-    """Whether a value is a case, or finite in all its coordinates."""
+    """Return whether a value is a case, or finite in all its coordinates."""
     if isinstance(value, (float, int)):
         return math.isfinite(value)
     return isinstance(value, str) or bool(np.all(np.isfinite(value)))

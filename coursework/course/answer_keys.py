@@ -1,4 +1,5 @@
-"""What a student writes an answer under where there are no boxes: the symbol that is asked for, or the question's number.
+"""Names under which a student writes answers where there are no boxes: the symbol that is asked for, or the
+question's number.
 
 The id of a part is a word of its author, in the author's language, and may tell: ``highest_group`` is the highest. It is shown only
 where it spells a symbol of the sheet, as ``theta4`` and ``a_BA_t`` do; every other question goes by its number, ``q7``.
@@ -22,7 +23,7 @@ _NUMBERED = re.compile(r"(?:q|Q|question_)([1-9][0-9]{0,2})")
 
 
 def spells_a_symbol(name: str) -> bool:
-    """Whether a name is a symbol as it is typed: letters of one or two, Greek ones, figures, dots."""
+    """Return whether a name is a symbol as it is typed: one or two letters, Greek ones, figures, dots."""
     pieces = re.split(r"_|[0-9]+", name)
     return all(len(p) <= 2 or p.lower() in _GREEK or p in _DERIVED for p in pieces)
 
@@ -43,5 +44,5 @@ def part_called(name: str, ids: Sequence[str]) -> str:
     """The id of the part that an answer under a name is of, among those asked, in order; the name itself where it is none."""
     if name in ids:
         return name
-    told = _NUMBERED.fullmatch(name)
-    return ids[int(told[1]) - 1] if told and int(told[1]) <= len(ids) else name
+    match = _NUMBERED.fullmatch(name)
+    return ids[int(match[1]) - 1] if match and int(match[1]) <= len(ids) else name

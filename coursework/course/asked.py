@@ -1,4 +1,4 @@
-"""What an answer key needs to know of a variant."""
+"""Attributes of a variant that an answer key reads."""
 
 from __future__ import annotations
 

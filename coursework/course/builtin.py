@@ -1,4 +1,4 @@
-"""Where the course lies that ships with the package."""
+"""Location of the course that ships with the package."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class OtherVersion(CourseworkError, RuntimeError):
 
 
 class _Caller(NamedTuple):
-    """Who sends a task: what is installed there, and which course it is about."""
+    """Sender of a task: the versions installed there, and the course concerned."""
 
     versions: Mapping[str, str]
     digest: str  #: of the course; empty for the built-in one, which comes with the package
@@ -58,31 +58,31 @@ class Carried:
         digest = "" if builtin else hashlib.sha256(self.content).hexdigest()
         self._caller = _Caller(versions(), digest, folder.root.name)
         self.key = digest or "builtin"
-        own = {} if builtin else {_COURSE: (str(folder.root),)}
-        self._roots: Roots = {**own, **_builtin()}
+        roots = {} if builtin else {_COURSE: (str(folder.root),)}
+        self._roots: Roots = {**roots, **_builtin()}
 
-    def packed(self, function: Callable[..., Any], told: tuple[Any, ...]) -> bytes:
+    def packed(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
         """A task as a pickle that does it where it is read, with :attr:`content` as its one buffer, and whose value is what
         :meth:`unpacked` reads: who passes it on, or reads it, needs to know nothing of the package before."""
-        task = tuple(_dumped(one, self._roots) for one in (function, *told))
+        task = tuple(_dumped(item, self._roots) for item in (function, *arguments))
         return pickle.dumps(_Task(self.content, self._caller, task), 5, buffer_callback=lambda _: False)
 
-    def unpacked(self, made: bytes) -> Any:
-        """What a task gave.
+    def unpacked(self, packed: bytes) -> Any:
+        """Return the result of a task.
 
         Raises
         ------
         OtherVersion
             It was not done, since the process has other versions.
         """
-        done, found = _loaded(made, self._roots)
+        done, result = _loaded(packed, self._roots)
         if not done:
-            raise found
-        return found
+            raise result
+        return result
 
 
 class _Task:
-    """What is done where it is read."""
+    """Task as the receiving process runs it."""
 
     def __init__(self, content: bytes, caller: _Caller, task: tuple[bytes, ...]):
         self._told = pickle.PickleBuffer(content), tuple(caller), task
@@ -92,7 +92,8 @@ class _Task:
 
 
 def _files(folder: Folder) -> Iterator[tuple[str, bytes]]:
-    """What bears on a course, by the path from beside its folder."""
+    """Yield the files that a course depends on, each with its path relative to the parent of the course's
+    folder."""
     name = folder.root.name
     for kind in KINDS:
         yield from _content(folder.root / kind, f"{name}/{kind}")
@@ -103,8 +104,10 @@ def _files(folder: Folder) -> Iterator[tuple[str, bytes]]:
 def _content(top: Path, name: str) -> Iterator[tuple[str, bytes]]:
     for path in sorted(top.rglob("*")):
         below = path.relative_to(top)
-        made = any(p.startswith(".") or p == "__pycache__" for p in below.parts) or path.suffix == ".pyc"
-        if not made and path.is_file():
+        is_generated = (
+            any(p.startswith(".") or p == "__pycache__" for p in below.parts) or path.suffix == ".pyc"
+        )
+        if not is_generated and path.is_file():
             yield f"{name}/{below.as_posix()}", path.read_bytes()
 
 
@@ -113,7 +116,7 @@ def _content(top: Path, name: str) -> Iterator[tuple[str, bytes]]:
 
 @cache
 def versions() -> Mapping[str, str]:
-    """What is installed here, by name, as far as it bears on what is made."""
+    """Return the installed versions, by package name, that may change what is made."""
     return {
         DISTRIBUTION: VERSION,
         "Python": ".".join(platform.python_version_tuple()[:2]),
@@ -136,11 +139,13 @@ def _digest_of_package() -> str:
 
 def _check(caller: _Caller) -> None:
     here = versions()
-    unlike = [name for name, told in caller.versions.items() if here.get(name) != told]
+    unlike = [name for name, version in caller.versions.items() if here.get(name) != version]
     if unlike:
-        found = "; ".join(f"{n}: {here.get(n, 'none')} there, {caller.versions[n]} here" for n in unlike[:3])
+        differences = "; ".join(
+            f"{n}: {here.get(n, 'none')} there, {caller.versions[n]} here" for n in unlike[:3]
+        )
         raise OtherVersion(
-            f"the worker on {platform.node()} has not what this machine has ({found}): install the same on both"
+            f"the worker on {platform.node()} has not what this machine has ({differences}): install the same on both"
         )
 
 
@@ -149,13 +154,13 @@ def _check(caller: _Caller) -> None:
 
 def _work(content: Any, caller: tuple[Any, ...], task: tuple[bytes, ...]) -> bytes:
     """Do a task in the process that reads it; gives what :meth:`Carried.unpacked` reads."""
-    told = _Caller(*caller)
+    sender = _Caller(*caller)
     roots: Roots = _builtin()
     try:
-        _check(told)
-        if told.digest:
-            roots = {_COURSE: (str(_unpacked(bytes(content), told.digest) / told.name),), **roots}
-        function, *given = (_loaded(one, roots) for one in task)
+        _check(sender)
+        if sender.digest:
+            roots = {_COURSE: (str(_unpacked(bytes(content), sender.digest) / sender.name),), **roots}
+        function, *given = (_loaded(item, roots) for item in task)
         return _dumped((True, function(*given)), roots)
     except Exception as fault:
         return _dumped((False, _sendable(fault)), roots)
@@ -184,7 +189,7 @@ def _home() -> Path:
 
 
 def _unpacked(content: bytes, digest: str) -> Path:
-    """Where the course of a digest is unpacked, whole or not at all.
+    """Return the folder into which the course of a digest is unpacked, completely or not at all.
 
     Raises
     ------
@@ -193,22 +198,22 @@ def _unpacked(content: bytes, digest: str) -> Path:
     """
     import zipfile
 
-    place = _home() / digest[:24]
+    target = _home() / digest[:24]
     with _UNPACKING:
-        if not place.is_dir():
-            part = place.with_name(f"{place.name}.{os.getpid()}.part")
+        if not target.is_dir():
+            part = target.with_name(f"{target.name}.{os.getpid()}.part")
             shutil.rmtree(part, ignore_errors=True)
             try:
                 with zipfile.ZipFile(io.BytesIO(content)) as archive:
                     archive.extractall(part)
-                part.replace(place)
+                part.replace(target)
             except OSError as fault:
                 shutil.rmtree(part, ignore_errors=True)
                 raise CourseworkError(
-                    f"the worker on {platform.node()} cannot unpack the course in {place.parent}: "
+                    f"the worker on {platform.node()} cannot unpack the course in {target.parent}: "
                     f"{fault.strerror or fault}; make room there, or take this worker away"
                 ) from None
-    return place
+    return target
 
 
 # ----------------------------------------------------------------- places in texts
@@ -227,11 +232,11 @@ class _Pickler(pickle.Pickler):
         longest = "|".join(map(re.escape, sorted(self._roots, key=len, reverse=True)))
         self._places = re.compile(rf"({longest})(?![\w.-])")
 
-    def persistent_id(self, one: Any) -> tuple[bool, tuple[str | int, ...]] | None:
-        is_path = isinstance(one, PurePath)
-        if not is_path and type(one) is not str:
+    def persistent_id(self, obj: Any) -> tuple[bool, tuple[str | int, ...]] | None:
+        is_path = isinstance(obj, PurePath)
+        if not is_path and type(obj) is not str:
             return None
-        text = str(one)
+        text = str(obj)
         if not any(root in text for root in self._roots):
             return None
         pieces = self._places.split(text)
@@ -245,20 +250,20 @@ class _Unpickler(pickle.Unpickler):
         super().__init__(io.BytesIO(data))
         self._roots = roots
 
-    def persistent_load(self, told: tuple[bool, tuple[str | int, ...]]) -> str | Path:
-        is_path, pieces = told
+    def persistent_load(self, reference: tuple[bool, tuple[str | int, ...]]) -> str | Path:
+        is_path, pieces = reference
         text = "".join(self._roots[p][0] if isinstance(p, int) else p for p in pieces)
         return Path(text) if is_path else text
 
 
-def _dumped(one: Any, roots: Roots) -> bytes:
+def _dumped(obj: Any, roots: Roots) -> bytes:
     """A pickle; each object of one that may hold a place is looked at, which takes several times as long."""
-    plain = pickle.dumps(one, 5)
+    plain = pickle.dumps(obj, 5)
     names = (name.encode("utf-8", "surrogatepass") for names in roots.values() for name in names)
     if not any(name in plain for name in (b"pathlib", *names)):
         return plain
     file = io.BytesIO()
-    _Pickler(file, roots).dump(one)
+    _Pickler(file, roots).dump(obj)
     return file.getvalue()
 
 

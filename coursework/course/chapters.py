@@ -40,7 +40,7 @@ class Section:
         return (*filter(None, [self.lesson]), *self.exercises)
 
     def needed(self, exercise: str) -> tuple[str, ...]:
-        """What an exercise of the section needs first: its lesson, then what is stated."""
+        """Return the prerequisites of an exercise of the section: its lesson, then those that are stated."""
         return (*filter(None, [self.lesson]), *self.needs.get(exercise, ()))
 
 
@@ -84,18 +84,18 @@ def chapters(
     BadCourse
         It is of another form, names what there is not, places something twice, or before what it needs.
     """
-    if not isinstance(stated, list) or not all(isinstance(one, Mapping) for one in stated):
+    if not isinstance(stated, list) or not all(isinstance(entry, Mapping) for entry in stated):
         raise BadCourse(f"{source}: chapters: write {_FORM}; found {stated!r}")
-    found = tuple(_chapter(k, one, f"{source}: chapter {k}") for k, one in enumerate(stated, start=1))
-    _check_names(found, exercises, lessons, source)
-    _check_order(found, source)
-    return found
+    result = tuple(_chapter(k, entry, f"{source}: chapter {k}") for k, entry in enumerate(stated, start=1))
+    _check_names(result, exercises, lessons, source)
+    _check_order(result, source)
+    return result
 
 
 def _chapter(number: int, stated: Mapping[str, Any], where: str) -> Chapter:
     _only(stated, {"title", "sections"}, where)
     sections = stated.get("sections", [])
-    if not isinstance(sections, list) or not all(isinstance(one, Mapping) for one in sections):
+    if not isinstance(sections, list) or not all(isinstance(entry, Mapping) for entry in sections):
         raise BadCourse(f"{where}: sections: write {_FORM}; found {sections!r}")
     titles = _titles(stated.get("title"), where)
     if not titles:
@@ -103,7 +103,7 @@ def _chapter(number: int, stated: Mapping[str, Any], where: str) -> Chapter:
     return Chapter(
         number,
         titles,
-        tuple(_section(one, f"{where}, section {k}") for k, one in enumerate(sections, start=1)),
+        tuple(_section(entry, f"{where}, section {k}") for k, entry in enumerate(sections, start=1)),
     )
 
 
@@ -112,10 +112,10 @@ def _section(stated: Mapping[str, Any], where: str) -> Section:
     lesson = stated.get("lesson", "")
     if lesson and "title" in stated:
         raise BadCourse(f"{where} has a lesson, whose title it bears: leave out title, or lesson")
-    placed = [_placed(one, where) for one in _list(stated.get("exercises", []), f"{where}: exercises")]
-    needs = {name: told for name, told in placed if told}
-    if own := _names(stated.get("needs", []), f"{where}: needs"):
-        needs[str(lesson)] = own
+    placed = [_placed(entry, where) for entry in _list(stated.get("exercises", []), f"{where}: exercises")]
+    needs = {name: exercise_needs for name, exercise_needs in placed if exercise_needs}
+    if own_needs := _names(stated.get("needs", []), f"{where}: needs"):
+        needs[str(lesson)] = own_needs
     return Section(
         str(lesson), _titles(stated.get("title", {}), where), tuple(name for name, _ in placed), needs
     )
@@ -139,48 +139,50 @@ def _list(stated: Any, where: str) -> list[Any]:
 
 
 def _names(stated: Any, where: str) -> tuple[str, ...]:
-    return tuple(str(one) for one in _list(stated, where))
+    return tuple(str(entry) for entry in _list(stated, where))
 
 
 def _titles(stated: Any, where: str) -> Mapping[str, str]:
     if stated is None:
         return {}
-    if not isinstance(stated, Mapping) or not all(isinstance(one, str) for one in stated.values()):
+    if not isinstance(stated, Mapping) or not all(isinstance(title, str) for title in stated.values()):
         raise BadCourse(f'{where}: write title = {{ en = "…", fr = "…" }}; found {stated!r}')
     return dict(stated)
 
 
-def _only(stated: Mapping[str, Any], known: set[str], where: str) -> None:
+def _only(stated: Mapping[str, Any], keys: set[str], where: str) -> None:
     for name in stated:
-        if name not in known:
-            raise BadCourse(f"{where}: no setting {name!r}{nearest(name, sorted(known))}")
+        if name not in keys:
+            raise BadCourse(f"{where}: no setting {name!r}{nearest(name, sorted(keys))}")
 
 
 def _check_names(
-    found: Sequence[Chapter], exercises: Sequence[str], lessons: Sequence[str], source: str
+    course_chapters: Sequence[Chapter], exercises: Sequence[str], lessons: Sequence[str], source: str
 ) -> None:
-    for chapter in found:
-        for kind, named, known in (
+    for chapter in course_chapters:
+        for kind, named, existing in (
             ("lesson", chapter.lessons, lessons),
             ("exercise", chapter.exercises, exercises),
         ):
             for name in named:
-                if name not in known:
+                if name not in existing:
                     raise BadCourse(
-                        f"{source}: chapter {chapter.number}: no {kind} {name!r}{nearest(name, known)}"
+                        f"{source}: chapter {chapter.number}: no {kind} {name!r}{nearest(name, existing)}"
                     )
 
 
-def _check_order(found: Sequence[Chapter], source: str) -> None:
+def _check_order(course_chapters: Sequence[Chapter], source: str) -> None:
     """Everything once, and after what it needs."""
-    every = [name for section in sections(found) for name in section.names]
-    lessons = {section.lesson for section in sections(found)}
-    for name in (one for chapter in found for one in chapter.exercises if one in lessons):
+    every = [name for section in sections(course_chapters) for name in section.names]
+    lessons = {section.lesson for section in sections(course_chapters)}
+    for name in (
+        exercise for chapter in course_chapters for exercise in chapter.exercises if exercise in lessons
+    ):
         raise BadCourse(
             f"{source}: a lesson and an exercise are called {name!r}, and would have one page; rename one of them"
         )
     seen: set[str] = set()
-    for section in sections(found):
+    for section in sections(course_chapters):
         for name in section.names:
             if name in seen:
                 raise BadCourse(f"{source}: {name!r} stands twice in the chapters; keep one of them")
@@ -196,7 +198,7 @@ def _check_order(found: Sequence[Chapter], source: str) -> None:
             seen.add(name)
 
 
-def sections(found: Sequence[Chapter]) -> Iterator[Section]:
+def sections(course_chapters: Sequence[Chapter]) -> Iterator[Section]:
     """The sections of chapters, one after another."""
-    for chapter in found:
+    for chapter in course_chapters:
         yield from chapter.sections

@@ -32,8 +32,8 @@ def _words(
     name: str, version: int, seed: int, block: int, width: int, secret: Secret | None = None
 ) -> np.ndarray:
     """Raw bits: uint64 of shape (BLOCK, width)."""
-    told = f"coursework/{name}/{version}/{seed}/{block}"
-    key = told.encode() if secret is None else secret.digest("draw", told)
+    stream = f"coursework/{name}/{version}/{seed}/{block}"
+    key = stream.encode() if secret is None else secret.digest("draw", stream)
     bits = hashlib.shake_128(key).digest(8 * BLOCK * width)
     return np.frombuffer(bits, "<u8").reshape(BLOCK, width)
 
@@ -117,7 +117,7 @@ def conditions(exercise: Exercise) -> tuple[Graph, tuple[str, ...]]:
 
 
 def kept(exercise: Exercise, drawn: Mapping[str, np.ndarray]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Which candidates are variants, and for each condition which it refuses.
+    """Return which candidates are variants, and for each constraint which candidates it refuses.
 
     Shapes ``(n,)``. A candidate with an empty range is refused as ``range of NAME is empty``, of the first such.
     """
@@ -148,7 +148,7 @@ def draw(
     Starved
         Some seed finds no variant in its bounded draws; the message names the condition that refuses most.
     """
-    found: list[dict[str, float | str] | None] = [None] * len(seeds)
+    draws: list[dict[str, float | str] | None] = [None] * len(seeds)
     pending = np.arange(len(seeds))
     width = len(exercise.given)
     for block in range(MAX_BLOCKS):
@@ -166,18 +166,18 @@ def draw(
             rows = np.flatnonzero(hit) * BLOCK + first[hit]
             columns = {n: values[rows].tolist() for n, values in drawn.items()}
             for position, i in enumerate(chunk[hit]):
-                found[i] = {n: column[position] for n, column in columns.items()}
+                draws[i] = {n: column[position] for n, column in columns.items()}
             still.append(chunk[~hit])
         pending = np.concatenate(still) if still else pending[:0]
         if not len(pending):
-            return found  # type: ignore[return-value]  # none is left out
+            return draws  # type: ignore[return-value]  # none is left out
     raise _starved(name, exercise, seeds[pending[0]], secret)
 
 
-def nth_candidate(name: str, exercise: Exercise, seed: int, place: int) -> dict[str, float | str]:
+def nth_candidate(name: str, exercise: Exercise, seed: int, index: int) -> dict[str, float | str]:
     """The given values of a candidate of a seed, by its place among them."""
-    words = _words(name, exercise.version, seed, place // BLOCK, len(exercise.given))
-    return {n: v[place % BLOCK].item() for n, v in candidates(exercise, words).items()}
+    words = _words(name, exercise.version, seed, index // BLOCK, len(exercise.given))
+    return {n: v[index % BLOCK].item() for n, v in candidates(exercise, words).items()}
 
 
 def places(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[int]:
@@ -188,21 +188,22 @@ def places(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[int]:
     Starved
         As :func:`draw`.
     """
-    found = []
+    indices = []
     for seed in seeds:
         for block in range(MAX_BLOCKS):
             words = _words(name, exercise.version, seed, block, len(exercise.given))
             good, _ = kept(exercise, candidates(exercise, words))
             if good.any():
-                found.append(block * BLOCK + int(good.argmax()))
+                indices.append(block * BLOCK + int(good.argmax()))
                 break
         else:
             raise _starved(name, exercise, seed)
-    return found
+    return indices
 
 
 def _starved(name: str, exercise: Exercise, seed: int, secret: Secret | None = None) -> Starved:
-    """What is said of a seed without a variant: which conditions refuse most of its draws."""
+    """Return the error for a seed without a variant: it names the constraints that refuse most of its
+    draws."""
     width = len(exercise.given)
     words = np.concatenate(
         [_words(name, exercise.version, seed, b, width, secret) for b in range(MAX_BLOCKS)]
@@ -235,7 +236,8 @@ def first_candidates(name: str, exercise: Exercise, count: int) -> dict[str, np.
 
 
 def population(exercise: Exercise, limit: int = 200_000) -> int | None:
-    """How many distinct variants exist, by trying every combination; None beyond ``limit`` combinations."""
+    """Return the number of distinct variants, by trying every combination; None beyond ``limit``
+    combinations."""
     combinations: list[dict[str, float | str]] = [{}]
     for name, spec in exercise.given.items():
         grown = []
@@ -273,8 +275,8 @@ def check_conditions(name: str, exercise: Exercise) -> None:
     try:
         graph.plan(names, exercise.given)
     except MissingQuantity as fault:
-        known = {*exercise.given, *graph.quantities} - {*names}
-        near = nearest(fault.names[0], known)
+        names_known = {*exercise.given, *graph.quantities} - {*names}
+        near = nearest(fault.names[0], names_known)
         raise BadCourse(f"{name}: a condition cannot be evaluated: {fault.needed}{near}") from fault
     except CourseworkError as fault:
         raise BadCourse(f"{name}: a condition cannot be evaluated: {fault}") from fault

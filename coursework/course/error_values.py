@@ -26,7 +26,7 @@ class UsualError(NamedTuple):
 
 
 class ErrorValues:
-    """What each usual error makes of the asked quantities.
+    """Wrong values of the asked quantities that each usual error gives.
 
     ``given`` holds a scalar a name, or an array ``(n,)`` of so many variants.
     """
@@ -53,10 +53,10 @@ class ErrorValues:
         NaN where an error leads nowhere.
         """
         if quantity not in self._rows:
-            found = [*self._in_formulas(quantity), *self._taken_for(quantity)]
-            errors = tuple(error for error, _ in found)
-            values = [column for _, column in found]
-            self._rows[quantity] = errors, np.array(values).reshape(len(found), self.count)
+            pairs = [*self._in_formulas(quantity), *self._taken_for(quantity)]
+            errors = tuple(error for error, _ in pairs)
+            values = [column for _, column in pairs]
+            self._rows[quantity] = errors, np.array(values).reshape(len(pairs), self.count)
         return self._rows[quantity]
 
     def in_own_formula(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
@@ -86,32 +86,34 @@ class ErrorValues:
     def _errors_of(self, source: str) -> tuple[tuple[UsualError, ...], dict[str, np.ndarray]]:
         """The errors in a formula, and by quantity that they reach their values, shape ``(errors, n)``."""
         node = self.exercise.solution.graph.textbook.node(source)
-        found = formula_errors(node.function)
-        errors = tuple(UsualError(error.kind, source, place) for place, error in enumerate(found))
+        errors_found = formula_errors(node.function)
+        errors = tuple(UsualError(error.kind, source, index) for index, error in enumerate(errors_found))
         if source not in self._by_source:
             values = {**node.defaults, **self.right}
-            made = [self._value(error.formula, values) for error in found]
-            self._by_source[source] = self._carried_on(source, np.array(made)) if made else {}
+            values_of_errors = [self._value(error.formula, values) for error in errors_found]
+            self._by_source[source] = (
+                self._carried_on(source, np.array(values_of_errors)) if values_of_errors else {}
+            )
         return errors, self._by_source[source]
 
-    def _carried_on(self, source: str, made: np.ndarray) -> dict[str, np.ndarray]:
-        """What follows from wrong values of a quantity, shape ``(errors, n)``."""
+    def _carried_on(self, source: str, wrong: np.ndarray) -> dict[str, np.ndarray]:
+        """Return the values that follow from wrong values of a quantity, shape ``(errors, n)``."""
         reached = [
             q for q in self.quantities if q != source and q in self.exercise.solution.depending_on(source)
         ]
-        columns = {source: made} if source in self.quantities else {}
+        columns = {source: wrong} if source in self.quantities else {}
         if not reached:
             return columns
-        rows = len(made)
+        rows = len(wrong)
         given = {n: np.tile(np.broadcast_to(v, (self.count,)), rows) for n, v in self.given.items()}
-        given[source] = made.ravel()
+        given[source] = wrong.ravel()
         graph = self.exercise.solution.graph
         for some in (tuple(reached), *((q,) for q in reached)):
             with suppress(CourseworkError):
                 values = graph.evaluate(some, given, self.effects)
                 for name, value in values.items():
-                    if (found := _real(value, (made.size,))) is not None:
-                        columns[name] = np.broadcast_to(found, (made.size,)).reshape(made.shape)
+                    if (real := _real(value, (wrong.size,))) is not None:
+                        columns[name] = np.broadcast_to(real, (wrong.size,)).reshape(wrong.shape)
                 if len(some) == len(reached):
                     break
         return columns
@@ -138,8 +140,8 @@ class ErrorValues:
 
     def _column(self, value: Any) -> np.ndarray:
         """A number, or one a variant, as a column ``(n,)``; NaN for whatever else."""
-        found = _real(value, (self.count,) if self._is_batch else ())
-        return np.broadcast_to(np.nan if found is None else found, (self.count,))
+        real = _real(value, (self.count,) if self._is_batch else ())
+        return np.broadcast_to(np.nan if real is None else real, (self.count,))
 
     @property
     def _is_batch(self) -> bool:

@@ -73,7 +73,7 @@ class CourseExercise(Generic[V]):
 
     @property
     def version(self) -> int:
-        """What records are of; see :class:`~coursework.model.Exercise`."""
+        """Return the version that records refer to; see :class:`~coursework.model.Exercise`."""
         return self.spec.version
 
     # ------------------------------------------------------------------ solving
@@ -139,8 +139,8 @@ class CourseExercise(Generic[V]):
     @property
     def _directions(self) -> frozenset[str]:
         """The angles of the loops and the driver's, which whole turns do not change."""
-        own = {self.spec.driver.angle} if self.spec.driver else set()
-        return frozenset(own.union(*(loop.angles for loop in self.solution.loops.values())))
+        driver_angles = {self.spec.driver.angle} if self.spec.driver else set()
+        return frozenset(driver_angles.union(*(loop.angles for loop in self.solution.loops.values())))
 
     def solve(
         self,
@@ -184,12 +184,12 @@ class CourseExercise(Generic[V]):
         wanted = self._wanted(only)
         if arrays:
             _check_shapes(values)
-        called = self.spec.effects if effects is None else effects
-        found = self.solution.graph.evaluate(wanted, values, called)
+        effect_names = self.spec.effects if effects is None else effects
+        result = self.solution.graph.evaluate(wanted, values, effect_names)
         if not arrays:
-            asked = {n: values[n] for n in given if n in values}
-            found = {name: self.existing(name, value, asked) for name, value in found.items()}
-        return found
+            stated = {n: values[n] for n in given if n in values}
+            result = {name: self.existing(name, value, stated) for name, value in result.items()}
+        return result
 
     def existing(self, name: str, value: Any, given: Mapping[str, Any]) -> Any:
         """A quantity of scalars as plain Python holds it.
@@ -202,8 +202,8 @@ class CourseExercise(Generic[V]):
         if type(value) is not float:
             value = plain_scalar(value)
         if isinstance(value, float) and value != value:
-            told = ", ".join(f"{n} = {v}" for n, v in given.items())
-            raise Undefined(f"{self.name}: {name} does not exist for {told}")
+            data = ", ".join(f"{n} = {v}" for n, v in given.items())
+            raise Undefined(f"{self.name}: {name} does not exist for {data}")
         return value
 
     @property
@@ -213,7 +213,7 @@ class CourseExercise(Generic[V]):
 
     @property
     def is_animated(self) -> bool:
-        """Whether there is an animation: a film, or a figure that a driver moves."""
+        """Return whether there is an animation: a film, or a figure that a driver moves."""
         return self.film is not None or (self.spec.driver is not None and self.spec.figure is not None)
 
     @property
@@ -222,7 +222,7 @@ class CourseExercise(Generic[V]):
         return self.spec.driver
 
     def driver_angle(self, given: Mapping[str, Any]) -> float:
-        """Where the driver stands for these given quantities, degrees.
+        """Return the angle of the driver for these given quantities, degrees.
 
         Raises
         ------
@@ -242,7 +242,8 @@ class CourseExercise(Generic[V]):
         return float(helpers.evaluate((name,), _known_to(helpers, given))[name])
 
     def posed(self, given: Mapping[str, Any], angle: Any) -> dict[str, Any]:
-        """What places the mechanism with its driver at an angle, degrees, or at each of an array of angles."""
+        """Return the quantities that place the mechanism with its driver at an angle, degrees, or at each of
+        an array of angles."""
         driver = self._driver
         if driver.poses is None:
             return {driver.angle: angle}
@@ -314,11 +315,11 @@ class CourseExercise(Generic[V]):
         if not self.spec.kept_by_solution:
             return self.spec
         module = self.folder.keep_module(self.name)
-        keep = getattr(module, "KEEP", ())
-        if not keep:
+        retained = getattr(module, "KEEP", ())
+        if not retained:
             raise BadCourse(f"_{self.name}_keep.py states no KEEP, which {self.name} says that it is kept by")
         helpers = (*self.spec.helpers, *getattr(module, "HELPERS", ()))
-        spec = replace(self.spec, keep=(*self.spec.keep, *keep), helpers=helpers)
+        spec = replace(self.spec, keep=(*self.spec.keep, *retained), helpers=helpers)
         draws.check_conditions(self.name, spec)
         return spec
 
@@ -358,10 +359,10 @@ class CourseExercise(Generic[V]):
         """
         if parts is None:
             return None
-        known = [*(part.id for part in self.spec.parts), USUAL, ALL]
+        ids = [*(part.id for part in self.spec.parts), USUAL, ALL]
         for part_id in parts:
-            if part_id not in known:
-                raise unknown("part", part_id, known, self.name)
+            if part_id not in ids:
+                raise unknown("part", part_id, ids, self.name)
         judges = {p.judge for p in self.spec.parts if p.judge and p.id in parts}
         return tuple(
             # One that is named is asked of every variant, whose turn it would be or not.
@@ -416,7 +417,7 @@ class CourseExercise(Generic[V]):
         return self.texts.title(lang) or self.variant(0, lang).text.title
 
 
-def refuse_complex(exercise: CourseExercise[Any], parts: Iterable[Part], found: Mapping[str, Any]) -> None:
+def refuse_complex(exercise: CourseExercise[Any], parts: Iterable[Part], values: Mapping[str, Any]) -> None:
     """Refuse a complex reference of a part that asks for one real number.
 
     Raises
@@ -425,7 +426,7 @@ def refuse_complex(exercise: CourseExercise[Any], parts: Iterable[Part], found: 
         It says which part, and what would do.
     """
     for part in parts:
-        value = found.get(part.quantity)
+        value = values.get(part.quantity)
         if part.sort.is_scalar and isinstance(value, (complex, np.complexfloating)):
             raise BadCourse(
                 f"{exercise.solution.source}: {part.quantity} is a complex number, and part {part.id!r} asks "
@@ -438,8 +439,8 @@ def _check_shapes(values: Mapping[str, Any]) -> None:
     try:
         np.broadcast_shapes(*shapes.values())
     except ValueError:
-        told = ", ".join(f"{n} {shape}" for n, shape in shapes.items())
-        raise WrongValue(f"the arrays do not broadcast together: {told}") from None
+        listed = ", ".join(f"{n} {shape}" for n, shape in shapes.items())
+        raise WrongValue(f"the arrays do not broadcast together: {listed}") from None
 
 
 def _known_to(graph: Graph, values: Mapping[str, Any]) -> dict[str, Any]:

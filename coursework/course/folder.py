@@ -65,7 +65,7 @@ class Folder:
 
     @property
     def label(self) -> str:
-        """What messages call the course."""
+        """Return the name of the course in messages."""
         return "the built-in course" if self.root == builtin_root().resolve() else f"course {self.root.name}"
 
     # -------------------------------------------------------------------- files
@@ -83,11 +83,11 @@ class Folder:
         BadCourse
             It stands in two places.
         """
-        known = self._homes.get((kind, name))
-        if known is None or not known.exists():
+        home = self._homes.get((kind, name))
+        if home is None or not home.exists():
             self._homes |= {(kind, each): path for each, path in self._modules(kind).items()}
-            known = self._homes.get((kind, name))
-        return known if known is not None and known.exists() else None
+            home = self._homes.get((kind, name))
+        return home if home is not None and home.exists() else None
 
     def _modules(self, kind: str) -> dict[str, Path]:
         """The modules of ``exercises`` or ``solutions`` by name; shared ones, whose names begin with an underscore, are none."""
@@ -97,7 +97,7 @@ class Folder:
             for p in sorted(top.glob("*/"))
             if p.is_dir() and not (p / "__init__.py").exists() and p != self.lesson_place
         ]
-        found: dict[str, Path] = {}
+        modules: dict[str, Path] = {}
         for folder in (top, *topics):
             files = [
                 *((p.stem, p) for p in folder.glob("*.py")),
@@ -106,11 +106,11 @@ class Folder:
             for name, path in files:
                 if not name.isidentifier() or name.startswith("_"):
                     continue
-                if name in found:
-                    places = " and ".join(sorted(self.relative(p) for p in (found[name], path)))
+                if name in modules:
+                    places = " and ".join(sorted(self.relative(p) for p in (modules[name], path)))
                     raise BadCourse(f"{name} stands twice: {places}; keep one of them, or rename it")
-                found[name] = path
-        return found
+                modules[name] = path
+        return modules
 
     def text_file(self, kind: str, name: str, lang: str) -> Path:
         """``NAME.LANG.md.j2``, beside the module or inside the exercise's own folder; where it would stand if there is none."""
@@ -137,17 +137,17 @@ class Folder:
         )
 
     def source(self, kind: str, name: str) -> str:
-        """What messages call the file of ``KIND/NAME``."""
+        """Return the name of the file of ``KIND/NAME`` in messages."""
         home = self.home(kind, name)
         return f"{kind}/{name}.py" if home is None else self.relative(home)
 
     def relative(self, path: Path) -> str:
-        """What messages call a file."""
+        """Return the name of a file in messages."""
         return path.relative_to(self.root).as_posix()
 
     @cached_property
     def template_folders(self) -> tuple[Path, ...]:
-        """Where templates are looked up: this course first, then the built-in one."""
+        """Return the folders in which templates are looked up: this course's first, then the built-in one."""
         folders = dict.fromkeys([self.root / "templates", builtin_root() / "templates"])
         return tuple(f for f in folders if f.is_dir())
 
@@ -164,7 +164,7 @@ class Folder:
 
     @cached_property
     def settings(self) -> Mapping[str, Any]:
-        """What ``exercises/course.toml`` says, or nothing."""
+        """Return the content of ``exercises/course.toml``; empty where there is none."""
         import tomllib
 
         path = self._settings_file
@@ -217,7 +217,7 @@ class Folder:
 
     @cached_property
     def rules(self) -> Rules:
-        """How the course marks."""
+        """Return the rules by which the course marks."""
         from coursework.course.marking_rules import Rules
 
         return Rules.of(self.settings.get("marking", {}), str(self._settings_file))
@@ -232,12 +232,12 @@ class Folder:
         BadCourse
             What it states is no list of its exercises.
         """
-        told = self._study.get("order", [])
-        if not isinstance(told, list) or not set(map(str, told)) <= set(self.names):
+        order = self._study.get("order", [])
+        if not isinstance(order, list) or not set(map(str, order)) <= set(self.names):
             raise BadCourse(
-                f'{self._settings_file}: [study]: order = ["…"] names exercises of the course; found {told!r}'
+                f'{self._settings_file}: [study]: order = ["…"] names exercises of the course; found {order!r}'
             )
-        return tuple(dict.fromkeys([*map(str, told), *self.in_order]))
+        return tuple(dict.fromkeys([*map(str, order), *self.in_order]))
 
     # ------------------------------------------------------------------- order
 
@@ -301,24 +301,28 @@ class Folder:
         BadCourse
             The file is not in the course's folder.
         """
-        told = self._requirement
-        if not told.endswith(".whl") or "://" in told:
+        requirement = self._requirement
+        if not requirement.endswith(".whl") or "://" in requirement:
             return None
-        path = self.root / told
+        path = self.root / requirement
         if not path.is_file():
             raise BadCourse(
-                f"{self._settings_file}: [study]: install = {told!r}: there is no such file in {self.root}"
+                f"{self._settings_file}: [study]: install = {requirement!r}: there is no such file in {self.root}"
             )
         return path
 
     @property
     def _requirement(self) -> str:
-        told = self._study.get("install", "")
-        if not isinstance(told, str) or told != told.strip() or set(told) & set("\"'`\n\r"):
+        requirement = self._study.get("install", "")
+        if (
+            not isinstance(requirement, str)
+            or requirement != requirement.strip()
+            or set(requirement) & set("\"'`\n\r")
+        ):
             raise BadCourse(
-                f'{self._settings_file}: [study]: install = "…" is what pip is to install; found {told!r}'
+                f'{self._settings_file}: [study]: install = "…" is what pip is to install; found {requirement!r}'
             )
-        return told
+        return requirement
 
     @property
     def _study(self) -> Mapping[str, Any]:
@@ -334,7 +338,7 @@ class Folder:
         return str(self._titles(lang).get(lang, self.root.name))
 
     def lacks_title(self, lang: str) -> bool:
-        """Whether the course states its title in other languages than this one alone."""
+        """Return whether the course states its title in other languages but not in this one."""
         titles = self._titles(lang)
         return bool(titles) and lang not in titles
 

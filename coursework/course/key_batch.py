@@ -48,7 +48,7 @@ def given_columns(exercise: CourseExercise[Any], variants: Sequence[Asked]) -> d
 
 
 class Batch:
-    """What the answers to many variants of one exercise are marked by, a column a quantity.
+    """Answer keys of many variants of one exercise, a column a quantity.
 
     A column is computed when the first variant asks for it.
     """
@@ -84,30 +84,30 @@ class Batch:
     @cached_property
     def other_cases(self) -> dict[str, list[list]]:
         """By quantity, columns of its values when a given case of two is taken for the other one."""
-        found: dict[str, list[list]] = {}
+        columns: dict[str, list[list]] = {}
         for given in with_other_cases(self.exercise, self.given):
             with suppress(CourseworkError):
                 graph, effects = self.exercise.solution.graph, self.exercise.spec.effects
                 values = graph.evaluate(self.quantities, given, effects)
                 for quantity, column in self._rows(values).items():
-                    found.setdefault(quantity, []).append(column)
-        return found
+                    columns.setdefault(quantity, []).append(column)
+        return columns
 
     @cached_property
     def in_radians(self) -> dict[str, list[list]]:
         """By quantity, columns of what a calculator that is set to radians gives."""
         effects = self.exercise.spec.effects
-        found: dict[str, list[list]] = {q: [] for q in self.quantities}
+        by_quantity: dict[str, list[list]] = {q: [] for q in self.quantities}
         for graph in self.exercise.solution.in_radians:
-            for quantity, columns in found.items():
+            for quantity, columns in by_quantity.items():
                 with suppress(CourseworkError):
                     values = self._rows(graph.evaluate((quantity,), self.given, effects))
                     columns.append(values[quantity])
-        return found
+        return by_quantity
 
     @cached_property
     def error_values(self) -> ErrorValues:
-        """What usual errors make of the asked quantities."""
+        """Return the values that usual errors give for the asked quantities."""
         effects = self.exercise.spec.effects
         return ErrorValues(self.exercise, self.quantities, self.given, effects, self.count)
 
@@ -115,7 +115,7 @@ class Batch:
         return _rows(columns, self.count, self.ranks)
 
     def is_whole(self, index: int, quantities: Sequence[str]) -> bool:
-        """Whether a variant has all these quantities; a complex one it refuses by itself."""
+        """Return whether a variant has all these quantities; a complex one it refuses by itself."""
         return all(
             q in self.reference
             and exists(self.reference[q][index])
@@ -137,15 +137,15 @@ class Batch:
         solution = self.exercise.solution
         reached = tuple(q for q in (*self.quantities, *self.along) if q in solution.reached(name))
         graph = solution.mistaken(name)
-        found: dict[str, list] = {}
+        columns: dict[str, list] = {}
         for some in (reached, *((q,) for q in reached)):
             # Where all together lead nowhere, each is tried alone.
             with suppress(CourseworkError):
                 values = graph.evaluate(some, self.given, self.exercise.spec.effects, self._found)
-                found |= self._rows(values)
+                columns |= self._rows(values)
                 if len(some) == len(reached):
                     break
-        return found
+        return columns
 
 
 class _KeyOfBatch(Key):
@@ -166,11 +166,11 @@ class _KeyOfBatch(Key):
 
     @cached_property
     def wrong(self) -> dict[str, dict[str, Any]]:
-        found = {}
+        values = {}
         for name, columns in self._batch.wrong.items():
-            own = {q: columns[q][self._index] for q in self.reference if q in columns}
-            found[name] = {q: value for q, value in own.items() if exists(value)}
-        return found
+            row = {q: columns[q][self._index] for q in self.reference if q in columns}
+            values[name] = {q: value for q, value in row.items() if exists(value)}
+        return values
 
     @cached_property
     def in_radians(self) -> dict[str, list[float]]:
@@ -194,11 +194,11 @@ class _KeyOfBatch(Key):
 
 def _rows(columns: Mapping[str, Any], count: int, ranks: Mapping[str, int] = NO_RANKS) -> dict[str, list]:
     """A list a quantity, a value a variant; vectors and matrices, whose axes are ``ranks``, as arrays."""
-    found = {}
+    rows = {}
     for name, values in columns.items():
         array = np.asarray(values)
         if array.ndim <= ranks.get(name, 0) or array.shape[0] != count:
-            found[name] = [plain_scalar(values)] * count
+            rows[name] = [plain_scalar(values)] * count
         else:
-            found[name] = list(array) if array.ndim > 1 else array.tolist()
-    return found
+            rows[name] = list(array) if array.ndim > 1 else array.tolist()
+    return rows

@@ -53,15 +53,15 @@ def lesson_file(folder: Folder, name: str, lang: str) -> Path:
 
 def _check_name(folder: Folder, name: str) -> None:
     """A lesson's name is that of a file in books, of a module, and of a target of links."""
-    taken = (
+    owner = (
         "is an exercise"
         if name in folder.names
         else "is a page of every book"
         if name.lower() in PAGES
         else ""
     )
-    if taken:
-        raise BadCourse(f"the lesson {name} has a name that {taken} as well; rename its files")
+    if owner:
+        raise BadCourse(f"the lesson {name} has a name that {owner} as well; rename its files")
     if not name.isidentifier():
         would = re.sub(r"\W+", "_", name)
         would = would if would.isidentifier() else f"lesson_{would}"
@@ -114,15 +114,15 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     stated = folder.settings.get("lessons", {})
     if not isinstance(stated, Mapping):
         raise BadCourse(f"{_SOURCE} is a table: {_FORM}")
-    known = folder.names if stated else ()
+    names = folder.names if stated else ()
     for name in stated:
-        if name not in known:
-            raise BadCourse(f"{_SOURCE} names no exercise {name!r}{nearest(name, known)}")
+        if name not in names:
+            raise BadCourse(f"{_SOURCE} names no exercise {name!r}{nearest(name, names)}")
     section = folder.section_of(exercise)
-    own = stated.get(exercise, [])
-    listed = own if isinstance(own, list) else [own]
+    stated_names = stated.get(exercise, [])
+    listed = stated_names if isinstance(stated_names, list) else [stated_names]
     placed = [section.lesson] if section and section.lesson else []
-    if any(_named(one) in placed for one in listed):
+    if any(_named(lesson) in placed for lesson in listed):
         placed = []  # it says which sections
     return tuple(_taught(folder, exercise, [*placed, *listed], lang))
 
@@ -130,7 +130,9 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
 def practised(folder: Folder, lesson: str, lang: str) -> tuple[str, ...]:
     """The exercises that a lesson teaches, in the order in which they are learnt."""
     return tuple(
-        name for name in folder.in_order if any(one.name == lesson for one in taught_by(folder, name, lang))
+        name
+        for name in folder.in_order
+        if any(lesson_name.name == lesson for lesson_name in taught_by(folder, name, lang))
     )
 
 
@@ -139,10 +141,10 @@ def _named(stated: Any) -> Any:
 
 
 def _taught(folder: Folder, exercise: str, stated: list[Any], lang: str) -> Iterator[Lesson]:
-    for one in stated:
-        table = {"lesson": one} if isinstance(one, str) else one
+    for lesson in stated:
+        table = {"lesson": lesson} if isinstance(lesson, str) else lesson
         if not isinstance(table, Mapping) or not {"lesson"} <= set(table) <= {"lesson", "sections"}:
-            raise BadCourse(f"{_SOURCE}: {exercise}: write {_FORM}; found {one!r}")
+            raise BadCourse(f"{_SOURCE}: {exercise}: write {_FORM}; found {lesson!r}")
         name = table["lesson"]
         if name not in folder.lessons:
             raise BadCourse(f"{_SOURCE}: {exercise}: no lesson {name!r}{nearest(str(name), folder.lessons)}")
@@ -152,15 +154,15 @@ def _taught(folder: Folder, exercise: str, stated: list[Any], lang: str) -> Iter
             yield Lesson(name, title, _sections(exercise, name, table.get("sections", []), headings))
 
 
-def _sections(exercise: str, lesson: str, asked: Any, headings: Mapping[int, str]) -> tuple[str, ...]:
-    asked = asked if isinstance(asked, list) else [asked]
-    for number in asked:
+def _sections(exercise: str, lesson: str, wanted: Any, headings: Mapping[int, str]) -> tuple[str, ...]:
+    wanted = wanted if isinstance(wanted, list) else [wanted]
+    for number in wanted:
         if number not in headings:
             there = ", ".join(map(str, headings)) or "none"
             raise BadCourse(
                 f"{_SOURCE}: {exercise}: the lesson {lesson} has no section {number!r}; there is {there}"
             )
-    return tuple(headings[number] for number in asked)
+    return tuple(headings[number] for number in wanted)
 
 
 @lru_cache(maxsize=64)
@@ -169,5 +171,5 @@ def _headings(path: Path, changed: int) -> tuple[str, Mapping[int, str]]:
     text = read_text(path)
     title = _TITLE.search(text)
     return title[1] if title else path.name.split(".")[0], {
-        int(n): said for said, n in _SECTION.findall(text)
+        int(n): heading for heading, n in _SECTION.findall(text)
     }

@@ -28,7 +28,7 @@ def printed_order(exercise: str, seed: int, part: Part, secret: Secret | None = 
         return tuple(sorted(part.choices, key=_shuffled(f"{exercise}/{seed}/{part.id}", secret)))
     first = sorted(case for case in part.choices if case not in _LAST)
     last = [case for case in part.choices if case in _LAST]
-    natural = next((place for place in _NATURAL if all(place(case) is not None for case in first)), None)
+    natural = next((label for label in _NATURAL if all(label(case) is not None for case in first)), None)
     return (*sorted(first, key=natural or _shuffled(f"{exercise}/{seed}/{','.join(first)}", secret)), *last)
 
 

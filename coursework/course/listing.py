@@ -1,4 +1,4 @@
-"""What is said of every exercise of a course, kept from one run to the next.
+"""Descriptions of every exercise of a course, cached from one run to the next.
 
 To say it, an exercise is loaded, and with it much that takes a second for a whole course. So what was said is kept with
 the state of every file that it came from: those of ``exercises/``, of ``templates/``, of the engine, and of whatever else
@@ -23,14 +23,15 @@ _ENGINE = Path(__file__).parent.parent
 
 
 class Listing(NamedTuple):
-    """What is said of the exercises of a course, and by name what is wrong with those of which nothing can be said."""
+    """Descriptions of the exercises of a course, and by name the faults of those that cannot be described."""
 
     rows: list[dict[str, Any]]
     faults: dict[str, str]
 
 
 class _Kept(NamedTuple):
-    """What is kept: which Python said it, the states of the files it came from, and what was said, by name."""
+    """Cached listing: the Python that made it, the states of its source files, and the descriptions by
+    name."""
 
     python: list[str]
     files: dict[str, State]  #: of the course and of the engine
@@ -39,31 +40,37 @@ class _Kept(NamedTuple):
 
 
 def listing(folder: Folder, describe: Callable[[str], dict[str, Any]]) -> Listing:
-    """What ``describe`` says of each exercise by its name, in the order in which they are learnt; it is asked where nothing was kept."""
+    """Return the description of each exercise by its name, in the order in which they are learnt; call
+    ``describe`` where the cache has none."""
     begun = time.time_ns()
-    known = _known(folder)
-    said, faults = {}, {}
+    cached = _known(folder)
+    descriptions, faults = {}, {}
     for name in folder.in_order:
         try:
-            said[name] = known.said[name] if name in known.said else describe(name)
+            descriptions[name] = cached.said[name] if name in cached.said else describe(name)
         except CourseworkError as fault:
             faults[name] = str(fault)
-    if said.keys() != known.said.keys():
-        _remember(folder, known._replace(loaded={**known.loaded, **_loaded(known.files)}, said=said), begun)
-    return Listing(list(said.values()), faults)
+    if descriptions.keys() != cached.said.keys():
+        _remember(
+            folder,
+            cached._replace(loaded={**cached.loaded, **_loaded(cached.files)}, said=descriptions),
+            begun,
+        )
+    return Listing(list(descriptions.values()), faults)
 
 
 def _known(folder: Folder) -> _Kept:
-    """What was kept where every file is still as it was; else the files as they are, and nothing said."""
+    """Return the cached listing where every file is unchanged; else the present states of the files, and no
+    description."""
     # Which Python loads the exercises, and where it looks for what they import.
     python = [sys.version, *sys.path]
     files = states(folder.root / "exercises", folder.root / "templates", _ENGINE)
     with suppress(TypeError, AttributeError):
-        found = _Kept(**kept(_name(folder)))
-        if (found.python, found.files) == (python, files) and all(
-            state(path) == was for path, was in found.loaded.items()
+        cached = _Kept(**kept(_name(folder)))
+        if (cached.python, cached.files) == (python, files) and all(
+            state(path) == was for path, was in cached.loaded.items()
         ):
-            return found
+            return cached
     return _Kept(python, files, {}, {})
 
 

@@ -53,8 +53,8 @@ class Rules:
         for name, value in table.items():
             if name not in names:
                 raise BadCourse(f"{source}: no rule of marking {name!r}{nearest(str(name), names)}")
-            whole = isinstance(value, int) and not isinstance(value, bool)
-            if name == "digits" and not (whole and 2 <= value <= 12):
+            is_integer = isinstance(value, int) and not isinstance(value, bool)
+            if name == "digits" and not (is_integer and 2 <= value <= 12):
                 raise BadCourse(f"{source}: digits is a whole number from 2 to 12; found {value!r}")
             if name == "prices":
                 value = {**usual.prices, **_prices(value, source)}

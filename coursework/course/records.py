@@ -11,7 +11,7 @@ from coursework.model import Exercise, Part
 
 
 class Recorded(NamedTuple):
-    """What a record says of its variant."""
+    """Content of a variant's record."""
 
     seed: int
     given: dict[str, Any]
@@ -30,7 +30,7 @@ class Records:
         self._parts: dict[tuple[tuple[tuple[str, float], ...], bool], tuple[Part, ...]] = {}
 
     def read(self, record: Mapping[str, Any]) -> Recorded:
-        """What a record issued.
+        """Return the content of a record that was issued.
 
         Raises
         ------
@@ -50,7 +50,7 @@ class Records:
         try:
             given = {n: self._recorded(record["given"], n, version < current) for n in self.spec.given}
             seed = int(record["seed"])
-            asked = {str(part["id"]): _points(part["points"]) for part in record["parts"]}
+            points = {str(part["id"]): _points(part["points"]) for part in record["parts"]}
             orders = {
                 str(part["id"]): tuple(part["choices"]) for part in record["parts"] if "choices" in part
             }
@@ -58,7 +58,7 @@ class Records:
             raise BadInput(f"{name}: a record lacks {fault}") from fault
         for quantity, value in given.items():
             self._check_recorded(quantity, value)
-        parts = self._parts_of(tuple(asked.items()), version < current)
+        parts = self._parts_of(tuple(points.items()), version < current)
         for part in parts:
             self._check_order(part, orders.get(part.id, ()))
         issued = dict(record) if version < current else None
@@ -71,10 +71,10 @@ class Records:
             return default
         return given[name]["value"]
 
-    def _parts_of(self, asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
+    def _parts_of(self, points_asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
         """The parts that a record asks, by id, worth what it says: an assignment may say so, or an older version."""
-        if (asked, older) not in self._parts:
-            points = dict(asked)
+        if (points_asked, older) not in self._parts:
+            points = dict(points_asked)
             gone = [i for i in points if self.spec.part(i) is None]
             if gone:
                 raise BadInput(
@@ -82,15 +82,15 @@ class Records:
                     f"course {'no longer has' if older else 'does not have'}; mark it with the course it was issued from"
                 )
             # A record asks what it lists, in its order, whatever the exercise asks of these values now.
-            known = {p.id: p for p in self.spec.parts}
-            found = tuple(
+            by_id = {p.id: p for p in self.spec.parts}
+            parts = tuple(
                 p
                 if p.points == points[p.id] and p.when is None
                 else replace(p, points=points[p.id], when=None)
-                for p in map(known.__getitem__, points)
+                for p in map(by_id.__getitem__, points)
             )
-            self._parts[asked, older] = found
-        return self._parts[asked, older]
+            self._parts[points_asked, older] = parts
+        return self._parts[points_asked, older]
 
     def _check_order(self, part: Part, order: tuple[str, ...]) -> None:
         strangers = [case for case in order if case not in part.choices]

@@ -1,4 +1,4 @@
-"""What a request gives, as the solution takes it: in canonical units, with defaults, within its domain."""
+"""Intake of a request's values for the solution: in canonical units, with defaults, within their domain."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ class Intake:
         name: str,
         given: Mapping[str, GivenSpec],
         units: Mapping[str, str],
-        known: frozenset[str],
+        names: frozenset[str],
         structures: frozenset[str],
         directions: frozenset[str] = frozenset(),
     ):
         self.name = name
         self._given = given
         self._units = units
-        self._known = known  #: every name that a request may give
+        self._known = names  #: every name that a request may give
         self._structures = structures  #: names of lists and records
         self._directions = directions  #: angles that whole turns do not change
 
@@ -124,8 +124,8 @@ class Intake:
         if reading.status != "read":
             raise WrongValue(f"{name} must be a number in {unit}; found {text!r}")
         if len(reading.values) > 1:
-            shown = " or ".join(plain(v) for v in reading.values)
-            raise WrongValue(f"{name}: {text!r} can be read as {shown}; write it without a separator")
+            values = " or ".join(plain(v) for v in reading.values)
+            raise WrongValue(f"{name}: {text!r} can be read as {values}; write it without a separator")
         return reading.values[0]
 
     def _check_domain(self, name: str, spec: GivenSpec, value: Any) -> None:

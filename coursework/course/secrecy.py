@@ -58,8 +58,8 @@ class Secret:
 
     def digest(self, *words: str) -> bytes:
         """Return 32 bytes that depend on the secret and on all the words, in order."""
-        told = b"".join(len(word.encode()).to_bytes(4, "big") + word.encode() for word in words)
-        return hmac.digest(self._bits, told, "sha256")
+        content = b"".join(len(word.encode()).to_bytes(4, "big") + word.encode() for word in words)
+        return hmac.digest(self._bits, content, "sha256")
 
     def under(self, *words: str) -> Secret:
         """Return the secret of one use, from which neither this one nor that of other words can be computed."""

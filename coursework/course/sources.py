@@ -56,15 +56,16 @@ def own_folder(folder: Folder, kind: str, name: str) -> Path | None:
 
 
 def own_files(folder: Folder, kind: str, name: str) -> Iterator[Path]:
-    """What bears the name of the exercise: its module, its texts, data beside them, and a folder of its name."""
-    place = own_folder(folder, kind, name)
-    if place is not None:
-        found = (*place.parent.glob(f"{name}.*"), *place.rglob("*"))
-        yield from (path for path in found if path.is_file() and is_source(path))
+    """Yield the files that bear the name of the exercise: its module, its texts, data beside them, and a
+    folder of its name."""
+    own = own_folder(folder, kind, name)
+    if own is not None:
+        paths = (*own.parent.glob(f"{name}.*"), *own.rglob("*"))
+        yield from (path for path in paths if path.is_file() and is_source(path))
 
 
 def is_source(path: Path) -> bool:
-    """Whether somebody wrote a file."""
+    """Return whether a file was written by a person, and not generated."""
     return not any(part.endswith(MADE) for part in path.parts)
 
 
@@ -95,9 +96,9 @@ def imported(tree: ast.Module, path: Path) -> Iterator[Path]:
 def modules(node: ast.ImportFrom, path: Path) -> Iterator[Path]:
     """The files of the modules that a relative import names."""
     folder = path.parents[node.level - 1]
-    place = folder.joinpath(*(node.module or "").split(".")) if node.module else folder
-    names = [place] if node.module else []
-    for name in (*names, *(place / alias.name for alias in node.names)):
+    base = folder.joinpath(*(node.module or "").split(".")) if node.module else folder
+    names = [base] if node.module else []
+    for name in (*names, *(base / alias.name for alias in node.names)):
         yield from (p for p in (name.with_name(f"{name.name}.py"), name / "__init__.py") if p.is_file())
 
 
@@ -130,6 +131,6 @@ def included(folder: Folder, path: Path) -> list[Path]:
     except jinja2.TemplateSyntaxError as fault:
         raise BadCourse(f"{folder.relative(path)}, line {fault.lineno}: {fault.message}") from fault
     folders = (path.parent, folder.root / kind, *folder.template_folders)
-    found = [next((f / name for f in folders if (f / name).is_file()), None) for name in names if name]
+    paths = [next((f / name for f in folders if (f / name).is_file()), None) for name in names if name]
     brought = builtin_root().resolve() / "templates"  # every course has these
-    return [file for file in found if file is not None and brought not in file.parents]
+    return [file for file in paths if file is not None and brought not in file.parents]

@@ -71,7 +71,7 @@ class Text:
         return self.sections[name]
 
     def label(self, quantity: str, case: str) -> str:
-        """What a case of a quantity is called in this language."""
+        """Return the label of a case of a quantity in this language."""
         labels = self.section(quantity).labels
         if case not in labels:
             raise BadStatement(f"{self.source}: section '## {quantity}' has no line '- {case}: …'")
@@ -150,12 +150,12 @@ def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> Text:
     def place(piece: str) -> str:
         first = piece.split("\n")[0]
         lines = path.read_text(_ENCODING).split("\n")
-        whole = [n for n, line in enumerate(lines, 1) if first in line]
+        matches = [n for n, line in enumerate(lines, 1) if first in line]
         begun = [
             n for n, line in enumerate(lines, 1) if first[:_TELLING] in line
         ]  # a value stands further on
-        found = whole[0] if whole else begun[0] if len(begun) == 1 else None
-        return f"{source}, line {found}" if found else source
+        line_number = matches[0] if matches else begun[0] if len(begun) == 1 else None
+        return f"{source}, line {line_number}" if line_number else source
 
     pair_dollars(markdown, place)
     if formulas:
@@ -169,14 +169,14 @@ _proofread: WeakSet[object] = WeakSet()
 
 @dataclass(frozen=True)
 class Constants:
-    """What of a text holds no variable, and so is the same for every variant."""
+    """Parts of a text that hold no variable, and so are the same for every variant."""
 
     texts: Mapping[str, str]  #: by section
     labels: Mapping[tuple[str, str], str]  #: by section and case
 
 
 def constants(path: Path) -> Constants:
-    """What of a file needs no variant to be read; nothing where there is no file."""
+    """Return the parts of a file that need no variant to be read; empty where there is no file."""
     source = path.read_text(_ENCODING) if path.exists() else ""
     if not source or not all(map(_stands_alone, source.split("\n## "))):
         return Constants({}, {})  # a block that holds whole sections may repeat or leave out some of them
@@ -197,7 +197,7 @@ _TAG = re.compile(r"\{[{%#]")
 
 
 def _stands_alone(section: str) -> bool:
-    """Whether the blocks that begin in a section end in it."""
+    """Return whether the blocks that begin in a section end in it."""
     import jinja2
 
     if "{%" not in section and "{#" not in section:
@@ -222,7 +222,7 @@ class _Filled:
 
     @staticmethod
     def fits(text: str) -> bool:
-        """Whether a text is one."""
+        """Return whether a text can be filled in without a template engine."""
         rest = _HOLE.split(text)
         return "{{{" not in text and not _TAG.search("".join(rest[::2])) and not _CONSTANTS & {*rest[1::2]}
 
@@ -312,7 +312,7 @@ class ExerciseTexts:
         return tuple(lang for lang in spoken if self.file("exercises", lang).exists())
 
     def file(self, kind: str, lang: str) -> Path:
-        """Where a text stands, or would stand."""
+        """Return the path of a text, whether it exists or not."""
         return self.folder.text_file(kind, self.name, lang)
 
     @property
@@ -353,7 +353,7 @@ class ExerciseTexts:
         return render(path, shared, variables, source)
 
     def names(self, kind: str, lang: str) -> frozenset[str]:
-        """What variables stand in a text and in those that it includes; none where there is no text.
+        """Return the variables in a text and in those that it includes; empty where there is no text.
 
         Raises
         ------
@@ -367,23 +367,24 @@ class ExerciseTexts:
         return _names(path, path.stat().st_mtime_ns, shared, self.folder.relative(path))
 
     def constants(self, kind: str, lang: str) -> Constants:
-        """What of a text is the same for every variant; read once."""
+        """Return the parts of a text that are the same for every variant; read once."""
         if (kind, lang) not in self._constants:
             self._constants[kind, lang] = constants(self.file(kind, lang))
         return self._constants[kind, lang]
 
     def is_constant(self, quantity: str, case: str) -> bool:
-        """Whether a case is called the same in every variant, in all languages."""
-        return all((quantity, case) in self.constants("exercises", one).labels for one in self.languages)
+        """Return whether the label of a case is the same in every variant, in all languages."""
+        return all((quantity, case) in self.constants("exercises", lang).labels for lang in self.languages)
 
     def labels(
-        self, part: str, cases: Sequence[str], lang: str, called: Callable[[str], Iterable[str]]
+        self, part: str, cases: Sequence[str], lang: str, label_of: Callable[[str], Iterable[str]]
     ) -> dict[str, list[str]]:
-        """What each case of a part is ``called``; asked once where that is the same for every variant."""
-        place = (part, lang)
-        if place not in self._labels:
-            found = {case: [*called(case)] for case in cases}
+        """Return the labels of each case of a part, by ``label_of``; computed once where they are the same
+        for every variant."""
+        key = (part, lang)
+        if key not in self._labels:
+            labels = {case: [*label_of(case)] for case in cases}
             if not all(self.is_constant(part, case) for case in cases):
-                return found
-            self._labels[place] = found
-        return self._labels[place]
+                return labels
+            self._labels[key] = labels
+        return self._labels[key]

@@ -91,9 +91,9 @@ class Variant:
         }
 
     def _recorded(self, part: Part) -> dict[str, Any]:
-        known = {name: getattr(part, name) for name in ("id", "quantity", "unit", "kind", "points")}
+        attributes = {name: getattr(part, name) for name in ("id", "quantity", "unit", "kind", "points")}
         letters = self.letters(part)
-        return {**known, "choices": list(letters)} if letters else known
+        return {**attributes, "choices": list(letters)} if letters else attributes
 
     def in_language(self, lang: str) -> Self:
         """The same variant on a sheet in another language."""
@@ -126,7 +126,7 @@ class Variant:
 
     @property
     def computed(self) -> Mapping[str, Any]:
-        """What has been computed of this variant so far, hidden quantities too."""
+        """Return the quantities of this variant that have been computed so far, hidden ones too."""
         return MappingProxyType(self._found)
 
     def solution(self) -> dict[str, Any]:
@@ -141,9 +141,9 @@ class Variant:
         BadCourse
             One of them is complex where its part asks for a real number.
         """
-        found = self.quantities(self.asked_quantities)
-        refuse_complex(self.exercise, self.parts, found)
-        return {name: self.exercise.existing(name, value, self.used) for name, value in found.items()}
+        values = self.quantities(self.asked_quantities)
+        refuse_complex(self.exercise, self.parts, values)
+        return {name: self.exercise.existing(name, value, self.used) for name, value in values.items()}
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -166,11 +166,11 @@ class Variant:
     def printed(self) -> dict[str, Any]:
         """Given values as running text, for the texts: ``228,6 mm``; then what the exercise tells besides."""
         spec = self.exercise.spec
-        shown: dict[str, Any] = {
+        texts: dict[str, Any] = {
             n: str(v) if spec.given[n].is_choice else with_unit(plain(v), spec.given[n].unit, self.lang)
             for n, v in self.given.items()
         }
-        return {**shown, **spec.told(self.given)}
+        return {**texts, **spec.told(self.given)}
 
     @cached_property
     def used(self) -> dict[str, Any]:
@@ -203,15 +203,15 @@ class Variant:
 
     def existing(self, names: Iterable[str]) -> dict[str, Any]:
         """Those of some quantities that exist for the given values, as plain Python holds them."""
-        found = {}
+        values = {}
         for name in sorted(names):
             try:
-                found[name] = self.exercise.existing(name, self.quantities([name])[name], self.used)
+                values[name] = self.exercise.existing(name, self.quantities([name])[name], self.used)
             except BadCourse:
                 raise
             except CourseworkError:
                 continue
-        return found
+        return values
 
     def letters(self, part: Part) -> Mapping[str, str]:
         """The letters of a choice by case, in the order printed; none of a sheet that was issued without."""
@@ -231,7 +231,7 @@ class Variant:
         return label if letter is None else words(self.lang)["choices"]["lettered"].format(letter, label)
 
     def labels(self, part: Part) -> dict[str, list[str]]:
-        """What each case of a choice is called, in every language; nothing for another kind."""
+        """Return the labels of each case of a choice, in every language; empty for another kind."""
         return self.exercise.texts.labels(
             part.id, part.choices, self.lang, lambda case: self._names(part, case)
         )
@@ -259,7 +259,7 @@ class Variant:
         return (self.lang, *(lang for lang in self.exercise.languages if lang != self.lang))
 
     def label(self, quantity: str, case: str, lang: str = "") -> str:
-        """What a case is called, in this variant's language unless told."""
+        """Return the label of a case, in this variant's language by default."""
         lang = lang or self.lang
         label = self.exercise.texts.constants("exercises", lang).labels.get((quantity, case))
         if label is None:
@@ -269,11 +269,11 @@ class Variant:
         return (self.text if lang == self.lang else self.in_language(lang).text).label(quantity, case)
 
     def _engine_label(self, quantity: str, case: str, lang: str) -> str:
-        """What the engine calls a case of a part whose statement need not say it: a kind of joint."""
+        """Return the engine's label of a case that the statement need not name: a kind of joint."""
         return next((p.sort.called(case, lang) for p in self.exercise.spec.parts if p.id == quantity), "")
 
     def told(self, mistake: str) -> str:
-        """What to say to who made a named mistake."""
+        """Return the message for a student who made a named mistake."""
         name = f"mistake {mistake}"
         text = self.exercise.texts.constants("solutions", self.lang).texts.get(name)
         return self.solution_text.section(name).text if text is None else text
@@ -284,7 +284,7 @@ class Variant:
 
     @property
     def key(self) -> Key:
-        """What the variant's answers are marked by: made when it is first asked for, unless one was given."""
+        """Return the answer key of the variant, made at the first use unless one was given."""
         if self._key is None:
             from coursework.course.answer_key import Key
 
@@ -312,15 +312,17 @@ class Variant:
         given = call_on_quantities(function, self.given, tuple(self.exercise.spec.helpers))
         if given is None:  # of this variant
             return ()
-        shown = tuple(given) if isinstance(given, (tuple, list)) else (given,)
-        for one in shown:
-            if not isinstance(one, (Figure, Picture)):
+        drawings = tuple(given) if isinstance(given, (tuple, list)) else (given,)
+        for drawing in drawings:
+            if not isinstance(drawing, (Figure, Picture)):
                 raise BadCourse(
                     f"{self.exercise.name}: figure(…) returns a Figure, a Picture, or a tuple of them; "
-                    f"found {str(one)[:60]}"
+                    f"found {str(drawing)[:60]}"
                 )
         home = Path(function.__code__.co_filename).parent
-        return tuple(one.beside(home) if isinstance(one, Picture) else one for one in shown)
+        return tuple(
+            drawing.beside(home) if isinstance(drawing, Picture) else drawing for drawing in drawings
+        )
 
     @property
     def figure(self) -> Figure | Picture | None:
