@@ -27,7 +27,7 @@ GUESSED = 3  #: counts and cases at least that are wrong, and more than are righ
 
 @dataclass(frozen=True)
 class Sheet:
-    """What the answers of a student show when they are looked at together."""
+    """Evidence that the answers of a student give when they are compared with one another."""
 
     everywhere: frozenset[float] = frozenset()  #: numbers that are written for several different things
     has_work: bool = True  #: most answers copy no one number, no questions' numbers, nothing given
@@ -35,23 +35,25 @@ class Sheet:
 
 
 def sheet_of(
-    parts: Mapping[str, Part], readings: Mapping[str, Reading], known: Mapping[str, str], key: Key
+    parts: Mapping[str, Part], readings: Mapping[str, Reading], right_answers: Mapping[str, str], key: Key
 ) -> Sheet:
-    """What the answers of a sheet show, those ``known`` to be right among them."""
+    """Return the evidence in the answers of a sheet; ``known`` maps the ids of right parts to their texts."""
     return replace(
-        _numbers_of(parts, readings, known, key), is_guessed=_is_guessed(parts, readings, known, key)
+        _numbers_of(parts, readings, right_answers, key),
+        is_guessed=_is_guessed(parts, readings, right_answers, key),
     )
 
 
 def _is_guessed(
-    parts: Mapping[str, Part], readings: Mapping[str, Reading], known: Mapping[str, str], key: Key
+    parts: Mapping[str, Part], readings: Mapping[str, Reading], right_answers: Mapping[str, str], key: Key
 ) -> bool:
-    """Whether most counts and cases that follow from no other are wrong, and several are: guesses agree with guesses."""
+    """Return whether most counts and cases that follow from no other answer are wrong, and several are: the
+    sign of guessing."""
     exact = {i: p for i, p in parts.items() if p.sort.is_exact and p.sort.is_followed and not p.sort.is_open}
     wrong = [
         part
         for i, part in exact.items()
-        if i not in known and readings[i].status == "read" and _is_wrong(part, readings[i], key)
+        if i not in right_answers and readings[i].status == "read" and _is_wrong(part, readings[i], key)
     ]
     if len(wrong) < GUESSED:
         return False
@@ -60,7 +62,7 @@ def _is_guessed(
     first = {q for q in quantities if not any(q in above[other] for other in quantities - {q})}
     lost = sum(part.quantity in first for part in wrong)
     answered = sum(
-        p.quantity in first and (i in known or readings[i].status == "read") for i, p in exact.items()
+        p.quantity in first and (i in right_answers or readings[i].status == "read") for i, p in exact.items()
     )
     return lost >= GUESSED and 2 * lost > answered
 
@@ -71,21 +73,21 @@ def _is_wrong(part: Part, reading: Reading, key: Key) -> bool:
 
 
 def _numbers_of(
-    parts: Mapping[str, Part], readings: Mapping[str, Reading], known: Mapping[str, str], key: Key
+    parts: Mapping[str, Part], readings: Mapping[str, Reading], right_answers: Mapping[str, str], key: Key
 ) -> Sheet:
-    """What the numbers of a sheet show."""
+    """Return the evidence in the numbers of a sheet."""
     answers: list[tuple[int, Part, float]] = []
     for number, (i, part) in enumerate(parts.items(), start=1):
         if not part.sort.is_scalar or part.sort.is_open:
             continue
-        if i in known:
-            answers.append((number, part, float(part.sort.kept(known[i]))))
+        if i in right_answers:
+            answers.append((number, part, float(part.sort.kept(right_answers[i]))))
         elif readings[i].status == "read":
             answers.append((number, part, float(readings[i].values[0])))
-    things: dict[float, set[str]] = {}
+    quantities: dict[float, set[str]] = {}
     for _, part, value in (answer for answer in answers if not answer[1].sort.is_exact):
-        things.setdefault(value, set()).add(_thing(key, part))
-    everywhere = frozenset(value for value, asked in things.items() if len(asked) >= THINGS)
+        quantities.setdefault(value, set()).add(_thing(key, part))
+    everywhere = frozenset(value for value, parts_asked in quantities.items() if len(parts_asked) >= THINGS)
     if len({value for *_, value in answers}) == 1 and len({_thing(key, part) for _, part, _ in answers}) > 1:
         return Sheet(everywhere, has_work=len(answers) < DIFFERENT)
     if len(answers) < FEW:
@@ -95,9 +97,16 @@ def _numbers_of(
         return Sheet(everywhere)
     given = {float(v) for v in key.variant.given.values() if isinstance(v, (int, float))}
     values = [value for *_, value in wrong]
-    ones = {value: {_thing(key, part) for _, part, v in wrong if v == value} for value in values}
+    parts_by_value = {value: {_thing(key, part) for _, part, v in wrong if v == value} for value in values}
     copies = (
-        max((values.count(value) for value, things in ones.items() if len(things) >= DIFFERENT), default=0),
+        max(
+            (
+                values.count(value)
+                for value, quantities in parts_by_value.items()
+                if len(quantities) >= DIFFERENT
+            ),
+            default=0,
+        ),
         sum(value == number for number, _, value in wrong),
         sum(value in given for value in values),
     )
@@ -105,12 +114,12 @@ def _numbers_of(
 
 
 def _thing(key: Key, part: Part) -> str:
-    """What a part asks for, by its value: two questions may ask for the same."""
+    """Return a key for the quantity that a part asks for, by its value: two parts may ask for the same."""
     return f"{key.reference[part.quantity]:.6g}"
 
 
 def is_attempt(part: Part, value: Any, reference: Any, *, is_explained: bool) -> bool:
-    """Whether a wrong answer is of a size that somebody may have computed."""
+    """Return whether a wrong answer is of a size that somebody may have computed."""
     if is_explained or part.sort.turn or isinstance(value, (str, tuple)) or isinstance(reference, str):
         return True
     size, expected = (float(np.max(np.abs(np.asarray(v)))) for v in (value, reference))

@@ -16,22 +16,22 @@ _SHARE = 0.01  #: of an angle in radians, that rounding on the way may move it
 
 
 def is_in_radians(key: Key, wrong: Iterable[tuple[Part, Reading]]) -> bool:
-    """Whether several wrong answers of a sheet are what a calculator set to radians gives.
+    """Return whether a calculator set to radians explains several wrong answers of a sheet.
 
     Angles alone may be right ones told in radians: some answer must show a sine or a cosine.
     """
     numbers = [(p, r) for p, r in wrong if p.sort.is_number and r.status == "read"]
     if len(numbers) < SEVERAL:
         return False
-    shown = {
+    explained = {
         p.quantity: value
         for p, r in numbers
         for value in key.in_radians[p.quantity]
         if fitting(key, p, r, value) is not None
     }
     directions = {p.quantity for p, _ in numbers if p.sort.turn}
-    return len(shown) >= SEVERAL and any(
-        q not in directions or not _is_told_in_radians(key, q, value) for q, value in shown.items()
+    return len(explained) >= SEVERAL and any(
+        q not in directions or not _is_told_in_radians(key, q, value) for q, value in explained.items()
     )
 
 
@@ -40,9 +40,10 @@ def _is_told_in_radians(key: Key, quantity: str, value: float) -> bool:
     return abs(value - right) <= _SHARE * abs(right)
 
 
-def values_in_radians(key: Key, quantity: str, own: Mapping[str, Any]) -> list[float]:
-    """What such a calculator gives of a quantity: all the way, and from the student's own earlier answers."""
-    return [*key.in_radians[quantity], *key.followed_in_radians(quantity, own)]
+def values_in_radians(key: Key, quantity: str, own_answers: Mapping[str, Any]) -> list[float]:
+    """Return the values of a quantity with a calculator set to radians: computed from the data, and from the
+    student's own earlier answers."""
+    return [*key.in_radians[quantity], *key.followed_in_radians(quantity, own_answers)]
 
 
 def fitting(key: Key, part: Part, reading: Reading, value: float) -> int | None:
@@ -51,7 +52,7 @@ def fitting(key: Key, part: Part, reading: Reading, value: float) -> int | None:
     width = key.half_width(part) * (abs(value / reference) if reference else 1.0)
     if part.sort.turn and abs(value) <= 2 * math.pi:
         width = _SHARE * abs(value)
-    for place, answer in enumerate(reading.values):
+    for index, answer in enumerate(reading.values):
         if answer and abs(answer - value) <= max(width, last_digit(part, answer)):
-            return place
+            return index
     return None

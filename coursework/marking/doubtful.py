@@ -31,12 +31,12 @@ def settled(
 ) -> dict[str, Reading]:
     """Return the readings, those of a doubtful answer unreadable: a quotient of two values, a power that lost its superscript,
     a sense in words against the sign, thousands by a mark that the sheet's other numbers do not tell."""
-    asked = {p.id: p for p in variant.parts}
+    parts = {p.id: p for p in variant.parts}
     return {
-        i: _settled(variant, asked[i], reading, answers)
+        i: _settled(variant, parts[i], reading, answers)
         if reading.status == "read"
-        and asked[i].sort.is_number
-        and not asked[i].judge
+        and parts[i].sort.is_number
+        and not parts[i].judge
         and isinstance(answers.get(i), str)
         else reading
         for i, reading in readings.items()
@@ -44,10 +44,10 @@ def settled(
 
 
 def _settled(variant: Variant, part: Part, reading: Reading, answers: Mapping[str, Any]) -> Reading:
-    place, gap = nearest_reading(part, reading, variant.key, part)
+    nearest, gap = nearest_reading(part, reading, variant.key, part)
     text = tidy(reading.text)
     if thousands := _THOUSANDS.fullmatch(text):
-        return _with_thousands(variant, part, reading, thousands["mark"], place, gap, answers)
+        return _with_thousands(variant, part, reading, thousands["mark"], nearest, gap, answers)
     if gap <= 1:
         return reading
     quotient = _QUOTIENT.fullmatch(text)
@@ -68,28 +68,28 @@ def _with_thousands(
     part: Part,
     reading: Reading,
     mark: str,
-    place: int,
+    index: int,
     gap: float,
     answers: Mapping[str, Any],
 ) -> Reading:
     """The reading of ``1,747`` or ``1.747``, which the decimal mark of the sheet's other numbers decides."""
-    whole = reading.text.replace(mark, "", 1)
-    if part.sort.turn or (gap <= 1 and place == 0) or not _is_right(variant, part, whole):
+    text = reading.text.replace(mark, "", 1)
+    if part.sort.turn or (gap <= 1 and index == 0) or not _is_right(variant, part, text):
         return reading
     decimal = _decimal_mark(answers.values(), variant.lang)
     if not decimal:
         return _unsettled(reading)
     if decimal == mark:
         return replace(reading, values=reading.values[:1], read_as=reading.read_as[:1])
-    return replace(read(variant, part, whole), text=reading.text)
+    return replace(read(variant, part, text), text=reading.text)
 
 
 def _decimal_mark(texts: Iterable[Any], lang: str) -> str:
     """The decimal mark of the numbers of a sheet, in English the point where none says it; nothing where they differ or say nothing."""
-    found = {mark for text in texts if isinstance(text, str) for mark in _DECIMAL.findall(text)}
-    if len(found) == 1:
-        return found.pop()
-    return "." if not found and lang == "en" else ""
+    marks = {mark for text in texts if isinstance(text, str) for mark in _DECIMAL.findall(text)}
+    if len(marks) == 1:
+        return marks.pop()
+    return "." if not marks and lang == "en" else ""
 
 
 def _are_alike(one: str, other: str) -> bool:
@@ -98,7 +98,7 @@ def _are_alike(one: str, other: str) -> bool:
 
 
 def _others(text: str, plain: str) -> Iterator[str]:
-    """What else may be meant by an answer."""
+    """Yield the other readings of an ambiguous answer."""
     if quotient := _QUOTIENT.fullmatch(plain):
         yield from quotient.groups()
     if dot := _RAISED_DOT.fullmatch(text.strip()):

@@ -1,4 +1,4 @@
-"""What the drawn polygons have in common: points on paper, and the judge's words for what is wrong with them."""
+"""Judging of drawn polygons: points on paper, and the words for the faults of a drawing."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from types import MappingProxyType
@@ -33,8 +33,8 @@ def to_paper(image: Any, scale: Any) -> np.ndarray:
 
 def _coordinates(on_paper: np.ndarray) -> np.ndarray:
     """Of complex points on paper, along a last axis."""
-    found = np.stack([on_paper.real, on_paper.imag], axis=-1)
-    return np.where(abs(found) < _NOTHING_MM, 0.0, found)
+    coordinates = np.stack([on_paper.real, on_paper.imag], axis=-1)
+    return np.where(abs(coordinates) < _NOTHING_MM, 0.0, coordinates)
 
 
 def scale_for(*images: Any) -> Any:
@@ -67,7 +67,7 @@ class Read(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """What is asked of a drawing, each by part id."""
+    """Quantities that a drawing is asked for, each by part id."""
 
     scale: str
     points: Mapping[str, str]  #: to the image points, the pole among them
@@ -79,47 +79,52 @@ class Asked(NamedTuple):
 
 def verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
     """A :class:`Judged` for each answer that can be judged."""
-    said = _verdicts(answers, polygon, asked)
+    judgements = _verdicts(answers, polygon, asked)
     ends = {**asked.lengths, **{part: (read.start, read.end) for part, read in asked.reads.items()}}
     drawn_ones = {asked.points[i] for i in asked.points if i in answers}
     points = [i for i, point in asked.points.items() if point != polygon.pole]
     undrawn = [i for i, of in ends.items() if not drawn_ones.issuperset(of)]
-    return read_off(said, points, (asked.scale, *ends), undrawn)
+    return read_off(judgements, points, (asked.scale, *ends), undrawn)
 
 
 def read_off(
-    said: Mapping[str, Judged], points: Sequence[str], read: Collection[str], undrawn: Collection[str] = ()
+    judgements: Mapping[str, Judged],
+    points: Sequence[str],
+    read: Collection[str],
+    undrawn: Collection[str] = (),
 ) -> dict[str, Judged]:
     """Return the verdicts, with little for what is ``read`` off a drawing that does not stand.
 
     A drawing stands where half of its ``points`` at least, the pole aside, are right. What is ``undrawn`` is read off
     nothing, whatever stands.
     """
-    stands = 2 * sum(said[i].share == 1.0 for i in points if i in said) >= len(points)
-    nothing = undrawn if stands else read
+    is_drawn = 2 * sum(judgements[i].share == 1.0 for i in points if i in judgements) >= len(points)
+    nothing = undrawn if is_drawn else read
     little = Judged(PRICES["not_drawn"], slip="not_drawn")
-    return {i: little if verdict.share == 1.0 and i in nothing else verdict for i, verdict in said.items()}
+    return {
+        i: little if verdict.share == 1.0 and i in nothing else verdict for i, verdict in judgements.items()
+    }
 
 
 def _verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
     scale = _stated(answers, polygon, asked)
-    found = drawn(answers, polygon, asked)
-    if found is None:
+    readings = drawn(answers, polygon, asked)
+    if readings is None:
         if scale is None:
             return _right_reads(answers, polygon, asked)
         # Lengths alone: nothing is drawn, and they are what they should be or not.
         bare = judge_drawing(polygon, {polygon.pole: 0j}, scale)
-        said = {asked.scale: Judged()} if bare.is_legible else {asked.scale: Judged(0.0, "too_small")}
-        return said | _lengths(answers, bare, asked) | _reads(answers, bare, asked)
-    drawing, upside_down = found
+        judgements = {asked.scale: Judged()} if bare.is_legible else {asked.scale: Judged(0.0, "too_small")}
+        return judgements | _lengths(answers, bare, asked) | _reads(answers, bare, asked)
+    drawing, upside_down = readings
     if not drawing.is_legible:
         of_it = (*asked.points, *asked.lengths, asked.scale)
         return {i: Judged(0.0, "too_small") for i in of_it if i in answers} | _reads(answers, drawing, asked)
-    said = {asked.scale: _of_scale(scale, upside_down, drawing)} if asked.scale in answers else {}
+    judgements = {asked.scale: _of_scale(scale, upside_down, drawing)} if asked.scale in answers else {}
     for part, point in asked.points.items():
         if part in answers:
-            said[part] = _of_point(point, drawing, asked)
-    return said | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
+            judgements[part] = _of_point(point, drawing, asked)
+    return judgements | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
 
 
 def drawn(answers: Answers, polygon: Polygon, asked: Asked) -> tuple[JudgedDrawing, bool] | None:
@@ -144,7 +149,8 @@ def _stated(answers: Answers, polygon: Polygon, asked: Asked) -> float | None:
 
 
 def _fits(drawing: JudgedDrawing) -> bool:
-    """Whether the drawing is at the stated scale, and the first vector from the pole right at it."""
+    """Return whether the drawing has the stated scale, and the first vector from the pole is right at that
+    scale."""
     return drawing.fits_stated_scale and drawing.is_right(next(iter(drawing.polygon.hangs)))
 
 
@@ -176,7 +182,7 @@ _ATTEMPT = (
 
 
 def _is_drawn_from(pole: str, point: str, drawing: JudgedDrawing) -> bool:
-    """Whether a point is right, or at least about as far from the pole as it should be."""
+    """Return whether a point is right, or at least about as far from the pole as it should be."""
     images = drawing.polygon.points
     length = abs(drawing.points[point] - drawing.points[pole]) * drawing.scale
     right = abs(images[point] - images[pole])
@@ -186,8 +192,8 @@ def _is_drawn_from(pole: str, point: str, drawing: JudgedDrawing) -> bool:
 def _of_fault(point: str, drawing: JudgedDrawing, asked: Asked) -> Judged:
     fault = drawing.faults[point]
     names = [_named(point, f, asked) for f in fault.explanations]
-    known = [name for name in names if name]
-    return Judged(0.0, known[0], also=tuple(known[1:]))
+    printed = [name for name in names if name]
+    return Judged(0.0, printed[0], also=tuple(printed[1:]))
 
 
 def _named(point: str, fault: DrawingFault, asked: Asked) -> str:
@@ -203,7 +209,7 @@ def _named(point: str, fault: DrawingFault, asked: Asked) -> str:
 
 
 def _lengths(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str, Judged]:
-    said: dict[str, Judged] = {}
+    judgements: dict[str, Judged] = {}
     for part, (start, end) in asked.lengths.items():
         if part not in answers:
             continue
@@ -212,62 +218,64 @@ def _lengths(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str
         if fault == "length":
             others = [ends for other, ends in asked.lengths.items() if other != part]
             exchanged = any(not drawing.length_fault(*ends, length) for ends in others)
-            said[part] = Judged(0.0, "lengths_exchanged" if exchanged else "")
+            judgements[part] = Judged(0.0, "lengths_exchanged" if exchanged else "")
         else:
-            said[part] = Judged(follows=fault == "own")
-    return said
+            judgements[part] = Judged(follows=fault == "own")
+    return judgements
 
 
 def _reads(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str, Judged]:
     """Right to the millimetres that the drawing may be off, a tenth at most; or as read off the student's own
     drawing, or from the student's own length."""
-    said = {}
+    judgements = {}
     for part, read in asked.reads.items():
         if part in answers:
-            said[part] = _of_value(float(answers[part]), read, drawing, answers, asked)
-    return said
+            judgements[part] = _of_value(float(answers[part]), read, drawing, answers, asked)
+    return judgements
 
 
 def _right_reads(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
     """Without scale and drawing, the values that are right all the same; nothing can be said of the others."""
     usual = float(scale_for(*(np.asarray(image, dtype=complex) for image in polygon.points.values())))
-    said = _reads(answers, judge_drawing(polygon, {polygon.pole: 0j}, usual), asked)
-    return {part: verdict for part, verdict in said.items() if verdict.share == 1.0}
+    judgements = _reads(answers, judge_drawing(polygon, {polygon.pole: 0j}, usual), asked)
+    return {part: verdict for part, verdict in judgements.items() if verdict.share == 1.0}
 
 
-def _of_value(found: float, read: Read, drawing: JudgedDrawing, answers: Answers, asked: Asked) -> Judged:
+def _of_value(number: float, read: Read, drawing: JudgedDrawing, answers: Answers, asked: Asked) -> Judged:
     ends, scale, images = (read.start, read.end), drawing.scale, drawing.polygon.points
     right = read.value(images[read.end] - images[read.start])
     millimetre = scale * read.gain
-    if abs(found - right) <= min(2 * drawing.tolerance * millimetre, _MOST * abs(right)):
+    if abs(number - right) <= min(2 * drawing.tolerance * millimetre, _MOST * abs(right)):
         return Judged()
-    own = []
+    alternatives = []
     if drawing.is_legible and all(q in drawing.points for q in ends):
-        own.append(read.value((drawing.points[read.end] - drawing.points[read.start]) * scale))
-    sense = np.sign(own[0] if own else right)
-    own += [
+        alternatives.append(read.value((drawing.points[read.end] - drawing.points[read.start]) * scale))
+    sense = np.sign(alternatives[0] if alternatives else right)
+    alternatives += [
         sense * float(answers[i]) * millimetre
         for i, segment in asked.lengths.items()
         if segment == ends and i in answers and drawing.is_legible
     ]
-    if any(abs(found - value) <= drawing.tolerance * millimetre + 0.01 * abs(value) for value in own):
+    if any(
+        abs(number - value) <= drawing.tolerance * millimetre + 0.01 * abs(value) for value in alternatives
+    ):
         at_fault = {*ends, *ancestors(drawing.polygon, read.end)} & drawing.faults.keys()
         wrong_length = any(
             segment == ends and i in answers and drawing.length_fault(*ends, float(answers[i]))
             for i, segment in asked.lengths.items()
         )
         return Judged(follows=bool(at_fault) or wrong_length)
-    names = list(_wrong_ways(found, read, [right, *own], drawing))
+    names = list(_wrong_ways(number, read, [right, *alternatives], drawing))
     first = names[0] if names else ""
     return Judged(0.0, first, also=tuple(names[1:]))
 
 
-def _wrong_ways(found: float, read: Read, values: Sequence[float], drawing: JudgedDrawing) -> Iterator[str]:
+def _wrong_ways(number: float, read: Read, values: Sequence[float], drawing: JudgedDrawing) -> Iterator[str]:
     """The mistakes that explain a value, from the right drawing or the student's own."""
     near = 2 * drawing.tolerance * drawing.scale * read.gain
-    if any(abs(found + value) <= min(near, _MOST * abs(value)) for value in values):
+    if any(abs(number + value) <= min(near, _MOST * abs(value)) for value in values):
         yield read.sense
-    if any(abs(found * drawing.scale - value) <= min(near, _MOST * abs(value)) for value in values):
+    if any(abs(number * drawing.scale - value) <= min(near, _MOST * abs(value)) for value in values):
         yield "scale_forgotten"
     for name, (start, end, gain) in read.wrong.items():
         images = drawing.polygon.points
@@ -275,7 +283,7 @@ def _wrong_ways(found: float, read: Read, values: Sequence[float], drawing: Judg
         if start in drawing.points and end in drawing.points:
             lengths.append(abs(drawing.points[end] - drawing.points[start]) * drawing.scale)
         off = 2 * drawing.tolerance * drawing.scale * gain
-        if any(abs(abs(found) - n * gain) <= min(off, _MOST * n * gain) for n in lengths):
+        if any(abs(abs(number) - n * gain) <= min(off, _MOST * n * gain) for n in lengths):
             yield name
 
 
@@ -287,7 +295,7 @@ def turned(p: np.ndarray, a: np.ndarray, degrees: Any) -> np.ndarray:
 
 
 def met(through: np.ndarray, along: Any, other: np.ndarray, other_along: Any) -> np.ndarray:
-    """Where two lines meet on paper; directions as complex numbers."""
+    """Return the intersection of two lines on paper; directions are complex numbers."""
     z, w = (q[..., 0] + 1j * q[..., 1] for q in (through, other))
     slope = (np.conj(along) * other_along).imag
     return _coordinates(z + along * (np.conj(w - z) * other_along).imag / slope)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Exchange(NamedTuple):
-    """What an answer is in the other box."""
+    """Answer of a part that fits another part's box."""
 
     part: Part  #: in whose box it would be right
     reading: Reading  #: as that part reads it
@@ -33,43 +33,55 @@ def exchanged(variant: Variant, wrong: Mapping[str, Reading], *, is_guessed: boo
     Counts and cases exchange by chance. Of counts a pair is meant where no other count is wrong and the later one does
     not follow from the earlier; of cases never.
     """
-    key, asked = variant.key, {p.id: p for p in variant.parts if p.id in wrong}
-    parts = [p for p in asked.values() if _may_be(p, wrong[p.id])]
+    key, targets = variant.key, {p.id: p for p in variant.parts if p.id in wrong}
+    parts = [p for p in targets.values() if _may_be(p, wrong[p.id])]
     counts = [p for p in parts if p.sort.is_exact]
-    found: dict[str, Exchange] = {}
-    for one, other in combinations(parts, 2):
-        if one.id in found or other.id in found or one.sort.is_exact != other.sort.is_exact:
+    exchanges: dict[str, Exchange] = {}
+    for first_part, other in combinations(parts, 2):
+        if (
+            first_part.id in exchanges
+            or other.id in exchanges
+            or first_part.sort.is_exact != other.sort.is_exact
+        ):
             continue
-        if one.sort.is_exact and (is_guessed or len(counts) > 2):
+        if first_part.sort.is_exact and (is_guessed or len(counts) > 2):
             continue
-        if one.sort.is_exact and _goes_on(variant, one, wrong[one.id], other, wrong[other.id]):
+        if first_part.sort.is_exact and _goes_on(
+            variant, first_part, wrong[first_part.id], other, wrong[other.id]
+        ):
             continue
-        if not (_is_near(variant, wrong[one.id], other) and _is_near(variant, wrong[other.id], one)):
+        if not (
+            _is_near(variant, wrong[first_part.id], other) and _is_near(variant, wrong[other.id], first_part)
+        ):
             continue
-        if any(_is_explained(variant, p, wrong[p.id]) for p in (one, other)):
+        if any(_is_explained(variant, p, wrong[p.id]) for p in (first_part, other)):
             continue
-        first, second = read(variant, other, wrong[one.id].text), read(variant, one, wrong[other.id].text)
-        place, gap = nearest_reading(other, first, key, other)
-        its_place, its_gap = nearest_reading(one, second, key, one)
+        first, second = (
+            read(variant, other, wrong[first_part.id].text),
+            read(variant, first_part, wrong[other.id].text),
+        )
+        nearest, gap = nearest_reading(other, first, key, other)
+        its_place, its_gap = nearest_reading(first_part, second, key, first_part)
         if gap > 1 or its_gap > 1:
             continue
-        if _is_close(variant, other, first.values[place], gap) and _is_close(
-            variant, one, second.values[its_place], its_gap
+        if _is_close(variant, other, first.values[nearest], gap) and _is_close(
+            variant, first_part, second.values[its_place], its_gap
         ):
-            found[one.id] = Exchange(other, first, place)
-            found[other.id] = Exchange(one, second, its_place)
-    return found
+            exchanges[first_part.id] = Exchange(other, first, nearest)
+            exchanges[other.id] = Exchange(first_part, second, its_place)
+    return exchanges
 
 
 def _is_close(variant: Variant, part: Part, value: object, gap: float) -> bool:
-    """Whether an answer is what the other box asks, as far as its digits tell: of near values some are near by chance."""
+    """Return whether an answer fits the other box to its last digit: near values may agree by chance."""
     if not part.sort.is_scalar or part.sort.is_exact:
         return gap <= 1
     return gap <= nearness(part, variant.key, part, value, CLOSE)
 
 
 def _is_explained(variant: Variant, part: Part, reading: Reading) -> bool:
-    """Whether the opposite sign or a known mistake gives an answer where it stands: that is likelier."""
+    """Return whether the opposite sign or a known mistake gives the answer in its own box: that is likelier
+    than an exchange."""
     reference = variant.key.reference[part.quantity]
     width = variant.key.envelope.get(part.quantity, 0.0)
     others = [value for _, value in variant.key.wrong_ways(part.quantity)]
@@ -100,7 +112,8 @@ def _may_be(part: Part, reading: Reading) -> bool:
 
 
 def _is_near(variant: Variant, reading: Reading, other: Part) -> bool:
-    """Whether an answer may be right in another box: cheap, and never wrongly denied to a number without a unit."""
+    """Return whether an answer may be right in another box: a cheap test that never rejects a number without
+    a unit wrongly."""
     if reading.status == "wrong_unit":
         return other.sort.is_number
     reference, key = variant.key.reference[other.quantity], variant.key

@@ -29,7 +29,7 @@ CLOSE = 0.2  #: half-widths within which an answer is what an error gives; up to
 
 
 def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[int, float]:
-    """Which honest reading is nearest to the reference, and its distance in half-widths."""
+    """Return the index of the reading that is nearest to the reference, and its distance in half-widths."""
     if reading.status != "read" or part.sort.is_open:
         return 0, math.inf
     reference = key.reference[judged_by.quantity]
@@ -45,7 +45,7 @@ def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> 
 
 @dataclass
 class Before:
-    """What a student has answered before a part: numbers and cases by quantity, and which of them are wrong."""
+    """Earlier answers of a student: numbers and cases by quantity, and which of them are wrong."""
 
     own: dict[str, Any] = field(default_factory=dict)
     wrong: set[str] = field(default_factory=set)  #: those from which one may go on
@@ -57,14 +57,14 @@ class Before:
     paid: dict[str, str] = field(default_factory=dict)  #: by error, the part whose answer paid for it
     in_radians: bool = False  #: the sheet shows a calculator that is set to radians
 
-    def take_right(self, part: Part, reading: Reading, place: int) -> None:
+    def take_right(self, part: Part, reading: Reading, index: int) -> None:
         """Take in a right answer to a part that stands in another box."""
         self.right.add(part.quantity)
         if part.sort.is_followed:
-            self.own[part.quantity] = reading.values[place]
+            self.own[part.quantity] = reading.values[index]
 
     def take(
-        self, key: Key, part: Part, reading: Reading, place: int, verdict: str, matches: Sequence[str]
+        self, key: Key, part: Part, reading: Reading, index: int, verdict: str, matches: Sequence[str]
     ) -> None:
         """Take in one more answer, as it was read and marked."""
         self.shown.update(matches)
@@ -73,7 +73,7 @@ class Before:
         if reading.status != "read" or not part.sort.is_followed:
             return
         self.read.append((part, reading))
-        value = reading.values[place]
+        value = reading.values[index]
         if verdict != "correct":
             self.mistaken.add(part.quantity)
             is_explained = verdict != "wrong"
@@ -84,15 +84,16 @@ class Before:
         self.own[part.quantity] = value
 
     def is_work(self, part: Part, value: Any) -> bool:
-        """Whether an answer is more than a number that is written everywhere, on a sheet that shows work."""
+        """Return whether an answer shows work: the sheet has some, and the number is not written
+        everywhere."""
         return self.sheet.has_work and not self.is_copied(part, value)
 
     def is_copied(self, part: Part, value: Any) -> bool:
-        """Whether an answer is a measured number that is written for several different things."""
+        """Return whether an answer is a measured number that is written for several different quantities."""
         return part.sort.is_scalar and not part.sort.is_exact and value in self.sheet.everywhere
 
     def state(self, part: Part) -> str:
-        """What became of the answer to a part: ``right``, ``wrong``, or ``open`` where there is none that was read."""
+        """Return the state of the answer to a part: ``right``, ``wrong``, or ``open`` where none was read."""
         if part.quantity in self.right:
             return "right"
         return "wrong" if part.quantity in self.mistaken else "open"
@@ -104,7 +105,7 @@ class Before:
 
 
 class Explanation(NamedTuple):
-    """What may have given an answer."""
+    """Possible cause of a wrong answer."""
 
     verdict: str
     reading: int  #: which honest reading it explains
@@ -136,7 +137,7 @@ def mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
 
 
 def _is_likely(name: str, key: Key, part: Part, before: Before) -> bool:
-    """Whether a mistake may be told of an answer that it explains.
+    """Return whether a mistake that explains an answer may be reported to the student.
 
     Not one made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
     many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that an earlier answer,
@@ -157,7 +158,7 @@ def _is_likely(name: str, key: Key, part: Part, before: Before) -> bool:
 
 
 def _shows(key: Key, mistake: str, quantity: str) -> bool:
-    """Whether an answer that is right of an asked quantity shows that a mistake about it was not made."""
+    """Return whether a right answer for an asked quantity proves that the mistake was not made."""
     part = next(p for p in key.variant.parts if p.quantity == quantity)
     value = key.wrong[mistake].get(quantity)
     if value is None or not part.sort.disproves:
@@ -171,32 +172,32 @@ def _shows(key: Key, mistake: str, quantity: str) -> bool:
 def explained(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> list[Explanation]:
     """Every explanation of a wrong answer, the one to name first."""
     close = [nearness(part, key, judged_by, value, CLOSE) for value in reading.values]
-    found = [
+    explanations = [
         e._replace(is_close=e.gap <= close[e.reading])
         for e in _explanations(key, part, reading, judged_by, before)
     ]
-    if not any(e.is_likely and e.is_close for e in found):  # else none of these would be named
+    if not any(e.is_likely and e.is_close for e in explanations):  # else none of these would be named
         usual = [
             *_from_own(key, part, reading, judged_by, before),
             *_usual(key, part, reading, judged_by, before),
         ]
-        found += [e._replace(is_close=e.gap <= close[e.reading]) for e in usual]
-    return sorted(found, key=lambda e: e.rank)
+        explanations += [e._replace(is_close=e.gap <= close[e.reading]) for e in usual]
+    return sorted(explanations, key=lambda e: e.rank)
 
 
-def alternatives(found: Sequence[Explanation]) -> list[Explanation]:
+def alternatives(explanations: Sequence[Explanation]) -> list[Explanation]:
     """The first explanation, and those that fit as well: nothing tells which of them it was."""
-    first = found[0]
+    first = explanations[0]
     if first.is_here and first.error is None:
         return [first]
-    alike = (e for e in found if e.rank == first.rank and e.reading == first.reading)
+    alike = (e for e in explanations if e.rank == first.rank and e.reading == first.reading)
     same = list({(e.verdict, e.error): e for e in alike}.values())
-    whole = {e.error.source for e in same if e.error is not None and e.error.kind == TERM}
+    term_sources = {e.error.source for e in same if e.error is not None and e.error.kind == TERM}
     # What is missing of a term that is missing is one thing.
     return [
         e
         for e in same
-        if e.error is None or e.error.kind not in PARTS_OF_TERMS or e.error.source not in whole
+        if e.error is None or e.error.kind not in PARTS_OF_TERMS or e.error.source not in term_sources
     ]
 
 
@@ -212,8 +213,8 @@ def _explanations(
             yield Explanation("follow_through", *fit)
     if part.sort.is_number and (before.in_radians or ALL_DEGREES in before.paid):
         for value in values_in_radians(key, quantity, before.own):
-            if (place := fitting_in_radians(key, part, reading, value)) is not None:
-                yield Explanation("slip:all_degrees", place, 0.0, traces=(ALL_DEGREES,))
+            if (index := fitting_in_radians(key, part, reading, value)) is not None:
+                yield Explanation("slip:all_degrees", index, 0.0, traces=(ALL_DEGREES,))
                 break
     for name, value in key.wrong_ways(quantity):
         along = key.reference.get(judged_by.along)
@@ -249,7 +250,8 @@ def _explanations(
 
 
 def _is_near(key: Key, part: Part, judged_by: Part, answer: Any, gap: float) -> bool:
-    """Whether an answer is as near to a mistake's value as rounding brings it; whole margins hold too many numbers."""
+    """Return whether an answer is as near to a mistake's value as rounding brings it; whole margins hold too
+    many numbers."""
     if not part.sort.is_number or not part.has_margin:
         return True
     return gap <= nearness(part, key, judged_by, answer, NEAR)
@@ -260,12 +262,12 @@ def fits_followed(
     part: Part,
     reading: Reading,
     judged_by: Part,
-    own: Mapping[str, Any],
+    own_answers: Mapping[str, Any],
     wrong: Collection[str],
 ) -> tuple[int, float] | None:
-    """Which reading of an answer is what a right method gives from earlier answers, ``wrong`` ones among them, and how far
-    from it in half-widths."""
-    expected = key.followed(judged_by, own, wrong)
+    """Return the reading of an answer that a right method gives from earlier answers, ``wrong`` ones among
+    them, and its distance in half-widths."""
+    expected = key.followed(judged_by, own_answers, wrong)
     room = key.envelope.get(judged_by.quantity, 0.0)
     if part.sort.is_number:  # rounding on the way, and that of the answer itself
         room = max(room, key.half_width(judged_by)) + max(last_digit(part, v) for v in reading.values)
@@ -283,8 +285,8 @@ def _from_own(
         return  # of so many errors nobody can tell
     if any(judged_by.quantity in key.solution.depending_on(q) for q in before.wrong):
         # What is right was computed with more digits than were written.
-        own = {q: before.own[q] for q in before.wrong}
-        yield from map(_of_usual, own_errors_that_fit(key, part, reading, judged_by, own))
+        own_wrong = {q: before.own[q] for q in before.wrong}
+        yield from map(_of_usual, own_errors_that_fit(key, part, reading, judged_by, own_wrong))
 
 
 def _usual(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> Iterator[Explanation]:
@@ -300,7 +302,8 @@ def _of_usual(fit: Fit) -> Explanation:
 
 
 def _trace(error: UsualError) -> str:
-    """What shows an error in a formula in every answer that it reaches; nothing of a value taken for another."""
+    """Return the key under which an error in a formula is recognised in every answer that it reaches; an
+    empty text for a value taken for another."""
     if error.kind in TAKEN:
         return ""
     # The calculator is set to radians for all formulas.
@@ -308,15 +311,17 @@ def _trace(error: UsualError) -> str:
 
 
 def _of_unit(slip: Slip, unit: str) -> tuple[str, ...]:
-    """What shows that a unit was mistaken everywhere in the same way: metres for millimetres, say."""
+    """Return the traces of a unit that was mistaken everywhere in the same way: metres for millimetres,
+    say."""
     if slip.kind == "sign":
         return ()
-    what = "mm" if "mm" in unit else unit
-    return (f"{slip.kind}/{slip.factor:.6g}/{what}",)
+    length_unit = "mm" if "mm" in unit else unit
+    return (f"{slip.kind}/{slip.factor:.6g}/{length_unit}",)
 
 
 def _is_constant(key: Key, part: Part, value: Any, before: Before) -> bool:
-    """Whether an answer only repeats a number that is written everywhere, as do those that it would follow from."""
+    """Return whether an answer only repeats a number that is written everywhere, as do those that it would
+    follow from."""
     if not before.is_copied(part, value):
         return False
     above = [q for q in before.wrong if part.quantity in key.solution.depending_on(q)]
@@ -337,8 +342,8 @@ def _fitting(
     part: Part, answers: Sequence[Any], value: Any, along: Any, width: float
 ) -> tuple[int, float] | None:
     """The first of an answer's readings that is this value, if any is, and how far from it in half-widths."""
-    for place, read in enumerate(answers):
+    for index, read in enumerate(answers):
         gap = part.sort.distance(part, read, value, along, width)
         if gap <= 1:
-            return place, gap
+            return index, gap
     return None

@@ -1,4 +1,4 @@
-"""What a student is told of an answer: sentences of the engine, in the sheet's language.
+"""Feedback for the student on an answer: sentences of the engine, in the sheet's language.
 
 The reference value is never told.
 """
@@ -44,7 +44,7 @@ class Said(NamedTuple):
 
 
 class Told(NamedTuple):
-    """What was said already: its Markdown, where that was wanted, and one line of plain text."""
+    """Message in both forms: Markdown, where it was wanted, and one line of plain text."""
 
     says: str
     feedback: str
@@ -67,7 +67,7 @@ def _plain_sentence(sentence: str, lang: str) -> str:
 
 
 def part_name(variant: Variant, part: Part) -> str:
-    """What a part is called in feedback: its symbol, or its number when a symbol says nothing."""
+    """Return the name of a part in feedback: its symbol, or its number when a symbol says nothing."""
     if not part.sort.is_called_by_symbol:
         number = 1 + [p.id for p in variant.parts].index(part.id)
         return f"{words(variant.lang)['sheet']['question']['one']} {number}"
@@ -75,18 +75,18 @@ def part_name(variant: Variant, part: Part) -> str:
 
 
 def echo(text: str, lang: str) -> str:
-    """What was read, shortened, as the language writes numbers; safe inside Markdown."""
-    shown = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
-    if "=" in shown:
-        return "`" + "".join(c for c in shown if c.isprintable() and c not in "`$") + "`"
-    return _harmless(localised(shown, lang))
+    """Return the text that was read, shortened, as the language writes numbers; safe inside Markdown."""
+    shortened_text = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
+    if "=" in shortened_text:
+        return "`" + "".join(c for c in shortened_text if c.isprintable() and c not in "`$") + "`"
+    return _harmless(localised(shortened_text, lang))
 
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
 def localised(read_as: str, lang: str) -> str:
-    """What was read, as the language writes numbers; an equation is left as it is."""
+    """Return the text that was read, as the language writes numbers; an equation is left as it is."""
     if "=" in read_as:
         return read_as
     if _NUMBER.fullmatch(read_as):
@@ -111,8 +111,8 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
     table = words(variant.lang)["marking"]
     unit = unit_text(part.unit, variant.lang)
     is_piece = reading.found and (reading.status == "wrong_unit" or reading.code in part.sort.quoted)
-    found = shortened(reading.found if is_piece else reading.text)
-    pieces = {"name": _opening(variant, part), "found": _harmless(found), "unit": unit or "1"}
+    piece = shortened(reading.found if is_piece else reading.text)
+    pieces = {"name": _opening(variant, part), "found": _harmless(piece), "unit": unit or "1"}
     unitless = part.sort.unitless
     if reading.status == "unreadable":
         kinds = table["unreadable"]
@@ -140,32 +140,34 @@ _SAYING = 4  #: words of a beginning that says something
 
 
 def _offered(variant: Variant, part: Part) -> str:
-    """What may be written for a choice: its letter, where there is one, and quoted the label, or its head, or the
-    shortest beginning that will do."""
+    """Return the possible answers to a choice: the letter, where there is one, and in quotation marks the
+    label, its head, or its shortest beginning that is unique."""
     cases, letters = variant.cases(part), variant.letters(part)
-    shown = [variant.label(part.id, case) for case in cases]
-    known = variant.labels(part)
-    if sum(map(len, shown)) > _OFFERED:
-        heads = [head(label) for label in shown]
-        shown = [
-            s if _means(s, case, known) else whole for s, whole, case in zip(heads, shown, cases, strict=True)
+    printed = [variant.label(part.id, case) for case in cases]
+    labels = variant.labels(part)
+    if sum(map(len, printed)) > _OFFERED:
+        heads = [head(label) for label in printed]
+        printed = [
+            s if _means(s, case, labels) else printed_label
+            for s, printed_label, case in zip(heads, printed, cases, strict=True)
         ]
-    if sum(map(len, shown)) > _OFFERED:
-        shown = [_shortest(s, case, known, variant.lang) for s, case in zip(shown, cases, strict=True)]
-    quotations = [quoted(label, variant.lang) for label in shown]
+    if sum(map(len, printed)) > _OFFERED:
+        printed = [_shortest(s, case, labels, variant.lang) for s, case in zip(printed, cases, strict=True)]
+    quotations = [quoted(label, variant.lang) for label in printed]
     offered = [
-        f"{letters[case]} ({said})" if case in letters else said
-        for case, said in zip(cases, quotations, strict=True)
+        f"{letters[case]} ({quotation})" if case in letters else quotation
+        for case, quotation in zip(cases, quotations, strict=True)
     ]
     return listed(offered, variant.lang, "or")
 
 
-def _means(text: str, case: str, known: Mapping[str, Sequence[str]]) -> bool:
-    return read_choice(text, known).values == (case,)
+def _means(text: str, case: str, labels: Mapping[str, Sequence[str]]) -> bool:
+    return read_choice(text, labels).values == (case,)
 
 
-def _shortest(label: str, case: str, known: Mapping[str, Sequence[str]], lang: str) -> str:
-    """What is short of a label, its article and noun left out, and means its case: its head, or a few words."""
+def _shortest(label: str, case: str, labels: Mapping[str, Sequence[str]], lang: str) -> str:
+    """Return a short form of a label that still means its case: its head, or a few words, without article and
+    noun."""
     table, pieces = words(lang)["choices"], label.split()
     for small in (table["articles"], table["nouns"]):
         pieces = pieces[1:] if len(pieces) > 1 and pieces[0].lower() in small else pieces
@@ -173,15 +175,15 @@ def _shortest(label: str, case: str, known: Mapping[str, Sequence[str]], lang: s
     starts = (
         [core] if len(core) <= _OFFERED // 5 else [" ".join(pieces[:n]) for n in range(_SAYING, len(pieces))]
     )
-    return next((s for s in starts if s.count("$") % 2 == 0 and _means(s, case, known)), label)
+    return next((s for s in starts if s.count("$") % 2 == 0 and _means(s, case, labels)), label)
 
 
 def questions(variant: Variant, parts: Sequence[str], joint: str) -> str:
     """Parts by the numbers of their questions: ``questions 3, 4 and 6``, ``question 3 or 4``."""
-    numbers = [str(n) for n, asked in enumerate(variant.parts, start=1) if asked.id in parts]
+    numbers = [str(n) for n, part in enumerate(variant.parts, start=1) if part.id in parts]
     is_one = len(numbers) == 1 or joint == "or"
-    said = words(variant.lang)["sheet"]["question"]["one" if is_one else "many"]
-    return f"{said} {listed(numbers, variant.lang, joint)}"
+    question_word = words(variant.lang)["sheet"]["question"]["one" if is_one else "many"]
+    return f"{question_word} {listed(numbers, variant.lang, joint)}"
 
 
 _HARMLESS = re.compile(r"[A-Za-z0-9 .,;:()=/°%²³−…+^-]*")  #: nearly all that is read
@@ -213,7 +215,7 @@ def symbol(variant: Variant, name: str) -> str:
 
 
 def right_feedback(variant: Variant, part: Part, read_as: str) -> str:
-    """What is said of a right answer, as one line of plain text."""
+    """Return the feedback on a right answer, as one line of plain text."""
     sentence = _plain_right(variant.exercise, part, variant.lang)
     return sentence.replace(_READ, echo(read_as, variant.lang))
 

@@ -32,11 +32,11 @@ def judges_of(variant: Asked) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def judged(
-    variant: Asked, name: str, answers: Mapping[str, Any], own: Mapping[str, float] | None = None
+    variant: Asked, name: str, answers: Mapping[str, Any], own_answers: Mapping[str, float] | None = None
 ) -> dict[str, Judged]:
-    """What a judge says of answers by part id, each a number or coordinates in the part's unit.
+    """Return the judgement of a judge on answers by part id, each a number or coordinates in the part's unit.
 
-    Nothing of an answer that cannot be judged because others are missing. ``own`` holds quantities that a
+    Nothing of an answer that cannot be judged because others are missing. ``own_answers`` holds quantities that a
     student has answered before, to be judged from in place of the right ones.
 
     Raises
@@ -49,19 +49,19 @@ def judged(
     computed = [n for n in _needs(variant, name) if n in variant.exercise.quantity_names]
     values = {
         **variant.given,
-        **solution.graph.evaluate(computed, {**variant.used, **(own or {})}, variant.effects),
+        **solution.graph.evaluate(computed, {**variant.used, **(own_answers or {})}, variant.effects),
     }
     needed = {n: values[n] for n in _needs(variant, name)}
     with np.errstate(all="ignore"):  # what is computed from an absurd answer is not finite, and not right
-        found = dict(solution.judge(name)(dict(answers), **needed))
+        judgements = dict(solution.judge(name)(dict(answers), **needed))
     complete = all(part in answers for part in dict(judges_of(variant))[name])
-    if complete and (unsaid := sorted(answers.keys() - found.keys())):
+    if complete and (unsaid := sorted(answers.keys() - judgements.keys())):
         raise BadCourse(f"{source} says nothing of {unsaid[0]!r}")
-    for verdict in found.values():
+    for verdict in judgements.values():
         for mistake in (verdict.mistake, *verdict.also):
             if mistake and mistake not in solution.mistakes:
                 raise BadCourse(f"{source} names a mistake {mistake!r}, which is not among its mistakes")
-    return {part: found[part] for part in answers if part in found}
+    return {part: judgements[part] for part in answers if part in judgements}
 
 
 def _needs(variant: Asked, name: str) -> list[str]:
@@ -82,7 +82,7 @@ def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
 
 
 class Verdict(NamedTuple):
-    """What became of one answer of a group: parts of a judge of the solution, or equations of a loop."""
+    """Judgement on one answer of a group: parts of a judge of the solution, or equations of a loop."""
 
     reading: int  #: which of its honest readings was taken
     said: Judged | None  #: None where it cannot be judged because others are missing
@@ -95,35 +95,35 @@ def best_judged(
     variant: Asked,
     name: str,
     readings: Mapping[str, Reading],
-    own: Mapping[str, float],
+    own_answers: Mapping[str, float],
     wrong: Collection[str],
 ) -> dict[str, Verdict]:
     """The verdicts of a judge on what was read.
 
     Where answers may honestly be read in several ways, those are taken that together earn most. Where some
-    quantity that a student has answered before is ``wrong``, the answers may follow from the student's ``own``.
+    quantity that a student has answered before is ``wrong``, the answers may follow from the student's ``own_answers``.
     """
     points = {part.id: part.points for part in variant.parts}
     read = [i for i in dict(judges_of(variant))[name] if i in readings and readings[i].status == "read"]
     full = sum(points[i] for i in read)
     best, most = {}, -1.0
-    for own_ones in (None, own):
+    for own_ones in (None, own_answers):
         if own_ones is not None and (most == full or not _bears_on(variant, name, wrong)):
             break
         ways = itertools.product(*(range(len(readings[i].values)) for i in read))
-        for way in itertools.islice(ways, SHEETS):
-            chosen = dict(zip(read, way, strict=True))
-            answers = {i: readings[i].values[place] for i, place in chosen.items()}
+        for combination in itertools.islice(ways, SHEETS):
+            chosen = dict(zip(read, combination, strict=True))
+            answers = {i: readings[i].values[index] for i, index in chosen.items()}
             try:
-                said = judged(variant, name, answers, own_ones)
+                judgements = judged(variant, name, answers, own_ones)
             except (CannotAssemble, Undefined):
                 if own_ones is None:
                     raise
                 continue  # nothing follows from the student's own answers
-            earned = sum(points[i] * float(verdict.share) for i, verdict in said.items())
+            earned = sum(points[i] * float(verdict.share) for i, verdict in judgements.items())
             if earned > most:
                 followed = own_ones is not None
-                best, most = {i: Verdict(chosen[i], said.get(i), followed) for i in read}, earned
+                best, most = {i: Verdict(chosen[i], judgements.get(i), followed) for i in read}, earned
     return best
 
 

@@ -50,7 +50,7 @@ _FAULTY = 4  #: poses of a fault
 
 
 class Finding(NamedTuple):
-    """What an equation says of a loop.
+    """Judgement of one equation of a loop.
 
     ``rank``: how many independent equations of the loop it holds; 0 when it is not right. ``rows``: their
     coefficients on the reference equations at each pose, shape (poses, 2, 2). ``fault`` and ``names``: what is
@@ -101,14 +101,16 @@ class LoopJudge:
         variants = exercise.variants(range(_VARIANTS))
         names = [n for n in exercise.spec.given if n in exercise.quantity_names]
         given = {n: np.array([v.given[n] for v in variants]) for n in names}
-        found = exercise.solve(**given, only=self.symbols, effects=exercise.spec.effects)
-        columns = {n: np.broadcast_to(np.asarray(v, dtype=float), (_VARIANTS,)) for n, v in found.items()}
-        whole = np.all([np.isfinite(v) for v in columns.values()], axis=0)
-        if not whole.any():
+        columns_found = exercise.solve(**given, only=self.symbols, effects=exercise.spec.effects)
+        columns = {
+            n: np.broadcast_to(np.asarray(v, dtype=float), (_VARIANTS,)) for n, v in columns_found.items()
+        }
+        finite = np.all([np.isfinite(v) for v in columns.values()], axis=0)
+        if not finite.any():
             raise BadCourse(f"{exercise.name}: no loop closes in its first {_VARIANTS} variants")
         return _Points(
-            {n: np.radians(v[whole]) if n in self.angles else v[whole] for n, v in columns.items()},
-            int(whole.sum()),
+            {n: np.radians(v[finite]) if n in self.angles else v[finite] for n, v in columns.items()},
+            int(finite.sum()),
         )
 
     @cached_property
@@ -173,16 +175,16 @@ class LoopJudge:
 
     def _found(self, equation: Equation) -> Finding:
         usual, as_told = (self._near, self._steps), self._in_degrees
-        found = self._as_it_stands(equation, *usual)
-        if found.rank:
-            return Finding(0, fault="wrapped") if self._is_wrapped(equation) else found
-        if found.fault:
-            return found
+        best = self._as_it_stands(equation, *usual)
+        if best.rank:
+            return Finding(0, fault="wrapped") if self._is_wrapped(equation) else best
+        if best.fault:
+            return best
         # Symbols of angles may stand for numbers of degrees, as the data print them.
         read = equation.in_degrees()
         for other, places in ((equation, as_told), (read, usual)):
-            if other is not None and (own := self._as_it_stands(other, *places)).rank:
-                return own
+            if other is not None and (finding := self._as_it_stands(other, *places)).rank:
+                return finding
         missed = self._missed(equation)
         return missed if missed.fault or read is None else self._missed(read)
 
@@ -193,19 +195,21 @@ class LoopJudge:
         if finite.all() and np.all(off <= _ROUNDING * sides[1:]):
             return Finding(0, fault="says_nothing")
         values, size = values[0], np.max(off, axis=0)
-        kept = np.isfinite(values) & (size > 0)
-        if kept.sum() < 0.75 * self._poses.count or np.any(np.abs(values[kept]) > _ZERO * size[kept]):
+        usable = np.isfinite(values) & (size > 0)
+        if usable.sum() < 0.75 * self._poses.count or np.any(np.abs(values[usable]) > _ZERO * size[usable]):
             return Finding(0)
         gradient = self._gradient(equation, steps) / np.where(size > 0, size, 1.0)[:, None]
-        kept &= np.all(np.isfinite(gradient), axis=1)
-        if kept.sum() < 0.75 * self._poses.count:
+        usable &= np.all(np.isfinite(gradient), axis=1)
+        if usable.sum() < 0.75 * self._poses.count:
             return Finding(0)
         length = np.linalg.norm(gradient, axis=1)
-        says = kept & (length > _NONE)
-        if says.sum() < 0.5 * self._poses.count:
+        is_informative = usable & (length > _NONE)
+        if is_informative.sum() < 0.5 * self._poses.count:
             return Finding(0, fault="squared")
         basis, inverse = self._basis
-        gradient = np.where(says[:, None], gradient, 0.0) / np.where(says, length, 1.0)[:, None]
+        gradient = (
+            np.where(is_informative[:, None], gradient, 0.0) / np.where(is_informative, length, 1.0)[:, None]
+        )
         share = np.einsum("pn,pnm->pm", gradient, inverse)
         rest = np.linalg.norm(gradient - np.einsum("pm,pmn->pn", share, basis), axis=1)
         if np.any(rest > 10 * _NONE):
@@ -237,22 +241,24 @@ class LoopJudge:
         )
 
     def holds_with_numbers(self, equation: Equation, variant: Variant) -> bool:
-        """Whether an equation holds for one variant alone: its numbers stand in place of their symbols."""
+        """Return whether an equation holds for one variant alone: its numbers stand in place of their
+        symbols."""
         exercise = variant.exercise
         try:
-            found = exercise.solve(**variant.used, only=self.symbols, effects=variant.effects)
+            solved = exercise.solve(**variant.used, only=self.symbols, effects=variant.effects)
         except CourseworkError:
             return False
-        pose = {n: math.radians(v) if n in self.angles else v for n, v in found.items()}
-        beside = 1 + np.array([0.0, 0.1, -0.1, 0.2])
-        values = {n: v * beside + (self._sizes[n] * (beside - 1)) for n, v in pose.items()}
-        gap = np.abs(equation.gap(values, beside.size)[0])
+        pose = {n: math.radians(v) if n in self.angles else v for n, v in solved.items()}
+        factors = 1 + np.array([0.0, 0.1, -0.1, 0.2])
+        values = {n: v * factors + (self._sizes[n] * (factors - 1)) for n, v in pose.items()}
+        gap = np.abs(equation.gap(values, factors.size)[0])
         usual = float(np.max(gap[1:], where=np.isfinite(gap[1:]), initial=0.0))
         return bool(usual > 0 and gap[0] <= _ZERO * usual)
 
-    def are_alike(self, one: str, other: str) -> bool:
-        """Whether two equations are the same, sides exchanged at most, where fixed quantities have their values."""
-        a, b = (self._near.gap(parse_equation(text, self.symbols)) for text in (one, other))
+    def are_alike(self, first: str, other: str) -> bool:
+        """Return whether two equations are the same, sides exchanged at most, where fixed quantities have
+        their values."""
+        a, b = (self._near.gap(parse_equation(text, self.symbols)) for text in (first, other))
         size = np.max(np.abs(b))
         return any(bool(np.all(np.abs(a - sign * b) <= _ZERO * size)) for sign in (1, -1))
 
@@ -267,7 +273,7 @@ class LoopJudge:
             return Finding(0, fault="angle_unit")
         faults, points, compared = self._faulty
         values = points.gap(equation).reshape(len(faults), _FAULTY) if faults else ()
-        holds = [f for f, own in zip(faults, values, strict=True) if self._holds(own, usual)]
+        holds = [f for f, value in zip(faults, values, strict=True) if self._holds(value, usual)]
         if not holds:
             holds = [fault for fault, other in compared if same_equation(equation, other)]
         if len({fault.kind for fault in holds}) > 1:
@@ -374,7 +380,8 @@ class LoopJudge:
 
 
 def _rank(rows: np.ndarray) -> int:
-    """How many independent equations the rows of coefficients hold at half of the poses or more."""
+    """Return the number of independent equations that the rows of coefficients hold at half of the poses or
+    more."""
     sizes = np.linalg.svd(rows, compute_uv=False)
     if np.mean(sizes[:, 0] > 1e-4) < 0.5:
         return 0
@@ -385,10 +392,10 @@ def judge_of(exercise: CourseExercise, part: Part) -> LoopJudge:
     """The judge of a part about a loop; parts of one loop, order and set of symbols share it."""
     _, order = part.loop_form
     key = part.loop, order, part.variables
-    known = _judges.setdefault(exercise, {})
-    if key not in known:
-        known[key] = LoopJudge(exercise, *key)
-    return known[key]
+    judges = _judges.setdefault(exercise, {})
+    if key not in judges:
+        judges[key] = LoopJudge(exercise, *key)
+    return judges[key]
 
 
 #: Judges by exercise, made when the first answer about a loop is marked.
@@ -398,8 +405,9 @@ _judges: WeakKeyDictionary[CourseExercise, dict[tuple[str, int, tuple[str, ...]]
 
 
 def loop_verdicts(variant: Variant, readings: Mapping[str, Reading]) -> dict[str, Verdict]:
-    """What became of the answers about loops, those of one loop together, by part id; only those that were read."""
-    found: dict[str, Verdict] = {}
+    """Return the verdicts on the answers about loops by part id, those of one loop judged together; only for
+    answers that were read."""
+    verdicts: dict[str, Verdict] = {}
     before: dict[tuple[str, int], list[np.ndarray]] = {}
     for part in variant.parts:
         reading = readings.get(part.id)
@@ -412,10 +420,10 @@ def loop_verdicts(variant: Variant, readings: Mapping[str, Reading]) -> dict[str
             others = before.setdefault((part.loop, order), []) if form != "complex" else []
             missed, about = _missed_beside(finding, others, 2 if form == "complex" else 1)
             right = finding.rank > 0 and not missed
-            found[part.id] = Verdict(0, Judged(float(right)), slip=missed, about=about)
+            verdicts[part.id] = Verdict(0, Judged(float(right)), slip=missed, about=about)
             if right and finding.rows is not None:
                 others.append(finding.rows)
-    return found
+    return verdicts
 
 
 #: Numbers that an equation of symbols has of its own: factors, powers, parts of a turn.
@@ -423,7 +431,8 @@ _OF_SYMBOLS = frozenset({0, 0.5, 1, 2, 3, 4, 45, 60, 90, 120, 180, 270, 360})
 
 
 def _has_numbers(equation: Equation, variant: Variant) -> bool:
-    """Whether an equation holds numbers in place of symbols: values of the variant, or others that no formula has."""
+    """Return whether an equation holds numbers in place of symbols: values of the variant, or others that no
+    formula has."""
     values = {abs(v) for v in variant.given.values() if not isinstance(v, str)} - {0, 1}
     written = {
         float(node.name)
@@ -437,8 +446,8 @@ def _has_numbers(equation: Equation, variant: Variant) -> bool:
 def _missed_beside(
     finding: Finding, others: Sequence[np.ndarray], wanted: int
 ) -> tuple[str, tuple[str, ...]]:
-    """What an equation misses beside the right ones before it, and about which symbols; nothing where it is right,
-    or where nobody knows."""
+    """Return what an equation lacks beside the right ones before it, and the symbols concerned; empty where
+    it is right, or where the fault is unknown."""
     if finding.rank == 0:
         return finding.fault, finding.names
     if finding.rank < wanted:

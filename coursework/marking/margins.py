@@ -1,4 +1,4 @@
-"""How far an answer is from the reference, counted in accepted half-widths."""
+"""Distance of an answer from the reference, counted in accepted half-widths."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What became of one answer, and of all of a student."""
+"""Marks of one answer, and of all answers of a student."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Mark(NamedTuple):
-    """What became of one answer: plain data, from the marking to the tables and the feedback."""
+    """Judgement of one answer: plain data, from the marking to the tables and the feedback."""
 
     part: str
     answer: str  #: the text as it came
@@ -30,12 +30,12 @@ class Mark(NamedTuple):
 
     @property
     def says(self) -> str:
-        """What to tell the student, Markdown in the sheet's language; never the reference value."""
+        """Return the feedback as Markdown in the sheet's language; it never states the reference value."""
         return " ".join(filter(None, (said.markdown() for said in self.told)))
 
     @property
     def feedback(self) -> str:
-        """What is said, as one line of plain text."""
+        """Return the feedback as one line of plain text."""
         return " ".join(filter(None, (said.plain(self.lang) for said in self.told)))
 
     @property
@@ -88,10 +88,19 @@ class Marking(Mapping[str, Mark]):
 
 def made_mark(
     variant: Variant, part: Part, reading: Reading, verdict: str, share: float, read_as: str,
-    told: Said, matches: tuple[str, ...] = (),
+    message: Said, matches: tuple[str, ...] = (),
 ) -> Mark:  # fmt: skip
     """The mark of an answer that earns a share of its part's points."""
     points = float(part.points)
     return Mark(
-        part.id, reading.text, read_as, verdict, share * points, points, variant.lang, matches, False, (told,)
+        part.id,
+        reading.text,
+        read_as,
+        verdict,
+        share * points,
+        points,
+        variant.lang,
+        matches,
+        False,
+        (message,),
     )

@@ -51,40 +51,40 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     NoSolution
         The course folder has no solutions.
     """
-    asked = {p.id: p for p in variant.parts}
+    parts = {p.id: p for p in variant.parts}
     if not isinstance(answers, Mapping):
         raise WrongValue(
-            f"answers are given by part: {{'{next(iter(asked))}': '12 mm'}}; found {type(answers).__name__}"
+            f"answers are given by part: {{'{next(iter(parts))}': '12 mm'}}; found {type(answers).__name__}"
         )
     for part_id in answers:
         if not isinstance(part_id, str):
             raise WrongValue(f"a part is named by a text; found {type(part_id).__name__}")
-        if part_id not in asked:
-            raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
+        if part_id not in parts:
+            raise unknown("part", part_id, parts, f"{variant.exercise.name} {variant.seed}")
     key, known = variant.key, known or {}
-    readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
+    readings = {i: read(variant, p, answers.get(i)) for i, p in parts.items() if i not in known}
     readings = settled(variant, readings, answers)
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
-    before = Before(sheet=sheet_of(asked, readings, known, key))
-    alone = [i for i, p in asked.items() if i not in known and not p.judge and i not in together]
-    nearest_of = {i: nearest_reading(asked[i], readings[i], key, asked[target[i]]) for i in alone}
+    before = Before(sheet=sheet_of(parts, readings, known, key))
+    alone = [i for i, p in parts.items() if i not in known and not p.judge and i not in together]
+    nearest_of = {i: nearest_reading(parts[i], readings[i], key, parts[target[i]]) for i in alone}
     wrong = {i: readings[i] for i, (_, gap) in nearest_of.items() if gap > 1 and target[i] == i}
     elsewhere: dict[str, Exchange] = {}
     if len(wrong) > 1:
-        before.in_radians = is_in_radians(key, ((asked[i], reading) for i, reading in wrong.items()))
+        before.in_radians = is_in_radians(key, ((parts[i], reading) for i, reading in wrong.items()))
         if not before.in_radians or len(wrong) == 2:
             elsewhere = exchanged(variant, wrong, is_guessed=before.sheet.is_guessed)
             before.in_radians = before.in_radians and not elsewhere
     marks: dict[str, Mark] = {}
     no_scale: set[str] = set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
-    for i, part in asked.items():
+    for i, part in parts.items():
         if i in known:
             before.own[part.quantity] = part.sort.kept(known[i])
             before.right.add(part.quantity)
             continue
-        judged_by, reading = asked[target[i]], readings[i]
+        judged_by, reading = parts[target[i]], readings[i]
         if part.judge and i not in together:
             together |= best_judged(variant, part.judge, readings, before.own, before.wrong)
         if i in elsewhere and elsewhere[i].part.id not in marks and _follows(key, part, reading, before):
@@ -95,10 +95,10 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             continue
         if i in together:
             nearest = together[i].reading, math.inf
-            tellers = (p for j, p in asked.items() if j in marks and j not in no_scale)
-            told = next((p for p in tellers if is_told_with(p, part, together)), None)
+            tellers = (p for j, p in parts.items() if j in marks and j not in no_scale)
+            teller = next((p for p in tellers if is_told_with(p, part, together)), None)
             missed = partial(waits_for, variant, part, readings, waiting)
-            marks[i] = mark_judged(variant, key, part, reading, together[i], told, missed, before)
+            marks[i] = mark_judged(variant, key, part, reading, together[i], teller, missed, before)
             if is_scale(part) and reading.values[nearest[0]] <= 0:
                 no_scale.add(i)
                 read_as = echo(marks[i].read_as, variant.lang)
@@ -120,11 +120,11 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
 
     Itself, save where the exercise lets whole groups be exchanged and the exchange fits better.
     """
-    own = {p.id: p.id for p in variant.parts}
+    targets = {p.id: p.id for p in variant.parts}
     parts = {p.id: p for p in variant.parts}
     groups = [g for g in variant.exercise.spec.either_order if all(i in readings for i in g)]
     if not groups:
-        return own
+        return targets
 
     def fitting(target: Mapping[str, str]) -> int:
         members = itertools.chain(*groups)
@@ -132,10 +132,10 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
 
     answered = sum(readings[i].status == "read" for i in itertools.chain(*groups))
     # An exchange is meant where most of what is answered fits it: one answer may fit by chance.
-    best, best_score = own, max(fitting(own), answered / 2)
+    best, best_score = targets, max(fitting(targets), answered / 2)
     for order in itertools.permutations(groups):
         target = {
-            **own,
+            **targets,
             **{i: j for g, h in zip(groups, order, strict=True) for i, j in zip(g, h, strict=True)},
         }
         score = fitting(target)
@@ -145,7 +145,7 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
 
 
 def _follows(key: Key, part: Part, reading: Reading, before: Before) -> bool:
-    """Whether an answer follows from earlier ones where it stands."""
+    """Return whether an answer follows from earlier ones in its own box."""
     return (
         reading.status == "read"
         and bool(before.wrong)
@@ -159,7 +159,7 @@ def _mark_exchanged(
     """The mark of an answer that stands in the box of another: the exchange is paid for where it is first met."""
     other, reading = exchange.part, exchange.reading
     read_as, read = shown_as(variant, other, reading, exchange.place)
-    made = partial(made_mark, variant, part, reading)
+    mark_of = partial(made_mark, variant, part, reading)
     pieces = {
         "read": read,
         "other": part_name(variant, other),
@@ -167,10 +167,10 @@ def _mark_exchanged(
     }
     matches = ("slip:exchanged",)
     if other.id in marks:
-        said = say(variant, part, "exchanged_again", **pieces)
-        return made("follow_through", key.rules.follow_through, read_as, said, matches)
+        message = say(variant, part, "exchanged_again", **pieces)
+        return mark_of("follow_through", key.rules.follow_through, read_as, message, matches)
     share = key.rules.share("exchanged")
-    return made("slip:exchanged", share, read_as, say(variant, part, "slip_exchanged", **pieces), matches)
+    return mark_of("slip:exchanged", share, read_as, say(variant, part, "slip_exchanged", **pieces), matches)
 
 
 def _mark_part(
@@ -182,15 +182,15 @@ def _mark_part(
     nearest: tuple[int, float],
     before: Before,
 ) -> Mark:
-    made = partial(made_mark, variant, part, reading)
+    mark_of = partial(made_mark, variant, part, reading)
     if reading.status != "read":
-        return made(reading.status, 0.0, "", say_not_read(variant, part, reading))
+        return mark_of(reading.status, 0.0, "", say_not_read(variant, part, reading))
     if part.sort.is_open:
-        return made("to_mark", 0.0, "", say(variant, part, "to_mark"))
+        return mark_of("to_mark", 0.0, "", say(variant, part, "to_mark"))
     index, gap = nearest
     if gap > 1:
         return mark_wrong(variant, key, part, reading, judged_by, before)
     read_as, read = shown_as(variant, part, reading, index)
     if part.asks_unit and not reading.unit_given:
-        return made("missing_unit", 0.0, read_as, say(variant, part, "missing_unit", read=read))
-    return made("correct", 1.0, read_as, say(variant, part, "correct", read=read))
+        return mark_of("missing_unit", 0.0, read_as, say(variant, part, "missing_unit", read=read))
+    return mark_of("correct", 1.0, read_as, say(variant, part, "correct", read=read))

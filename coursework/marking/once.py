@@ -25,18 +25,18 @@ def signs_counted_once(variant: Variant, marks: Mapping[str, Mark], share: float
     if len(turned) < 2:
         return dict(marks)
     parts = {part.id: part for part in variant.parts}
-    told: dict[str, Mark] = {}
+    first_by_group: dict[str, Mark] = {}
     for group in _taken_together(variant, parts):
         first, *others = group
         if turned.issuperset(group):
             for i in others:
                 note = words(variant.lang)["marking"]["sign_with"]
-                said = Said(note, {"first": questions(variant, [first], "and")})
+                message = Said(note, {"first": questions(variant, [first], "and")})
                 mark = marks[i]
-                told[i] = mark._replace(
-                    verdict="follow_through", points=share * mark.out_of, told=(*mark.told, said)
+                first_by_group[i] = mark._replace(
+                    verdict="follow_through", points=share * mark.out_of, told=(*mark.told, message)
                 )
-    return {**marks, **told}
+    return {**marks, **first_by_group}
 
 
 def _is_turned(variant: Variant, mark: Mark) -> bool:
@@ -50,14 +50,16 @@ def _taken_together(variant: Variant, parts: Mapping[str, Part]) -> Iterator[lis
     """Asked numbers of one unit that a formula takes, all that it takes, or that are computed from nearly the same: ids of
     two parts at least. No angles: one of the opposite sign is another direction."""
     graph = variant.exercise.solution.graph.textbook
-    asked = {p.quantity: p for p in parts.values() if p.sort.is_number and not p.sort.turn and not p.judge}
-    yield from _computed_alike(graph, asked, parts)
+    number_parts = {
+        p.quantity: p for p in parts.values() if p.sort.is_number and not p.sort.turn and not p.judge
+    }
+    yield from _computed_alike(graph, number_parts, parts)
     seen: set[tuple[str, ...]] = set()
     for name in graph.quantities:
         by_unit: dict[str, list[str]] = {}
         for argument in graph.node(name).arguments:
-            if argument in asked:
-                by_unit.setdefault(asked[argument].unit, []).append(asked[argument].id)
+            if argument in number_parts:
+                by_unit.setdefault(number_parts[argument].unit, []).append(number_parts[argument].id)
         for group in by_unit.values():
             ids = sorted(group, key=list(parts).index)
             if len(ids) > 1 and tuple(ids) not in seen:
@@ -66,10 +68,14 @@ def _taken_together(variant: Variant, parts: Mapping[str, Part]) -> Iterator[lis
 
 
 def _computed_alike(
-    graph: Graph, asked: Mapping[str, Part], parts: Mapping[str, Part]
+    graph: Graph, number_parts: Mapping[str, Part], parts: Mapping[str, Part]
 ) -> Iterator[list[str]]:
     """Pairs of one unit whose formulas take the same but for a quantity each: the two rates of a loop."""
-    needs = {q: frozenset(graph.node(q).arguments) for q in asked if q in graph.names}
-    for (one, first), (other, second) in combinations(needs.items(), 2):
-        if len(first) >= _SEVERAL and len(first ^ second) <= 2 and asked[one].unit == asked[other].unit:
-            yield sorted((asked[one].id, asked[other].id), key=list(parts).index)
+    needs = {q: frozenset(graph.node(q).arguments) for q in number_parts if q in graph.names}
+    for (earlier, first), (other, second) in combinations(needs.items(), 2):
+        if (
+            len(first) >= _SEVERAL
+            and len(first ^ second) <= 2
+            and number_parts[earlier].unit == number_parts[other].unit
+        ):
+            yield sorted((number_parts[earlier].id, number_parts[other].id), key=list(parts).index)

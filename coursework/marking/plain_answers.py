@@ -22,7 +22,7 @@ def plainly_right(
     exercise: CourseExercise, batch: Batch, answers: Sequence[Mapping[str, Any]]
 ) -> list[dict[str, str]]:
     """For each variant of the batch, its right answers by part, as they were read: ``12,5`` as ``12.5``."""
-    found: list[dict[str, str]] = [{} for _ in answers]
+    right: list[dict[str, str]] = [{} for _ in answers]
     exchangeable = {i for group in exercise.spec.either_order for i in group}
     for part in exercise.spec.parts:
         column = batch.reference.get(part.quantity)
@@ -39,6 +39,6 @@ def plainly_right(
         for i in np.flatnonzero(part.sort.accepted(values, reference, half_width)):
             text = texts[i]
             if isinstance(text, str) and (text is not written[i] or not part.asks_unit):
-                told = unit if text is not written[i] else ""
-                found[i][part.id] = text.strip().replace(",", ".") + told
-    return found
+                unit_written = unit if text is not written[i] else ""
+                right[i][part.id] = text.strip().replace(",", ".") + unit_written
+    return right

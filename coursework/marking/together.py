@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def is_told_with(earlier: Part, part: Part, together: Mapping[str, Verdict]) -> bool:
-    """Whether what is to be said of a judged part has been said of an earlier one of its group."""
+    """Return whether the message for a judged part already stands with an earlier part of its group."""
     same_group = part.judge and earlier.judge == part.judge and earlier.id in together
     return bool(same_group) and together[earlier.id][1:] == together[part.id][1:]
 
@@ -32,58 +32,60 @@ def mark_judged(
     key: Key,
     part: Part,
     reading: Reading,
-    found: Verdict,
+    judgement: Verdict,
     told_with: Part | None,
     missed: Callable[[], str],
     before: Before,
 ) -> Mark:
     """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
-    read_as, verdict = reading.read_as[found.reading], found.said
-    made = partial(made_mark, variant, part, reading)
+    read_as, verdict = reading.read_as[judgement.reading], judgement.said
+    mark_of = partial(made_mark, variant, part, reading)
     if verdict is None:
         read = echo(read_as, variant.lang)
-        return made("wrong", 0.0, read_as, say(variant, part, "incomplete", read=read, missing=missed()))
+        return mark_of("wrong", 0.0, read_as, say(variant, part, "incomplete", read=read, missing=missed()))
     share = min(1.0, max(0.0, float(verdict.share)))
 
     def told(sentence: str, **pieces: str) -> Said:
         """A sentence, then what follows from the student's own answers."""
-        said = say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
-        tells = {} if told_with else verdict.found
-        own = {f"found{n}": amount(variant, q, v) for n, (q, v) in enumerate(tells.items())}
-        if not own:
-            return said
-        listed = ", ".join("{" + name + "}" for name in own)
+        message = say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
+        amounts = {} if told_with else verdict.found
+        amount_words = {f"found{n}": amount(variant, q, v) for n, (q, v) in enumerate(amounts.items())}
+        if not amount_words:
+            return message
+        listed = ", ".join("{" + name + "}" for name in amount_words)
         follows = words(variant.lang)["marking"]["found"].format(listed)
-        return Said(f"{said.sentence} {follows}", {**said.pieces, **own})
+        return Said(f"{message.sentence} {follows}", {**message.pieces, **amount_words})
 
     if verdict.slip:
         slip = f"slip:{verdict.slip}"
-        return made(slip, key.rules.share(verdict.slip), read_as, told(f"slip_{verdict.slip}"), (slip,))
-    is_followed = found.followed or verdict.follows
+        return mark_of(slip, key.rules.share(verdict.slip), read_as, told(f"slip_{verdict.slip}"), (slip,))
+    is_followed = judgement.followed or verdict.follows
     if (
         share == 1.0
         and is_followed
         and part.sort.is_scalar
-        and not _has_work(part, key, reading.values[found.reading], before)
+        and not _has_work(part, key, reading.values[judgement.reading], before)
     ):
-        return made("wrong", 0.0, read_as, told(part.sort.wrong))
+        return mark_of("wrong", 0.0, read_as, told(part.sort.wrong))
     if share == 1.0:
         kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
-        return made(kind, share, read_as, told(kind))
-    shown = [verdict.mistake, *verdict.also] if verdict.mistake else mistakes_that_fit(key, part, reading)
-    matches = tuple(f"mistake:{name}" for name in shown) + ((f"slip:{found.slip}",) if found.slip else ())
-    if shown:
-        share = share if verdict.mistake and share else key.price(shown[0])
+        return mark_of(kind, share, read_as, told(kind))
+    mistakes = [verdict.mistake, *verdict.also] if verdict.mistake else mistakes_that_fit(key, part, reading)
+    matches = tuple(f"mistake:{name}" for name in mistakes) + (
+        (f"slip:{judgement.slip}",) if judgement.slip else ()
+    )
+    if mistakes:
+        share = share if verdict.mistake and share else key.price(mistakes[0])
 
         if told_with and verdict.mistake:
-            said = told("told_with", first=part_name(variant, told_with))
+            message = told("told_with", first=part_name(variant, told_with))
         else:
-            said = told("mistake", says=variant.told(shown[0]))
-        return made(matches[0], share, read_as, said, matches)
-    if found.slip:
-        error = f"{found.slip}/{'/'.join(found.about)}"
-        if found.about and error in before.paid and before.sheet.has_work:
-            return made(
+            message = told("mistake", says=variant.told(mistakes[0]))
+        return mark_of(matches[0], share, read_as, message, matches)
+    if judgement.slip:
+        error = f"{judgement.slip}/{'/'.join(judgement.about)}"
+        if judgement.about and error in before.paid and before.sheet.has_work:
+            return mark_of(
                 "follow_through",
                 key.rules.follow_through,
                 read_as,
@@ -91,21 +93,21 @@ def mark_judged(
                 matches,
             )
         before.paid[error] = part.id
-        about = either_symbol(variant, found.about, both=found.slip == "frame_missing")
-        said = told(f"slip_{found.slip}", about=about)
-        return made(matches[0], key.rules.share(found.slip), read_as, said, matches)
-    return made("wrong", share, read_as, told(part.sort.wrong))
+        about = either_symbol(variant, judgement.about, both=judgement.slip == "frame_missing")
+        message = told(f"slip_{judgement.slip}", about=about)
+        return mark_of(matches[0], key.rules.share(judgement.slip), read_as, message, matches)
+    return mark_of("wrong", share, read_as, told(part.sort.wrong))
 
 
 def _has_work(part: Part, key: Key, value: Any, before: Before) -> bool:
-    """Whether a number that follows from others is more than one that is written everywhere."""
+    """Return whether a number that follows from others is more than one that is written everywhere."""
     reference = key.reference.get(part.quantity)
     is_right = reference is not None and part.sort.distance(part, value, reference) <= 1
     return is_right or before.is_work(part, value)
 
 
 def is_scale(part: Part) -> bool:
-    """Whether a part asks for the scale of a drawing: so much for a millimetre of paper."""
+    """Return whether a part asks for the scale of a drawing: so much for a millimetre of paper."""
     return bool(part.judge) and part.sort.is_number and part.unit.endswith("/mm")
 
 
@@ -115,7 +117,8 @@ def waits_for(
     readings: Mapping[str, Reading],
     waiting: dict[str, dict[str, frozenset[str]]],
 ) -> str:
-    """What an answer waits for to be judged, by questions: any of those that would do alone, else all of its group.
+    """Return the questions that must be answered before an answer can be judged: any one of those that
+    suffice alone, else all of its group.
 
     ``waiting`` remembers by judge what could be judged with each missing answer.
     """

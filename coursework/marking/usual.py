@@ -55,13 +55,13 @@ def usual_errors_that_fit(
     if not part.sort.is_scalar or part.judge:
         return []
     errors, values = key.usual_ways(quantity)
-    asked = {p.quantity for p in key.variant.parts}
+    quantities = {p.quantity for p in key.variant.parts}
 
     def may_be(error: UsualError) -> bool:
         if part.sort.is_exact and error.source != quantity:
             return False  # of whole numbers too many are alike
         if error.kind == NEIGHBOUR:
-            return error.source in asked
+            return error.source in quantities
         if error.kind in TAKEN:
             return True
         is_elsewhere = error.source != quantity
@@ -73,12 +73,12 @@ def usual_errors_that_fit(
 
 
 def own_errors_that_fit(
-    key: Key, part: Part, reading: Reading, judged_by: Part, own: Mapping[str, Any]
+    key: Key, part: Part, reading: Reading, judged_by: Part, own_answers: Mapping[str, Any]
 ) -> list[Fit]:
-    """The usual errors in a quantity's own formula that give an answer from a student's ``own`` earlier ones."""
+    """The usual errors in a quantity's own formula that give an answer from a student's ``own_answers`` earlier ones."""
     if not part.sort.is_scalar or part.judge:
         return []
-    errors, values = key.usual_ways_from(judged_by.quantity, own)
+    errors, values = key.usual_ways_from(judged_by.quantity, own_answers)
     return _near(key, part, reading, judged_by, errors, values, lambda _: True, is_own=True)
 
 
@@ -97,8 +97,8 @@ def _near(
 
     What is computed from a student's own written answers is moved by their rounding.
     """
-    found: dict[tuple[int, float], Fit] = {}
-    for place, answer in enumerate(reading.values):
+    hits: dict[tuple[int, float], Fit] = {}
+    for reading_index, answer in enumerate(reading.values):
         if part.sort.is_trivial(answer):
             continue  # whatever is left out of a product leads there
         away = _gaps(part, key, judged_by, values, answer)
@@ -107,12 +107,12 @@ def _near(
         near = nearness(part, key, judged_by, answer, usual if is_own else min(usual, apart))
         is_written_so = not part.sort.turn and np.abs(values - answer) <= half_step(values, key.rules.digits)
         for index in np.flatnonzero((away <= near) | (is_written_so & np.isfinite(away))):
-            error, same = errors[index], (place, _rounded(float(values[index])))
+            error, same = errors[index], (reading_index, _rounded(float(values[index])))
             if may_be(error):
                 is_here = error.source == judged_by.quantity or error.kind in TAKEN
-                first = found.get(same, Fit(error, place, float(away[index]), is_here, ()))
-                found[same] = first._replace(alike=(*first.alike, error))
-    return list(found.values())
+                first = hits.get(same, Fit(error, reading_index, float(away[index]), is_here, ()))
+                hits[same] = first._replace(alike=(*first.alike, error))
+    return list(hits.values())
 
 
 def last_digit(part: Part, answer: Any) -> float:
@@ -123,7 +123,8 @@ def last_digit(part: Part, answer: Any) -> float:
 
 
 def nearness(part: Part, key: Key, judged_by: Part, answer: Any, usual: float) -> float:
-    """How near to a value an answer must be to be taken for it, in half-widths: as usual, or as its last digit lets it be."""
+    """Return the distance in half-widths within which an answer is taken for a value: the usual one, or what
+    its last digit allows."""
     width = key.half_width(judged_by)
     return min(1.0, max(usual, last_digit(part, answer) / width)) if width else usual
 
@@ -133,7 +134,7 @@ def _rounded(value: float) -> float:
 
 
 def _gaps(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: float) -> np.ndarray:
-    """How far an answer is from each value, in the half-widths that such a value would have."""
+    """Return the distance of an answer from each value, in the half-widths that such a value would have."""
     reference = key.reference[judged_by.quantity]
     with np.errstate(all="ignore"):
         gap = gaps(values, answer, part.sort.turn)
@@ -145,12 +146,12 @@ def _gaps(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: flo
                 width = np.maximum(width, half_step(values, key.rules.digits))
         # Where the reference is the same value, the answer is right or wrong for another reason.
         is_other = np.abs(values - reference) > _SAME * abs(reference)
-        found = np.where(gap == 0, 0.0, gap / width)
-    return np.where(is_other & np.isfinite(found), found, np.inf)
+        distances = np.where(gap == 0, 0.0, gap / width)
+    return np.where(is_other & np.isfinite(distances), distances, np.inf)
 
 
 def _contradicts(key: Key, error: UsualError, quantity: str) -> bool:
-    """Whether an answer that is right shows that an error was not made."""
+    """Return whether a right answer proves that an error was not made."""
     part = next((p for p in key.variant.parts if p.quantity == quantity), None)
     if part is None or not part.sort.is_scalar or part.judge or not part.sort.disproves:
         return False
@@ -175,32 +176,32 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
     table = words(variant.lang)["marking"]["usual"]
     seen = {*variant.given, *(part.quantity for part in variant.exercise.spec.parts)}
     if error.kind in TAKEN:
-        asked = [n for n, p in enumerate(variant.parts, start=1) if p.quantity == error.source]
-        if not asked and error.source not in seen:
+        numbers = [n for n, p in enumerate(variant.parts, start=1) if p.quantity == error.source]
+        if not numbers and error.source not in seen:
             return str(table["taken_hidden"])
-        form = table["taken_asked"] if asked else table["taken"]
-        number = asked[0] if asked else 0
+        form = table["taken_asked"] if numbers else table["taken"]
+        number = numbers[0] if numbers else 0
         return str(form.format(term=f"${symbol(variant, error.source)}$", number=number))
     node = variant.exercise.solution.graph.textbook.node(error.source)
-    found = formula_errors(node.function)[error.place]
-    about = found.about
-    if about is not None and not _may_be_shown(about, found.formula.names, seen):
-        told = str(table["hidden"][error.kind])
+    usual_error = formula_errors(node.function)[error.place]
+    about = usual_error.about
+    if about is not None and not _may_be_shown(about, usual_error.formula.names, seen):
+        sentence = str(table["hidden"][error.kind])
     else:
-        shown = {
+        printed_names = {
             name: PrintedName(
                 symbol(variant, name), False, "angle" if variant.exercise.units.get(name) == "deg" else ""
             )
-            for name in found.formula.names
+            for name in usual_error.formula.names
         }
-        term = "" if about is None else tree_latex(about, shown, found.formula.space)
+        term = "" if about is None else tree_latex(about, printed_names, usual_error.formula.space)
         form = table[error.kind] if term or about is None else table["unnamed"]
-        told = str(form.format(term=f"${term}$"))
+        sentence = str(form.format(term=f"${term}$"))
     if error.source == quantity:
-        return told
+        return sentence
     if error.source not in seen:
-        return str(table["elsewhere_hidden"].format(why=told))
-    return str(table["elsewhere"].format(where=f"${symbol(variant, error.source)}$", why=told))
+        return str(table["elsewhere_hidden"].format(why=sentence))
+    return str(table["elsewhere"].format(where=f"${symbol(variant, error.source)}$", why=sentence))
 
 
 def _may_be_shown(about: ast.expr, formula: Collection[str], seen: Collection[str]) -> bool:
@@ -212,6 +213,6 @@ def _may_be_shown(about: ast.expr, formula: Collection[str], seen: Collection[st
 
 
 def whys(variant: Variant, errors: Collection[UsualError], quantity: str) -> tuple[str, bool]:
-    """How errors are told of which nothing tells which it was, and whether there is but one."""
-    told = list(dict.fromkeys(why(variant, error, quantity) for error in errors))
-    return listed(told, variant.lang, "or"), len(told) == 1
+    """Return the words for errors that cannot be distinguished, and whether there is only one."""
+    sentences = list(dict.fromkeys(why(variant, error, quantity) for error in errors))
+    return listed(sentences, variant.lang, "or"), len(sentences) == 1
