@@ -116,7 +116,9 @@ def serve(
         if lti is not None:
             _check_lti(lti, public_url)
         entrance = _entrance(host, public_url, demo, is_stated=url is not None)
-        serving = server.ServerSettings(context.obj, database, entrance, public_url, lti, server.worker_name())
+        serving = server.ServerSettings(
+            context.obj, database, entrance, public_url, lti, server.worker_name()
+        )
         report = serving.check()
         if entrance is Entrance.ACCOUNTS:
             _check_private(database)
