@@ -7,9 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from coursework.messages import Message, localised
+
 
 class CourseworkError(Exception):
-    """Base class of all deliberate errors."""
+    """Base class of all deliberate errors: an English template and the values that fill it.
+
+    ``raise BadInput("{file} has no column {name!r}", file=path, name=name)``: the text is made in the reader's language when it
+    is printed. A text without values is a template without places to fill.
+    """
+
+    def __init__(self, *template: object, **values: object) -> None:
+        super().__init__(*([Message(str(template[0]), **values)] if values else template))
+
+    def __str__(self) -> str:
+        if len(self.args) == 1 and isinstance(self.args[0], str):
+            return localised(self.args[0])
+        return super().__str__()
 
     def _render_traceback_(self) -> list[str]:
         """What a notebook shows: the message, which says all that its reader needs."""
@@ -84,9 +98,9 @@ class BadInput(CourseworkError, ValueError):
     """What a user gives, a file or what a call is told, is not what it should be."""
 
 
-def counted(number: int, noun: str) -> str:
-    """``1 row``, ``2 rows``."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+def counted(number: int, noun: str) -> Message:
+    """Return ``1 row``, ``2 rows``."""
+    return Message("{number} " + (noun if number == 1 else f"{noun}s"), number=number)
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:
@@ -139,15 +153,19 @@ def _words_are_near(sought: str, known: str) -> bool:
     return True
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """``"; did you mean 'x'?"``, or the whole list when nothing is near."""
+def nearest(name: str, known: Iterable[str]) -> Message:
+    """Return ``"; did you mean 'x'?"``, or the whole list when nothing is near."""
     known = list(known)
     if (near := closest(name, known)) is not None:
-        return f"; did you mean {near!r}?"
-    return f"; there is: {', '.join(sorted(known))}" if known else "; there is none"
+        return Message("; did you mean {near!r}?", near=near)
+    if known:
+        return Message("; there is: {names}", names=", ".join(sorted(known)))
+    return Message("; there is none")
 
 
 def unknown(kind: str, name: str, known: Iterable[str], where: str = "") -> UnknownName:
-    """The error for a look-up that failed."""
-    place = f" in {where}" if where else ""
-    return UnknownName(f"no {kind} {name!r}{place}{nearest(name, known)}")
+    """Return the error for a look-up that failed."""
+    place = Message(" in {where}", where=where) if where else ""
+    return UnknownName(
+        f"no {kind} {{name!r}}{{place}}{{nearest}}", name=name, place=place, nearest=nearest(name, known)
+    )

@@ -11,6 +11,8 @@ import click
 from coursework.cli.commands import commands, named_command
 from coursework.cli.options import BAD, DONE, complain
 from coursework.errors import CourseworkError
+from coursework.language.environment import language_of
+from coursework.messages import messages_in
 from coursework.system.ending import Ended, end_cleanly, has_ended
 from coursework.system.visible import visible_streams
 
@@ -28,7 +30,7 @@ def run(arguments: Sequence[str]) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(encoding="utf-8", errors="replace")
-    with visible_streams():
+    with visible_streams(), messages_in(language_of(os.environ) or "en"):
         return _run(arguments)
 
 

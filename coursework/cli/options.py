@@ -11,6 +11,7 @@ import click
 
 from coursework.cli import completion
 from coursework.errors import BadInput, WrongValue
+from coursework.messages import localised
 from coursework.system.extras import libraries
 from coursework.system.limits import MOST_SEED
 from coursework.system.visible import one_line
@@ -27,7 +28,7 @@ DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
 def tell(notes: Sequence[str]) -> None:
     """Say what is to be known and is no error."""
     for note in notes[:10]:
-        click.echo(f"coursework: note: {one_line(note)}", err=True)
+        click.echo(f"coursework: note: {one_line(localised(note))}", err=True)
     if len(notes) > 10:
         click.echo(f"coursework: note: and {len(notes) - 10} more such", err=True)
 
@@ -42,7 +43,7 @@ def tell_lack_of_charts() -> bool:
 
 
 def complain(message: str) -> int:
-    click.echo(f"coursework: {' '.join(message.split())}", err=True)
+    click.echo(f"coursework: {' '.join(localised(message).split())}", err=True)
     return BAD
 
 

@@ -34,6 +34,7 @@ from coursework.gradebook.scale import exact, mark_of
 from coursework.making.issued import Issued
 from coursework.making.students import folded
 from coursework.marking.mark import Mark
+from coursework.messages import localised
 
 # ------------------------------------------------------------------------- tables
 
@@ -61,7 +62,12 @@ def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
 def rejected_rows(rejected: Iterable[Rejected]) -> Iterator[dict[str, Any]]:
     """The lines of ``rejected.csv``."""
     for one in rejected:
-        yield {**dict.fromkeys(REJECTED_COLUMNS, ""), **one.row, "source": one.source, "reason": one.reason}
+        yield {
+            **dict.fromkeys(REJECTED_COLUMNS, ""),
+            **one.row,
+            "source": one.source,
+            "reason": localised(one.reason),
+        }
 
 
 @dataclass(slots=True)

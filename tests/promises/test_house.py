@@ -11,7 +11,7 @@ PACKAGE = Path(coursework.__file__).resolve().parent
 
 #: From the ground up.
 ROOMS = (
-    "errors degrees system language kinematics solids markup figures structure mechanics reading polygons quantities kinds model solution "
+    "messages errors degrees system language kinematics solids markup figures structure mechanics reading polygons quantities kinds model solution "
     "course marking sheets motion rendering accuracy making gradebook statistics selfstudy scanning database workbook platforms nbgrader lti authoring api site __init__ cli __main__"
 ).split()
 

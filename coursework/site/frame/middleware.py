@@ -31,6 +31,7 @@ from coursework.database.sessions import (
 from coursework.database.settings import taken_of
 from coursework.errors import BadCourse, BadInput, BrokenFunction, UnknownName
 from coursework.language.words import words
+from coursework.messages import Message, as_message, localised, messages_in
 from coursework.site.frame.arrivals import arrived
 from coursework.site.frame.attempts import Attempt, Attempts, TooMany
 from coursework.site.frame.browsers import described
@@ -216,7 +217,8 @@ class Middleware:
         try:
             if request.is_post:
                 self._check_csrf_token(http_request, current_user.session, form)
-            response = route.endpoint(request)
+            with messages_in(request.lang):
+                response = route.endpoint(request)
             note_export(route, request, response)
             happened(
                 http_request,
@@ -424,7 +426,9 @@ class Middleware:
 
 
 def _refusal(request: Request, why: HTTPException) -> Response:
-    told = str(words(request.lang, "site")["refused"][why.sentence]).format(*why.parts)
+    told = str(words(request.lang, "site")["refused"][why.sentence]).format(
+        *(localised(part, request.lang) if isinstance(part, Message) else part for part in why.parts)
+    )
     return request.render("site_refused", why.status_code, told=told)
 
 
@@ -434,7 +438,7 @@ def _mistaken(fault: BadInput) -> HTTPException:
         damaged = type(fault.__cause__) is DatabaseError
         LOG.error("the database: %s", "its file is damaged" if damaged else type(fault.__cause__).__name__)
         return HTTPException("busy", 503, _AGAIN)
-    return HTTPException("mistaken", 422, str(fault))
+    return HTTPException("mistaken", 422, as_message(fault))
 
 
 def _check_path(http_request: HTTPRequest) -> None:

@@ -30,6 +30,7 @@ from coursework.lti.services import Member, NotServed
 from coursework.lti.storage import Score, Storage
 from coursework.lti.wanted import Wanted
 from coursework.making.students import folded
+from coursework.messages import as_message
 from coursework.site.desk.class_cache import assignment_title, class_now
 from coursework.site.frame.arrivals import arrived
 from coursework.site.frame.requests import Form as SiteForm
@@ -123,7 +124,7 @@ class SiteHost:
         except HTTPException as why:
             return self._refused(visit, why)
         except BadInput as fault:
-            return self._refused(visit, HTTPException("mistaken", 422, str(fault)))
+            return self._refused(visit, HTTPException("mistaken", 422, as_message(fault)))
 
     def _refused(self, visit: Visit, why: HTTPException) -> Reply:
         said = words(visit.lang, "site")

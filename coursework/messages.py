@@ -1,0 +1,124 @@
+"""Messages in the reader's language: an English template, which is the key, and the values that fill it.
+
+The translations of a language are ``coursework/language/messages/LANG.toml``: tables of ``"template" = "translation"``. A
+template without a translation is printed in English.
+"""
+
+from __future__ import annotations
+
+import re
+import string
+import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+CATALOGUES = Path(__file__).parent / "language" / "messages"
+_NARROW = "\N{NARROW NO-BREAK SPACE}"
+_default = "en"
+_language: ContextVar[str | None] = ContextVar("language of messages", default=None)
+
+
+def language_of_messages() -> str:
+    """Return the language in which messages are printed now."""
+    return _language.get() or _default
+
+
+def set_language_of_messages(lang: str) -> None:
+    """Set the language of the messages of this process, wherever :func:`messages_in` sets no other."""
+    global _default
+    _default = lang
+
+
+@contextmanager
+def messages_in(lang: str) -> Iterator[None]:
+    """Print messages in a language within the block; threads and tasks keep their own."""
+    token = _language.set(lang)
+    try:
+        yield
+    finally:
+        _language.reset(token)
+
+
+@cache
+def translations(lang: str) -> Mapping[str, str]:
+    """Return the translations into a language by their English templates; none for English or a language without file."""
+    path = CATALOGUES / f"{lang}.toml"
+    if not path.is_file():
+        return {}
+    tables = tomllib.loads(path.read_text("utf-8"))
+    return {template: _typeset(text, lang) for table in tables.values() for template, text in table.items()}
+
+
+def _typeset(text: str, lang: str) -> str:
+    """Return a translation with the spaces of its language that do not break."""
+    if lang != "fr":
+        return text
+    return re.sub(r" (?=[;:!?»](?:\s|$))", _NARROW, text).replace("« ", f"«{_NARROW}").replace("'", "’")
+
+
+class Message(str):
+    """English text that knows its template and the values in it, so that it can be printed in another language.
+
+    ``Message("{file} has {count} lines", file=path, count=3)``: without values the template is the text, braces and all. A value
+    may be a message or an error: it is translated with the whole.
+    """
+
+    template: str
+    values: Mapping[str, Any]
+
+    def __new__(cls, template: str, /, **values: Any) -> Message:
+        message = super().__new__(cls, _filled(template, values, "en"))
+        message.template, message.values = template, values
+        return message
+
+    def in_language(self, lang: str) -> str:
+        """Return the text in a language."""
+        return _filled(self.template, self.values, lang)
+
+    def replacing(self, old: str, new: str) -> Message:
+        """Return the message with a text replaced in all its values, such as the path of a temporary file by its name."""
+        if not self.values:
+            return Message(self.template.replace(old, new))
+        return Message(self.template, **{name: _replaced(v, old, new) for name, v in self.values.items()})
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self.template, dict(self.values))
+
+
+def _restored(template: str, values: dict[str, Any]) -> Message:
+    return Message(template, **values)
+
+
+def as_message(text: object) -> Message:
+    """Return the message of an error or of a text; one without a template is its own."""
+    if isinstance(text, BaseException) and len(text.args) == 1 and isinstance(text.args[0], str):
+        text = text.args[0]
+    return text if isinstance(text, Message) else Message(str(text))
+
+
+def localised(text: object, lang: str = "") -> str:
+    """Return an error or a message in a language, the current one where none is named; any other value as its text."""
+    return as_message(text).in_language(lang or language_of_messages())
+
+
+def _filled(template: str, values: Mapping[str, Any], lang: str) -> str:
+    text = translations(lang).get(template, template)
+    if not values:
+        return text
+    translated = {n: localised(v, lang) if _is_translated(v) else v for n, v in values.items()}
+    return string.Formatter().vformat(text, (), translated)
+
+
+def _is_translated(value: object) -> bool:
+    return isinstance(value, Message | Exception)
+
+
+def _replaced(value: Any, old: str, new: str) -> Any:
+    if _is_translated(value):
+        return as_message(value).replacing(old, new)
+    text = str(value)
+    return text.replace(old, new) if old in text else value
