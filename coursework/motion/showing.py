@@ -55,9 +55,11 @@ class Showing(Staged):
     @property
     def constants(self) -> frozenset[str]:
         """Shown quantities that no effect changes: they are computed once."""
-        moving = {n for names in self._by_effect.values() for n in names}
         if self.exercise.spec.driver is None or self.exercise.spec.driver.poses is None:
             return frozenset()
+        # By the textbook: a stable formula may read a position only to know the assembly, as a side does.
+        placing = [n for n, v in self.exercise.posed(self._accepted, 0.0).items() if not isinstance(v, str)]
+        moving = self.exercise.solution.graph.textbook.descendants(placing).union(*self._by_effect.values())
         return frozenset(n for n in self.show if n in self.exercise.quantity_names and n not in moving)
 
     @cached_property
