@@ -365,6 +365,18 @@ def loop_equations(
 
 
 @dataclass(frozen=True)
+class Jack:
+    """Jack that drives a mechanism, by names of given quantities: its length (mm), the first and second rates of it,
+    and the two lengths between which it travels.
+    """
+
+    length: str
+    speed: str
+    acceleration: str
+    limits: tuple[str, str]
+
+
+@dataclass(frozen=True)
 class Driver:
     """Driver of the mechanism in a simulation, by names of quantities.
 
@@ -375,6 +387,8 @@ class Driver:
     Where the angle is an answer, so not among what is given, a helper of its name says it of the figure, and
     ``poses`` moves the mechanism: a function of given quantities, of helpers, and of the angle as ``driven``, to
     the given quantities that place the mechanism there, on arrays.
+
+    Where a ``jack`` turns the body of that angle, a cycle is its travel from limit to limit.
     """
 
     angle: str
@@ -383,6 +397,12 @@ class Driver:
     effort: str = ""
     output: str = ""
     poses: Callable[..., Mapping[str, Any]] | None = None
+    jack: Jack | None = None
+
+    @property
+    def moved(self) -> str:
+        """Quantity that a cycle steps through: the length of the jack, or the angle."""
+        return self.jack.length if self.jack else self.angle
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,14 @@ STEP = mpmath.mpf(10) ** -25  #: radians: differences are good to some 40 digits
 
 
 class ExactMechanics:
-    """A mechanism of an exercise, at a driver's angle (degrees), speed and acceleration."""
+    """A mechanism of an exercise, at a driver's angle (degrees), speed and acceleration; at a jack's length (mm), speed and
+    acceleration where one drives: then its thrust (N) is what balances."""
 
     def __init__(self, exercise, mechanism, given, angle, speed, acceleration):
         self.mp = mpmath.MPContext()
         self.mp.dps = DIGITS
         self.exercise, self.mechanism = exercise, mechanism
-        self.driver = exercise.spec.driver.angle
+        self.jack, self.driver = exercise.spec.driver.jack, exercise.spec.driver.moved
         self.graph = exercise.solution.graph.textbook
         names = exercise.quantity_names
         accepted = {**exercise.intake.defaults, **given}
@@ -27,7 +28,8 @@ class ExactMechanics:
             n: v if isinstance(v, str) else self.mp.mpf(v) for n, v in accepted.items() if n in names
         }
         self.values = dict(self.given)
-        self.q = self.mp.mpf(angle) * self.mp.pi / 180
+        self.unit = self.mp.mpf(1) if self.jack else self.mp.pi / 180
+        self.q = self.mp.mpf(angle) * self.unit
         self.speed, self.acceleration = self.mp.mpf(speed), self.mp.mpf(acceleration)
         self.poses = [self._pose(self.q + k * STEP) for k in (-1, 0, 1)]
 
@@ -36,7 +38,7 @@ class ExactMechanics:
     def _pose(self, q):
         """Angles of bodies, radians, and places of points by (body, point), metres."""
         wanted = [n for n in self.mechanism.angles if n != self.driver]
-        degrees = {self.driver: q * 180 / self.mp.pi}
+        degrees = {self.driver: q / self.unit}
         degrees |= self.graph.evaluate(wanted, {**self.given, **degrees})
         angles, places = {GROUND: self.mp.mpf(0)}, {}
         for point in self.mechanism.ground:
@@ -114,9 +116,8 @@ class ExactMechanics:
             tangent = 1j * (two - one) / abs(two - one)
             unknowns.append(f"{gear.first}/{gear.second}_t")
             columns.append([(gear.first, touch, tangent, 0), (gear.second, touch, -tangent, 0)])
-        driven = self.mechanism.driven_by(self.driver)
         unknowns.append("effort")
-        columns.append([(driven, self.place(self.mechanism.body(driven).at, driven), 0, 1)])
+        columns.append(self._of_jack() if self.jack else self._of_crank())
         applied = [(self.mechanism.holders(p)[-1], self.place(p), force, 0) for p, force in loads]
         matrix = mp.matrix(len(columns), len(columns))
         for k, column in enumerate(columns):
@@ -137,6 +138,17 @@ class ExactMechanics:
             if max(abs(a - b) for a, b in zip(before, strengths, strict=True)) < mp.mpf(10) ** -40:
                 break
         return dict(zip(unknowns, found, strict=True))
+
+    def _of_crank(self):
+        driven = self.mechanism.driven_by(self.driver)
+        return [(driven, self.place(self.mechanism.body(driven).at, driven), 0, 1)]
+
+    def _of_jack(self):
+        """A thrust between the ends of the jack, on the line through its two pins."""
+        (slide,) = (s for s in self.mechanism.slides if s.at == self.mechanism.pushed)
+        foot, head = self.place(self.mechanism.body(slide.on).at, slide.on), self.place(slide.at, slide.of)
+        along = (head - foot) / abs(head - foot)
+        return [(slide.of, head, along, 0), (slide.on, foot, -along, 0)]
 
     def _slip(self, slide, along):
         """Velocity along the guide, from differences of the place in the guide's frame."""

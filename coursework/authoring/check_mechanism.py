@@ -10,6 +10,7 @@ import numpy as np
 from coursework.authoring.check_report import Report
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
+from coursework.mechanics.linkage import MM
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import GROUND, Mechanism
 from coursework.motion.scenes import Scene
@@ -32,6 +33,12 @@ def check_mechanism(drawn: Sequence[Variant], report: Report) -> None:
         report.fail(
             f"MECHANISM: {counted.n} bodies, {counted.b} pins and slides and {counted.h} gears leave {counted.w} degrees of "
             "freedom; a driver moves 1"
+        )
+        return
+    if bool(mechanism.pushed) != bool(exercise.spec.driver and exercise.spec.driver.jack):
+        report.fail(
+            "MECHANISM: the slide of a jack and its length are stated together, Mechanism(pushed=…) and Driver(jack=…); "
+            "found one alone"
         )
         return
     for variant in drawn[:TRIED]:
@@ -86,11 +93,24 @@ def _other_shifts(scene: Scene, stance: Stance, angle: float, size: float) -> It
             )
 
 
+def _speed(variant: Variant, scene: Scene) -> float:
+    """Return the speed of the driving angle, rad/s; 0 where nothing gives one."""
+    driver, jack = scene.driver, scene.driver.jack
+    if jack is not None:
+        return float(scene.driver_motion(np.array([float(variant.used[jack.length])]))[1][0])
+    return float(variant.used.get(driver.speed, 0.0)) if driver.speed else 0.0
+
+
 def _other_rates(variant: Variant, scene: Scene, stance: Stance) -> Iterator[str]:
     exercise = variant.exercise
-    speed = float(variant.used.get(scene.driver.speed, 0.0)) if scene.driver.speed else 0.0
+    speed = _speed(variant, scene)
     if not speed:
         return
+    jack, slide = scene.driver.jack, scene.linkage.pushed
+    if jack is not None and slide is not None:
+        grown, asked = float(stance.sliding(slide)[0]) * speed / MM, float(variant.used[jack.speed])
+        if not abs(grown - asked) <= _AGREES * abs(asked):
+            yield f"the jack grows by {grown:.6g} mm/s by its joints, and {jack.speed} = {asked:.6g}"
     named = {
         angle: pair[0] for loop in exercise.solution.loops.values() for angle, pair in loop.rates.items()
     }

@@ -52,7 +52,11 @@ if TYPE_CHECKING:
 )
 @seed_option
 @click.option(
-    "--over", type=click.Choice(["cycle"]), default="cycle", show_default=True, help="One turn of the driver."
+    "--over",
+    type=click.Choice(["cycle"]),
+    default="cycle",
+    show_default=True,
+    help="One turn of the driver, or the travel of its jack.",
 )
 @click.option("--steps", type=Whole(1, MOST_STEPS), help="Steps of a cycle; 360 unless told.")
 @click.option(

@@ -84,7 +84,13 @@ class Equilibrium:
         return position - self.stance.origins[body]
 
     def _of_drive(self) -> BodyWrenches:
-        return BodyWrenches.none(self.stance).turn(self.linkage.driven, 1.0)
+        """Return the wrench of a unit effort: a moment on the driven body, or the thrust of a jack with its
+        power."""
+        none, slide = BodyWrenches.none(self.stance), self.linkage.pushed
+        if slide is None:
+            return none.turn(self.linkage.driven, 1.0)
+        with np.errstate(all="ignore"):
+            return none.rub(slide, self.stance.direction(slide) / self.stance.sliding(slide))
 
     def under(self, *wrenches: BodyWrenches) -> np.ndarray:
         """Return the unknowns under each of some wrenches alone, shape ``(n, unknowns, wrenches)``; NaN at a

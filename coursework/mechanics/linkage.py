@@ -182,6 +182,12 @@ class Linkage:
         )
 
     @cached_property
+    def pushed(self) -> SlideJoint | None:
+        """Slide along which the drive pushes; none where it turns a body."""
+        pairs = zip(self.mechanism.slides, self.slides, strict=True)
+        return next((joint for slide, joint in pairs if slide.at == self.mechanism.pushed), None)
+
+    @cached_property
     def gears(self) -> tuple[GearJoint, ...]:
         results = []
         for gear in self.mechanism.gears:

@@ -127,6 +127,7 @@ class Mechanism:
     """Bodies and joints, with the loads and the friction that the exercise itself states.
 
     ``friction``: by joint (a point), a coefficient, for slides; for a pin, a pair of coefficient and radius (mm).
+    ``pushed``: the point of the slide along which a jack drives; without it, the drive turns the body of its angle.
 
     Raises
     ------
@@ -140,6 +141,7 @@ class Mechanism:
     gears: Sequence[Gear] = ()
     loads: Sequence[Load] = ()
     friction: Mapping[str, Any] = field(default_factory=dict)
+    pushed: str = ""
 
     def __post_init__(self) -> None:
         for fault in self._faults():
@@ -242,6 +244,8 @@ class Mechanism:
                 yield f"the centre of body {body.name!r} is none of its points{nearest(body.centre, body.places)}"
         for slide in self.slides:
             yield from self._faults_of_slide(slide)
+        if self.pushed and self.pushed not in (places := [slide.at for slide in self.slides]):
+            yield f"a jack pushes along a slide; none is at {self.pushed!r}{nearest(self.pushed, places)}"
         for gear in self.gears:
             for name in (gear.first, gear.second, gear.carrier):
                 if name not in (*self.names, GROUND):

@@ -29,18 +29,36 @@ def refusal(name: str) -> str:
     return f"{name}: impacts and clearances are not simulated; joints hold without play, and nothing strikes"
 
 
+def check_turns(what: str, exercise: CourseExercise) -> None:
+    """Refuse what belongs to a crank, where a jack drives.
+
+    Raises
+    ------
+    WrongValue
+        It names the length that drives.
+    """
+    jack = exercise.spec.driver.jack if exercise.spec.driver else None
+    if jack is not None:
+        raise WrongValue(
+            f"{what} belongs to a crank that turns; {exercise.name} is driven by the length {jack.length} of a jack, "
+            f"from {jack.limits[0]} to {jack.limits[1]}"
+        )
+
+
 def check_effect(effect: str, exercise: CourseExercise) -> None:
     """Refuse an unknown effect.
 
     Raises
     ------
     WrongValue
-        Impacts and clearances.
+        Impacts and clearances; a flywheel where a jack drives.
     UnknownName
         Any other.
     """
     if effect in REFUSED:
         raise WrongValue(refusal(effect))
+    if effect == "flywheel":
+        check_turns("a flywheel", exercise)
     known = (*EFFECTS, *exercise.solution.graph.effects())
     if effect not in known:
         raise unknown("effect", effect, known, exercise.name)
@@ -52,7 +70,7 @@ def of_exercise(exercise: CourseExercise, driver: Driver) -> Mapping[str, tuple[
     usual = _of_loops(exercise) if exercise.solution.loops else _of_parts(exercise, driver)
     given = exercise.spec.given
     results = {
-        effect: tuple(name for name in names if name not in given and name != driver.angle)
+        effect: tuple(name for name in names if name not in given and name != driver.moved)
         for effect, names in usual.items()
     }
     return {**results, **stated}

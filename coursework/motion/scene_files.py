@@ -39,7 +39,7 @@ from coursework.mechanics.loads import STROKES
 from coursework.mechanics.statement import Load, Place
 from coursework.mechanics.wrenches import GRAVITY
 from coursework.motion.added import BodyMass, Flywheel, Motor, SceneData
-from coursework.motion.effects import REFUSED, check_effect, refusal
+from coursework.motion.effects import REFUSED, check_effect, check_turns, refusal
 from coursework.motion.scenes import Scene
 from coursework.reading.numbers import read_number
 from coursework.reading.units import same_dimension
@@ -101,7 +101,7 @@ class _SceneReader:
         self._only(self.table, _KEYS, ())
         exercise = self._exercise()
         run: dict[str, Any] = {}
-        drive = self._drive()
+        drive = self._drive(exercise)
         if drive is not None:
             run = {"drive": drive, "duration": self._duration()}
         elif "duration" in self.table:
@@ -253,9 +253,10 @@ class _SceneReader:
             raise self.refused(("over",), f'over is "cycle"; found {self.table["over"]!r}')
         return steps
 
-    def _drive(self) -> Motor | None:
+    def _drive(self, exercise: CourseExercise) -> Motor | None:
         if "drive" not in self.table:
             return None
+        self._with_line(("drive",), check_turns, "a torque in time", exercise)
         for key in ("over", "steps"):
             if key in self.table:
                 raise self.refused(
@@ -320,6 +321,8 @@ class _SceneReader:
                 (*at, "during"),
                 f"during is one of {', '.join(STROKES)}; found {during!r}{nearest(during, STROKES)}",
             )
+        if "stroke" in during:
+            self._with_line((*at, "during"), check_turns, f"the {during}", exercise)
         values: dict[str, Place] = {kind: self._size(at, kind, exercise)}
         if "angle" in own:
             values["angle"] = self._amount((*at, "angle"), "deg")

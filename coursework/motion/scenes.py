@@ -17,7 +17,7 @@ import numpy as np
 from coursework.errors import CourseworkError, Undefined, WrongValue, counted
 from coursework.mechanics.running import Running, Trajectory
 from coursework.motion.added import Motor
-from coursework.motion.effects import OF_FORCES
+from coursework.motion.effects import OF_FORCES, check_turns
 from coursework.motion.showing import Showing
 from coursework.motion.staged import FLYWHEEL, FRICTION, INERTIA
 from coursework.system.limits import MOST_STEPS
@@ -74,67 +74,90 @@ class Scene(Showing):
     # ----------------------------------------------------------------------- cycle
 
     def over_cycle(self, count: int = 360) -> SceneTable:
-        """Return the scene over one turn of the driver, ``count`` equal steps and the end.
+        """Return the scene over one turn of the driver, or over the travel of a jack: ``count`` equal steps and the
+        end.
 
-        Angles are whole multiples of the step, never accumulated.
+        Positions are whole multiples of the step, never accumulated.
         """
         if not 1 <= count <= MOST_STEPS:
             raise WrongValue(f"a cycle has from 1 to {MOST_STEPS:g} steps; found {count:g}; take fewer")
-        driver, angle = self.driver.angle, np.arange(count + 1) * 360.0 / count
-        columns = {driver: angle, **self._exercise_columns(self._driven(angle), angle.shape)}
+        at = self._steps(count)
+        columns = {self.driver.moved: at, **self._exercise_columns(self._at(at), at.shape)}
         units = self._units(columns)
-        speed, acceleration = (np.full(count + 1, v) for v in (self._speed, self._acceleration))
-        for name, (values, unit) in self._extra_columns(np.radians(angle), speed, acceleration).items():
-            columns[name], units[name] = np.broadcast_to(values, angle.shape), unit
+        angles, speed, acceleration = self.driver_motion(at, moving=bool(self.extra))
+        for name, (values, unit) in self._extra_columns(angles, speed, acceleration).items():
+            columns[name], units[name] = np.broadcast_to(values, at.shape), unit
         if len(columns) == 1:
             raise WrongValue(
                 f"{self.exercise.name}: nothing to show for the effects {', '.join(self.effects)}"
             )
-        return SceneTable(
-            columns, units, self._evaluated(), tuple(self._cycle_notes(columns, np.radians(angle)))
-        )
+        return SceneTable(columns, units, self._evaluated(), tuple(self._cycle_notes(columns, angles)))
+
+    def _steps(self, count: int) -> np.ndarray:
+        """Return the positions of a cycle: degrees of a turn, or lengths between the limits of the jack, mm."""
+        if (jack := self.driver.jack) is None:
+            return np.arange(count + 1) * 360.0 / count
+        for name in jack.limits:
+            if name not in self._accepted:
+                raise WrongValue(f"a cycle runs between {' and '.join(jack.limits)}; {name} is not given")
+        shortest, longest = (float(self._accepted[name]) for name in jack.limits)
+        if not 0 < shortest < longest:
+            raise WrongValue(
+                f"a jack grows from {jack.limits[0]}, its shortest, to {jack.limits[1]}, its longest; "
+                f"found {shortest:.6g} mm and {longest:.6g} mm"
+            )
+        return np.linspace(shortest, longest, count + 1)
 
     def _cycle_notes(self, columns: Mapping[str, np.ndarray], angles: np.ndarray) -> Iterator[str]:
         yield from self._empty_effects()
-        if not self._speed and self._resists:
+        driver, at = self.driver, columns[self.driver.moved]
+        name, unit = driver.moved, self._units((driver.moved,))[driver.moved]
+        if (jack := driver.jack) is not None:
             yield (
-                f"at rest ({self.driver.speed or 'no speed'} = 0) friction, and loads against the motion, have no way to go "
-                "against: they add nothing"
+                f"{name} goes from {at[0]:.6g} {unit} ({jack.limits[0]}, the jack is shortest) to {at[-1]:.6g} {unit} "
+                f"({jack.limits[1]}, it is longest)"
+            )
+        speed = (jack or driver).speed
+        if not self._value(speed) and self._resists:
+            yield (
+                f"at rest ({speed or 'no speed'} = 0) friction, and loads against the motion, have no way to go against: "
+                "they add nothing"
             )
         gaps = np.logical_or.reduce([np.isnan(column) for column in columns.values()])
         if not gaps.any():
             yield from self._flywheel_notes()
             return
         is_open = self._is_open(columns, angles)
-        yield from self._open_notes(columns, np.degrees(angles[is_open]), len(gaps))
+        yield from self._open_notes(columns, at[is_open], len(gaps))
         if not (left := gaps & ~is_open).any():
             return
-        listed = ", ".join(f"{angle:.6g}" for angle in np.degrees(angles[left])[:6])
+        listed = ", ".join(f"{value:.6g}" for value in at[left][:6])
         more = f" and {int(left.sum()) - 6} more" if left.sum() > 6 else ""
         if (
             FRICTION in self.effects
-            and not np.isfinite(columns.get("drive_torque", gaps * np.nan)[left]).any()
+            and not np.isfinite(columns.get(self._effort_name, gaps * np.nan)[left]).any()
         ):
-            yield f"the mechanism jams at {self.driver.angle} = {listed} deg{more}: its friction outgrows what overcomes it"
+            yield f"the mechanism jams at {name} = {listed} {unit}{more}: its friction outgrows what overcomes it"
         else:
-            yield f"not everything exists at {self.driver.angle} = {listed} deg{more}: a dead centre"
+            yield f"not everything exists at {name} = {listed} {unit}{more}: a dead centre"
 
-    def _open_notes(self, columns: Mapping[str, np.ndarray], angles: np.ndarray, of: int) -> Iterator[str]:
+    def _open_notes(self, columns: Mapping[str, np.ndarray], at: np.ndarray, of: int) -> Iterator[str]:
         """Say why positions do not exist at some angles: loops do not close, or a place is undefined by itself."""
         names = tuple(name for name in columns if name in self.exercise.quantity_names)
         undefined: dict[str, list[str]] = {}
-        for angle in angles[:_MOST_ASKED]:
+        for value in at[:_MOST_ASKED]:
             try:
-                self.exercise.solve(**self._driven(float(angle)), only=names, effects=())
+                self.exercise.solve(**self._at(float(value)), only=names, effects=())
             except Undefined as fault:
-                undefined.setdefault(str(fault), []).append(f"{angle:.6g}")
+                undefined.setdefault(str(fault), []).append(f"{value:.6g}")
             except CourseworkError:
                 pass
         for why, where in undefined.items():
             more = f" and {len(where) - 6} more" if len(where) > 6 else ""
-            yield f"{why}, at {self.driver.angle} = {', '.join(where[:6])} deg{more}"
-        if left := len(angles) - sum(map(len, undefined.values())):
-            yield f"the mechanism does not close at {left} of {of} angles"
+            name = self.driver.moved
+            yield f"{why}, at {name} = {', '.join(where[:6])} {self._units((name,))[name]}{more}"
+        if left := len(at) - sum(map(len, undefined.values())):
+            yield f"the mechanism does not close at {left} of {of} {'lengths' if self.driver.jack else 'angles'}"
 
     def _empty_effects(self) -> Iterator[str]:
         """Yield the requested effects for which the scene has no data."""
@@ -189,8 +212,9 @@ class Scene(Showing):
         Raises
         ------
         WrongValue
-            The scene calls for no inertia.
+            The scene calls for no inertia, or a jack drives.
         """
+        check_turns("a torque in time", self.exercise)
         moves = INERTIA in self.effects and bool(self.linkage.masses)
         if not moves and FLYWHEEL not in self.effects:
             has = (

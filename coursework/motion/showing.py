@@ -40,7 +40,7 @@ class Showing(Staged):
             wanted += self._of(OF_FORCES)
         wanted += [n for n in self.show if n in self.exercise.quantity_names]
         return tuple(
-            n for n in dict.fromkeys(wanted) if n != self.driver.angle and n not in self.exercise.spec.given
+            n for n in dict.fromkeys(wanted) if n != self.driver.moved and n not in self.exercise.spec.given
         )
 
     def shown_by(self, effect: str) -> tuple[str, ...]:
@@ -71,7 +71,7 @@ class Showing(Staged):
             and self.exercise.solution.mechanism
             and self.driver.effort not in self.quantities
         ):
-            named.insert(0, "drive_torque")
+            named.insert(0, self._effort_name)
         if "coriolis" in self.effects and not self._of("coriolis"):
             named += [f"coriolis {point}" for point in self._coriolis_points()]
         if self.exercise.solution.mechanism:
@@ -79,6 +79,12 @@ class Showing(Staged):
         elif "position" in self.called and not self._of("position"):
             named += [f"position {point}" for point in self._moved_by_solution]
         return tuple(dict.fromkeys(named))
+
+    @property
+    def _effort_name(self) -> str:
+        """Name of the column of what the drive supplies."""
+        mechanism = self.exercise.solution.mechanism
+        return "drive_thrust" if mechanism and mechanism.pushed else "drive_torque"
 
     @cached_property
     def _moved_by_solution(self) -> tuple[str, ...]:
@@ -227,6 +233,9 @@ class Showing(Staged):
     ) -> shown.Columns:
         if name == "drive_torque":
             return {name: (borne.effort, "N*m")}
+        if name == "drive_thrust" and (slide := self.linkage.pushed) is not None:
+            with np.errstate(all="ignore"):
+                return {name: (borne.effort / self.pose(angles).sliding(slide), "N")}
         if name == "drive_power":
             return {name: (borne.effort * speed, "W")}
         inertia = self._moved().over(angles, 0 * speed, 0 * speed + 1.0).effort

@@ -1,7 +1,7 @@
 """Quantities that a scene can show beside the exercise's own: motions of points, joint reactions, the drive.
 
-``drive_torque``, ``drive_power``, ``kinetic_energy``; ``position B``, ``velocity B``, ``acceleration B``, ``coriolis A``;
-``reaction B``, of a pin or a slide.
+``drive_torque``, or ``drive_thrust`` of a jack, ``drive_power``, ``kinetic_energy``; ``position B``, ``velocity B``,
+``acceleration B``, ``coriolis A``; ``reaction B``, of a pin or a slide.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from coursework.mechanics.linkage import MM, Linkage, SlideJoint
 from coursework.mechanics.rates import Stance
 from coursework.solution import Moving
 
-DRIVE = ("drive_torque", "drive_power", "kinetic_energy")
+DRIVE = ("drive_torque", "drive_thrust", "drive_power", "kinetic_energy")
 OF_POINTS = ("position", "velocity", "acceleration", "coriolis")
 REACTION = "reaction"
 
@@ -49,6 +49,10 @@ def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
     elif kind:
         if of not in linkage.mechanism.points:
             raise unknown("point", of, linkage.mechanism.points, "the mechanism")
+    elif of == "drive_thrust" and linkage.pushed is None:
+        raise WrongValue("no jack drives the mechanism; show drive_torque")
+    elif of == "drive_torque" and linkage.pushed is not None:
+        raise WrongValue("a jack drives the mechanism, and no crank; show drive_thrust")
     elif of not in DRIVE and of not in quantities:
         kinds = [f"{kind} …" for kind in (*OF_POINTS, REACTION)]
         raise unknown("quantity to show", of, [*quantities, *DRIVE, *kinds])

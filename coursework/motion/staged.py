@@ -21,7 +21,7 @@ from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import Load, Mechanism, number, parameters
 from coursework.model import Driver
 from coursework.motion.added import SceneData
-from coursework.motion.effects import ADVANTAGE, FORCES, KINEMATIC, check_effect, of_exercise
+from coursework.motion.effects import ADVANTAGE, FORCES, KINEMATIC, check_effect, check_turns, of_exercise
 from coursework.quantities.loops import usual_rates
 
 INERTIA, FRICTION, FLYWHEEL = "inertia", "friction", "flywheel"
@@ -88,6 +88,28 @@ class Staged:
         if self.exercise.spec.driver is None:
             return dict(self.given)
         return {**self.given, **self.exercise.posed(self._accepted, angle)}
+
+    def _at(self, values: Any) -> dict[str, Any]:
+        """Return the given values with what a cycle steps through, degrees or mm."""
+        jack = self.driver.jack
+        return {**self.given, jack.length: values} if jack else self._driven(values)
+
+    def driver_motion(
+        self, values: np.ndarray, *, moving: bool = True
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the driver's angles (radians), speeds and accelerations where a cycle steps through values.
+
+        Of a jack, the rates are computed only if ``moving``; at rest they are 0.
+        """
+        driver, jack = self.driver, self.driver.jack
+        if jack is None:
+            return np.radians(values), *(np.full(values.shape, v) for v in (self._speed, self._acceleration))
+        moving &= any(map(self._value, (jack.speed, jack.acceleration)))
+        names = (driver.angle, *(self._rates_of(driver.angle) if moving else ()))
+        found = self.exercise.solve(**self._at(values), only=names, effects=())
+        angle, *rates = (np.broadcast_to(found[n], values.shape) for n in names)
+        speed, acceleration = rates or (np.zeros(values.shape),) * 2
+        return np.radians(angle), speed, acceleration
 
     def _at_unit_speed(self, angle: Any) -> dict[str, Any]:
         """Return the given values at an angle with the driver at a constant 1 rad/s, so that rates are
@@ -234,16 +256,21 @@ class Staged:
     @cached_property
     def _rates_by_name(self) -> tuple[tuple[str, ...] | None, tuple[str, ...] | None]:
         """Names of the rates and of the accelerations of the unknown angles; None where one is missing."""
-        angles, solution = self.linkage.unknown_angles, self.exercise.solution
-        known_names = frozenset(solution.graph.quantities)
-        of_loops = {n: pair for loop in solution.loops.values() for n, pair in loop.rates.items()}
+        angles = self.linkage.unknown_angles
+        known_names = frozenset(self.exercise.solution.graph.quantities)
         if angles is None:
             return None, None
-        pairs = [of_loops.get(n) or usual_rates(n, known_names) for n in angles]
+        pairs = [self._rates_of(n) for n in angles]
         first, second = (tuple(pair[order] for pair in pairs) for order in (0, 1))
         return (first if known_names.issuperset(first) else None), (
             second if known_names.issuperset(second) else None
         )
+
+    def _rates_of(self, angle: str) -> tuple[str, str]:
+        """Return the names of the first and second rates of an angle."""
+        solution = self.exercise.solution
+        of_loops = {n: pair for loop in solution.loops.values() for n, pair in loop.rates.items()}
+        return of_loops.get(angle) or usual_rates(angle, frozenset(solution.graph.quantities))
 
     # ---------------------------------------------------------------------- forces
 
@@ -273,8 +300,11 @@ class Staged:
         Raises
         ------
         WrongValue
-            It goes by what the driver's speed changes, which is no place; or a function hides that it moves.
+            It goes by what the driver's speed changes, which is no place; a function hides that it moves; or it acts during
+            the strokes of a crank where a jack drives.
         """
+        if "stroke" in load.during:
+            check_turns(f"the {load.during}", self.exercise)
         for position in (load.force, load.moment, load.angle):
             if callable(position) and self.moved.intersection(parameters(position)):
                 raise WrongValue(
@@ -292,7 +322,8 @@ class Staged:
     @cached_property
     def _sped(self) -> frozenset[str]:
         """Quantities that the driver's speed changes."""
-        rates = [n for n in (self.driver.speed, self.driver.acceleration) if n]
+        drives = (self.driver, self.driver.jack) if self.driver.jack else (self.driver,)
+        rates = [n for drive in drives for n in (drive.speed, drive.acceleration) if n]
         return self.exercise.solution.graph.descendants(rates) if rates else frozenset()
 
     @cached_property

@@ -17,7 +17,7 @@ from coursework.figures import (
     slider,
     slot_link,
 )
-from coursework.model import Driver, Exercise, Part, drawn, loop_equations
+from coursework.model import Driver, Exercise, Jack, Part, drawn, loop_equations
 
 
 def foot(xB, yB):
@@ -74,7 +74,8 @@ def with_the_body_at(driven, foot, a, L_min, L_max):
     """The jack's length that tips the body so far; none beyond its ends."""
     A = polar(a, driven)
     length, left = abs(A - foot), (foot.conjugate() * A).imag > 0
-    return {"L": np.where(left & (length >= L_min) & (length <= L_max), length, np.nan)[()]}
+    at_limit = np.clip(length, L_min, L_max)  # rounding leaves an end where it is
+    return {"L": np.where(left & np.isclose(length, at_limit, rtol=1e-12, atol=0), at_limit, np.nan)[()]}
 
 
 def figure(foot, a, L, c, eta, theta4, L_min, L_max):
@@ -157,6 +158,8 @@ EXERCISE = Exercise(
         "swing": r"\Delta\theta_4",
         "a_coriolis": "a_c",
     },
-    driver=Driver("theta4", poses=with_the_body_at),
+    driver=Driver(
+        "theta4", poses=with_the_body_at, jack=Jack("L", "L_dot", "L_ddot", limits=("L_min", "L_max"))
+    ),
     kept_by_solution=True,
 )

@@ -34,8 +34,8 @@ EFFECTS = {
     "acceleration": ("alpha4", "alpha2", "a_G"),
     "coriolis": ("a_coriolis",),
 }
-#: Counted by the tilt of the body, since what drives a mechanism is an angle: an effort of the drive is then a moment on the
-#: body, and the force of the jack is so many times omega4 / L_dot.
+#: Counted by the tilt of the body; the drive acts along the jack, between cylinder and rod, and its thrust is the moment that
+#: would hold the body alone, times omega4 / L_dot.
 MECHANISM = Mechanism(
     ground={"O": 0, "B": lambda xB, yB: xB + 1j * yB},
     bodies=(
@@ -44,6 +44,7 @@ MECHANISM = Mechanism(
         Body("2", "theta2", "B"),
     ),
     slides=(Slide("A", "3", on="2"),),
+    pushed="A",
 )
 
 

@@ -57,6 +57,13 @@ def test_a_slide_along_another_line_turns_bodies_otherwise():
     assert "omega3 = " in failures("slider_crank", tilted)[0]
 
 
+def test_a_jack_is_stated_by_its_slide_and_its_length():
+    stated = COURSE["jack_mechanism"].solution.mechanism
+    assert "found one alone" in failures("jack_mechanism", dataclasses.replace(stated, pushed=""))[0]
+    turned = dataclasses.replace(stated, slides=(Slide("A", "3", on="2", along=180.0),))
+    assert "the jack grows by" in failures("jack_mechanism", turned)[0]
+
+
 def test_counts_are_those_of_the_joint_graph():
     double = Mechanism(
         {"D": 0, "O": 1j},

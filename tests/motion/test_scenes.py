@@ -211,6 +211,28 @@ def test_a_constant_that_is_named_is_computed_once(course, monkeypatch):
     assert [size for only, size in seen if "stroke" in only] == [1]
 
 
+def test_a_quantity_that_is_shown_is_what_the_solver_gives_at_every_place(course):
+    """Of every mechanism that answers place: no answer that moves is taken for a constant of the cycle."""
+    faults = []
+    for exercise in map(course.__getitem__, course):
+        driver = exercise.spec.driver
+        if driver is None or driver.poses is None or not exercise.solution.mechanism:
+            continue
+        given = exercise.variant(2).used
+        names = tuple(p.quantity for p in exercise.spec.parts if p.sort.is_number and not p.by_request)
+        scene = Scene(exercise, given, (), names)
+        columns = scene.over_cycle(3).columns
+        for row, at in enumerate(columns[driver.moved]):
+            right = exercise.solve(**scene._at(float(at)), only=names, effects=())
+            for name in names:
+                off = columns[name][row] - right[name]
+                if exercise.units[name] == "deg":
+                    off = (off + 180) % 360 - 180
+                if not abs(off) <= 1e-9 * max(1, abs(right[name])):
+                    faults.append(f"{exercise.name}, {name} at {at:g}: {columns[name][row]:g}")
+    assert faults == []
+
+
 @pytest.mark.parametrize(
     "name", ["three_loop_shaper", "quick_return_shaper", "quick_return_whitworth", "havens_planetary"]
 )
