@@ -272,8 +272,11 @@ def _crossing(
     there = drawn[point]
     good = [_off(side, there, here[a]) <= width for side, a in zip(sides, anchors, strict=True)]
     if all(good):
-        # Lines that are drawn from one point meet there, whatever their directions.
-        collapsed = not on_drawn and all(
+        # Lines that are drawn from one point meet there, whatever their directions; from two, where they say.
+        is_constructed = (
+            abs(here[anchors[0]] - here[anchors[1]]) > width / 2 and abs(there - ideal) <= width / 2
+        )
+        collapsed = not (on_drawn or is_constructed) and all(
             abs(there - here[a]) <= width < abs(s.value) / scale for s, a in zip(sides, anchors, strict=True)
         )
         return ideal, DrawingFault(VECTOR) if collapsed else None
