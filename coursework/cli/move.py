@@ -27,6 +27,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import WrongValue
+from coursework.messages import localised
 from coursework.system.limits import MOST_STEPS
 
 if TYPE_CHECKING:
@@ -166,7 +167,7 @@ def _tell_table(scene_file: SceneFile, out: Path | None, decimal: str, as_json: 
     else:
         click.echo(f"evaluated: {', '.join(table.evaluated)}")
         for note in table.notes:
-            click.echo(f"note: {note}")
+            click.echo(f"note: {localised(note)}")
     if out is not None:
         stem = out / f"{scene_file.name}-{'cycle' if scene_file.drive is None else 'motion'}"
         _write_rows(table.rows(), stem, decimal)

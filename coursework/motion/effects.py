@@ -12,6 +12,7 @@ from collections.abc import Mapping
 
 from coursework.course.exercise import CourseExercise
 from coursework.errors import WrongValue, unknown
+from coursework.messages import Message
 from coursework.model import Driver
 
 KINEMATIC = ("position", "velocity", "acceleration", "coriolis")
@@ -40,8 +41,13 @@ def check_turns(what: str, exercise: CourseExercise) -> None:
     jack = exercise.spec.driver.jack if exercise.spec.driver else None
     if jack is not None:
         raise WrongValue(
-            f"{what} belongs to a crank that turns; {exercise.name} is driven by the length {jack.length} of a jack, "
-            f"from {jack.limits[0]} to {jack.limits[1]}"
+            "{what} belongs to a crank that turns; {exercise} is driven by the length {length} of a jack, from {shortest} to "
+            "{longest}",
+            what=Message(what),
+            exercise=exercise.name,
+            length=jack.length,
+            shortest=jack.limits[0],
+            longest=jack.limits[1],
         )
 
 

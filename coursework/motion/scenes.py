@@ -16,6 +16,7 @@ import numpy as np
 
 from coursework.errors import CourseworkError, Undefined, WrongValue, counted
 from coursework.mechanics.running import Running, Trajectory
+from coursework.messages import Message
 from coursework.motion.added import Motor
 from coursework.motion.effects import OF_FORCES, check_turns
 from coursework.motion.showing import Showing
@@ -99,12 +100,20 @@ class Scene(Showing):
             return np.arange(count + 1) * 360.0 / count
         for name in jack.limits:
             if name not in self._accepted:
-                raise WrongValue(f"a cycle runs between {' and '.join(jack.limits)}; {name} is not given")
+                raise WrongValue(
+                    "a cycle runs between {first} and {last}; {name} is not given",
+                    first=jack.limits[0],
+                    last=jack.limits[1],
+                    name=name,
+                )
         shortest, longest = (float(self._accepted[name]) for name in jack.limits)
         if not 0 < shortest < longest:
             raise WrongValue(
-                f"a jack grows from {jack.limits[0]}, its shortest, to {jack.limits[1]}, its longest; "
-                f"found {shortest:.6g} mm and {longest:.6g} mm"
+                "a jack grows from {first}, its shortest, to {last}, its longest; found {shortest:.6g} mm and {longest:.6g} mm",
+                first=jack.limits[0],
+                last=jack.limits[1],
+                shortest=shortest,
+                longest=longest,
             )
         return np.linspace(shortest, longest, count + 1)
 
@@ -113,9 +122,13 @@ class Scene(Showing):
         driver, at = self.driver, columns[self.driver.moved]
         name, unit = driver.moved, self._units((driver.moved,))[driver.moved]
         if (jack := driver.jack) is not None:
-            yield (
-                f"{name} goes from {at[0]:.6g} {unit} ({jack.limits[0]}, the jack is shortest) to {at[-1]:.6g} {unit} "
-                f"({jack.limits[1]}, it is longest)"
+            yield Message(
+                "{name} goes from {shortest:.6g} mm ({first}, the jack is shortest) to {longest:.6g} mm ({last}, it is longest)",
+                name=name,
+                shortest=at[0],
+                first=jack.limits[0],
+                longest=at[-1],
+                last=jack.limits[1],
             )
         speed = (jack or driver).speed
         if not self._value(speed) and self._resists:

@@ -15,6 +15,7 @@ from coursework.errors import WrongValue, unknown
 from coursework.mechanics.forces import ForceResults
 from coursework.mechanics.linkage import MM, Linkage, SlideJoint
 from coursework.mechanics.rates import Stance
+from coursework.messages import Message
 from coursework.solution import Moving
 
 DRIVE = ("drive_torque", "drive_thrust", "drive_power", "kinetic_energy")
@@ -50,9 +51,9 @@ def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
         if of not in linkage.mechanism.points:
             raise unknown("point", of, linkage.mechanism.points, "the mechanism")
     elif of == "drive_thrust" and linkage.pushed is None:
-        raise WrongValue("no jack drives the mechanism; show drive_torque")
+        raise WrongValue(Message("no jack drives the mechanism; show drive_torque"))
     elif of == "drive_torque" and linkage.pushed is not None:
-        raise WrongValue("a jack drives the mechanism, and no crank; show drive_thrust")
+        raise WrongValue(Message("a jack drives the mechanism, and no crank; show drive_thrust"))
     elif of not in DRIVE and of not in quantities:
         kinds = [f"{kind} …" for kind in (*OF_POINTS, REACTION)]
         raise unknown("quantity to show", of, [*quantities, *DRIVE, *kinds])
