@@ -470,9 +470,9 @@ def _marks(path: Path) -> None:
 
 
 def _archive(path: Path) -> None:
-    from coursework.system.unzipping import Limits, unpack
+    from coursework.system.unzipping import ArchiveLimits, unpack
 
-    for file in unpack(path, path.parent / "out", Limits(files=20, each=1_000_000, whole=2_000_000)):
+    for file in unpack(path, path.parent / "out", ArchiveLimits(files=20, each=1_000_000, total=2_000_000)):
         assert file.resolve().is_relative_to((path.parent / "out").resolve())
 
 

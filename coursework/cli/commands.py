@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from coursework.cli.options import FilePath
-from coursework.system.cache import made_of
+from coursework.system.cache import cached_result
 from coursework.system.distribution import VERSION
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class _Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands with what each does, as :mod:`click` does; their files are loaded where one has changed."""
         files = sorted(Path(__file__).parent.glob("*.py"))
-        summaries = made_of(files, "commands.json", lambda: {n: self._help(ctx, n) for n in COMMANDS})
+        summaries = cached_result(files, "commands.json", lambda: {n: self._help(ctx, n) for n in COMMANDS})
         limit = formatter.width - 6 - max(map(len, COMMANDS))
         with formatter.section("Commands"):
             formatter.write_dl(

@@ -417,7 +417,7 @@ def _write_report(course: Course, measures: Any, lang: str, out: Path, decimal: 
         Task("report.html", renderer.report_html, (page,)),
         Task("report.pdf", renderer.report_pdf, (page,)),
     ]
-    html, pdf = in_turn(pages, 2) if is_shared() else (task.function(*task.told) for task in pages)
+    html, pdf = in_turn(pages, 2) if is_shared() else (task.function(*task.arguments) for task in pages)
     files = {
         "report.html": html.encode("utf-8"),
         "report.pdf": pdf,

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from coursework.course.folder import Folder
 from coursework.errors import CourseworkError
-from coursework.system.cache import State, is_settled, keep, kept, state, states
+from coursework.system.cache import State, is_settled, load, state, states, store
 
 _ENGINE = Path(__file__).parent.parent
 
@@ -66,7 +66,7 @@ def _known(folder: Folder) -> _Kept:
     python = [sys.version, *sys.path]
     files = states(folder.root / "exercises", folder.root / "templates", _ENGINE)
     with suppress(TypeError, AttributeError):
-        cached = _Kept(**kept(_name(folder)))
+        cached = _Kept(**load(_name(folder)))
         if (cached.python, cached.files) == (python, files) and all(
             state(path) == was for path, was in cached.loaded.items()
         ):
@@ -87,7 +87,7 @@ def _loaded(files: Mapping[str, State]) -> dict[str, State]:
 def _remember(folder: Folder, content: _Kept, begun: int) -> None:
     """Keep it, unless a file was changed just now: it may change again within the grain of its dates."""
     if is_settled((*content.files.values(), *content.loaded.values()), begun):
-        keep(_name(folder), content._asdict())
+        store(_name(folder), content._asdict())
 
 
 def _name(folder: Folder) -> str:

@@ -26,7 +26,7 @@ from coursework.system.folder_lock import is_bare
 from coursework.system.json_files import read_json
 from coursework.system.links import check_inside
 from coursework.system.tables import as_written, inert
-from coursework.system.writing import gone_unless_kept, write_whole
+from coursework.system.writing import removed_on_failure, write_whole
 
 _NOTHING = "\\N"  #: what stands where there is no value; a text that begins with \ has another before it
 CellText: TypeAlias = Callable[[str], str]
@@ -74,7 +74,7 @@ def _write(connection: Connection, table: Table, path: Path) -> int:
     found = connection.execution_options(yield_per=_CHUNK).execute(select(table).order_by(*table.primary_key))
     count = 0
     try:
-        with gone_unless_kept(part), open(part, "w", encoding="utf-8", newline="", opener=_private) as file:
+        with removed_on_failure(part), open(part, "w", encoding="utf-8", newline="", opener=_private) as file:
             writer = csv.writer(file)
             writer.writerow(column.name for column in table.c)
             shown = [json_of if isinstance(column.type, JSON) else _as_text for column in table.c]

@@ -13,7 +13,7 @@ from coursework.errors import BadInput
 from coursework.gradebook.columns import VERDICTS
 from coursework.making.students import folded
 from coursework.system.limits import check_size
-from coursework.system.tables import as_written, delimiter_of, open_csv, said_twice
+from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
 CHANGES_COLUMNS = (
     "date", "student", "exercise", "seed", "part", "answer",
@@ -187,7 +187,7 @@ def lines_of(
             file.seek(0)
             reader = csv.DictReader(file, delimiter=delimiter)
             reader.fieldnames = next((row for row in reader.reader if any(map(str.strip, row))), [])
-            if twice := said_twice(reader.fieldnames, once):
+            if twice := duplicate_column(reader.fieldnames, once):
                 raise BadInput(f"{path}: {twice}")
             cells: dict[Any, Any]
             for cells in reader:

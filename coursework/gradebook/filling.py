@@ -15,7 +15,7 @@ from coursework.gradebook.platform_gradebooks import People, PlatformGradebook, 
 from coursework.making.identity import same_id, words_of
 from coursework.making.platform_rosters import TEST_STUDENT, first_name_first
 from coursework.making.students import folded
-from coursework.system.cells import CellTable, StandingCell
+from coursework.system.cells import CellTable, PositionedCell
 
 _NUMBER = re.compile(r"\s*-?[0-9]+(?P<sign>[.,])[0-9]+\s*%?\s*")
 _LISTED = 5  #: names that a message lists
@@ -88,8 +88,8 @@ class _Sheet(NamedTuple):
     people: People
     column: int  #: of the item
     title: str
-    rows: list[Sequence[StandingCell]]  #: of students
-    maxima: Sequence[StandingCell] | None
+    rows: list[Sequence[PositionedCell]]  #: of students
+    maxima: Sequence[PositionedCell] | None
 
     @property
     def called(self) -> list[str]:
@@ -112,7 +112,7 @@ def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Pat
         )
     column = column_of(platform, titles, people, item, source)
     maxima = next((row for row in rows if platform.maxima and _first(row).startswith(platform.maxima)), None)
-    students: list[Sequence[StandingCell]] = [
+    students: list[Sequence[PositionedCell]] = [
         row for row in rows if row is not maxima and _is_somebody(row, people)
     ]
     return _Sheet(people, column, titles[column].strip(), students, maxima)
@@ -125,24 +125,24 @@ def _bytes_of(path: Path) -> bytes:
         raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
 
 
-def _first(row: Sequence[StandingCell]) -> str:
+def _first(row: Sequence[PositionedCell]) -> str:
     return row[0].text.strip().casefold()
 
 
-def _cell(row: Sequence[StandingCell], place: int) -> str:
+def _cell(row: Sequence[PositionedCell], place: int) -> str:
     return row[place].text.strip() if place < len(row) else ""
 
 
-def _is_somebody(row: Sequence[StandingCell], people: People) -> bool:
+def _is_somebody(row: Sequence[PositionedCell], people: People) -> bool:
     return bool(_name(row, people)) and _name(row, people).casefold() not in TEST_STUDENT
 
 
-def _first_of(row: Sequence[StandingCell], places: Iterable[int]) -> str:
+def _first_of(row: Sequence[PositionedCell], places: Iterable[int]) -> str:
     """The first of some cells that is not empty."""
     return next(filter(None, (_cell(row, k) for k in places)), "")
 
 
-def _name(row: Sequence[StandingCell], people: People) -> str:
+def _name(row: Sequence[PositionedCell], people: People) -> str:
     return " ".join(filter(None, (_cell(row, k) for k in people.names))) or _first_of(row, people.ids)
 
 
@@ -245,7 +245,7 @@ def _matched(sheet: _Sheet, scored: Sequence[Scored], filled: Filled) -> list[Sc
     return [found.get(n) for n in range(len(sheet.rows))]
 
 
-def _differs(row: Sequence[StandingCell], people: People, one: Scored) -> bool:
+def _differs(row: Sequence[PositionedCell], people: People, one: Scored) -> bool:
     """Whether both have an e-mail, and these are of two people: a name alone does not make them one."""
     there = {same_id(_cell(row, k)) for k in people.ids if "@" in _cell(row, k)}
     told = {same_id(value) for _, value in one.ids if "@" in value}

@@ -31,7 +31,7 @@ from coursework.gradebook.to_mark import TO_MARK, TO_MARK_COLUMNS, ToMark, sorte
 from coursework.making.issued import Issued
 from coursework.system.build_folder import free_name, is_as_written, write_down
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
-from coursework.system.writing import Progress, Table, Tables, write_whole
+from coursework.system.writing import Progress, TableFile, Tables, write_whole
 
 BY_HAND = "by_hand.csv"  #: marks of the folder that a hand changed
 _WRITTEN = ".marks.json"  #: what was written as marks.csv
@@ -147,11 +147,11 @@ def write_marks(
         if book.changes and (stood or edited):
             book.warnings.insert(0, _kept(out / "marks.csv"))
         if feedback:
-            renew_feedback(course, book, shown, out, progress, form, tables.ready)
-        tables.ready()
+            renew_feedback(course, book, shown, out, progress, form, tables.check)
+        tables.check()
         # Stopped halfway, these are no marks that a hand changed.
         write_down(out / _WRITTEN, marks.path, marks.part, *([] if edited else [marks.path]))
-        tables.keep()
+        tables.commit()
     (out / BY_HAND).unlink(missing_ok=True)
     return book
 
@@ -161,7 +161,7 @@ def _day(form: Form) -> str:
 
 
 def _write_counts(
-    book: Gradebook, summary: Table, rejected: Table, changes: Table | None, history: History
+    book: Gradebook, summary: TableFile, rejected: TableFile, changes: TableFile | None, history: History
 ) -> None:
     rows = list(gradebook.summary_rows(book))
     for row in rows:
@@ -225,8 +225,8 @@ def grade_standing(
         book.waiting = sum(line.verdict == TO_MARK for one in shown for line in one.lines.values())
         _write_counts(book, summary, rejected, changes, history)
         if feedback:
-            renew_feedback(course, book, shown, out, progress, form, tables.ready)
-        tables.keep()
+            renew_feedback(course, book, shown, out, progress, form, tables.check)
+        tables.commit()
     if not book.changes:
         (out / BY_HAND).unlink()
     if marks.resolve() != (out / "marks.csv").resolve():

@@ -26,7 +26,7 @@ from coursework.making.issued import Issued
 from coursework.making.students import folded
 from coursework.marking.feedback import Told
 from coursework.marking.mark import Mark
-from coursework.system.tables import as_written, delimiter_of, open_csv, said_twice
+from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
 _NEEDED = tuple(c for c in MARKS_COLUMNS if c not in ("read_as", "feedback"))
 
@@ -142,7 +142,7 @@ def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
                 raise BadInput(
                     f"{path} needs the columns {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {found[:200]}"
                 )
-            if twice := said_twice(header, MARKS_COLUMNS):
+            if twice := duplicate_column(header, MARKS_COLUMNS):
                 raise BadInput(f"{path}: {twice}")
             for cells in reader:
                 if any(cell.strip() for cell in cells):

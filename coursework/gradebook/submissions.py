@@ -43,7 +43,7 @@ from coursework.system.limits import (
     beyond,
 )
 from coursework.system.links import LEADS_OUT, LeadsOut, folder_of, open_inside, walked
-from coursework.system.tables import as_written, delimiter_of, record, said_twice
+from coursework.system.tables import as_written, delimiter_of, duplicate_column, record
 
 ENDINGS = (".csv", ".json", ".ipynb", ".parquet", ".xml", ".tsv")
 
@@ -212,7 +212,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
             wanted = f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {found}"
             yield Rejected(place, fault_of(cells) or wanted)
             return
-        if twice := said_twice(header, COLUMNS):
+        if twice := duplicate_column(header, COLUMNS):
             yield Rejected(place, twice)
             return
         named = itemgetter(*(header.index(c) for c in COLUMNS))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadCourse, UnknownName
-from coursework.system.cache import made_of
+from coursework.system.cache import cached_result
 
 _FOLDER = Path(__file__).parent
 _FAULTS = 5  #: of a words file that are told at once
@@ -41,7 +41,7 @@ def words(lang: str, of: str = "") -> Mapping[str, Any]:
     if lang not in languages():
         raise no_language(lang)
     files = [file_of(code, of) for code in dict.fromkeys((lang, "en"))]
-    tables: Mapping[str, Any] = made_of(
+    tables: Mapping[str, Any] = cached_result(
         [*files, Path(__file__)], f"words-{of}-{lang}.json", partial(_compared, lang, of)
     )
     return tables

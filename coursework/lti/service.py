@@ -42,8 +42,8 @@ from coursework.lti.storage import Storage, Waiting
 from coursework.lti.tokens import verified
 from coursework.system.allowances import Allowances, network
 from coursework.system.headers import Guarded, security_headers
-from coursework.system.places import Crowded, Places
 from coursework.system.processes import processor_time
+from coursework.system.request_slots import Crowded, RequestSlots
 
 LOG = logging.getLogger("coursework.lti")
 LARGEST = 256 * 1024  #: bytes of a form
@@ -138,7 +138,7 @@ class _Service:
         self._secret = self.keys.secret
         self._login = Login(settings, self._secret, clock)
         self._rosters: dict[str, tuple[float, list[Member]]] = {}
-        self._places = Places()
+        self._places = RequestSlots()
         self._asked = {"person": Allowances(*PERSONS), "address": Allowances(*ADDRESSES)}
         self.processor = Allowances(*PROCESSOR)
 
@@ -191,7 +191,7 @@ class _Service:
         if launch.role is Role.STUDENT and (wait := self.processor.wait(key)):
             raise Refused("too_often", 429, f"{wait} s", wait=wait)
         try:
-            async with self._places.one(who, AT_ONCE):
+            async with self._places.slot(who, AT_ONCE):
                 form = await _form(request)
                 return await run_in_threadpool(self._charged, key, work, request, form)
         except Crowded:

@@ -14,7 +14,7 @@ from coursework.making.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE
 from coursework.making.platform_rosters import RosterLine, first_name_first, without_marks
 from coursework.making.students import folded
 from coursework.system.limits import MOST_COLUMNS, MOST_TABLE_BYTES, beyond, check_size
-from coursework.system.tables import as_written, decode, delimiter_of, record, said_twice
+from coursework.system.tables import as_written, decode, delimiter_of, duplicate_column, record
 
 _LANG = ("lang", "language", "langue")
 _ABOVE = 10  #: lines in which the heading is looked for
@@ -72,7 +72,7 @@ def read_roster(
     named = _name_columns(titles)
     if not named:
         raise BadInput(f"the roster {path}: no column says who a student is; {_which(header)}")
-    if twice := said_twice(titles, (*(titles[own[0]] for own in named), *_LANG, *NUMBER, *EMAIL)):
+    if twice := duplicate_column(titles, (*(titles[own[0]] for own in named), *_LANG, *NUMBER, *EMAIL)):
         raise BadInput(f"the roster {path}: {twice}")
     lang_column = next((titles.index(c) for c in _LANG if c in titles), None)
     rows, unused = without_marks(header, rows)

@@ -2,8 +2,6 @@
 
 nbgrader's database says which notebooks are ours; the notebook that came back does not. None of our cells is
 run.
-
-Which notebooks are ours nbgrader's database says, never the notebook that came back. No cell of ours is run.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from coursework.errors import BadInput
 from coursework.system.extras import library
 from coursework.system.limits import LEAST_OF_PAGE, MOST_PAGES, MOST_PAGES_OF_TIFF, beyond
-from coursework.system.processes import Exceeded, Means, confined
+from coursework.system.processes import Exceeded, ResourceLimits, confined
 
 #: A page of so many pixels is A4 at 600 dots an inch, and half as much again.
 LARGEST = 52_000_000
@@ -33,7 +33,7 @@ _MOST_PIECES = (
     5_000  #: pictures and words of a page that is drawn here; one of more, or of lines, is drawn apart
 )
 _MOST_PICTURES = 8  #: of a page that is drawn here
-_DRAWING = Means(30.0, 1_500_000_000)  #: of a process in which a page is drawn
+_DRAWING = ResourceLimits(30.0, 1_500_000_000)  #: of a process in which a page is drawn
 _NEEDS = ("reading scans needs", "scan")
 SUFFIXES = (".pdf", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 
@@ -106,7 +106,7 @@ def _drawn(pdfium: Any, document: Any, number: int, path: Path) -> np.ndarray:
         return drawn
     except Exceeded as fault:
         raise BadPicture(
-            f"page {number + 1} of {path.name} takes too much {fault.what} to be drawn: print it, and scan it"
+            f"page {number + 1} of {path.name} takes too much {fault.resource} to be drawn: print it, and scan it"
         ) from None
     except pdfium.PdfiumError as fault:
         raise BadPicture(f"page {number + 1} of {path.name} cannot be drawn: {fault}") from fault

@@ -49,7 +49,7 @@ from coursework.scanning.sources import Scan, scans
 from coursework.scanning.typed import PAGE, Typed, merged, read_typed, typed_file
 from coursework.system.processes import processes, workers
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
-from coursework.system.writing import Progress, Table, Tables, write_whole, writing
+from coursework.system.writing import Progress, TableFile, Tables, write_whole, writing
 
 TYPED = "typed.csv"
 LEAST = CONFIDENT  #: the confidence below which nothing is guessed, unless told
@@ -280,7 +280,7 @@ def write_read(
         _write_missing(tables.open("missing.csv", MISSING_COLUMNS), book, found, papers, asked)
         queue = Queue(papers, asked, found, Joins(papers, asked), out)
         write_queue(queue, _cut)
-        tables.keep()
+        tables.commit()
     return book
 
 
@@ -329,7 +329,7 @@ def together(
 # ------------------------------------------------------------------------- writing
 
 
-def _write_answers(table: Table, found: Gathered, pages: Sequence[Scanned]) -> None:
+def _write_answers(table: TableFile, found: Gathered, pages: Sequence[Scanned]) -> None:
     sources = _sources(pages)
     for one in sorted(found.answers, key=lambda a: (a.student, a.exercise, a.seed)):
         source = "; ".join(sources[name] for name in one.pages)
@@ -381,7 +381,7 @@ def _write_pages(
 
 
 def _write_missing(
-    table: Table, book: ScanBook, found: Gathered, papers: Papers, asked: Mapping[str, PaperAsked]
+    table: TableFile, book: ScanBook, found: Gathered, papers: Papers, asked: Mapping[str, PaperAsked]
 ) -> None:
     for paper, missing in found.missing:
         whose, numbers = found.whose[paper.code], ", ".join(map(str, missing))

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 from coursework.errors import BadInput
 from coursework.system.links import LEADS_OUT, LeadsOut, open_inside, walked
-from coursework.system.unzipping import Limits, is_zip, unpack
+from coursework.system.unzipping import ArchiveLimits, is_zip, unpack
 
 ENDINGS = (".pdf", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 MAX_BYTES = 2_000_000_000  #: of one file
-_UNZIPPED = Limits(files=20_000, each=MAX_BYTES, whole=4 * MAX_BYTES)
+_UNZIPPED = ArchiveLimits(files=20_000, each=MAX_BYTES, total=4 * MAX_BYTES)
 _KEPT = 16  #: letters of a digest that tell files apart
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from coursework.errors import BadInput
 from coursework.system.limits import MOST_TABLE_BYTES, check_size
-from coursework.system.tables import as_written, csv_file, delimiter_of, open_csv, said_twice
+from coursework.system.tables import as_written, csv_file, delimiter_of, duplicate_column, open_csv
 
 COLUMNS = ("student", "exercise", "seed", "part", "coordinate", "answer", "seen")
 _NEEDED = ("student", "exercise", "seed", "part", "answer")
@@ -59,7 +59,7 @@ def read_typed(path: Path) -> list[Typed]:
             raise BadInput(
                 f"{path}: the header must name {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {', '.join(header)[:80]}"
             )
-        if twice := said_twice(header, COLUMNS):
+        if twice := duplicate_column(header, COLUMNS):
             raise BadInput(f"{path}: {twice}")
         return [_typed(header, row) for row in rows if any(cell.strip() for cell in row)]
     except csv.Error as fault:

@@ -26,7 +26,7 @@ from coursework.site.application import application
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.people.accounts import check_administrator
 from coursework.site.worker import work
-from coursework.system.processes import beside, kept_beside, others_can_start
+from coursework.system.processes import background_process, others_can_start, supervised_process
 
 if TYPE_CHECKING:
     from uvicorn import Config
@@ -232,7 +232,7 @@ def worker_name() -> str:
 def working(serving: ServerSettings) -> AbstractContextManager[None]:
     """Start one process, whatever the number of server processes, that marks submissions and submits saved
     answers; none for a site without a worker."""
-    return kept_beside(_NICENESS, _work, serving) if serving.worker else nullcontext()
+    return supervised_process(_NICENESS, _work, serving) if serving.worker else nullcontext()
 
 
 def _work(serving: ServerSettings) -> None:
@@ -248,7 +248,7 @@ def filling(serving: ServerSettings) -> AbstractContextManager[None]:
     if all were found."""
     site = serving.site()
     try:
-        return nullcontext() if site.pool.is_filled() else beside(_fill, serving)
+        return nullcontext() if site.pool.is_filled() else background_process(_fill, serving)
     finally:
         site.store.close()
 

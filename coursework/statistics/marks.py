@@ -15,7 +15,7 @@ import numpy as np
 from coursework.errors import BadInput
 from coursework.gradebook.columns import SITTING, VERDICTS
 from coursework.system.links import check_inside
-from coursework.system.tables import as_written, delimiter_of, open_csv, said_twice
+from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
 MOST_POINTS = 1e9  #: more is no number of points
 
@@ -267,7 +267,7 @@ def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[i
             f"{path} needs the columns {', '.join(columns)}; {', '.join(missing)} missing, found {result}; "
             "'coursework grade' writes them"
         )
-    if twice := said_twice(header, columns):
+    if twice := duplicate_column(header, columns):
         raise BadInput(f"{path}: {twice}")
     return [names.index(c) for c in columns]
 

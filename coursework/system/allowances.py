@@ -1,4 +1,5 @@
-"""Allowances: so much for each person or address, such as seconds of a processor; what is spent comes back as time passes."""
+"""Allowances: an amount for each person or address, such as seconds of processor time, that refills with
+time."""
 
 from __future__ import annotations
 
@@ -8,55 +9,60 @@ import time
 from collections.abc import Callable, Hashable
 from threading import Lock
 
-_KEPT = 10_000  #: keys, from which on those that have spent nothing are let go
+_MOST_KEYS = 10_000  #: beyond this, keys with a full allowance are dropped
 
 
 class Allowances:
-    """So much for each key, counted in memory.
+    """An amount for each key, counted in memory.
 
     Parameters
     ----------
     most
-        What a key has at first, and at most.
+        Amount of a key at first, and at most.
     back
-        What comes back in a second.
+        Amount that refills in a second.
     clock
-        Tells seconds; one that never goes back unless told.
+        Returns seconds; by default a clock that never goes back.
     """
 
     def __init__(self, most: float, back: float, clock: Callable[[], float] = time.monotonic):
         self._most, self._back, self._clock = most, back, clock
         self._lock = Lock()
-        self._spent: dict[Hashable, tuple[float, float]] = {}  # how much, and when that was so
+        self._spent: dict[Hashable, tuple[float, float]] = {}  # amount, and the time of its count
 
     def spend(self, key: Hashable, amount: float) -> None:
-        """Count what was spent; it may be more than was left."""
+        """Count an amount as spent, even if it exceeds the rest."""
         with self._lock:
             now = self._clock()
             self._spent[key] = self._now(key, now) + amount, now
-            if len(self._spent) > _KEPT:
-                self._spent = {one: (left, now) for one in self._spent if (left := self._now(one, now)) > 0}
+            if len(self._spent) > _MOST_KEYS:
+                self._spent = {
+                    other_key: (left, now)
+                    for other_key in self._spent
+                    if (left := self._now(other_key, now)) > 0
+                }
 
     def wait(self, key: Hashable) -> int:
-        """Return the seconds until a key may spend something; 0 where it may now."""
+        """Return the seconds until a key may spend again; 0 if it may now."""
         with self._lock:
             over = self._now(key, self._clock()) - self._most
         return max(1, math.ceil(over / self._back)) if over >= 0 else 0
 
     def _now(self, key: Hashable, now: float) -> float:
-        """Return what is spent and has not come back."""
+        """Return the amount that is spent and not yet refilled."""
         spent, at = self._spent.get(key, (0.0, now))
         return max(0.0, spent - (now - at) * self._back)
 
 
 def network(address: str) -> str:
-    """Return what is counted as one: an address, or the 64 bits of an IPv6 network, of which a machine has all."""
+    """Return the key to count requests by: the address, or the /64 network of an IPv6 address, since one
+    machine may use all of it."""
     try:
-        found = ipaddress.ip_address(address)
+        ip = ipaddress.ip_address(address)
     except ValueError:
         return address
-    if isinstance(found, ipaddress.IPv6Address):
-        if found.ipv4_mapped is not None:
-            return str(found.ipv4_mapped)
-        return str(ipaddress.ip_network((found, 64), strict=False))
+    if isinstance(ip, ipaddress.IPv6Address):
+        if ip.ipv4_mapped is not None:
+            return str(ip.ipv4_mapped)
+        return str(ipaddress.ip_network((ip, 64), strict=False))
     return address

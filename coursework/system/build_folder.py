@@ -1,7 +1,7 @@
-"""A folder that builds write into: a build replaces what builds wrote there, and nothing else.
+"""Folder that builds write into: a build replaces only the files that builds wrote.
 
-``.built.json`` in the folder lists what builds wrote, by the digests of the contents. A file that is not on it, or
-whose content is another, is somebody's own.
+``.built.json`` in the folder lists the files that builds wrote, by the digests of the contents. A file that
+is not on the list, or has another content, belongs to the user.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from coursework.errors import BadInput
 from coursework.system.json_files import read_json
 
 LIST = ".built.json"
-LAST = "issued.json"  #: of the files put in place: a build is there when this is
+LAST = "issued.json"  #: the last file installed: a build is complete if it exists
 
-Written = dict[str, list[str]]  #: by path below the folder: the digests of what builds wrote there
+Written = dict[str, list[str]]  #: by path below the folder: the digests of the contents that builds wrote
 
 
-def place(staging: Path, out: Path, *, anew: bool) -> list[str]:
-    """Put the files of ``staging / "new"`` in their places below ``out``, all or none; gives notes to tell.
+def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
+    """Install the files of ``staging / "new"`` below ``out``, all or none; return notes for the user.
 
-    What a build wrote is replaced. Where the same was issued before, what somebody changed since is kept, and what
-    else was built stays. ``anew`` says that something else was issued: what builds wrote before goes, and what
-    somebody changed or put in a file's place is set aside under another name.
+    Files that a build wrote are replaced. If the same was issued before, files that somebody changed since
+    are left as they are, and other built files stay. With ``anew``, something else was issued: the files of
+    earlier builds are removed, and files that somebody changed or added in their place are renamed.
 
     Raises
     ------
@@ -37,100 +37,102 @@ def place(staging: Path, out: Path, *, anew: bool) -> list[str]:
         A file that no build wrote stands in the way, and ``anew`` is not said.
     """
     new = staging / "new"
-    made = {p.relative_to(new).as_posix(): _digest(p) for p in sorted(new.rglob("*")) if p.is_file()}
+    new_digests = {p.relative_to(new).as_posix(): _digest(p) for p in sorted(new.rglob("*")) if p.is_file()}
     before, damage = _read(out / LIST)
     same = (out / LAST).is_file() and not anew
-    kept: dict[str, str] = {}
+    unchanged: dict[str, str] = {}
     aside: dict[str, None] = {}
     strange: dict[str, None] = {}
-    for path, digest in made.items():
-        found = _in_the_way(out, path)
-        if found is None or _holds(out / found, [digest, *before.get(found, ())]):
+    for path, digest in new_digests.items():
+        obstacle = _in_the_way(out, path)
+        if obstacle is None or _holds(out / obstacle, [digest, *before.get(obstacle, ())]):
             continue
         if anew:
-            aside[found] = None
-        elif same and found in before and (out / found).is_file():
-            kept[path] = f"{out / path} was changed since it was built, and is kept as it is"
+            aside[obstacle] = None
+        elif same and obstacle in before and (out / obstacle).is_file():
+            unchanged[path] = f"{out / path} was changed since it was built, and is kept as it is"
         else:
-            strange[found] = None
+            strange[obstacle] = None
     if strange:
         first = str(out / next(iter(strange)))
-        told = first if len(strange) == 1 else f"{first} and {len(strange) - 1} more"
+        names = first if len(strange) == 1 else f"{first} and {len(strange) - 1} more"
         raise BadInput(
-            f"not as a build wrote it, and in the way of this one: {told}; move it, choose another --out, "
+            f"not as a build wrote it, and in the way of this one: {names}; move it, choose another --out, "
             "or --overwrite to set it aside under another name"
         )
-    notes = [*damage, *kept.values()]
-    gone = [path for path in before if not same and path not in made and os.path.lexists(out / path)]
+    notes = [*damage, *unchanged.values()]
+    gone = [path for path in before if not same and path not in new_digests and os.path.lexists(out / path)]
     mine = [path for path in gone if not _holds(out / path, before[path])]
     notes += [
         f"{out / path} is of what was issued before; it was changed since, and is kept" for path in mine
     ]
-    put = sorted((path for path in made if path not in kept), key=lambda path: path == LAST)
-    # Both contents are a build's, should this one be stopped halfway.
-    _write(out / LIST, {**before, **{path: [*before.get(path, ()), made[path]] for path in put}})
+    installed = sorted((path for path in new_digests if path not in unchanged), key=lambda path: path == LAST)
+    # If this build stops halfway, both contents count as built.
+    _write(out / LIST, {**before, **{path: [*before.get(path, ()), new_digests[path]] for path in installed}})
     with ExitStack() as undo:
         for path in aside:
-            beside = free_name(out / path)
-            _move(out / path, beside, undo)
-            notes.append(f"{out / path} was not as a build leaves it; it is now {beside.name}")
-        for path in [path for path in gone if path not in mine] + put:
+            backup = free_name(out / path)
+            _move(out / path, backup, undo)
+            notes.append(f"{out / path} was not as a build leaves it; it is now {backup.name}")
+        for path in [path for path in gone if path not in mine] + installed:
             if os.path.lexists(out / path):
                 _move(out / path, staging / "old" / path, undo)
-            if path in made:
+            if path in new_digests:
                 _move(new / path, out / path, undo)
-        now = {path: [made[path]] for path in put}
+        now = {path: [new_digests[path]] for path in installed}
         _write(out / LIST, {**before, **now} if same else now)
         undo.pop_all()
     for path in gone:
-        _take_away_empty((out / path).parent, out)
+        _remove_empty((out / path).parent, out)
     return notes
 
 
 def renew(new: Path, out: Path, record: Path) -> list[str]:
-    """Put the files of ``new`` into ``out`` in place of those that were put there before; gives notes to tell.
+    """Replace the files that an earlier call put into ``out`` by those of ``new``; return notes for the user.
 
-    ``record`` lists what is put there, by the digests of the contents. What is no longer made goes; what somebody
-    changed since is set aside under another name, or stays where nothing takes its place. Stopped at any point, each
-    place holds the file of before or the new one, and the next time goes on.
+    ``record`` lists the installed files, by the digests of the contents. Files that are no longer made are
+    removed; files that somebody changed since are renamed, or stay if nothing replaces them. If the process
+    stops at any point, each file is the old or the new one, and the next call goes on.
     """
     out.mkdir(parents=True, exist_ok=True)
-    made = {p.name: _digest(p) for p in sorted(new.iterdir()) if p.is_file()}
+    new_digests = {p.name: _digest(p) for p in sorted(new.iterdir()) if p.is_file()}
     before, notes = _read(record)
-    _write(record, {**before, **{name: [*before.get(name, ()), digest] for name, digest in made.items()}})
-    for name, digest in made.items():
+    _write(
+        record, {**before, **{name: [*before.get(name, ()), digest] for name, digest in new_digests.items()}}
+    )
+    for name, digest in new_digests.items():
         if os.path.lexists(out / name) and not _holds(out / name, [digest, *before.get(name, ())]):
-            beside = _copy_beside(out / name)
-            notes.append(f"{out / name} was changed since it was written; it is now {beside.name}")
+            backup = _back_up(out / name)
+            notes.append(f"{out / name} was changed since it was written; it is now {backup.name}")
         (new / name).replace(out / name)
-    for name in sorted(before.keys() - made.keys()):
+    for name in sorted(before.keys() - new_digests.keys()):
         if _holds(out / name, before[name]):
             (out / name).unlink()
         elif os.path.lexists(out / name):
             notes.append(f"{out / name} is of an earlier marking; it was changed since, and is kept")
-    _write(record, {name: [digest] for name, digest in made.items()})
+    _write(record, {name: [digest] for name, digest in new_digests.items()})
     return notes
 
 
 def write_down(record: Path, file: Path, *contents: Path) -> None:
-    """Say in ``record`` that a file with one of these contents is as it was written."""
-    _write(record, {file.name: sorted({_digest(one) for one in contents if one.is_file()})})
+    """Record that a file with one of these contents is as it was written."""
+    _write(record, {file.name: sorted({_digest(path) for path in contents if path.is_file()})})
 
 
 def is_as_written(record: Path, file: Path) -> bool:
     return _holds(file, _read(record)[0].get(file.name, []))
 
 
-def _copy_beside(path: Path) -> Path:
-    """A copy of a file that is about to be replaced; the one that is there already, if any."""
+def _back_up(path: Path) -> Path:
+    """Copy a file that is about to be replaced; return the copy, or an identical one that exists already."""
     for there in path.parent.glob(f"{glob.escape(path.stem)}.before*{path.suffix}"):
         if _holds(there, [_digest(path)]):
             return there
-    beside = free_name(path)
-    part = beside.with_name(beside.name + ".part")
+    backup = free_name(path)
+    part = backup.with_name(backup.name + ".part")
     shutil.copy2(path, part)
-    part.replace(beside)
-    return beside
+    part.replace(backup)
+    return backup
 
 
 def _move(source: Path, target: Path, undo: ExitStack) -> None:
@@ -140,7 +142,7 @@ def _move(source: Path, target: Path, undo: ExitStack) -> None:
 
 
 def _in_the_way(out: Path, path: str) -> str | None:
-    """What stands in the place of a file: itself, or a file where a folder above it is to be."""
+    """Return the path that blocks a file: the file itself, or a file where a folder above it must be."""
     above = [str(p) for p in reversed(PurePosixPath(path).parents[:-1])]
     wrong = (p for p in above if os.path.lexists(out / p) and not (out / p).is_dir())
     return next(wrong, path if os.path.lexists(out / path) else None)
@@ -156,17 +158,17 @@ def _digest(file: Path) -> str:
 
 
 def free_name(path: Path) -> Path:
-    """``answers.before.csv`` for ``answers.csv``, or the next such name that is free."""
+    """Return ``answers.before.csv`` for ``answers.csv``, or the next such name that is free."""
     number = 1
     while True:
         which = ".before" if number == 1 else f".before-{number}"
-        beside = path.with_name(path.stem + which + path.suffix)
-        if not os.path.lexists(beside):
-            return beside
+        candidate = path.with_name(path.stem + which + path.suffix)
+        if not os.path.lexists(candidate):
+            return candidate
         number += 1
 
 
-def _take_away_empty(folder: Path, out: Path) -> None:
+def _remove_empty(folder: Path, out: Path) -> None:
     with suppress(OSError):  # not empty, or gone
         while folder != out:
             folder.rmdir()
@@ -174,7 +176,8 @@ def _take_away_empty(folder: Path, out: Path) -> None:
 
 
 def _read(path: Path) -> tuple[Written, list[str]]:
-    """What was written; nothing where there is no list, or one that is damaged, which is told."""
+    """Return the list of written files, with a note if it is damaged; empty if there is no list or it is
+    damaged."""
     if not path.exists():
         return {}, []
     try:
@@ -184,18 +187,18 @@ def _read(path: Path) -> tuple[Written, list[str]]:
 
 
 def _written(path: Path) -> Written:
-    found = read_json(path)
-    files = found.get("files") if isinstance(found, dict) else None
-    if not isinstance(files, dict) or not all(_is_written(*one) for one in files.items()):
+    content = read_json(path)
+    files = content.get("files") if isinstance(content, dict) else None
+    if not isinstance(files, dict) or not all(_is_written(*entry) for entry in files.items()):
         raise BadInput(f"{path} is no list of what was written")
     return files
 
 
 def _is_written(path: str, digests: object) -> bool:
-    """Whether a path stays below its folder and comes with digests."""
-    place = PurePosixPath(path)
-    inside = bool(place.parts) and not place.is_absolute() and ".." not in place.parts
-    return inside and isinstance(digests, list) and all(isinstance(one, str) for one in digests)
+    """Return whether a path stays below its folder and comes with digests."""
+    relative = PurePosixPath(path)
+    inside = bool(relative.parts) and not relative.is_absolute() and ".." not in relative.parts
+    return inside and isinstance(digests, list) and all(isinstance(digest, str) for digest in digests)
 
 
 def _write(record: Path, files: Mapping[str, list[str]]) -> None:

@@ -1,4 +1,4 @@
-"""What is kept from one run to the next, in the user's folder for that: never needed, and not missed where it cannot be."""
+"""Cache between runs, in the user's cache folder. The package works without it."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-_SETTLED = 2_000_000_000  #: ns after which another change of a file shows in its dates, on any file system
+_SETTLED = 2_000_000_000  #: ns after which a further change of a file alters its dates, on any file system
 
 
-def kept(name: str) -> Any:
-    """What was kept under a name; None where nothing was, or where it cannot be read."""
+def load(name: str) -> Any:
+    """Return the content stored under a name; None if there is none or it cannot be read."""
     with suppress(OSError, ValueError, RuntimeError):
         return json.loads((_folder() / name).read_text("utf-8"))
     return None
 
 
-def keep(name: str, content: Any) -> None:
-    """Keep what JSON holds under a name. It takes its place whole; where nothing can be written, nothing is."""
+def store(name: str, content: Any) -> None:
+    """Store JSON content under a name, atomically; do nothing if the folder cannot be written."""
     with suppress(OSError, RuntimeError):
         folder = _folder()
         folder.mkdir(parents=True, exist_ok=True)
@@ -35,10 +35,11 @@ def keep(name: str, content: Any) -> None:
 
 
 def _folder() -> Path:
-    """``XDG_CACHE_HOME`` where it is set, else where the system has such files; RuntimeError where there is no home."""
-    told = os.environ.get("XDG_CACHE_HOME", "")
-    if os.path.isabs(told):
-        return Path(told) / "coursework"
+    """Return the cache folder: ``XDG_CACHE_HOME`` if set, else that of the system; RuntimeError if there is
+    no home folder."""
+    configured = os.environ.get("XDG_CACHE_HOME", "")
+    if os.path.isabs(configured):
+        return Path(configured) / "coursework"
     if sys.platform == "win32":
         return (
             Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "coursework" / "Cache"
@@ -46,24 +47,28 @@ def _folder() -> Path:
     return Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache") / "coursework"
 
 
-def made_of(files: Sequence[Path], name: str, make: Callable[[], Any]) -> Any:
-    """Return what ``make`` makes of some files, or what an earlier run kept of it under a name while none has changed since.
+def cached_result(files: Sequence[Path], name: str, make: Callable[[], Any]) -> Any:
+    """Return the result of ``make``, which depends on ``files``; an earlier run's result if no file has
+    changed since.
 
-    What is made holds tables, lists, texts, numbers and truth values, no more.
+    The result consists of dictionaries, lists, texts, numbers and truth values.
     """
     begun, now = time.time_ns(), {str(file): state(str(file)) for file in files}
-    match kept(name):
+    match load(name):
         case [was, content] if was == now:
             return content
     content = make()
     if is_settled(now.values(), begun):
-        keep(name, [now, content])
+        store(name, [now, content])
     return content
 
 
-def is_settled(found: Iterable[State], begun: int) -> bool:
-    """Whether no file was changed just before a time: it might change again within the grain of its dates."""
-    return max((date for one in found for date in one[1:]), default=begun) < begun - _SETTLED
+def is_settled(states_now: Iterable[State], begun: int) -> bool:
+    """Return whether no file changed just before a time; otherwise it might change again within the
+    resolution of its dates."""
+    return (
+        max((date for file_state in states_now for date in file_state[1:]), default=begun) < begun - _SETTLED
+    )
 
 
 State = list[
@@ -72,29 +77,29 @@ State = list[
 
 
 def states(*folders: Path) -> dict[str, State]:
-    """The files in some folders, at any depth, as they are now; what Python compiled is left out."""
+    """Return the state of all files below some folders, without files that Python compiled."""
     return {path: state(path) for folder in folders for path in _files(str(folder), set())}
 
 
 def state(path: str) -> State:
-    """A file as it is now."""
+    """Return the state of a file now."""
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return []
-    return [found.st_size, found.st_mtime_ns, found.st_ctime_ns]
+    return [status.st_size, status.st_mtime_ns, status.st_ctime_ns]
 
 
 def _files(folder: str, met: set[tuple[int, int]]) -> Iterator[str]:
     try:
         entries = list(os.scandir(folder))
-    except OSError:  # a folder that nobody may read gives nothing to anybody
+    except OSError:  # an unreadable folder has no files
         return
     for entry in entries:
         if not entry.is_dir():
             yield entry.path
         elif entry.name != "__pycache__":
             there = os.stat(entry.path)
-            if (place := (there.st_dev, there.st_ino)) not in met:  # a link may lead in a circle
-                met.add(place)
+            if (inode := (there.st_dev, there.st_ino)) not in met:  # links may form a loop
+                met.add(inode)
                 yield from _files(entry.path, met)

@@ -1,8 +1,8 @@
-"""The package as it is installed: its name, its version, and the commands that install it.
+"""The installed package: its name, its version, and the commands that install it.
 
-On public indexes ``coursework`` is the name of other people's package, and ``mechanism-coursework`` is nobody's: whoever registers
-it would run code on every machine whose user types what a message says. No command takes it from an index before
-:data:`PUBLISHED` says that it is there.
+On public indexes ``coursework`` is somebody else's package, and ``mechanism-coursework`` is not registered:
+whoever registers it could run code on every machine whose user types a command from a message. No command
+installs from an index before :data:`PUBLISHED` is true.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _SHELL = set(" ;<>&|[]*~!")
 
 
 def pip_install(requirement: str = "", extra: str = "") -> str:
-    """Return the command that installs a requirement; without one, this very version of the package with an extra.
+    """Return the command that installs a requirement; by default, this version of the package with an extra.
 
     The command is for other machines: it names a file in the current folder, or a published version.
     """
@@ -33,7 +33,7 @@ def pip_install(requirement: str = "", extra: str = "") -> str:
 
 
 def add_extra(extra: str) -> str:
-    """Return the command that adds the libraries of an extra to the package as it is installed here."""
+    """Return the command that adds the libraries of an extra to this installation."""
     source, editable = _source()
     if not source:
         return pip_install(extra=extra)
@@ -45,17 +45,17 @@ def add_extra(extra: str) -> str:
 
 
 def _source() -> tuple[str, bool]:
-    """Return the folder, file or address that pip installed the package from, "" where that is gone or unknown, and whether
-    it is an editable folder."""
-    # Loaded where an extra is missing: each command would wait for them.
+    """Return the folder, file or address that pip installed the package from ("" if it is gone or unknown),
+    and whether the folder is editable."""
+    # Imported only if an extra is missing: they would slow every command down.
     import json
     from importlib import metadata
     from urllib.parse import urlsplit
     from urllib.request import url2pathname
 
     try:
-        told = metadata.distribution(DISTRIBUTION).read_text("direct_url.json")
-        url = json.loads(told or "{}")
+        record = metadata.distribution(DISTRIBUTION).read_text("direct_url.json")
+        url = json.loads(record or "{}")
     except (metadata.PackageNotFoundError, ValueError):
         return "", False
     address = str(url.get("url", ""))

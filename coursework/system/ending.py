@@ -1,4 +1,4 @@
-"""How processes end: told to, they clean up behind them; and none outlives the one that began it."""
+"""End of processes: on a signal they clean up; and no process outlives its parent."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from functools import partial
 from types import FrameType
 from typing import Any
 
-_GRACE = 2.0  #: seconds in which a process that nobody waits for puts away what it has begun
-_BY_SIGNAL = 128  #: the status of a process that a signal ended: its number beyond this
-_AGAIN = 0.2  #: seconds until a process that goes on as if it had not been told to end is told again
+_GRACE = 2.0  #: seconds for an orphaned process to clean up
+_BY_SIGNAL = 128  #: exit status of a process that a signal ended: this plus the signal's number
+_AGAIN = 0.2  #: seconds until a signal without effect is repeated
 
 
 class Ended(SystemExit):
-    """Somebody has told this process to end; contexts are left as on the way out of a fault."""
+    """Exception of a signal that ends this process; contexts are left as on any other exception."""
 
     def __init__(self, number: int) -> None:
         super().__init__(_BY_SIGNAL + number)
@@ -30,89 +30,91 @@ class Ended(SystemExit):
 
 
 def end_cleanly() -> None:
-    """From now on SIGTERM, and the end of the terminal, end this process as a fault does: by :class:`Ended`.
+    """Let SIGTERM, and the end of the terminal, raise :class:`Ended` in this process. Call it in the main
+    thread.
 
-    Whoever does not hear it is told again: a main thread that waits while another thread is handed the signal, and what drops
-    an exception on its way, as some of the interpreter's own C does. What is being put away meanwhile is not disturbed.
-    What was begun to outlive its terminal does. Of the main thread alone.
+    The signal is repeated if it has no effect: the main thread may wait while another thread receives the
+    signal, and some C code of the interpreter drops exceptions. Cleaning up is not interrupted. A process
+    that was started to outlive its terminal does.
     """
     signal.signal(signal.SIGTERM, _end)
     if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
         signal.signal(signal.SIGHUP, _end)
-    _tell_again()
+    _repeat_signals()
 
 
 def has_ended() -> None:
-    """The process is on its last lines; nobody tells it to end any more. Of the main thread alone."""
+    """Ignore further signals: the process runs its last lines. Call it in the main thread."""
     for number in signal.Signals:
         if signal.getsignal(number) is _end:
             signal.signal(number, signal.SIG_IGN)
 
 
-_waiting: list[int] = []  #: a signal that came while none was heeded
-_is_heeded = True
-_is_at_work = True  #: False in a process that waits for a task, and has nothing to put away
-_told = 0  #: where each signal is written, once somebody reads it
+_waiting: list[int] = []  #: a signal that arrived while signals were blocked
+_are_signals_handled = True
+_is_at_work = True  #: False in a process that waits for a task and has nothing to clean up
+_wakeup_fd = 0  #: file descriptor that receives each signal's number; 0 before a thread reads it
 
 
 @contextmanager
-def whole() -> Iterator[None]:
-    """What is begun in this context is done before this process heeds that it is told to end. Of the main thread alone."""
-    global _is_heeded
-    _is_heeded, before = False, _is_heeded
+def signals_blocked() -> Iterator[None]:
+    """Run a critical section: a signal that ends this process takes effect after the context. Use it in the
+    main thread."""
+    global _are_signals_handled
+    _are_signals_handled, before = False, _are_signals_handled
     try:
         yield
     finally:
-        _is_heeded = before
-        if _waiting and _is_heeded:
+        _are_signals_handled = before
+        if _waiting and _are_signals_handled:
             _end(_waiting.pop(), None)
 
 
 def _end(number: int, frame: FrameType | None) -> None:
     if not _is_at_work:
         os._exit(_BY_SIGNAL + number)
-    if not _is_heeded:
+    if not _are_signals_handled:
         _waiting[:] = [number]
     elif not _is_ending():
         raise Ended(number)
 
 
 def _is_ending() -> bool:
-    """Whether the main thread puts something away because it has been told to end."""
+    """Return whether the main thread cleans up after a signal."""
     fault = sys.exc_info()[1]
     while fault is not None and not isinstance(fault, Ended):
         fault = fault.__context__
     return fault is not None
 
 
-def _tell_again() -> None:
-    """Begin a thread, once, that hears of each signal, whichever thread is handed it."""
-    global _told
-    if _told or os.name != "posix":
+def _repeat_signals() -> None:
+    """Start a thread, once, that learns of each signal in whichever thread it arrives."""
+    global _wakeup_fd
+    if _wakeup_fd or os.name != "posix":
         return
-    hears, _told = os.pipe()
-    os.set_blocking(_told, False)
-    signal.set_wakeup_fd(_told, warn_on_full_buffer=False)
-    sys.unraisablehook = partial(_say_dropped, sys.unraisablehook)
-    threading.Thread(target=_repeat, args=(hears,), daemon=True).start()
+    read_end, _wakeup_fd = os.pipe()
+    os.set_blocking(_wakeup_fd, False)
+    signal.set_wakeup_fd(_wakeup_fd, warn_on_full_buffer=False)
+    sys.unraisablehook = partial(_report_dropped, sys.unraisablehook)
+    threading.Thread(target=_repeat, args=(read_end,), daemon=True).start()
 
 
-def _repeat(hears: int) -> None:
+def _repeat(read_end: int) -> None:
     main = threading.main_thread().ident or 0
-    while told := os.read(hears, 1):
-        while signal.getsignal(told[0]) is _end:
+    while data := os.read(read_end, 1):
+        while signal.getsignal(data[0]) is _end:
             time.sleep(_AGAIN)
-            if signal.getsignal(told[0]) is _end:
-                signal.pthread_kill(main, told[0])
+            if signal.getsignal(data[0]) is _end:
+                signal.pthread_kill(main, data[0])
 
 
-def _say_dropped(say: Callable[[Any], Any], dropped: Any) -> None:
+def _report_dropped(say: Callable[[Any], Any], dropped: Any) -> None:
     if not isinstance(dropped.exc_value, Ended):
         say(dropped)
 
 
 def follow_parent() -> None:
-    """This process ends when the one that began it has, however that ended: cleanly if it can within a moment."""
+    """End this process when its parent has ended, in whatever way: cleanly if it can within a moment."""
     end_cleanly()
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
@@ -128,12 +130,13 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def done_or_ended(function: Callable[..., Any], *told: Any) -> Any:
-    """What a function gives; a process that is told to end meanwhile, or later, does no more than leave it."""
+def done_or_ended(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a function and return its result; on a signal, meanwhile or later, the process leaves the function
+    and exits."""
     global _is_at_work
     _is_at_work = True
     try:
-        return function(*told)
+        return function(*arguments)
     except Ended as end:
         os._exit(int(str(end.code)))
     finally:

@@ -1,4 +1,5 @@
-"""Libraries that only some jobs need: asked for when the job is, and what is wrong with one is said."""
+"""Libraries that only some jobs need: loaded when the job needs them, with a clear message if one is missing
+or broken."""
 
 from __future__ import annotations
 
@@ -11,11 +12,13 @@ from coursework.system.distribution import add_extra
 
 
 class NotAtHand(BadInput):
-    """A library that a job needs is not installed, or cannot be loaded; says which, and what would do."""
+    """Error of a library that a job needs and that is not installed or cannot be loaded; the message gives
+    the remedy."""
 
 
 def library(module: str, job: str, extra: str) -> ModuleType:
-    """A module of a library that ``job`` needs (``Parquet needs``) and that the package's ``extra`` brings.
+    """Return a module of a library that ``job`` needs (``Parquet needs``) and that the package's ``extra``
+    installs.
 
     Raises
     ------
@@ -28,14 +31,14 @@ def library(module: str, job: str, extra: str) -> ModuleType:
     except Exception as fault:  # whatever a library does that does not fit the others
         if isinstance(fault, ModuleNotFoundError) and fault.name == name:
             raise NotAtHand(f"{job} {name}, which is not installed: {add_extra(extra)}") from fault
-        said = " ".join(str(fault).split())[:120]
+        message = " ".join(str(fault).split())[:120]
         raise NotAtHand(
-            f"{job} {name}, which is installed and cannot be loaded ({type(fault).__name__}: {said}): "
+            f"{job} {name}, which is installed and cannot be loaded ({type(fault).__name__}: {message}): "
             f"pip install --upgrade --force-reinstall {name}, or a version that fits the NumPy that is there"
         ) from fault
 
 
 def libraries(modules: Iterable[str], job: str, extra: str) -> None:
-    """Load the libraries that ``job`` needs before anything else of it is begun; see :func:`library`."""
+    """Load the libraries that ``job`` needs before it begins; see :func:`library`."""
     for module in modules:
         library(module, job, extra)

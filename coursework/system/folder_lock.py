@@ -1,8 +1,9 @@
-"""A folder that one command at a time writes: the lock is a file in it that names the process, and goes with the command.
+"""Lock of a folder that one command at a time writes: a file in it that names the process, removed at the
+command's end.
 
-Made in one step (``O_EXCL``), which holds on shared folders too. A lock whose process is gone is taken over: one whose number
-is no longer given, or is given to a process that began at another time, or was given before the machine was started.
-Of a process on another machine nothing can be told, so its lock stands.
+The file is created in one step (``O_EXCL``), which works on shared folders too. A lock is taken over if its
+process is gone: the process number is free, belongs to a process that started at another time, or dates from
+before the machine's start. The state of a process on another machine is unknown, so its lock stays.
 """
 
 from __future__ import annotations
@@ -22,65 +23,66 @@ from coursework.errors import BadInput
 from coursework.system.writing import writing
 
 LOCK = ".coursework.lock"
-_FILLED = 2.0  #: seconds that a lock may stand without saying whose it is
-_LOOK = 0.05  #: seconds between two looks at it
+_FILLED = 2.0  #: seconds that a lock may stay empty
+_LOOK = 0.05  #: seconds between two reads of it
 
-Owner = dict[str, Any]  #: of a lock: number and start of its process, where it runs
+Owner = dict[str, Any]  #: of a lock: number, start and machine of its process
 
 
 @contextmanager
 def only_writer(folder: Path, command: str = "") -> Iterator[None]:
-    """While the context lasts no other command writes into a folder, which is made where it is not there; what was made for it
-    and stays empty goes.
+    """Lock a folder against other commands while the context lasts.
+
+    The folder is created if it is missing; folders that were created and stay empty are removed.
 
     Raises
     ------
     BadInput
         Another command writes into it, or nobody can.
     """
-    made = _missing(folder)
-    lock, own = folder.resolve() / LOCK, _own(command)
+    created = _missing(folder)
+    lock, owner = folder.resolve() / LOCK, _this_process(command)
     with writing(folder):
-        _take(lock, own, folder)
+        _acquire(lock, owner, folder)
     try:
         yield
     finally:
-        _let_go(lock, own)
-        for one in made:
-            with suppress(OSError):  # something was written
-                one.rmdir()
+        _release(lock, owner)
+        for path in created:
+            with suppress(OSError):  # not empty
+                path.rmdir()
 
 
 def is_bare(folder: Path) -> bool:
-    """Whether nothing stands in a folder, or none is there; who writes it does not count."""
+    """Return whether a folder is missing or empty, apart from its lock."""
     return not folder.exists() or all(path.name == LOCK for path in folder.iterdir())
 
 
 def _missing(folder: Path) -> list[Path]:
-    """The folders that are to be made, the innermost first."""
-    return [one for one in (folder, *folder.parents) if not one.exists()]
+    """Return the folders to create, the innermost first."""
+    return [path for path in (folder, *folder.parents) if not path.exists()]
 
 
-def _take(lock: Path, own: Owner, folder: Path) -> None:
-    while not _stands(lock, own):
-        found = _owner(lock)
-        if found is None:
-            continue  # it has gone meanwhile
-        if not _is_gone(found):
-            raise BadInput(_busy(found, folder, lock))
-        _take_away(lock, found)
+def _acquire(lock: Path, owner: Owner, folder: Path) -> None:
+    while not _acquired(lock, owner):
+        holder = _owner(lock)
+        if holder is None:
+            continue  # removed meanwhile
+        if not _is_gone(holder):
+            raise BadInput(_busy(holder, folder, lock))
+        _remove_stale(lock, holder)
 
 
-def _stands(lock: Path, own: Owner) -> bool:
-    """Whether the lock was made, in a folder that may be made and taken away by others meanwhile."""
+def _acquired(lock: Path, owner: Owner) -> bool:
+    """Return whether this call created the lock, in a folder that others may create and remove meanwhile."""
     while True:
         lock.parent.mkdir(parents=True, exist_ok=True)
         with suppress(FileNotFoundError):
-            return _made(lock, own)
+            return _create(lock, owner)
 
 
-def _made(path: Path, content: Owner) -> bool:
-    """Whether the file was made, which it is by one process alone."""
+def _create(path: Path, content: Owner) -> bool:
+    """Return whether this call created the file; only one process can."""
     try:
         file = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
     except FileExistsError:
@@ -95,23 +97,24 @@ def _made(path: Path, content: Owner) -> bool:
     return True
 
 
-def _let_go(lock: Path, own: Owner) -> None:
-    with suppress(OSError):  # somebody has taken the folder away
-        if _said(lock) == own:
+def _release(lock: Path, owner: Owner) -> None:
+    with suppress(OSError):  # the folder may be gone
+        if _content(lock) == owner:
             lock.unlink()
 
 
-def _take_away(lock: Path, found: Owner) -> None:
-    """Take a lock away whose process is gone: by one process alone, so that no other lock goes in its place."""
-    taker = lock.with_name(f"{LOCK}.{found.get('pid', 0)}-{found.get('began', '')}".replace("/", "-"))
-    if not _made(taker, {}):
+def _remove_stale(lock: Path, holder: Owner) -> None:
+    """Remove a lock whose process is gone. Only one process does so, and no newer lock is removed in its
+    place."""
+    taker = lock.with_name(f"{LOCK}.{holder.get('pid', 0)}-{holder.get('began', '')}".replace("/", "-"))
+    if not _create(taker, {}):
         time.sleep(_LOOK)
         with suppress(FileNotFoundError):
-            if time.time() - taker.stat().st_mtime > _FILLED:  # who took it away was stopped in between
+            if time.time() - taker.stat().st_mtime > _FILLED:  # the process that removes the lock has stopped
                 taker.unlink()
         return
     try:
-        if _said(lock) == found:
+        if _content(lock) == holder:
             lock.unlink(missing_ok=True)
     finally:
         taker.unlink(missing_ok=True)
@@ -121,31 +124,31 @@ def _take_away(lock: Path, found: Owner) -> None:
 
 
 def _owner(lock: Path) -> Owner | None:
-    """Whose lock it is; of nobody where it says nothing after a while, as one does that a failing machine left; None where
-    it has gone."""
+    """Return the owner of a lock; empty if the file stays empty for a while, as after a crash of the machine;
+    None if the lock is gone."""
     last = time.monotonic() + _FILLED
-    while not (found := _said(lock)):
+    while not (content := _content(lock)):
         if not os.path.lexists(lock):
             return None
         if time.monotonic() > last:
             return {}
         time.sleep(_LOOK)
-    return found
+    return content
 
 
-def _said(lock: Path) -> Owner:
+def _content(lock: Path) -> Owner:
     with suppress(OSError, ValueError, RecursionError):
-        found = json.loads(lock.read_bytes())
-        return found if isinstance(found, dict) else {}
+        content = json.loads(lock.read_bytes())
+        return content if isinstance(content, dict) else {}
     return {}
 
 
-def _own(command: str) -> Owner:
-    return {**_here(), "pid": os.getpid(), "began": _began(os.getpid()), "command": command}
+def _this_process(command: str) -> Owner:
+    return {**_here(), "pid": os.getpid(), "began": _start_time(os.getpid()), "command": command}
 
 
 def _here() -> Owner:
-    """The machine, since when it runs, and which of its numbers of processes are meant: a container has its own."""
+    """Return the machine, its boot, and its numbering of processes: a container has its own."""
     return {
         "host": socket.gethostname(),
         "boot": _text("/proc/sys/kernel/random/boot_id"),
@@ -154,7 +157,7 @@ def _here() -> Owner:
 
 
 def _is_gone(owner: Owner) -> bool:
-    """Whether the process of a lock has ended, as far as this machine knows."""
+    """Return whether the process of a lock has ended, as far as this machine knows."""
     here = _here()
     if not owner:
         return True
@@ -165,26 +168,27 @@ def _is_gone(owner: Owner) -> bool:
     number = owner.get("pid")
     if owner.get("numbers") != here["numbers"] or not isinstance(number, int):
         return False
-    began = _began(number)
+    began = _start_time(number)
     return began is None or ("" not in (began, owner.get("began")) and began != owner.get("began"))
 
 
-def _began(number: int) -> str | None:
-    """When a process began, in the system's own words, nothing where it does not say; None where there is none of the number."""
+def _start_time(number: int) -> str | None:
+    """Return the start time of a process in the system's own format, "" if unknown; None if no process has
+    the number."""
     if sys.platform == "win32":
-        told = _output("tasklist", "/FI", f"PID eq {number}", "/FO", "CSV", "/NH")
-        return "" if f'"{number}"' in told else None
+        output = _output("tasklist", "/FI", f"PID eq {number}", "/FO", "CSV", "/NH")
+        return "" if f'"{number}"' in output else None
     try:
         os.kill(number, 0)
     except (ProcessLookupError, OverflowError):
         return None
     except PermissionError:
-        pass  # it is there, and somebody else's
+        pass  # it exists and belongs to another user
     if sys.platform != "linux":
         return _output("ps", "-o", "lstart=", "-p", str(number)).strip()
-    stat = _text(f"/proc/{number}/stat").rpartition(")")[2].split()  # its name may hold anything
+    stat = _text(f"/proc/{number}/stat").rpartition(")")[2].split()  # the program's name may contain anything
     if stat[:1] in (["Z"], ["X"]):
-        return None  # it has ended, and nobody has asked how
+        return None  # it has ended; its parent has not read the status
     return stat[19] if len(stat) > 19 else ""
 
 
@@ -205,9 +209,9 @@ def _link(path: str) -> str:
 
 
 def _busy(owner: Owner, folder: Path, lock: Path) -> str:
-    whose = f"process {owner.get('pid')} on {owner.get('host')}"
+    process = f"process {owner.get('pid')} on {owner.get('host')}"
     command = f" (coursework {owner['command']})" if owner.get("command") else ""
     away = ""
     if owner.get("host") != socket.gethostname() or owner.get("numbers") != _link("/proc/self/ns/pid"):
         away = f"; should it have been stopped there, take {lock} away"
-    return f"another command is writing into {folder}: {whose}{command}; wait until it has ended, or choose another folder{away}"
+    return f"another command is writing into {folder}: {process}{command}; wait until it has ended, or choose another folder{away}"

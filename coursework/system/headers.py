@@ -18,7 +18,7 @@ _POLICY = (
 )
 _ALWAYS = {
     "x-content-type-options": "nosniff",
-    "referrer-policy": "same-origin",  # without the origin, nobody could tell where a form comes from
+    "referrer-policy": "same-origin",  # the origin shows which page sent a form
     "cross-origin-opener-policy": "same-origin",
     "cross-origin-resource-policy": "same-origin",
     "permissions-policy": "camera=(), microphone=(), geolocation=()",
@@ -39,19 +39,19 @@ def security_headers(
     is_secure
         Served over https.
     frames
-        Origins whose pages may show this one in a frame; none unless told.
+        Origins whose pages may show this one in a frame; none by default.
     forms
-        Origins to which forms lead, beside the own one.
+        Further origins to which forms may be sent.
     scripts
         Digests of scripts within the page, ``sha256-…``.
     """
-    more = {"form-action": forms, "script-src": [f"'{one}'" for one in scripts]}
+    more = {"form-action": forms, "script-src": [f"'{digest}'" for digest in scripts]}
     parts = [
         " ".join([name, value, *more.get(name, ())]) for name, value in _POLICY if name != "frame-ancestors"
     ]
     parts.append("frame-ancestors " + (" ".join(frames) or "'none'"))
-    told = {"content-security-policy": "; ".join(parts), **_ALWAYS, **(_HTTPS if is_secure else {})}
-    return told if frames else {**told, "x-frame-options": "DENY"}
+    headers = {"content-security-policy": "; ".join(parts), **_ALWAYS, **(_HTTPS if is_secure else {})}
+    return headers if frames else {**headers, "x-frame-options": "DENY"}
 
 
 class Guarded:
@@ -82,11 +82,11 @@ class Guarded:
             raise
 
     def _with_ours(self, headers: Sequence[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
-        known = {name.lower() for name, _ in headers}
+        present = {name.lower() for name, _ in headers}
         ours = {**security_headers(self._is_secure(), self._frames), "cache-control": "no-store"}
-        if b"content-security-policy" in known:  # which says who may frame it
+        if b"content-security-policy" in present:  # that policy names the pages that may frame this one
             ours.pop("x-frame-options", None)
         return [
             *headers,
-            *((name.encode(), text.encode()) for name, text in ours.items() if name.encode() not in known),
+            *((name.encode(), text.encode()) for name, text in ours.items() if name.encode() not in present),
         ]

@@ -1,4 +1,4 @@
-"""JSON that is read back: what a file of ours never holds is refused, with its place."""
+"""JSON files that are read back: content that our files never hold is refused, with its path in the file."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Any, NoReturn
 
 from coursework.errors import BadInput
 
-_DIGITS = 300  #: of a whole number; a float has no more before its point
-_SHOWN = 40  #: characters of what was found
+_DIGITS = 300  #: of an integer; a float has no more before its point
+_EXCERPT = 40  #: characters of a faulty text in a message
 
 
 def read_json(path: Path) -> Any:
-    """What a file of JSON holds, as :func:`json_of`.
+    """Return the content of a JSON file, as :func:`json_of`.
 
     Raises
     ------
@@ -30,7 +30,7 @@ def read_json(path: Path) -> Any:
 
 
 def json_of(data: bytes, source: str) -> Any:
-    """What some bytes of JSON hold; numbers are finite and texts whole characters without NUL.
+    """Return the content of JSON bytes; numbers are finite, and texts hold whole characters and no NUL.
 
     Raises
     ------
@@ -39,17 +39,17 @@ def json_of(data: bytes, source: str) -> Any:
     """
     try:
         text = data.decode("utf-8-sig")
-        found = json.loads(text, parse_int=_whole, parse_float=_decimal, parse_constant=_constant)
+        value = json.loads(text, parse_int=_integer, parse_float=_decimal, parse_constant=_constant)
     except RecursionError as fault:
         raise BadInput(f"{source} is not JSON that can be read: it is nested too deep") from fault
     except ValueError as fault:
         raise BadInput(f"{source} is not JSON: {str(fault)[:100]}") from fault
     if "\\u0000" in text or "\\ud" in text.casefold():
-        _check_texts(found, source)
-    return found
+        _check_texts(value, source)
+    return value
 
 
-def _whole(digits: str) -> int:
+def _integer(digits: str) -> int:
     if len(digits) > _DIGITS:
         _refuse(digits, f"of {len(digits)} digits")
     return int(digits)
@@ -66,25 +66,25 @@ def _constant(name: str) -> NoReturn:
     _refuse(name, "that is none")
 
 
-def _refuse(written: str, what: str) -> NoReturn:
-    raise ValueError(f"a number {what}, {written[:_SHOWN]}{'…' if len(written) > _SHOWN else ''}")
+def _refuse(written: str, problem: str) -> NoReturn:
+    raise ValueError(f"a number {problem}, {written[:_EXCERPT]}{'…' if len(written) > _EXCERPT else ''}")
 
 
-def _check_texts(found: Any, source: str) -> None:
-    for place, text in _texts(found, ""):
+def _check_texts(value: Any, source: str) -> None:
+    for path, text in _texts(value, ""):
         if "\0" in text or (not text.isprintable() and any("\ud800" <= c <= "\udfff" for c in text)):
-            what = "a NUL" if "\0" in text else "half a character"
-            raise BadInput(f"{source}: {place.lstrip('.') or 'a text'} holds {what}: {text[:_SHOWN]!r}")
+            problem = "a NUL" if "\0" in text else "half a character"
+            raise BadInput(f"{source}: {path.lstrip('.') or 'a text'} holds {problem}: {text[:_EXCERPT]!r}")
 
 
-def _texts(found: Any, place: str) -> Iterator[tuple[str, str]]:
-    """Every text, with its place."""
-    if isinstance(found, str):
-        yield place, found
-    elif isinstance(found, dict):
-        for key, value in found.items():
-            yield place, key
-            yield from _texts(value, f"{place}.{ascii(key[:_SHOWN])[1:-1]}")
-    elif isinstance(found, list):
-        for number, value in enumerate(found):
-            yield from _texts(value, f"{place}[{number}]")
+def _texts(content: Any, path: str) -> Iterator[tuple[str, str]]:
+    """Yield every text with its path."""
+    if isinstance(content, str):
+        yield path, content
+    elif isinstance(content, dict):
+        for key, value in content.items():
+            yield path, key
+            yield from _texts(value, f"{path}.{ascii(key[:_EXCERPT])[1:-1]}")
+    elif isinstance(content, list):
+        for number, value in enumerate(content):
+            yield from _texts(value, f"{path}[{number}]")

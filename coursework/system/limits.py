@@ -1,6 +1,6 @@
-"""What is beyond all measure: how much is read of what comes from outside, and how much is asked of one command.
+"""Limits of size: of input from outside, and of one command.
 
-A class of a hundred thousand stays far below. Who has more parts it.
+A class of a hundred thousand stays far below. Split larger input.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ from coursework.errors import BadInput
 # ----------------------------------------------------------------------------- read
 MOST_BYTES = 1_000_000_000  #: of one file of answers, as CSV, JSON or XML
 MOST_NOTEBOOK_BYTES = 50_000_000  #: of one notebook, its pictures with it
-MOST_TABLE_BYTES = 200_000_000  #: of a roster, of answers accepted, of what was typed of a scan
+MOST_TABLE_BYTES = 200_000_000  #: of a roster, of accepted answers, of typed answers of a scan
 MOST_ROWS = 2_000_000  #: of one file of answers
 MOST_COLUMNS = 5_000  #: of one table
 MOST_CELL = 100_000  #: characters of one answer in a Parquet file
 MOST_PAGES = 5_000  #: of one file of a scan
-MOST_PAGES_OF_TIFF = 500  #: of one TIFF, in which each page is looked for from the first on
-LEAST_OF_PAGE = 500  #: bytes of a file of a scan for each of its pages, where it has more than a few
+MOST_PAGES_OF_TIFF = 500  #: of one TIFF; the reader starts at the first page for each page
+LEAST_OF_PAGE = 500  #: bytes per page of a scan's file with more than a few pages
 MOST_UNPACKED = 500_000_000  #: bytes of a Parquet file, unpacked
 
-# ----------------------------------------------------------------------------- asked
+# -------------------------------------------------------------------------- commands
 MOST_VARIANTS = 1_000_000  #: of one command
 MOST_STEPS = 1_000_000  #: of a cycle
 MOST_SEED = 10**18 - 1
@@ -27,13 +27,14 @@ MOST_PORT = 65_535
 MOST_WORKERS = 256
 
 
-def beyond(what: str, found: int, most: int, unit: str) -> str:
-    """What is said of too much: ``a file of 7,000,000 rows is not read; the limit is 2,000,000: part it into several``."""
-    return f"{what} of {found:,} {unit} is not read; the limit is {most:,}: part it into several"
+def beyond(subject: str, count: int, most: int, unit: str) -> str:
+    """Return the message for too much: ``a file of 7,000,000 rows is not read; the limit is 2,000,000: part
+    it into several``."""
+    return f"{subject} of {count:,} {unit} is not read; the limit is {most:,}: part it into several"
 
 
-def check_size(what: str, size: int, most: int) -> None:
-    """Refuse a file beyond its size.
+def check_size(subject: str, size: int, most: int) -> None:
+    """Raise if a file exceeds its limit.
 
     Raises
     ------
@@ -41,4 +42,4 @@ def check_size(what: str, size: int, most: int) -> None:
         It says the size and the limit.
     """
     if size > most:
-        raise BadInput(f"{what}: {beyond('a file', size, most, 'bytes')}")
+        raise BadInput(f"{subject}: {beyond('a file', size, most, 'bytes')}")

@@ -1,4 +1,4 @@
-"""Files of a folder that others filled: links that lead out of it are not followed, and nothing behind them is read."""
+"""Files of a folder that others filled: links that lead out of it are not followed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LEADS_OUT = "a link that leads out of the folder is not followed"
 
 
 class LeadsOut(OSError):
-    """A path below a folder leads out of it, or to what is no file."""
+    """Error of a path below a folder that leads out of it, or to something that is no file."""
 
     def __init__(self) -> None:
         super().__init__(None, LEADS_OUT)
@@ -30,13 +30,13 @@ class Walked(NamedTuple):
 
 def walked(folder: Path) -> Walked:
     """Walk a folder. A link to a file in it is a file; one to a folder in it is not walked, since that folder is."""
-    found = Walked([], [])
+    result = Walked([], [])
     for path in sorted(folder.rglob("*")):
         if path.is_symlink() and leads_out(path, folder):
-            found.refused.append(path)
+            result.refused.append(path)
         elif path.is_file():
-            found.files.append(path)
-    return found
+            result.files.append(path)
+    return result
 
 
 def leads_out(path: Path, folder: Path) -> bool:
@@ -48,7 +48,7 @@ def leads_out(path: Path, folder: Path) -> bool:
 
 
 def check_inside(path: Path, folder: Path) -> None:
-    """Refuse a file of a folder that leads out of it; one that is not there is told by who reads it.
+    """Raise if a file of a folder leads out of it; a missing file is reported by its reader.
 
     Raises
     ------
@@ -60,7 +60,8 @@ def check_inside(path: Path, folder: Path) -> None:
 
 
 def open_inside(path: Path, folder: Path) -> BufferedReader:
-    """Open a file below a folder to be read; what is read lies in the folder, whatever is moved meanwhile.
+    """Open a file below a folder for reading; the file read lies in the folder even if files are moved
+    meanwhile.
 
     Raises
     ------
@@ -81,7 +82,7 @@ def open_inside(path: Path, folder: Path) -> BufferedReader:
 
 
 def _is_inside(opened: os.stat_result, path: Path, folder: Path) -> bool:
-    """Return whether what was opened is the file that stands in the folder now."""
+    """Return whether the opened file is the one that is in the folder now."""
     try:
         real = path.resolve(strict=True)
         return (
@@ -94,5 +95,7 @@ def _is_inside(opened: os.stat_result, path: Path, folder: Path) -> bool:
 
 
 def folder_of(path: Path, given: Iterable[Path]) -> Path | None:
-    """Return the folder among what somebody named in which a path was found; None for a file that was named itself."""
-    return next((one for one in given if one != path and path.is_relative_to(one)), None)
+    """Return the folder among the given paths that holds a path; None if the path itself was given."""
+    return next(
+        (candidate for candidate in given if candidate != path and path.is_relative_to(candidate)), None
+    )

@@ -1,4 +1,4 @@
-"""Lines of a log, in which texts of strangers act on no terminal."""
+"""Log lines in which foreign text cannot control a terminal."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from coursework.system.visible import one_line, visible
 
 
 class VisibleLines(logging.Formatter):
-    """Lines of a log, one a message, whatever its words hold; times are UTC."""
+    """Formatter of log lines, one per message, with control characters made visible; times are UTC."""
 
     converter = staticmethod(time.gmtime)
     default_time_format = "%Y-%m-%dT%H:%M:%S"

@@ -23,42 +23,42 @@ from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from coursework.errors import CourseworkError
 from coursework.system.blocks import processors
-from coursework.system.ending import done_or_ended, follow_parent, whole
+from coursework.system.ending import done_or_ended, follow_parent, signals_blocked
 
-#: Hands a function of a module, and what it is told, to a process.
+#: Sends a function of a module and its arguments to a process.
 Submit: TypeAlias = Callable[..., Future[Any]]
 
-_LAST = 19  #: the niceness of what others go before
-_MOST = 61  #: processes that some systems can wait for
-_PATIENCE = 3.0  #: seconds for processes to put away what they have begun
-_LOOK = 0.3  #: seconds between two looks at a process that is kept
+_LAST = 19  #: niceness of background work
+_MOST = 61  #: limit of processes that some systems can wait for
+_PATIENCE = 3.0  #: seconds for processes to clean up
+_LOOK = 0.3  #: seconds between two checks of a supervised process
 _AGAIN, _LONGEST = (
     0.5,
     30.0,
-)  #: seconds before one that ended is begun again, the more often it ended the more
-_STEADY = 10.0  #: seconds after which one that runs is taken for sound
+)  #: seconds before a restart; the wait doubles with each failure
+_STEADY = 10.0  #: seconds after which a running process counts as sound
 
 
 class Lost(CourseworkError, RuntimeError):
-    """What was to do a task is not there any more."""
+    """Error of a worker that is gone before its task was done."""
 
 
-class Pool(Protocol):
-    """What does tasks in place of the processes of this machine."""
+class TaskPool(Protocol):
+    """Workers that run tasks instead of the processes of this machine."""
 
     @property
-    def places(self) -> int:
-        """How many are done at once."""
+    def capacity(self) -> int:
+        """Return the number of tasks that run at once."""
 
-    def submit(self, function: Callable[..., Any], *told: Any) -> Future[Any]: ...
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]: ...
 
 
-_shared_by: ContextVar[Pool | None] = ContextVar("shared_by", default=None)
+_shared_by: ContextVar[TaskPool | None] = ContextVar("shared_by", default=None)
 
 
 @contextmanager
-def shared_by(pool: Pool) -> Iterator[None]:
-    """While the context lasts, large jobs go to the pool, whatever their size."""
+def shared_by(pool: TaskPool) -> Iterator[None]:
+    """Send large jobs of any size to the pool while the context lasts."""
     before = _shared_by.set(pool)
     try:
         yield
@@ -67,15 +67,15 @@ def shared_by(pool: Pool) -> Iterator[None]:
 
 
 def is_shared() -> bool:
-    """Whether large jobs go to a pool now."""
+    """Return whether a pool takes large jobs now."""
     return _shared_by.get() is not None
 
 
 def workers(tasks: int, worth: int = 0) -> int:
-    """How many processes so many tasks may have: one for each processor, or 1, this one, where there are fewer than is
-    ``worth`` the start of others, or where others cannot start.
+    """Return the number of processes for a number of tasks: one per processor, or 1 (this process) if there
+    are fewer tasks than ``worth`` or if others cannot start.
 
-    A new process imports the main script of this one; what comes from standard input is no file.
+    A new process imports the main script of this one; a script from standard input is no file.
     """
     if is_shared():
         return _at_once(2)
@@ -90,19 +90,19 @@ def others_can_start() -> bool:
 
 
 class Task(NamedTuple):
-    """A function of a module to be called elsewhere, with what it is told; ``name`` is what it is about."""
+    """Call of a module's function in another process, with its arguments and a ``name`` for messages."""
 
     name: str
     function: Callable[..., Any]
-    told: tuple[Any, ...]
+    arguments: tuple[Any, ...]
 
 
-_AHEAD = 3  #: tasks that are sent for each process before the first has answered
+_AHEAD = 3  #: tasks sent per process before the first answer
 
 
 def in_turn(tasks: Iterable[Task], count: int) -> Iterator[Any]:
-    """What each task gives, in their order, done by so many processes; few are made ahead, so that neither they nor what they
-    give piles up.
+    """Yield the results of the tasks in order, computed by ``count`` processes; only a few are computed
+    ahead, to bound memory.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def in_turn(tasks: Iterable[Task], count: int) -> Iterator[Any]:
     with processes(count) as submit:
         sent: deque[tuple[str, Future[Any]]] = deque()
         for task in tasks:
-            sent.append((task.name, submit(task.function, *task.told)))
+            sent.append((task.name, submit(task.function, *task.arguments)))
             if len(sent) >= _AHEAD * _at_once(count):
                 yield _given(sent)
         while sent:
@@ -120,9 +120,9 @@ def in_turn(tasks: Iterable[Task], count: int) -> Iterator[Any]:
 
 
 def _at_once(count: int) -> int:
-    """Of so many processes, or as many workers as a pool has now."""
+    """Return the number of processes, or of the workers that a pool has now."""
     pool = _shared_by.get()
-    return count if pool is None else max(2, pool.places)
+    return count if pool is None else max(2, pool.capacity)
 
 
 def _given(sent: deque[tuple[str, Future[Any]]]) -> Any:
@@ -135,10 +135,11 @@ def _given(sent: deque[tuple[str, Future[Any]]]) -> Any:
 
 @contextmanager
 def processes(count: int) -> Iterator[Submit]:
-    """So many new processes, which end with the context, and with this process however that ends; a fault in it, or Ctrl-C, ends
-    them at once, whatever they do.
+    """Start ``count`` processes, which end with the context, and with this process; an exception or Ctrl-C
+    terminates them at once.
 
-    New ones, not forked ones: the typesetter must not be carried over. They leave Ctrl-C to this process.
+    They are spawned, not forked: the typesetter's state must not be copied. They leave Ctrl-C to this
+    process.
 
     Raises
     ------
@@ -152,9 +153,9 @@ def processes(count: int) -> Iterator[Submit]:
         spawn = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(count, spawn, done_or_ended, (follow_parent,)) as executor:
 
-            def submit(function: Callable[..., Any], *told: Any) -> Future[Any]:
+            def submit(function: Callable[..., Any], *arguments: Any) -> Future[Any]:
                 with uninterrupted():
-                    return executor.submit(done_or_ended, _call, pickle.dumps((function, told)))
+                    return executor.submit(done_or_ended, _call, pickle.dumps((function, arguments)))
 
             try:
                 yield submit
@@ -169,19 +170,19 @@ def processes(count: int) -> Iterator[Submit]:
 
 
 def _leave(executor: ProcessPoolExecutor) -> None:
-    """End its processes, whatever they do; nothing of it is left. What it is made of is not public."""
+    """Terminate the processes of an executor whatever they do. This uses its private parts."""
     begun = list((executor._processes or {}).values())
     manager: Any = executor._executor_manager_thread
     answers: Any = executor._result_queue
-    executor.shutdown(wait=False, cancel_futures=True)  # first: nobody waits for what has not begun
+    executor.shutdown(wait=False, cancel_futures=True)  # first: pending tasks are cancelled
     _end(begun)
     if manager is not None:
-        answers._writer.close()  # who was ended while it answered has sent half of it
+        answers._writer.close()  # a process terminated while it answered has sent half of its answer
         manager.join()
 
 
 def _end(workers: Sequence[BaseProcess]) -> None:
-    """Processes that work are told to end, and ended where they do not."""
+    """Terminate processes; kill those that do not end in time."""
     for worker in workers:
         worker.terminate()
     last = time.monotonic() + _PATIENCE
@@ -191,20 +192,22 @@ def _end(workers: Sequence[BaseProcess]) -> None:
 
 
 def _call(sent: bytes) -> Any:
-    """In another process. What it is told comes as bytes, so that a course that cannot be opened there is told as such."""
-    function, told = pickle.loads(sent)
-    return function(*told)
+    """Run a pickled call in another process. Unpickling here reports a course that cannot be opened as
+    such."""
+    function, arguments = pickle.loads(sent)
+    return function(*arguments)
 
 
 @contextmanager
-def beside(job: Callable[..., Any], *told: Any) -> Iterator[None]:
-    """While the context lasts, a new process does a job in the time that nobody else wants; it ends with the context, and with this
-    process however that ends. Nothing is done where others cannot start.
+def background_process(job: Callable[..., Any], *arguments: Any) -> Iterator[None]:
+    """Run a job in a new process of the lowest priority while the context lasts.
+
+    The process ends with the context and with this process. Nothing runs if processes cannot start.
     """
     if not others_can_start():
         yield
         return
-    process = _begun(_LAST, job, told)
+    process = _started(_LAST, job, arguments)
     try:
         yield
     finally:
@@ -212,22 +215,23 @@ def beside(job: Callable[..., Any], *told: Any) -> Iterator[None]:
 
 
 @contextmanager
-def kept_beside(niceness: int, job: Callable[..., Any], *told: Any) -> Iterator[None]:
-    """While the context lasts, a process does a job that does not end; where it ends all the same, another one goes on. It ends
-    with the context, and with this process however that ends. Nothing is done where others cannot start.
+def supervised_process(niceness: int, job: Callable[..., Any], *arguments: Any) -> Iterator[None]:
+    """Run an endless job in a process while the context lasts, and start it again if it ends.
+
+    The process ends with the context and with this process. Nothing runs if processes cannot start.
 
     Parameters
     ----------
     niceness
-        Its priority, 0 for that of this process to 19.
+        Priority, from 0 (that of this process) to 19.
     """
     if not others_can_start():
         yield
         return
     is_over = threading.Event()
-    begun: list[BaseProcess] = [_begun(niceness, job, told)]
+    begun: list[BaseProcess] = [_started(niceness, job, arguments)]
     watch = threading.Thread(
-        target=_follow_worker, args=(begun, is_over, niceness, job, told), name="worker", daemon=True
+        target=_follow_worker, args=(begun, is_over, niceness, job, arguments), name="worker", daemon=True
     )
     watch.start()
     try:
@@ -238,12 +242,14 @@ def kept_beside(niceness: int, job: Callable[..., Any], *told: Any) -> Iterator[
         _end(begun)
 
 
-def _begun(niceness: int, job: Callable[..., Any], told: tuple[Any, ...]) -> BaseProcess:
-    process = multiprocessing.get_context("spawn").Process(target=_do_beside, args=(job, told), daemon=True)
+def _started(niceness: int, job: Callable[..., Any], arguments: tuple[Any, ...]) -> BaseProcess:
+    process = multiprocessing.get_context("spawn").Process(
+        target=_run_background, args=(job, arguments), daemon=True
+    )
     with uninterrupted():
         process.start()
     if hasattr(os, "setpriority"):
-        with suppress(OSError):  # it has ended by itself
+        with suppress(OSError):  # it may have ended
             os.setpriority(os.PRIO_PROCESS, process.pid or 0, niceness)
     return process
 
@@ -253,9 +259,9 @@ def _follow_worker(
     is_over: threading.Event,
     niceness: int,
     job: Callable[..., Any],
-    told: tuple[Any, ...],
+    arguments: tuple[Any, ...],
 ) -> None:
-    """Begin a process again whenever it ends; one that ends at once is given more and more time."""
+    """Start a process again whenever it ends; wait longer each time if it ends at once."""
     pause = _AGAIN
     while not is_over.wait(_LOOK):
         if begun[0].is_alive():
@@ -263,28 +269,27 @@ def _follow_worker(
         if is_over.wait(pause):
             return
         since = time.monotonic()
-        begun[0] = _begun(niceness, job, told)
+        begun[0] = _started(niceness, job, arguments)
         while begun[0].is_alive() and not is_over.wait(_LOOK):
             if time.monotonic() - since > _STEADY:
                 break
         pause = _AGAIN if begun[0].is_alive() else min(_LONGEST, 2 * pause)
 
 
-def _do_beside(job: Callable[..., Any], told: tuple[Any, ...]) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is for who began this one
+def _run_background(job: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles it
     follow_parent()
-    job(*told)
+    job(*arguments)
 
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Processes started meanwhile do not hear of interrupts, nor does this one, and each is whole before this one heeds that it is
-    told to end: one that is half begun complains. Only the main thread may say so.
-    """
+    """Start processes in a critical section: neither they nor this process react to interrupts, and each
+    starts completely before a signal ends this process. Other threads than the main thread get no protection."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    with whole():
+    with signals_blocked():
         before = signal.signal(signal.SIGINT, signal.SIG_IGN)
         try:
             yield
@@ -294,39 +299,40 @@ def uninterrupted() -> Iterator[None]:
 
 # ------------------------------------------------------------------------ confined
 
-_NICE = 10  #: niceness of confined work: requests go before it
-_PATIENT = 6.0  #: seconds of waiting for each second of a processor, on a machine that is busy
-_STARTS = 20.0  #: seconds in which a process has started
+_NICE = 10  #: niceness of confined work, behind requests
+_PATIENT = 6.0  #: seconds of waiting per processor second on a busy machine
+_STARTS = 20.0  #: seconds for a process to start
 
 
 _waited = threading.local()
 
 
 def processor_time() -> float:
-    """Return the seconds of a processor that this thread took, with those of the confined processes for which it waited."""
+    """Return the processor seconds of this thread and of the confined processes for which it waited."""
     return time.thread_time() + float(getattr(_waited, "seconds", 0.0))
 
 
-class Means(NamedTuple):
-    """Limits of a process: seconds of a processor, and bytes of memory beyond those with which it starts."""
+class ResourceLimits(NamedTuple):
+    """Limits of a process: processor seconds, and bytes of memory beyond those at its start."""
 
     seconds: float
     memory: int
 
 
 class Exceeded(CourseworkError):
-    """Work that took more than its :class:`Means`; ``what`` is ``time`` or ``memory``."""
+    """Error of work that exceeds its :class:`ResourceLimits`; ``resource`` is ``time`` or ``memory``."""
 
-    def __init__(self, what: str):
-        self.what = what
-        super().__init__(f"the work took more {what} than it may")
+    def __init__(self, resource: str):
+        self.resource = resource
+        super().__init__(f"the work took more {resource} than it may")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Exceeded, (self.what,)
+        return Exceeded, (self.resource,)
 
 
-def confined(means: Means, function: Callable[..., Any], *told: Any) -> Any:
-    """Return what a function gives in a new process of limited time and memory, all of which is freed with the process.
+def confined(means: ResourceLimits, function: Callable[..., Any], *arguments: Any) -> Any:
+    """Return the result of a function, run in a new process of limited time and memory, which frees both at
+    its end.
 
     Parameters
     ----------
@@ -343,11 +349,11 @@ def confined(means: Means, function: Callable[..., Any], *told: Any) -> Any:
         The function raised it.
     """
     if not others_can_start():
-        return function(*told)
+        return function(*arguments)
     spawn = multiprocessing.get_context("spawn")
     answers, answer = spawn.Pipe(duplex=False)
     process = spawn.Process(
-        target=_do_confined, args=(answer, means, pickle.dumps((function, told))), daemon=True
+        target=_do_confined, args=(answer, means, pickle.dumps((function, arguments))), daemon=True
     )
     with answers:
         with uninterrupted():
@@ -365,43 +371,43 @@ def confined(means: Means, function: Callable[..., Any], *told: Any) -> Any:
     raise value
 
 
-def _answered(answers: Connection, process: BaseProcess, means: Means) -> tuple[bool, Any, float]:
-    """Return whether the function gave something, what it gave or raised, and the seconds of a processor that this took."""
+def _answered(answers: Connection, process: BaseProcess, means: ResourceLimits) -> tuple[bool, Any, float]:
+    """Return whether the function returned, its result or exception, and the processor seconds used."""
     if not wait([answers], _STARTS + _PATIENT * means.seconds):
         return False, Exceeded("time"), means.seconds
     try:
         is_done, value, seconds = pickle.loads(answers.recv_bytes(means.memory))
         return is_done, value, seconds
-    except EOFError:  # it was ended: by its own limit of time, or for want of memory
+    except EOFError:  # the process died: at its limit of time, or out of memory
         process.join(_PATIENCE)
         by_time = process.exitcode == -getattr(signal, "SIGXCPU", 0)
         return False, Exceeded("time" if by_time else "memory"), means.seconds
-    except OSError:  # the answer is larger than all that it may take
+    except OSError:  # the answer exceeds the memory limit
         return False, Exceeded("memory"), means.seconds
 
 
-def _do_confined(answer: Connection, means: Means, sent: bytes) -> None:
+def _do_confined(answer: Connection, means: ResourceLimits, sent: bytes) -> None:
     follow_parent()
     with suppress(AttributeError, OSError):
         os.nice(_NICE)
-    function, told = pickle.loads(sent)  # with what it imports, which is not counted
+    function, arguments = pickle.loads(sent)  # includes imports, which do not count
     unlimited = _limit(means)
     try:
-        given = pickle.dumps((True, function(*told), time.process_time()))
+        given = pickle.dumps((True, function(*arguments), time.process_time()))
     except MemoryError:
         unlimited()
         given = pickle.dumps((False, Exceeded("memory"), time.process_time()))
     except CourseworkError as fault:
         given = pickle.dumps((False, fault, time.process_time()))
-    except Exception as fault:  # its message may hold an answer
+    except Exception as fault:  # its message may contain a right answer
         fault = CourseworkError(f"{type(fault).__name__} in {function.__name__}")
         given = pickle.dumps((False, fault, time.process_time()))
     unlimited()
     answer.send_bytes(given)
 
 
-def _limit(means: Means) -> Callable[[], None]:
-    """Limit this process from now on; return what takes the limit of memory away again."""
+def _limit(means: ResourceLimits) -> Callable[[], None]:
+    """Limit this process from now on; return a function that lifts the limit of memory."""
     try:
         import resource
 

@@ -1,5 +1,5 @@
-"""Python code as a tree, one at a time: up to 3.12 the parser counts its depth for all threads together, and two that parse
-at once may each be told of a SystemError."""
+"""Parsing of Python code, one thread at a time: up to 3.12 the parser counts its depth for all threads
+together, and two threads may get a SystemError."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _ALONE = RLock()
 
 
 def parse(code: str, mode: str = "exec") -> Any:
-    """The tree of some code.
+    """Return the syntax tree of some code.
 
     Raises
     ------

@@ -1,4 +1,5 @@
-"""Files of SQLite without what was deleted: in free pages, in gaps of pages, and in the write-ahead log."""
+"""SQLite files without remains of deleted rows: in free pages, in gaps of pages, and in the write-ahead
+log."""
 
 from __future__ import annotations
 
@@ -7,26 +8,26 @@ import time
 from contextlib import closing
 from pathlib import Path
 
-_TURN = 0.5  #: seconds for which one try waits: while it does, nobody else writes
+_TURN = 0.5  #: seconds for which one attempt waits; meanwhile nobody else can write
 _PAUSE = 0.1
 
 
 def scrub(path: Path, patience: float = 5.0) -> bool:
-    """Rewrite a file without what was deleted, and cut its write-ahead log to nothing.
+    """Rewrite a database without deleted content, and truncate its write-ahead log.
 
     Other processes may have it open. One that reads an older state, or writes, keeps the log from being cut; it is waited for.
 
     Parameters
     ----------
     path
-        Of the database; one that is not there needs nothing.
+        Database file; it may be missing.
     patience
         Seconds to try.
 
     Returns
     -------
     bool
-        True when nothing deleted is left in its files; False where another process, or a full disk, kept some of it.
+        True if no deleted content is left in the files; False if another process or a full disk prevented it.
     """
     if not path.exists():
         return True

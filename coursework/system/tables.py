@@ -1,4 +1,5 @@
-"""CSV as people and spreadsheets keep it: how it is encoded, what parts its cells, and cells that nothing runs."""
+"""CSV as people and spreadsheets write it: encodings, delimiters, and cells that no spreadsheet runs as
+formulas."""
 
 from __future__ import annotations
 
@@ -24,20 +25,20 @@ _WARNINGS = {
 
 
 def delimiter_of(header: str) -> str:
-    """What parts the cells of a CSV, by its first line: semicolon, comma or tab."""
+    """Return the delimiter of a CSV by its first line: semicolon, comma or tab."""
     return max((";", ",", "\t"), key=header.count)
 
 
-def said_twice(header: Iterable[str], columns: Iterable[str]) -> str:
-    """What is wrong where a header names one of the columns more than once, since their cells may differ; nothing where it
-    does not."""
+def duplicate_column(header: Iterable[str], columns: Iterable[str]) -> str:
+    """Return a message if a header names one of the columns more than once, since their cells may differ;
+    else ""."""
     titles = [as_written(title.strip()).casefold() for title in header]
-    twice = next((column for column in columns if titles.count(column) > 1), "")
-    return f"the header names the column {twice} twice; take one of them away" if twice else ""
+    duplicate = next((column for column in columns if titles.count(column) > 1), "")
+    return f"the header names the column {duplicate} twice; take one of them away" if duplicate else ""
 
 
 def encoding_of(data: bytes) -> str:
-    """UTF-8 unless it cannot be, then what Windows and Excel write."""
+    """Return the encoding of a table: UTF-8 if it decodes, else that of Windows and Excel."""
     for encoding in ("utf-16", "utf-8-sig") if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig",):
         try:
             data.decode(encoding)
@@ -48,7 +49,7 @@ def encoding_of(data: bytes) -> str:
 
 
 def _marked_once(data: bytes) -> bytes:
-    """Without the marks that were put before a mark that was there already, as editors and scripts do."""
+    """Return the data without repeated byte-order marks, which editors and scripts add."""
     mark = codecs.BOM_UTF8
     while data.startswith(2 * mark):
         data = data[len(mark) :]
@@ -56,40 +57,40 @@ def _marked_once(data: bytes) -> bytes:
 
 
 def decode(data: bytes) -> tuple[str, str]:
-    """The text and a warning."""
+    """Return the text and a warning, "" if there is none."""
     data = _marked_once(data)
     encoding = encoding_of(data)
     return data.decode(encoding, "replace"), _WARNINGS[encoding]
 
 
 def record(lines: list[str], start: int, delimiter: str, width: int) -> tuple[list[str], int]:
-    """The cells of the record at a line, and how many lines it takes.
+    """Return the cells of the record at a line, and its number of lines.
 
     A quoted cell may run over a few lines, if the record is then well formed, has as many cells as the
     header, and swallows no line that would be a record by itself. Any other quotation mark is a
     character like another: it costs no row, and is kept.
     """
-    whole = _cells(lines[start], delimiter)
-    if whole is not None:
-        return whole, 1
+    cells_of_line = _cells(lines[start], delimiter)
+    if cells_of_line is not None:
+        return cells_of_line, 1
     marks = lines[start].count('"')
-    for taken in range(2, min(MAX_LINES, len(lines) - start) + 1):
-        added = lines[start + taken - 1]
+    for line_count in range(2, min(MAX_LINES, len(lines) - start) + 1):
+        added = lines[start + line_count - 1]
         if added.count(delimiter) + 1 >= width:
             break
         marks += added.count('"')
         if marks % 2 or '"' not in added:
-            continue  # a cell is open still
-        cells = _cells("\n".join(lines[start : start + taken]), delimiter)
+            continue  # a cell is still open
+        cells = _cells("\n".join(lines[start : start + line_count]), delimiter)
         if cells is not None and len(cells) == width:
-            return cells, taken
+            return cells, line_count
         if cells is not None:
-            break  # a whole record, and what follows it is none of it
+            break  # a complete record; the next lines do not belong to it
     return [cell.removeprefix('"') for cell in lines[start].split(delimiter)], 1
 
 
 def _cells(text: str, delimiter: str) -> list[str] | None:
-    """The cells of a well-formed record; None where a quotation mark does not close as it should."""
+    """Return the cells of a well-formed record; None if a quotation mark does not close."""
     if '"' not in text:
         return text.split(delimiter)
     try:
@@ -98,8 +99,8 @@ def _cells(text: str, delimiter: str) -> list[str] | None:
         return None
 
 
-def _check_whole(path: Path, data: bytes) -> None:
-    """Refuse a table that holds NUL: no spreadsheet and no editor puts one there."""
+def _refuse_nul(path: Path, data: bytes) -> None:
+    """Raise if a table holds NUL: no spreadsheet and no editor writes one."""
     if b"\0" in data and "\0" in (text := data.decode(encoding_of(data), "replace")):
         line = len(re.findall(r"\r\n|\n|\r", text.partition("\0")[0])) + 1
         raise BadInput(f"{path}, line {line}: holds a NUL byte, which no table does; take it out")
@@ -107,7 +108,7 @@ def _check_whole(path: Path, data: bytes) -> None:
 
 @contextmanager
 def open_csv(path: Path) -> Iterator[TextIO]:
-    """A CSV to be read line by line, in any encoding that :func:`decode` knows; a cell may be of any length.
+    """Open a CSV for reading line by line, in any encoding of :func:`decode`; cells may have any length.
 
     Raises
     ------
@@ -115,7 +116,7 @@ def open_csv(path: Path) -> Iterator[TextIO]:
         It holds NUL.
     """
     data = _marked_once(path.read_bytes())
-    _check_whole(path, data)
+    _refuse_nul(path, data)
     before = csv.field_size_limit(min(sys.maxsize, 2**31 - 1))
     try:
         yield io.TextIOWrapper(io.BytesIO(data), encoding_of(data), "replace", newline="")
@@ -123,14 +124,14 @@ def open_csv(path: Path) -> Iterator[TextIO]:
         csv.field_size_limit(before)
 
 
-#: What parts cells, in this table or in one that is opened with another separator than it was written with.
+#: Separators of cells, in this table or in one that is opened with another separator.
 _PARTS = r"\t\n\v\f\r;,\x85\u2028\u2029"
-#: What a spreadsheet may pass over before a formula.
+#: Characters that a spreadsheet may skip before a formula.
 _UNSEEN = (
     r" \"\xa0\u1680\u2000-\u200f\u202a-\u202f\u205f-\u2069\u3000\ufeff\x00-\x08\x0e-\x1f\x7f-\x84\x86-\x9f"
 )
-_EQUALS, _SIGNS = "=@＝＠﹦﹫", r"+\-＋－﹢﹣"  #: what formulas begin with, in letters of full width too
-#: What follows the sign of a number: digits and a unit, or a list of such, and nothing to be computed.
+_EQUALS, _SIGNS = "=@＝＠﹦﹫", r"+\-＋－﹢﹣"  #: first characters of formulas, also in full width
+#: Text after the sign of a number: digits and a unit, or a list of such, and nothing to compute.
 _NUMBERS_ALONE = (
     r"[ \xa0\u202f]?[0-9.](?:[^=@＝＠﹦﹫＋－﹢﹣+\-(|!&\"'$\[{<>#*~]|(?<=[eE^])[+-]"
     r"|(?:(?<=[;,(\[])|(?<=[;,] ))(?:[(\[]|[+-](?=[0-9.])))*"
@@ -142,26 +143,26 @@ _MAY_RUN = re.compile(rf"[{_EQUALS}{_SIGNS}]")
 
 
 def inert(cell: Any) -> Any:
-    """The cell, or its text with an apostrophe before what a spreadsheet would compute: where it begins, and behind
-    whatever may part cells. :func:`as_written` takes them away again."""
+    """Return the cell with an apostrophe before any text that a spreadsheet would compute, at its start and
+    after characters that may separate cells. :func:`as_written` removes them."""
     if not isinstance(cell, str) or cell.isalnum() or not _MAY_RUN.search(cell):
         return cell  # nearly all of them
     return _FORMULA.sub(r"\1'", cell)
 
 
 def as_written(cell: str) -> str:
-    """The text of a cell that may have been made :func:`inert`."""
+    """Return the text of a cell without the apostrophes of :func:`inert`."""
     return _FORMULA.sub(lambda before: before[1].removesuffix("'"), cell) if "'" in cell else cell
 
 
 class Spreadsheet(NamedTuple):
-    """What parts the cells and the decimals of a table, by the spreadsheet that is to open it."""
+    """Delimiter and decimal sign of a table, by the spreadsheet that opens it."""
 
     delimiter: str = ","
     decimal: str = "."
 
     def cells(self, row: Mapping[str, Any], columns: Sequence[str]) -> list[Any]:
-        """The cells of a row. A text that a spreadsheet would run gets an apostrophe before it."""
+        """Return the cells of a row, formulas made inert."""
         if self.decimal == ".":
             return [inert(row[c]) for c in columns]
         return [self._number(row[c]) if _is_number(row[c], c) else inert(row[c]) for c in columns]
@@ -170,11 +171,11 @@ class Spreadsheet(NamedTuple):
         return str(value).replace(".", self.decimal)
 
 
-#: By the decimal sign. Spreadsheets that write a decimal comma part cells by semicolons.
+#: By the decimal sign. Spreadsheets with a decimal comma separate cells by semicolons.
 SPREADSHEETS = {"point": Spreadsheet(), "comma": Spreadsheet(";", ",")}
 _PLAIN = SPREADSHEETS["point"]
 
-#: Columns whose texts are numbers; what a student wrote stays as it was written.
+#: Columns whose texts are numbers; a student's text stays as it is.
 _NUMBERS = frozenset(
     "points out_of percent mark points_before points_now mark_before mark_now value tolerance".split()
 )
@@ -182,7 +183,7 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?")
 
 
 def _is_number(value: Any, column: str) -> bool:
-    """Whether a cell holds a number, or several."""
+    """Return whether a cell holds one or more numbers."""
     if isinstance(value, str):
         return column in _NUMBERS and all(map(_NUMBER.fullmatch, value.split("; ")))
     return isinstance(value, float)
@@ -191,12 +192,10 @@ def _is_number(value: Any, column: str) -> bool:
 def csv_text(
     rows: Iterable[Mapping[str, Any]], columns: Sequence[str], spreadsheet: Spreadsheet = _PLAIN
 ) -> str:
-    """Rows as CSV with a header. A text that a spreadsheet would run gets an apostrophe before it."""
+    """Return rows as CSV with a header, formulas made inert."""
     out = io.StringIO()
-    writer = csv.writer(
-        out, delimiter=spreadsheet.delimiter
-    )  # lines end as the format's own description says
-    writer.writerow(map(inert, columns))  # a title may be a roster's own
+    writer = csv.writer(out, delimiter=spreadsheet.delimiter)  # line ends follow the CSV standard
+    writer.writerow(map(inert, columns))  # a title may come from a roster
     for row in rows:
         writer.writerow(spreadsheet.cells(row, columns))
     return out.getvalue()
@@ -205,10 +204,10 @@ def csv_text(
 def csv_file(
     rows: Iterable[Mapping[str, Any]], columns: Sequence[str], spreadsheet: Spreadsheet = _PLAIN
 ) -> bytes:
-    """:func:`csv_text` as a file with the mark at its head without which Excel damages accents."""
+    """Return :func:`csv_text` as bytes with a byte-order mark, without which Excel damages accents."""
     return csv_text(rows, columns, spreadsheet).encode("utf-8-sig", "backslashreplace")
 
 
 def json_text(content: Any) -> str:
-    """JSON as files hold it."""
+    """Return content as the text of a JSON file."""
     return json.dumps(content, ensure_ascii=False, indent=1, allow_nan=False) + "\n"

@@ -1,4 +1,4 @@
-"""Where a key of a TOML file stands, for messages: the reader of the standard library does not say it."""
+"""Line numbers of keys in a TOML file, for messages: the standard library's reader does not give them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ _HEADING = re.compile(r"\s*(\[\[?)\s*([^\]]+?)\s*\]")
 
 
 def line_of(text: str, path: Sequence[str | int]) -> int:
-    """The line, from 1, of ``("loads", 1, "force")``: the second table of loads, its key; 0 where it is not found.
+    """Return the line, from 1, of ``("loads", 1, "force")``: the second table of loads, its key; 0 if it is
+    not found.
 
-    Where the key itself is written in another way, the line of what it stands in.
+    If the key is written in another way, return the line of its table.
     """
     keys = [str(part) for part in path]
     best, depth = 0, 0

@@ -1,4 +1,5 @@
-"""An archive that somebody sent, opened within limits: nothing of it lands outside a folder, and none of it is trusted for its size."""
+"""Archives from outside, unpacked within limits: nothing lands outside the folder, and stated sizes are not
+trusted."""
 
 from __future__ import annotations
 
@@ -13,50 +14,49 @@ from typing import NamedTuple
 from coursework.errors import BadInput
 
 _CHUNK = 1 << 16
-#: What a damaged archive may end in: its parts, what unpacks them, and a file without a name.
+#: Errors of a damaged archive: in its structure, in decompression, or at a file without a name.
 _DAMAGED = (
     zipfile.BadZipFile, zlib.error, struct.error, LZMAError, RuntimeError, EOFError, OSError, ValueError, LookupError, OverflowError,
 )  # fmt: skip
 
 
-class Limits(NamedTuple):
-    """What an archive may hold."""
+class ArchiveLimits(NamedTuple):
+    """Limits of an archive."""
 
     files: int = 5000
     each: int = 50 * 1024 * 1024  #: bytes of a file
-    whole: int = 200 * 1024 * 1024  #: bytes of all files together
+    total: int = 200 * 1024 * 1024  #: bytes of all files together
     depth: int = 12  #: folders in one another
     name: int = 200  #: characters of a file's or a folder's name
 
 
-USUAL = Limits()
+USUAL = ArchiveLimits()
 
 
 def is_zip(data: bytes) -> bool:
-    """Whether the bytes begin as an archive does."""
+    """Return whether the bytes begin as an archive does."""
     return data[:4] in (b"PK\x03\x04", b"PK\x05\x06")
 
 
-def unpack(archive: Path, folder: Path, limits: Limits = USUAL) -> list[Path]:
-    """Write the files of an archive below a folder; an archive in an archive is a file like another, and stays closed.
+def unpack(archive: Path, folder: Path, limits: ArchiveLimits = USUAL) -> list[Path]:
+    """Write the files of an archive below a folder; an archive inside it stays packed.
 
     Raises
     ------
     BadInput
-        It is no archive, is encrypted, names a place outside the folder, or holds more than it may: then it is not gone
-        on with.
+        The file is no archive, is encrypted, names a path outside the folder, or exceeds the limits; unpacking stops there.
     """
     written: list[Path] = []
-    left = limits.whole
+    left = limits.total
     try:
         with zipfile.ZipFile(archive) as opened:
-            members = [one for one in opened.infolist() if not one.is_dir()]
+            members = [info for info in opened.infolist() if not info.is_dir()]
             if len(members) > limits.files:
                 raise BadInput(f"{archive.name} holds {len(members)} files; {limits.files} is the most")
             for member in members:
-                place = folder / _place(archive, member.filename, limits)
-                written.append(place)
-                left -= _write(opened, member, place, min(limits.each, left), archive)
+                target = folder / _path_inside(archive, member.filename, limits)
+                written.append(target)
+                left -= _write(opened, member, target, min(limits.each, left), archive)
     except BadInput:
         raise
     except _DAMAGED as fault:
@@ -64,8 +64,8 @@ def unpack(archive: Path, folder: Path, limits: Limits = USUAL) -> list[Path]:
     return written
 
 
-def _place(archive: Path, name: str, limits: Limits) -> PurePosixPath:
-    """Where a file of an archive goes."""
+def _path_inside(archive: Path, name: str, limits: ArchiveLimits) -> PurePosixPath:
+    """Return the path of a file of an archive below the folder."""
     path = PurePosixPath(name.replace("\\", "/"))
     odd = path.is_absolute() or any(
         part in ("", ".", "..") or ":" in part or "\0" in part for part in path.parts
@@ -79,11 +79,11 @@ def _place(archive: Path, name: str, limits: Limits) -> PurePosixPath:
     return path
 
 
-def _write(opened: zipfile.ZipFile, member: zipfile.ZipInfo, place: Path, most: int, archive: Path) -> int:
-    """Write one file; its size is what comes out, whatever it is said to be."""
+def _write(opened: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path, most: int, archive: Path) -> int:
+    """Write one file, and return its real size, whatever the archive states."""
     size = 0
-    place.parent.mkdir(parents=True, exist_ok=True)
-    with opened.open(member) as source, place.open("wb") as target:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with opened.open(member) as source, path.open("wb") as target:
         for chunk in _chunks(source):
             size += len(chunk)
             if size > most:

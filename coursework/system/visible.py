@@ -1,4 +1,4 @@
-"""Texts of strangers on a terminal: what would act on it, or turn a line about, is shown as its number."""
+"""Foreign text on a terminal: control characters and direction marks appear as escapes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-#: Control characters but the tabulator and the line's end, what turns the direction of a text about, and separators of lines.
+#: Control characters except tab and line end, direction marks, and line separators.
 _ACTING = re.compile(
     r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u206f\ufff9-\ufffb]|\r(?!\n)"
 )
@@ -16,18 +16,19 @@ _ENDS = re.compile(r"\r\n|[\r\n]")
 
 
 def visible(text: str) -> str:
-    r"""The text with ``\u001b`` for the character of that number, where it would act on a terminal: so JSON stays JSON,
-    and says the same."""
+    r"""Return the text with ``\u001b`` for a character that would control a terminal, so that JSON stays the
+    same JSON."""
     return _ACTING.sub(_number_of, text)
 
 
 def one_line(text: str) -> str:
-    r"""The text on one line, of strangers too: ``\u000a`` for the end of one."""
+    r"""Return the text on one line, with control characters and ends of lines as escapes such as
+    ``\u000a``."""
     return _ENDS.sub(lambda end: "".join(map(_numbered, end[0])), visible(text))
 
 
-def _number_of(found: re.Match[str]) -> str:
-    return _numbered(found[0])
+def _number_of(match: re.Match[str]) -> str:
+    return _numbered(match[0])
 
 
 def _numbered(character: str) -> str:
@@ -35,7 +36,7 @@ def _numbered(character: str) -> str:
 
 
 class Visible:
-    """A stream that texts are written to as :func:`visible` gives them; ``plain`` is the stream below it."""
+    """Stream that makes texts :func:`visible`; ``plain`` is the stream below it."""
 
     def __init__(self, plain: Any) -> None:
         self.plain = plain
@@ -53,13 +54,14 @@ class Visible:
 
 
 def plain(stream: Any) -> Any:
-    """The stream for who writes colours and moves the cursor: what is of strangers is to be made visible before."""
+    """Return the stream for writing colours and moving the cursor; foreign text must be made visible
+    first."""
     return stream.plain if isinstance(stream, Visible) else stream
 
 
 @contextmanager
 def visible_streams() -> Iterator[None]:
-    """Whatever is written to the standard streams meanwhile acts on no terminal."""
+    """Make the texts on the standard streams visible while the context lasts."""
     before = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = (Visible(stream) for stream in before)
     try:

@@ -1,4 +1,4 @@
-"""Files and tables that take their places together, whole or not at all."""
+"""Files and tables that appear together, complete or not at all."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from typing import Any
 
 from coursework.errors import BadInput, CourseworkError
 from coursework.system.blocks import processors
-from coursework.system.build_folder import place
+from coursework.system.build_folder import install
 from coursework.system.processes import Task, in_turn, workers
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, inert
 
 
 @dataclass(frozen=True)
 class File:
-    """One file of the result: its path below the output folder, and how to make its bytes, if any.
+    """File of the result: its path below the output folder, and a function that returns its bytes, or None
+    for no file.
 
-    ``anywhere`` says that another process may make it: ``make`` and all that it holds can be pickled. ``failed`` is told why
-    it cannot be made, where that is to cost no other.
+    ``anywhere`` lets another process make it: ``make`` and all that it holds can be pickled. ``failed``, if
+    given, receives the error, and the other files are still written.
     """
 
     path: Path
@@ -32,8 +33,8 @@ class File:
     failed: Callable[[CourseworkError], None] | None = None
 
 
-WORTH_PROCESSES = 150  #: files; fewer are made before a process has started
-_CHUNK = 8  #: files that a process is sent at once
+WORTH_PROCESSES = 150  #: files; fewer are made faster than a process starts
+_CHUNK = 8  #: files per task of a process
 
 
 def write_tree(
@@ -43,10 +44,10 @@ def write_tree(
     *,
     anew: bool = False,
 ) -> list[str]:
-    """Make and write a build: it appears whole, in place of the one before, or not at all.
+    """Make and write a build: it replaces the one before completely, or not at all.
 
-    What somebody changed or put there is not lost, and ``anew`` is as in :func:`coursework.system.build_folder.place`; gives
-    notes to tell.
+    Files that somebody changed or added are not lost; ``anew`` is as in
+    :func:`coursework.system.build_folder.install`. Return notes for the user.
 
     Raises
     ------
@@ -60,24 +61,24 @@ def write_tree(
             (staging / "new").mkdir(parents=True)
         write(staging / "new", wanted, progress)
         with writing(out):
-            return place(staging, out, anew=anew)
+            return install(staging, out, anew=anew)
     finally:
         shutil.rmtree(staging, ignore_errors=True)
 
 
 @contextmanager
-def writing(place: Path) -> Iterator[None]:
-    """What the system says against writing, told with the place that was asked for and what would do."""
+def writing(path: Path) -> Iterator[None]:
+    """Turn an error of the system on writing into a message with the path and the remedy."""
     try:
         yield
     except OSError as fault:
         raise BadInput(
-            f"{place} cannot be written: {fault.strerror or fault}; name another folder, or make this one writable"
+            f"{path} cannot be written: {fault.strerror or fault}; name another folder, or make this one writable"
         ) from fault
 
 
 def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = lambda path: None) -> None:
-    """Make and write files, on all processors; each appears whole or not at all.
+    """Make and write files on all processors; each appears complete or not at all.
 
     Raises
     ------
@@ -93,12 +94,12 @@ def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = 
     here = [file for file in wanted if count < 2 or not file.anywhere]
     with ThreadPoolExecutor(processors()) as threads:
         tasks = [threads.submit(_write_one, out, file) for file in here]
-        # What threads share they wait for: the interpreter, and what the typesetter remembers.
+        # Threads wait for each other: for the interpreter, and for the typesetter's cache.
         try:
             if count > 1:
-                for chunk, made in _from_elsewhere(elsewhere, count):
-                    for file, found in zip(chunk, made, strict=True):
-                        _put(out, file, found)
+                for chunk, results in _from_elsewhere(elsewhere, count):
+                    for file, content in zip(chunk, results, strict=True):
+                        _put(out, file, content)
                         progress(file.path)
                     _raise_early(tasks)
             for file, task in zip(here, tasks, strict=True):
@@ -117,18 +118,18 @@ def _sent(file: File) -> _Sent:
 
 
 def _from_elsewhere(files: Sequence[File], count: int) -> Iterator[tuple[Sequence[File], list[Any]]]:
-    """Some files after others, and what other processes made of them."""
+    """Yield groups of files with their contents, computed by other processes."""
     chunks = [files[start : start + _CHUNK] for start in range(0, len(files), _CHUNK)]
-    tasks = (Task(str(chunk[0].path), _all_made, ([_sent(file) for file in chunk],)) for chunk in chunks)
+    tasks = (Task(str(chunk[0].path), _contents, ([_sent(file) for file in chunk],)) for chunk in chunks)
     yield from zip(chunks, in_turn(tasks, count), strict=True)
 
 
-def _all_made(files: Sequence[_Sent]) -> list[bytes | CourseworkError | None]:
-    return [_made(file) for file in files]
+def _contents(files: Sequence[_Sent]) -> list[bytes | CourseworkError | None]:
+    return [_content(file) for file in files]
 
 
-def _made(file: _Sent) -> bytes | CourseworkError | None:
-    """The bytes of a file, or why it cannot be made, where that is to be told."""
+def _content(file: _Sent) -> bytes | CourseworkError | None:
+    """Return the bytes of a file, or the error if the caller handles it."""
     make, may_fail = file
     try:
         return make()
@@ -139,27 +140,27 @@ def _made(file: _Sent) -> bytes | CourseworkError | None:
 
 
 def _write_one(out: Path, file: File) -> None:
-    _put(out, file, _made(_sent(file)))
+    _put(out, file, _content(_sent(file)))
 
 
-def _put(out: Path, file: File, made: bytes | CourseworkError | None) -> None:
-    if isinstance(made, CourseworkError):
+def _put(out: Path, file: File, content: bytes | CourseworkError | None) -> None:
+    if isinstance(content, CourseworkError):
         assert file.failed is not None
-        file.failed(made)
-    elif made is not None:
-        write_whole(out / file.path, made)
+        file.failed(content)
+    elif content is not None:
+        write_whole(out / file.path, content)
 
 
 def _raise_early(tasks: Iterable[Future[Any]]) -> None:
-    """What a task has failed by is raised before all others are done."""
+    """Raise the error of a finished task before the other tasks are done."""
     for task in tasks:
         if task.done():
             task.result()
 
 
 @contextmanager
-def gone_unless_kept(part: Path) -> Iterator[None]:
-    """A file that is written beside the one whose place it is to take goes where that is not done, whatever the reason."""
+def removed_on_failure(part: Path) -> Iterator[None]:
+    """Remove a partly written file if the context raises."""
     try:
         yield
     except BaseException:
@@ -169,7 +170,7 @@ def gone_unless_kept(part: Path) -> Iterator[None]:
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Write a file so that it appears whole or not at all.
+    """Write a file that appears complete or not at all.
 
     Raises
     ------
@@ -179,17 +180,17 @@ def write_whole(path: Path, data: bytes) -> None:
     part = path.with_name(path.name + ".part")
     with writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with gone_unless_kept(part):
+        with removed_on_failure(part):
             part.write_bytes(data)
             part.replace(path)
 
 
-#: Called with how many are done, and of how many.
+#: Called with the number of finished items and their total.
 Progress = Callable[[int, int], None]
 
 
-class Table:
-    """A CSV file being written, beside the one whose place it is to take; with the mark that Excel wants at its head."""
+class TableFile:
+    """CSV file that is written under a temporary name, with the byte-order mark that Excel needs."""
 
     def __init__(self, path: Path, columns: Sequence[str], spreadsheet: Spreadsheet) -> None:
         self.path, self.part = path, path.with_name(path.name + ".part")
@@ -210,24 +211,24 @@ class Table:
         self.rows += 1
 
     def close(self) -> None:
-        """End it; what is not on the disk yet is written."""
+        """Write the rest to the disk and close the file."""
         with writing(self.path):
             self.file.close()
 
 
 class Tables:
-    """Tables of one folder that take their places together when they are kept, and leave nothing when they are not.
+    """Tables of one folder that appear together at :meth:`commit`; without it they leave nothing behind.
 
     Raises
     ------
     BadInput
-        One of them cannot take its place; told before the first is written, and again before the first is kept.
+        A table cannot be replaced; checked before the first is written, and again before the first replacement.
     """
 
     def __init__(self, folder: Path, spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> None:
         self._folder = folder
         self._spreadsheet = spreadsheet
-        self._tables: list[Table] = []
+        self._tables: list[TableFile] = []
 
     def __enter__(self) -> Tables:
         self._folder.mkdir(parents=True, exist_ok=True)
@@ -235,39 +236,42 @@ class Tables:
 
     def __exit__(self, *_: object) -> None:
         for table in self._tables:
-            with suppress(OSError):  # a full disk has been told already
+            with suppress(OSError):  # a full disk has been reported
                 table.file.close()
             table.part.unlink(missing_ok=True)
 
-    def open(self, name: str, columns: Sequence[str]) -> Table:
+    def open(self, name: str, columns: Sequence[str]) -> TableFile:
         path = self._folder / name
         _check_replaceable(path)
-        self._tables.append(Table(path, columns, self._spreadsheet))
+        self._tables.append(TableFile(path, columns, self._spreadsheet))
         return self._tables[-1]
 
-    def ready(self) -> None:
-        """See that all are whole, and can take their places."""
+    def check(self) -> None:
+        """Raise if a table is not complete or cannot be replaced."""
         for table in self._tables:
             table.close()
             _check_replaceable(table.path)
 
-    def keep(self) -> None:
-        """Let the tables take their places: all are whole, and can, before the first does. The one that was opened first
-        does so last, so that a marking that is stopped here compares with the marks of before when it is done again."""
-        self.ready()
+    def commit(self) -> None:
+        """Replace the tables, after checking all of them.
+
+        The table opened first is replaced last: a marking that stops in between still compares with the
+        earlier marks when it is repeated.
+        """
+        self.check()
         for table in reversed(self._tables):
-            with _told(table.path):
+            with _replacement_errors(table.path):
                 table.part.replace(table.path)
 
 
 def _check_replaceable(path: Path) -> None:
-    with _told(path):
+    with _replacement_errors(path):
         if path.exists():
             path.open("ab").close()
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
+def _replacement_errors(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as fault:

@@ -48,7 +48,7 @@ def test_both_languages_have_the_same_words(of):
 def test_a_language_whose_file_lacks_a_text_says_which(monkeypatch):
     whole = language._read(language.file_of("en"))
     lacking = {**whole, "study": {k: v for k, v in whole["study"].items() if k != "refused"}}
-    monkeypatch.setattr(language, "made_of", lambda files, name, make: make())
+    monkeypatch.setattr(language, "cached_result", lambda files, name, make: make())
     monkeypatch.setattr(language, "_read", lambda file: lacking if file.stem == "fr" else whole)
     with pytest.raises(BadCourse, match=r"fr\.toml lacks study\.refused\.all_begun, .*en\.toml"):
         words.__wrapped__("fr")

@@ -16,7 +16,7 @@ from coursework.scanning import names, pictures
 from coursework.scanning.kept import LOST, OTHER_NAME, page_kept
 from coursework.scanning.pictures import BadPicture, page_count, picture_at
 from coursework.system.limits import MOST_PAGES
-from coursework.system.processes import Means
+from coursework.system.processes import ResourceLimits
 
 STUDENTS = ("Zoé", "Max", "Martin Paul", "Élodie Lefèvre-Dupont", "Nguyễn Thị Minh Khai", "Li Wei")
 EXERCISE = "grashof"
@@ -72,7 +72,7 @@ def test_a_page_that_takes_for_ever_to_be_drawn_is_ended(tmp_path, monkeypatch):
     lines = b" ".join(b"0 0 m %d 842 l 595 %d l S" % (k % 595, k % 842) for k in range(200))
     path.write_bytes(pdf(1, content=lines))
     assert (picture_at(path, 1).grey < 128).any()
-    monkeypatch.setattr(pictures, "_DRAWING", Means(0.0, 10**9))
+    monkeypatch.setattr(pictures, "_DRAWING", ResourceLimits(0.0, 10**9))
     path.write_bytes(pdf(1, content=lines * 50))
     with pytest.raises(BadPicture, match=r"lines\.pdf takes too much time"):
         picture_at(path, 1)

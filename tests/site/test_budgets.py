@@ -32,8 +32,8 @@ from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON
 from coursework.site.lti.site_host import SiteHost
 from coursework.site.papers import assignments
 from coursework.system.allowances import Allowances
-from coursework.system.places import Crowded, Places
-from coursework.system.processes import Exceeded, Means, confined, processor_time
+from coursework.system.processes import Exceeded, ResourceLimits, confined, processor_time
+from coursework.system.request_slots import Crowded, RequestSlots
 
 STUDENTS = [page for page in ROUTES if page.takes_forms and not is_of_staff(page.permission)]
 PATIENCE = 60  #: seconds; a test that waits so long has failed
@@ -179,7 +179,7 @@ def test_each_page_of_a_student_is_counted_by_what_it_takes_of_a_processor(site,
     assert {person for _, person, _ in took} == {site.ids[ZOE]}
     assert all(seconds > 0 for _, _, seconds in took)
     before = processor_time()
-    confined(Means(20.0, 64 * MEGABYTE), spin, 0.5)
+    confined(ResourceLimits(20.0, 64 * MEGABYTE), spin, 0.5)
     assert processor_time() - before >= 0.5
 
 
@@ -261,7 +261,9 @@ def test_a_notebook_with_its_figures_is_taken(class_of_three):
 
 def test_a_file_that_takes_too_long_is_ended_and_told(class_of_three, monkeypatch):
     number = dealt(class_of_three)
-    monkeypatch.setattr(assignments, "ANSWER_FILE", ANSWER_FILE._replace(reading=Means(0.0, MEGABYTE)))
+    monkeypatch.setattr(
+        assignments, "ANSWER_FILE", ANSWER_FILE._replace(reading=ResourceLimits(0.0, MEGABYTE))
+    )
     monkeypatch.setattr(assignments, "read_rows", for_ever)
     for lang, said in (("en", "too much time"), ("fr", "trop de temps")):
         reply = sent(class_of_three, number, "a.csv", b"x", lang)
@@ -317,16 +319,16 @@ def for_ever(*told):
 
 
 def test_what_is_read_apart_is_limited_in_time_and_memory(tmp_path):
-    means = Means(20.0, 64 * MEGABYTE)
+    means = ResourceLimits(20.0, 64 * MEGABYTE)
     path = tmp_path / "a.csv"
     path.write_text(HEADER + "Zoé,grashof,1,part,1\n" * 3)
     assert [row.answer for row in confined(means, read_rows, path, 5)] == ["1"] * 3
     with pytest.raises(Exceeded) as fault:
         confined(means, bytes, 100 * MEGABYTE)
-    assert fault.value.what == "memory"
+    assert fault.value.resource == "memory"
     with pytest.raises(Exceeded) as fault:
-        confined(Means(0.0, 64 * MEGABYTE), for_ever)
-    assert fault.value.what == "time"
+        confined(ResourceLimits(0.0, 64 * MEGABYTE), for_ever)
+    assert fault.value.resource == "time"
 
 
 # ---------------------------------------------------------------------- links of learning platforms
@@ -459,10 +461,10 @@ def test_so_many_of_a_key_are_answered_at_once_in_the_order_in_which_they_came()
     import asyncio
 
     async def job():
-        places, order, at_once = Places(), [], []
+        places, order, at_once = RequestSlots(), [], []
 
         async def one(k):
-            async with places.one("zoe", 2):
+            async with places.slot("zoe", 2):
                 at_once.append(len(at_once_now) + 1)
                 at_once_now.add(k)
                 await asyncio.sleep(0.001)
@@ -471,7 +473,7 @@ def test_so_many_of_a_key_are_answered_at_once_in_the_order_in_which_they_came()
 
         at_once_now: set[int] = set()
         await asyncio.gather(*(one(k) for k in range(20)))
-        async with places.one("zoe", 1):
+        async with places.slot("zoe", 1):
             pass
         return order, max(at_once)
 
@@ -483,8 +485,8 @@ def test_too_many_that_wait_are_refused_and_who_gives_up_takes_no_place():
     import asyncio
 
     async def job():
-        places = Places()
-        async with places.one("zoe", 1):
+        places = RequestSlots()
+        async with places.slot("zoe", 1):
             waits = asyncio.create_task(_held(places))
             await asyncio.sleep(0)
             with pytest.raises(Crowded):
@@ -494,7 +496,7 @@ def test_too_many_that_wait_are_refused_and_who_gives_up_takes_no_place():
         await asyncio.wait_for(_held(places), PATIENCE)  # the place is free again
 
     async def _held(places):
-        async with places.one("zoe", 1, waiting=1):
+        async with places.slot("zoe", 1, waiting=1):
             return True
 
     run_async(job)

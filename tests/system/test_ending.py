@@ -40,14 +40,14 @@ if __name__ == "__main__":
 BESIDE = """
 import time
 from pathlib import Path
-from coursework.system.processes import beside
+from coursework.system.processes import background_process
 
 def fill(mark):
     mark.touch()
     time.sleep(600)
 
 if __name__ == "__main__":
-    with beside(fill, Path("mark").resolve()):
+    with background_process(fill, Path("mark").resolve()):
         time.sleep(600)
 """
 
@@ -78,7 +78,7 @@ def test_a_process_that_is_told_to_end_puts_away_what_it_has_begun(tmp_path):
 STUBBORN = """
 import signal, time
 from pathlib import Path
-from coursework.system.processes import beside
+from coursework.system.processes import background_process
 
 def fill(mark):
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
@@ -87,7 +87,7 @@ def fill(mark):
 
 if __name__ == "__main__":
     mark = Path("mark").resolve()
-    with beside(fill, mark):
+    with background_process(fill, mark):
         while not mark.exists():
             time.sleep(0.05)
     Path("done").touch()

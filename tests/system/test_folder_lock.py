@@ -23,7 +23,7 @@ def no_patience(monkeypatch):
 
 def locked_by(folder, **changed):
     folder.mkdir(exist_ok=True)
-    (folder / LOCK).write_text(json.dumps({**folder_lock._own("build"), **changed}))
+    (folder / LOCK).write_text(json.dumps({**folder_lock._this_process("build"), **changed}))
 
 
 def test_a_second_writer_is_told_who_writes(tmp_path):
@@ -72,7 +72,7 @@ def ended():
 def test_a_lock_whose_process_is_gone_is_taken_over(tmp_path, changed):
     locked_by(tmp_path, **changed())
     with only_writer(tmp_path):
-        assert json.loads((tmp_path / LOCK).read_text()) == folder_lock._own("")
+        assert json.loads((tmp_path / LOCK).read_text()) == folder_lock._this_process("")
     assert not [*tmp_path.iterdir()]
 
 

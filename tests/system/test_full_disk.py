@@ -17,7 +17,7 @@ def write(folder, rows):
         table = tables.open("marks.csv", ("a",))
         for _ in range(rows):  # few reach the disk at the end alone
             table.write({"a": "x"})
-        tables.keep()
+        tables.commit()
 
 
 @pytest.mark.parametrize("rows", [1, 50_000])

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from coursework.errors import BadInput
-from coursework.system.processes import Exceeded, Means, confined
+from coursework.system.processes import Exceeded, ResourceLimits, confined
 
 KILOBYTE, MEGABYTE = 1024, 1024 * 1024
 
@@ -23,7 +23,7 @@ class Budget(NamedTuple):
     by_ending: Mapping[str, int] = MappingProxyType(
         {}
     )  #: bytes of a file, where those of an ending have fewer
-    reading: Means | None = None  #: limits of the process in which files are read
+    reading: ResourceLimits | None = None  #: limits of the process in which files are read
     readings: int = 1  #: of this budget, how many at once in a process of the site
 
 
@@ -36,19 +36,27 @@ HAND_IN = Budget("hand_in", 256 * KILOBYTE, 1000, 1)
 #: A file of answers. A notebook brings its figures with it.
 ANSWER_FILE = Budget(
     "answer_file", 2 * MEGABYTE + 4 * KILOBYTE, 20, 1, 1, MappingProxyType({".csv": 256 * KILOBYTE, ".json": 256 * KILOBYTE}),
-    Means(4.0, 192 * MEGABYTE), 2,
+    ResourceLimits(4.0, 192 * MEGABYTE), 2,
 )  # fmt: skip
 #: The file of one's own practice.
 PROGRESS_FILE = Budget(
-    "progress_file", MEGABYTE + 4 * KILOBYTE, 20, 1, 1, reading=Means(4.0, 192 * MEGABYTE), readings=2
+    "progress_file",
+    MEGABYTE + 4 * KILOBYTE,
+    20,
+    1,
+    1,
+    reading=ResourceLimits(4.0, 192 * MEGABYTE),
+    readings=2,
 )
 #: Forms of the staff.
 DESK = Budget("desk", 256 * KILOBYTE, 2000, 4)
 #: Files of the staff: a class's answers, scans, rosters.
 DESK_FILES = Budget(
-    "desk_files", 60 * MEGABYTE, 2000, 1, 50, reading=Means(60.0, 1024 * MEGABYTE), readings=1
+    "desk_files", 60 * MEGABYTE, 2000, 1, 50, reading=ResourceLimits(60.0, 1024 * MEGABYTE), readings=1
 )
-DESK_FILE = DESK_FILES._replace(name="desk_file", largest=4 * MEGABYTE, reading=Means(20.0, 512 * MEGABYTE))
+DESK_FILE = DESK_FILES._replace(
+    name="desk_file", largest=4 * MEGABYTE, reading=ResourceLimits(20.0, 512 * MEGABYTE)
+)
 
 MOST_ROWS = 800  #: of a student's file of answers
 

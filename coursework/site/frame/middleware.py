@@ -45,8 +45,8 @@ from coursework.site.frame.security_log import FAILED, SIGNED_IN, SIGNED_OUT, ev
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.frame.threads import Lanes, Run
 from coursework.site.people import home
-from coursework.system.places import WAITING, Crowded
 from coursework.system.processes import processor_time
+from coursework.system.request_slots import WAITING, Crowded
 
 LOG = logging.getLogger("coursework.site")
 _LANG = "coursework-lang"  #: the cookie of the language that somebody chose
@@ -134,7 +134,7 @@ class Middleware:
             return await self._read_and_answered(http_request, route, current_user, run)
         means, waiting = route.request_budget, _STAFF_WAITING if current_user.person.is_staff else WAITING
         try:
-            async with self.site.places.one((current_user.person.id, means.name), means.at_once, waiting):
+            async with self.site.places.slot((current_user.person.id, means.name), means.at_once, waiting):
                 return await self._read_and_answered(http_request, route, current_user, run)
         except Crowded:
             why = HTTPException("too_often", 429, _CROWDED)
@@ -154,7 +154,7 @@ class Middleware:
             return await self._attempted(http_request, route, current_user, form, run)
         if not form.files:
             return await run(self._answered, http_request, route, current_user, form)
-        async with self.site.places.one(means.name, means.readings, _STAFF_WAITING):
+        async with self.site.places.slot(means.name, means.readings, _STAFF_WAITING):
             return await run(self._answered, http_request, route, current_user, form)
 
     async def _attempted(

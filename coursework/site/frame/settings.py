@@ -23,7 +23,7 @@ from coursework.site.frame.limits import Limits
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.pages import Pages
 from coursework.site.frame.pool import PracticePool
-from coursework.system.places import Places
+from coursework.system.request_slots import RequestSlots
 
 _VARIANTS = (
     1200  #: that are kept at hand: variants with the keys by which they are marked, and what is drawn of them
@@ -51,7 +51,7 @@ class Site:
     clock: Clock = None  # type: ignore[assignment]  #: one that follows no leap, unless told
     cache: LRUCache = field(default_factory=lambda: LRUCache(_VARIANTS))
     limits: Limits = field(default_factory=Limits)
-    places: Places = field(default_factory=Places)
+    places: RequestSlots = field(default_factory=RequestSlots)
     lti: Path | None = None  #: folder of the platforms from which links lead here
     has_worker: bool = (
         False  #: a process beside marks what is handed in; else the request does that handed it in

@@ -1,4 +1,4 @@
-"""Places for requests: so many of one person are answered at once, and the others wait."""
+"""Slots for requests: a limited number of requests per person is answered at once, and the others wait."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ _PATIENCE = 120.0  #: seconds for which one waits
 
 
 class Crowded(Exception):
-    """Too many requests of one person wait already, or one has waited too long."""
+    """Error of too many waiting requests of one person, or of one that has waited too long."""
 
 
-class Places:
-    """Places for requests: so many at once for each key, first come, first served; some more wait.
+class RequestSlots:
+    """Slots for requests: a limited number at once for each key, first come, first served; some more wait.
 
-    Waiting takes no thread, and no event loop owns a place.
+    Waiting takes no thread, and no event loop owns a slot.
     """
 
     def __init__(self) -> None:
         self._lock = Lock()
-        self._taken: dict[Hashable, int] = {}
+        self._occupied: dict[Hashable, int] = {}
         self._waiting: dict[Hashable, deque[Future[None]]] = {}
 
     @asynccontextmanager
-    async def one(self, key: Hashable, at_once: int, waiting: int = WAITING) -> AsyncIterator[None]:
-        """Hold one of ``at_once`` places of a key.
+    async def slot(self, key: Hashable, at_once: int, waiting: int = WAITING) -> AsyncIterator[None]:
+        """Occupy one of ``at_once`` slots of a key while the context lasts.
 
         Raises
         ------
         Crowded
             As many as may wait wait already, or no place became free.
         """
-        turn = self._asked(key, at_once, waiting)
+        turn = self._request(key, at_once, waiting)
         if turn is not None:
             try:
                 await asyncio.wait_for(asyncio.wrap_future(turn), _PATIENCE)
@@ -52,11 +52,11 @@ class Places:
         finally:
             self._free(key)
 
-    def _asked(self, key: Hashable, at_once: int, waiting: int) -> Future[None] | None:
-        """Take a place, or a turn in the queue."""
+    def _request(self, key: Hashable, at_once: int, waiting: int) -> Future[None] | None:
+        """Occupy a slot and return None, or return a turn in the queue."""
         with self._lock:
-            if self._taken.get(key, 0) < at_once:
-                self._taken[key] = self._taken.get(key, 0) + 1
+            if self._occupied.get(key, 0) < at_once:
+                self._occupied[key] = self._occupied.get(key, 0) + 1
                 return None
             queue = self._waiting.setdefault(key, deque())
             if len(queue) >= waiting:
@@ -65,7 +65,7 @@ class Places:
             return queue[-1]
 
     def _free(self, key: Hashable) -> None:
-        """Give a place to who waits longest, or put it back."""
+        """Pass a slot to the request that has waited longest, or free it."""
         with self._lock:
             queue = self._waiting.get(key, deque())
             while queue:
@@ -74,6 +74,6 @@ class Places:
                     turn.set_result(None)
                     return
             self._waiting.pop(key, None)
-            self._taken[key] -= 1
-            if not self._taken[key]:
-                del self._taken[key]
+            self._occupied[key] -= 1
+            if not self._occupied[key]:
+                del self._occupied[key]
