@@ -37,7 +37,7 @@ class Stamped(_Protocol):
 def waited(line: Any) -> float:
     """Return the seconds since the last bytes of a connection were received; 0 if the system does not tell."""
     with suppress(OSError, AttributeError, struct.error, TypeError):
-        told = line.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _LAST_DATA + 4)
-        seconds = struct.unpack_from("=I", told, _LAST_DATA)[0] / 1000
+        info = line.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _LAST_DATA + 4)
+        seconds = struct.unpack_from("=I", info, _LAST_DATA)[0] / 1000
         return float(seconds) if seconds <= _LONGEST else 0.0
     return 0.0

@@ -120,7 +120,7 @@ def serve(serving: ServerSettings, at: socket.socket, workers: int, ready: Calla
 
 
 def run(
-    made: Callable[[], Application],
+    make_application: Callable[[], Application],
     at: socket.socket,
     workers: int = 1,
     *,
@@ -128,7 +128,7 @@ def run(
     tells_all: bool = False,
     has_proxy: bool = False,
 ) -> None:
-    """Serve the application that ``made`` gives in each process; ``ready`` is called once a signal to end is heeded.
+    """Serve the application that ``make_application`` gives in each process; ``ready`` is called once a signal to end is heeded.
 
     ``tells_all`` writes a line of the log for each request, not for faults alone; ``has_proxy`` believes a proxy on this
     machine who asks.
@@ -136,7 +136,7 @@ def run(
     from uvicorn import Config
 
     config = Config(
-        partial(_application_of_process, made), factory=True, workers=workers, log_config=_logs(tells_all), access_log=False, server_header=False,
+        partial(_application_of_process, make_application), factory=True, workers=workers, log_config=_logs(tells_all), access_log=False, server_header=False,
         proxy_headers=has_proxy, forwarded_allow_ips="127.0.0.1",
         timeout_keep_alive=_KEEP_ALIVE, http=_PROTOCOL, timeout_graceful_shutdown=_LAST_REQUESTS, timeout_worker_healthcheck=_SILENCE,
     )  # fmt: skip
@@ -205,14 +205,14 @@ def _end_with_terminal(end: Callable[[], None]) -> None:
         signal.signal(signal.SIGHUP, lambda *_: end())
 
 
-def _application_of_process(made: Callable[[], Application]) -> Application:
+def _application_of_process(make_application: Callable[[], Application]) -> Application:
     """Return the application of this process, which ends with its parent process."""
     parent = multiprocessing.parent_process()
     if parent is None:
-        return made()
+        return make_application()
     threading.Thread(target=_follow, args=(parent.join,), daemon=True).start()
     try:
-        return made()
+        return make_application()
     except CourseworkError as fault:  # what stood when the server began, and is out of reach for a while
         LOG.error("%s", fault)
         time.sleep(_AGAIN)

@@ -84,12 +84,16 @@ class Worker:
         now = self.site.clock()
         with self.site.store.reading() as connection:
             numbers = list(connection.execute(select(assignment.c.id)).scalars())
-            left = [(number, made) for number in numbers for made in unmarked(connection, number, now)]
-            left = [(number, made) for number, made in left if job_of(connection, made) is None]
+            left = [
+                (number, submission) for number in numbers for submission in unmarked(connection, number, now)
+            ]
+            left = [
+                (number, submission) for number, submission in left if job_of(connection, submission) is None
+            ]
         if left:
             with self.site.store.begin() as connection:
-                for number, made in left:
-                    put_job(connection, MARK, number, now, delivery=made)
+                for number, submission in left:
+                    put_job(connection, MARK, number, now, delivery=submission)
 
     def prepare_all(self) -> None:
         """Have pages looked at that will be opened soon or were opened a moment ago: a new version or course may make them
@@ -108,13 +112,13 @@ class Worker:
         if not self._is_time():
             return False
         with self.site.store.begin() as connection:
-            one = take_job(connection, self.name, self.site.clock())
-        if one is None:
+            job = take_job(connection, self.name, self.site.clock())
+        if job is None:
             return False
         try:
-            self._do(one)
+            self._do(job)
         except Exception as fault:
-            self._failed(one, fault)
+            self._failed(job, fault)
         return True
 
     def _is_time(self) -> bool:
@@ -130,32 +134,32 @@ class Worker:
         is_rush = timedelta(0) <= now - last < _QUIET
         return not is_rush or now - first > _LONGEST
 
-    def _do(self, one: Job) -> None:
-        if one.kind == MARK and one.delivery is not None:
-            mark_delivery(self.site.course, self.site.store, one.delivery)
-        elif one.kind == RESCUE and one.person is not None:
-            rescue(self.site, one.assignment, one.person, self.site.clock())
-        elif one.kind == PREPARE and one.person is not None:
-            prepare(self.site, one.assignment, one.person, self.site.clock(), self._variants)
+    def _do(self, job: Job) -> None:
+        if job.kind == MARK and job.delivery is not None:
+            mark_delivery(self.site.course, self.site.store, job.delivery)
+        elif job.kind == RESCUE and job.person is not None:
+            rescue(self.site, job.assignment, job.person, self.site.clock())
+        elif job.kind == PREPARE and job.person is not None:
+            prepare(self.site, job.assignment, job.person, self.site.clock(), self._variants)
         with self.site.store.begin() as connection:
-            done(connection, one.id)
-            if one.kind == MARK and one.delivery is not None:
-                drop_jobs(connection, one.delivery)
+            done(connection, job.id)
+            if job.kind == MARK and job.delivery is not None:
+                drop_jobs(connection, job.delivery)
 
-    def _failed(self, one: Job, fault: Exception) -> None:
+    def _failed(self, job: Job, fault: Exception) -> None:
         name = type(fault).__name__
         with self.site.store.begin() as connection:
-            is_over = put_back(connection, one, name)
-        what = {
-            MARK: f"delivery {one.delivery}",
-            RESCUE: f"what person {one.person} saved",
-            PREPARE: f"the page of person {one.person}",
-        }[one.kind]
+            is_over = put_back(connection, job, name)
+        subject = {
+            MARK: f"delivery {job.delivery}",
+            RESCUE: f"what person {job.person} saved",
+            PREPARE: f"the page of person {job.person}",
+        }[job.kind]
         LOG.error(
             "%s of assignment %d failed, try %d%s: %s",
-            what,
-            one.assignment,
-            one.tries,
+            subject,
+            job.assignment,
+            job.tries,
             " and last" if is_over else "",
             name,
         )
@@ -166,14 +170,14 @@ class Worker:
         """Write down the dates that have passed, and hand in what was saved."""
         now = self.site.clock()
         with self.site.store.reading() as connection:
-            known = {row.id: Publication.of(row.published) for row in connection.execute(_PUBLISHED)}
+            publications = {row.id: Publication.of(row.published) for row in connection.execute(_PUBLISHED)}
             more: dict[int, list[datetime]] = {}
             for row in connection.execute(select(extension.c.assignment_id, extension.c.closes)):
                 more.setdefault(row.assignment_id, []).extend([row.closes] if row.closes else [])
-        for number, said in known.items():
-            at = now - SETTLES if said.takes_saved else now
-            since = said.reached or _LONG_AGO
-            if any(since <= one < at for one in (*said.dates(), *more.get(number, ()))):
+        for number, publication in publications.items():
+            at = now - SETTLES if publication.takes_saved else now
+            since = publication.reached or _LONG_AGO
+            if any(since <= date < at for date in (*publication.dates(), *more.get(number, ()))):
                 close_passed(self.site, number, at, partial(self._later, number))
 
     def _later(self, number: int, person: int, fault: Exception) -> None:

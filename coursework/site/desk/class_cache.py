@@ -93,7 +93,7 @@ class ClassNow:
     @cached_property
     def graded(self) -> dict[SheetPlace, Graded]:
         """As they stand: what people decided counts."""
-        return {place: self.decisions.apply(one) for place, one in self.machine.items()}
+        return {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
 
     @cached_property
     def book(self) -> Gradebook:
@@ -104,8 +104,8 @@ class ClassNow:
         )
         book.charged = self.charged
         both: dict[SheetPlace, Graded | str] = {**self.graded, **self.faults}
-        for one in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
-            book.add(one)
+        for graded in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
+            book.add(graded)
         return book
 
     @cached_property
@@ -115,24 +115,25 @@ class ClassNow:
 
     @cached_property
     def last_sitting(self) -> dict[str, int]:
-        found: dict[str, int] = {}
-        for one in self.machine.values():
-            found[one.student] = max(found.get(one.student, 0), one.sitting)
-        return found
+        last: dict[str, int] = {}
+        for graded in self.machine.values():
+            last[graded.student] = max(last.get(graded.student, 0), graded.sitting)
+        return last
 
     @cached_property
     def one_sitting(self) -> bool:
         """True if no student has several attempts."""
         sittings: dict[str, int] = {}
         return all(
-            sittings.setdefault(one.student, one.sitting) == one.sitting for one in self.machine.values()
+            sittings.setdefault(graded.student, graded.sitting) == graded.sitting
+            for graded in self.machine.values()
         )
 
-    def matters(self, one: Graded) -> bool:
+    def matters(self, graded: Graded) -> bool:
         """Return True if a sheet belongs to the attempt that counts, or to the last one."""
         if self.one_sitting:
             return True
-        return one.sitting in (self.results[one.student].sitting, self.last_sitting[one.student])
+        return graded.sitting in (self.results[graded.student].sitting, self.last_sitting[graded.student])
 
     # ----------------------------------------------------------------- questions
 
@@ -149,8 +150,8 @@ class ClassNow:
         )
 
     def _in_order(self, name: str, parts: Mapping[str, None]) -> list[str]:
-        known = [p.id for p in self.course[name].spec.parts] if name in self.course else []
-        return sorted(parts, key=lambda part: known.index(part) if part in known else len(known))
+        ids = [p.id for p in self.course[name].spec.parts] if name in self.course else []
+        return sorted(parts, key=lambda part: ids.index(part) if part in ids else len(ids))
 
     @cached_property
     def drawn(self) -> frozenset[tuple[str, str]]:
@@ -166,8 +167,8 @@ class ClassNow:
     def number(self, exercise: str, part: str) -> str:
         """Return the number of a question on the papers, such as ``2.3``."""
         names = list(dict.fromkeys(name for name, _ in self.questions))
-        own = [p for name, p in self.questions if name == exercise]
-        return f"{names.index(exercise) + 1}.{own.index(part) + 1}"
+        parts = [p for name, p in self.questions if name == exercise]
+        return f"{names.index(exercise) + 1}.{parts.index(part) + 1}"
 
     # ------------------------------------------------------------------- waiting
 
@@ -182,34 +183,34 @@ class ClassNow:
 
     @cached_property
     def _groups_that_matter(self) -> list[Group]:
-        return self._grouped(one for one in self.machine.values() if self.matters(one))
+        return self._grouped(graded for graded in self.machine.values() if self.matters(graded))
 
-    def _grouped(self, shown: Iterable[Graded]) -> list[Group]:
+    def _grouped(self, graded: Iterable[Graded]) -> list[Group]:
         measured = {
-            (*place[:3], self.machine[place].sitting): self.measured[number]
-            for place, number in self.numbers.items()
+            (*sheet[:3], self.machine[sheet].sitting): self.measured[number]
+            for sheet, number in self.numbers.items()
             if number in self.measured
         }
-        return groups(shown, measured, self.questions, self.drawn)
+        return groups(graded, measured, self.questions, self.drawn)
 
     @cached_property
     def open(self) -> dict[str, Open]:
         """Groups that wait for a person, by id, in order; including those that are looked at only on request."""
-        found = {}
+        open_groups = {}
         for group in self.groups:
-            members = tuple(one for one in group.members if not self.is_decided(one))
+            members = tuple(answer for answer in group.members if not self.is_decided(answer))
             if members:
-                found[group.id] = Open(group, members)
-        return found
+                open_groups[group.id] = Open(group, members)
+        return open_groups
 
-    def is_decided(self, one: Waits) -> bool:
-        return self.decisions.standing(one.sheet, one.mark) is not None
+    def is_decided(self, answer: Waits) -> bool:
+        return self.decisions.standing(answer.sheet, answer.mark) is not None
 
     @property
     def waiting(self) -> int:
         """Number of answers and rows that wait for a person."""
-        asked = sum(len(one.members) for one in self.open.values() if one.why not in SHOWN_ON_REQUEST)
-        return asked + sum(one.waits for one in self.named)
+        answers = sum(len(item.members) for item in self.open.values() if item.why not in SHOWN_ON_REQUEST)
+        return answers + sum(item.waits for item in self.named)
 
     @cached_property
     def unplaced(self) -> tuple[tuple[str, Rejected, str, str], ...]:
@@ -219,32 +220,32 @@ class ClassNow:
         return tuple((row_id(row), row, *self._named_by(row)) for row in sheets.rejected)
 
     def _named_by(self, row: Rejected) -> tuple[str, str]:
-        told = row.row.get("student", "")
-        student = self.issued.student(told) if told else None
-        is_one = told and student is None and len(namesakes(told, self.issued.students)) < 2
-        near = closest(told[:60], self.issued.students) if is_one else None
+        name = row.row.get("student", "")
+        student = self.issued.student(name) if name else None
+        is_one = name and student is None and len(namesakes(name, self.issued.students)) < 2
+        near = closest(name[:60], self.issued.students) if is_one else None
         return student or "", near or ""
 
     @cached_property
     def rejected(self) -> tuple[RejectedRow, ...]:
         """Every row that could not be placed, with what became of it."""
-        return tuple(RejectedRow(*one, self.placings.get(one[0])) for one in self.unplaced)
+        return tuple(RejectedRow(*row, self.placings.get(row[0])) for row in self.unplaced)
 
     @property
     def of_nobody(self) -> int:
         """Number of waiting rows, on the page of files, that name no student of the class."""
-        return sum(one.waits for one in self.rejected) - sum(one.waits for one in self.named)
+        return sum(row.waits for row in self.rejected) - sum(row.waits for row in self.named)
 
     @property
     def named(self) -> tuple[RejectedRow, ...]:
         """Those of a student of the class."""
-        return tuple(one for one in self.rejected if one.student and one.student in self.issued.students)
+        return tuple(row for row in self.rejected if row.student and row.student in self.issued.students)
 
 
 def row_id(row: Rejected) -> str:
     """Return the digest that identifies a rejected row."""
-    told = "\0".join((row.source, *(f"{k}={v}" for k, v in sorted(row.row.items()))))
-    return sha256(told.encode("utf-8", "backslashreplace")).hexdigest()[:32]
+    text = "\0".join((row.source, *(f"{k}={v}" for k, v in sorted(row.row.items()))))
+    return sha256(text.encode("utf-8", "backslashreplace")).hexdigest()[:32]
 
 
 # ------------------------------------------------------------------------ at hand
@@ -286,25 +287,25 @@ def class_now(site: Site, assignment_id: int) -> ClassNow:
 
 def _current_class(site: Site, assignment_id: int) -> ClassNow:
     with _lock:
-        kept = _class_caches.setdefault(site.store, {}).setdefault(assignment_id, _ClassCache())
-    with kept.lock, site.store.reading() as connection:
+        cached = _class_caches.setdefault(site.store, {}).setdefault(assignment_id, _ClassCache())
+    with cached.lock, site.store.reading() as connection:
         about = next(iter(listed(connection, assignment_id)), None)
         if about is None:
             raise HTTPException("own", 404)
         at = stamp(connection, assignment_id)
-        now = kept.now
+        now = cached.now
         if (
             now is None
             or (now.stamp, now.about.columns) != (at, about.columns)
             or now.course is not site.course
         ):
-            now = kept.now = _read(site.course, connection, about, at, kept)
+            now = cached.now = _read(site.course, connection, about, at, cached)
         now.about = about
         return now
 
 
-def _read(course: Course, connection: Connection, about: About, at: Stamp, kept: _ClassCache) -> ClassNow:
-    before = kept.now if kept.now is not None and kept.now.course is course else None
+def _read(course: Course, connection: Connection, about: About, at: Stamp, cached: _ClassCache) -> ClassNow:
+    before = cached.now if cached.now is not None and cached.now.course is course else None
     decisions, placed_by_hand = Decisions.read(connection, about.id), placings(connection, about.id)
     charged = charges(connection, about.id)
     if before is not None and _has_come(before.stamp, before.about) == _has_come(at, about):
@@ -317,15 +318,17 @@ def _read(course: Course, connection: Connection, about: About, at: Stamp, kept:
     issued = issued_of(connection, about.id)
     sheets = placed(course, issued, rows_of(connection, about.id))
     last = stood(connection, about.id)
-    unknown = [one for one in last.values() if one.id not in kept.marked]
-    for place, marked in machine_marks(issued, unknown, lines_of(connection, unknown)):
-        kept.marked[last[place].id] = marked
-    found = {place: kept.marked[one.id] for place, one in last.items() if one.id in kept.marked}
-    machine = {place: one for place, one in found.items() if not isinstance(one, str)}
-    numbers = {place: last[place].id for place in machine}
-    new = [place for place in machine if numbers[place] not in kept.measured]
-    kept.measured.update(_measured(course, issued, [machine[p] for p in new], [numbers[p] for p in new]))
-    faults = {place: one for place, one in found.items() if isinstance(one, str)}
+    unknown = [marking for marking in last.values() if marking.id not in cached.marked]
+    for sheet, marked in machine_marks(issued, unknown, lines_of(connection, unknown)):
+        cached.marked[last[sheet].id] = marked
+    outcomes = {
+        sheet: cached.marked[marking.id] for sheet, marking in last.items() if marking.id in cached.marked
+    }
+    machine = {sheet: marking for sheet, marking in outcomes.items() if not isinstance(marking, str)}
+    numbers = {sheet: last[sheet].id for sheet in machine}
+    new = [sheet for sheet in machine if numbers[sheet] not in cached.measured]
+    cached.measured.update(_measured(course, issued, [machine[p] for p in new], [numbers[p] for p in new]))
+    faults = {sheet: marking for sheet, marking in outcomes.items() if isinstance(marking, str)}
     came_in = came_of(connection, about.id)
     return ClassNow(
         course,
@@ -334,7 +337,7 @@ def _read(course: Course, connection: Connection, about: About, at: Stamp, kept:
         at,
         machine,
         numbers,
-        kept.measured,
+        cached.measured,
         sheets,
         faults,
         decisions,
@@ -367,10 +370,10 @@ def assignment_of(request: Request) -> int:
     HTTPException
         None: it is no number.
     """
-    told = str(request.path_params.get("assignment", ""))
-    if not told.isascii() or not told.isdecimal() or len(told) > 9:
+    text = str(request.path_params.get("assignment", ""))
+    if not text.isascii() or not text.isdecimal() or len(text) > 9:
         raise HTTPException("own", 404)
-    return int(told)
+    return int(text)
 
 
 def by_whom(request: Request) -> str:

@@ -62,21 +62,21 @@ class ClassRow:
 def rows(now: ClassNow) -> list[ClassRow]:
     """Every student of the class, in its own order."""
     counted: dict[str, dict[tuple[str, str], Cell]] = {}
-    for place, one in now.graded.items():
-        if one.sitting == now.results[one.student].sitting:
-            counted.setdefault(one.student, {}).update(_cells(now, now.machine[place], one))
+    for sheet, graded in now.graded.items():
+        if graded.sitting == now.results[graded.student].sitting:
+            counted.setdefault(graded.student, {}).update(_cells(now, now.machine[sheet], graded))
     return [
         _row(now, number, student, result, counted.get(student, {}))
         for number, (student, result) in enumerate(now.results.items())
     ]
 
 
-def _cells(now: ClassNow, machine: Graded, stands: Graded) -> dict[tuple[str, str], Cell]:
+def _cells(now: ClassNow, machine: Graded, graded: Graded) -> dict[tuple[str, str], Cell]:
     return {
-        (stands.exercise, part): Cell(
+        (graded.exercise, part): Cell(
             sign_of(mark), mark.points, mark.verdict, _by_hand(machine.lines[part], mark)
         )
-        for part, mark in stands.lines.items()
+        for part, mark in graded.lines.items()
     }
 
 
@@ -87,13 +87,13 @@ def _by_hand(before: Mark, now: Mark) -> bool:
 def _row(
     now: ClassNow, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
 ) -> ClassRow:
-    told = own_columns(now.issued, student)
+    columns = own_columns(now.issued, student)
     titles = (now.issued.assignment or {}).get("identity") or ()
-    identity = " ".join(filter(None, (told.get(folded(str(title)), "") for title in titles)))
-    came = now.received.get(student)
+    identity = " ".join(filter(None, (columns.get(folded(str(title)), "") for title in titles)))
+    submitted = now.received.get(student)
     tries = (
-        came.tries
-        if came
+        submitted.tries
+        if submitted
         else max((n for s, n in now.book.students if s == student), default=0)
         if cells
         else 0
@@ -101,7 +101,7 @@ def _row(
     return ClassRow(
         number, student, identity, tuple(cells.get(question, BLANK) for question in now.questions),
         result.points, result.out_of, mark_of(now.issued, result.counts, result.out_of),
-        tries, came.late if came else 0, bool(cells) or came is not None,
+        tries, submitted.late if submitted else 0, bool(cells) or submitted is not None,
     )  # fmt: skip
 
 
@@ -111,13 +111,13 @@ def _row(
 def class_page(request: Request) -> Response:
     """Return the table of the class."""
     now = class_now(request.site, assignment_of(request))
-    found = rows(now)
+    table_rows = rows(now)
     sort, sought = request.query_params.get("sort", ""), request.query_params.get("find", "").strip()
-    shown = sorted((one for one in found if _matches(one, sought)), key=_sorting(now, sort))
+    selected = sorted((row for row in table_rows if _matches(row, sought)), key=_sorting(now, sort))
     return class_page_of(
-        request, now, "site_desk_class", "class", rows=shown, all_rows=len(found), sort=sort, sought=sought,
-        handed_in=sum(one.handed_in for one in found), has_mark=bool((now.issued.assignment or {}).get("mark")),
-        has_late=any(one.late for one in found), means=_means(now, found), **_words(request),
+        request, now, "site_desk_class", "class", rows=selected, all_rows=len(table_rows), sort=sort, sought=sought,
+        handed_in=sum(row.handed_in for row in table_rows), has_mark=bool((now.issued.assignment or {}).get("mark")),
+        has_late=any(row.late for row in table_rows), means=_means(now, table_rows), **_words(request),
     )  # fmt: skip
 
 
@@ -127,19 +127,19 @@ def news(request: Request) -> Response:
     before = Stamp.read(request.query_params.get("stamp", ""))
     if before == now.stamp:
         return Response(status_code=204)
-    found = rows(now)
+    table_rows = rows(now)
     if (
         before is None
         or before.rules != now.stamp.rules
-        or str(len(found)) != request.query_params.get("rows")
+        or str(len(table_rows)) != request.query_params.get("rows")
     ):
         return Response(redirect=f"/desk/{now.about.id}")
     with request.site.store.reading() as connection:
         changed = students_since(connection, now.about.id, before)
     return request.render(
-        "_desk_news", now=now, rows=[one for one in found if one.student in changed], all_rows=len(found),
-        handed_in=sum(one.handed_in for one in found), has_mark=bool((now.issued.assignment or {}).get("mark")),
-        has_late=request.query_params.get("late") == "1" or any(one.late for one in found), **_words(request),
+        "_desk_news", now=now, rows=[row for row in table_rows if row.student in changed], all_rows=len(table_rows),
+        handed_in=sum(row.handed_in for row in table_rows), has_mark=bool((now.issued.assignment or {}).get("mark")),
+        has_late=request.query_params.get("late") == "1" or any(row.late for row in table_rows), **_words(request),
     )  # fmt: skip
 
 
@@ -181,16 +181,16 @@ def _sorting(now: ClassNow, sort: str) -> Callable[[ClassRow], Any]:
     return by.get(sort, lambda row: row.order)
 
 
-def _means(now: ClassNow, found: Sequence[ClassRow]) -> list[str]:
+def _means(now: ClassNow, table_rows: Sequence[ClassRow]) -> list[str]:
     """Of each question, the percent of its points that those have who handed in."""
     most: dict[tuple[str, str], float] = {}
     for (name, _), record in now.issued.records.items():
         most.update({(name, str(p["id"])): float(p["points"]) for p in record["parts"]})
-    told = []
+    means = []
     for column, question in enumerate(now.questions):
-        had = [one.cells[column].points for one in found if one.cells[column].sign]
-        told.append(f"{100 * sum(had) / (len(had) * most[question]):.0f}" if had else "")
-    return told
+        had = [row.cells[column].points for row in table_rows if row.cells[column].sign]
+        means.append(f"{100 * sum(had) / (len(had) * most[question]):.0f}" if had else "")
+    return means
 
 
 ROUTES = (

@@ -52,25 +52,25 @@ class ClassScans:
 
     @property
     def rejected(self) -> list[Scanned]:
-        return [one for one in self.pages if one.page.what == REFUSED]
+        return [page for page in self.pages if page.page.what == REFUSED]
 
     @property
     def counts(self) -> dict[str, int]:
         """Pages by what they are."""
-        found: dict[str, int] = {}
-        for one in self.pages:
-            if one.number and not one.is_copy:
-                found[one.page.what] = found.get(one.page.what, 0) + 1
-        return found
+        totals: dict[str, int] = {}
+        for page in self.pages:
+            if page.number and not page.is_copy:
+                totals[page.page.what] = totals.get(page.page.what, 0) + 1
+        return totals
 
     @property
     def answers(self) -> list[Answer]:
         """Answers of papers of which it is known whose they are."""
-        return [one for one in self.gathered.answers if one.student not in self.papers.papers]
+        return [answer for answer in self.gathered.answers if answer.student not in self.papers.papers]
 
     @cached_property
     def by_id(self) -> dict[str, Scanned]:
-        return {one.id: one for one in self.pages}
+        return {page.id: page for page in self.pages}
 
 
 def class_scans(site: Site, number: int) -> ClassScans:
@@ -78,11 +78,11 @@ def class_scans(site: Site, number: int) -> ClassScans:
     with site.store.reading() as connection:
         content = issued_content(connection, number)
         rows = pages_scanned(connection, number)
-        told = typed_rows(connection, number)
+        rows_typed = typed_rows(connection, number)
     papers = site.cache.get(
         ("papers that are scanned", number, _stamp(content)), lambda: Papers(site.course, content)
     )
-    typed = tuple(Typed(*map(str, row[:7])) for row in told)
+    typed = tuple(Typed(*map(str, row[:7])) for row in rows_typed)
     pages = with_copies(
         as_told(
             Scanned(FileKept(row.file, row.page.partition("-")[0], 0), row.number, row.page, page_of(row.kept) or _GONE),
@@ -106,8 +106,15 @@ def _stamp(content: dict[str, Any]) -> int:
 def hand_over(site: Site, number: int, now: ClassScans) -> int:
     """Let the answers that are known be marked, in place of those of the scans before; gives how many they are."""
     rows = [
-        Row(one.student, one.exercise, str(one.seed), one.part, answer_reference(one), _source(now, one))
-        for one in now.answers
+        Row(
+            answer.student,
+            answer.exercise,
+            str(answer.seed),
+            answer.part,
+            answer_reference(answer),
+            _source(now, answer),
+        )
+        for answer in now.answers
     ]
     if not rows:
         return 0
@@ -117,14 +124,16 @@ def hand_over(site: Site, number: int, now: ClassScans) -> int:
     return len(rows)
 
 
-def answer_reference(one: Answer) -> str:
+def answer_reference(answer: Answer) -> str:
     """Return the text of an answer; for one that is marked from its picture, a reference to the picture."""
-    return "; ".join(f"scan {s.page}/{s.index}" for s in one.pictures) or one.answer
+    return "; ".join(f"scan {s.page}/{s.index}" for s in answer.pictures) or answer.answer
 
 
-def _source(now: ClassScans, one: Answer) -> str:
+def _source(now: ClassScans, answer: Answer) -> str:
     return "; ".join(
-        f"{now.by_id[name].file.name} p. {now.by_id[name].number}" for name in one.pages if name in now.by_id
+        f"{now.by_id[name].file.name} p. {now.by_id[name].number}"
+        for name in answer.pages
+        if name in now.by_id
     )
 
 

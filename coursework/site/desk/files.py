@@ -46,15 +46,19 @@ _DELIVERIES = ("came", "source", "number", "late", "receipt")
 
 
 def files_page(
-    request: Request, told: Sequence[str] = (), filled: Filled | None = None, name: str = ""
+    request: Request, messages: Sequence[str] = (), filled: Filled | None = None, name: str = ""
 ) -> Response:
     """Return the page of uploads and downloads."""
     now = class_now(request.site, assignment_of(request))
     with request.site.store.reading() as connection:
-        came = deliveries(connection, now.about.id)
-    files = [(moment(one.came, request.lang), one) for one in came if not one.number]
+        submissions = deliveries(connection, now.about.id)
+    files = [
+        (moment(submission.came, request.lang), submission)
+        for submission in submissions
+        if not submission.number
+    ]
     return class_page_of(
-        request, now, "site_desk_files", "files", told=list(told), files=files[::-1][:50], rejected=now.rejected,
+        request, now, "site_desk_files", "files", told=list(messages), files=files[::-1][:50], rejected=now.rejected,
         platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_TABLES), filled=_filled(request, filled, name),
     )  # fmt: skip
 
@@ -68,15 +72,15 @@ def answers_in(request: Request) -> Response:
         Nothing was sent, or an archive holds more than it may.
     """
     number = class_now(request.site, assignment_of(request)).about.id
-    sent = [one for one in request.form.files.get("answers", ()) if one.data]
-    said = request.words["files"]
+    sent = [item for item in request.form.files.get("answers", ()) if item.data]
+    texts = request.words["files"]
     if not sent:
-        raise BadInput(said["none_sent"])
-    rows = _rows(sent, said["too_many"].format(MOST_ROWS), request.words["refused"]["too_much"])
-    answers = sum(isinstance(one, Row) for one in rows)
-    source = ", ".join(file_name(one) for one in sent)[:500]
+        raise BadInput(texts["none_sent"])
+    rows = _rows(sent, texts["too_many"].format(MOST_ROWS), request.words["refused"]["too_much"])
+    answers = sum(isinstance(item, Row) for item in rows)
+    source = ", ".join(file_name(item) for item in sent)[:500]
     with request.site.store.begin() as connection:
-        came = deliver(connection, number, rows, source=source, came=request.received_at)
+        submission = deliver(connection, number, rows, source=source, came=request.received_at)
         note(
             connection,
             request.received_at,
@@ -86,24 +90,24 @@ def answers_in(request: Request) -> Response:
             rows=len(rows),
             source=source,
         )
-    if not came.is_new:
-        return files_page(request, [said["again"].format(moment(came.came, request.lang))])
-    marked = mark_delivery(request.site.course, request.site.store, came.id)
+    if not submission.is_new:
+        return files_page(request, [texts["again"].format(moment(submission.came, request.lang))])
+    marked = mark_delivery(request.site.course, request.site.store, submission.id)
     now = class_now(request.site, number)
-    sources = {one.source for one in rows if not isinstance(one, Seen)}
-    lost = sum(one.row.source in sources for one in now.rejected)
-    return files_page(request, [said["came"].format(answers, marked.marked, lost)])
+    sources = {item.source for item in rows if not isinstance(item, Seen)}
+    lost = sum(item.row.source in sources for item in now.rejected)
+    return files_page(request, [texts["came"].format(answers, marked.marked, lost)])
 
 
 def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[Row | Rejected | Seen]:
     """Return the rows of uploaded files, with the files' original names; ``too_many`` and ``too_much`` are
     the messages for too many rows and for reading that takes too long."""
-    with TemporaryDirectory(prefix="coursework-") as made:
-        folder = Path(made).resolve()
-        for number, one in enumerate(sent):
-            own = folder / str(number)
-            own.mkdir()
-            (own / file_name(one)).write_bytes(one.data)
+    with TemporaryDirectory(prefix="coursework-") as temporary:
+        folder = Path(temporary).resolve()
+        for number, upload in enumerate(sent):
+            subfolder = folder / str(number)
+            subfolder.mkdir()
+            (subfolder / file_name(upload)).write_bytes(upload.data)
         rows: list[Row | Rejected | Seen] = read_apart(DESK_FILES, too_much, _rows_in, folder)
     if len(rows) > MOST_ROWS:
         raise BadInput(too_many)
@@ -122,16 +126,16 @@ def _rows_in(folder: Path) -> list[Row | Rejected | Seen]:
     return list(islice(_read(folder), MOST_ROWS + 1))
 
 
-def file_name(one: Upload) -> str:
+def file_name(upload: Upload) -> str:
     """Return the base name of a file, without the folders that a browser may state."""
-    own = PurePath(one.name.replace("\\", "/")).name
-    plain = "".join(c for c in own if c.isprintable() and c not in '/:*?"<>|').lstrip(".")
+    base = PurePath(upload.name.replace("\\", "/")).name
+    plain = "".join(c for c in base if c.isprintable() and c not in '/:*?"<>|').lstrip(".")
     return plain.encode("utf-8", "ignore")[-_NAME:].decode("utf-8", "ignore") or "answers"
 
 
 def _read(folder: Path) -> Iterator[Row | Rejected | Seen]:
-    for found in find([folder]):
-        rows = [found] if isinstance(found, (Rejected, Seen)) else read_file(found, [folder])
+    for item in find([folder]):
+        rows = [item] if isinstance(item, (Rejected, Seen)) else read_file(item, [folder])
         for row in rows:
             yield _with_short_source(row, folder)
 
@@ -162,22 +166,28 @@ def roster_in(request: Request) -> Response:
         The file is no roster.
     """
     now = class_now(request.site, assignment_of(request))
-    said = request.words["files"]
-    sent = next((one for one in request.form.files.get("roster", ()) if one.data), None)
+    texts = request.words["files"]
+    sent = next((entry for entry in request.form.files.get("roster", ()) if entry.data), None)
     if sent is None:
-        raise BadInput(said["none_sent"])
-    told: list[str] = []
-    with TemporaryDirectory(prefix="coursework-") as made:
-        path = Path(made) / file_name(sent)
+        raise BadInput(texts["none_sent"])
+    messages: list[str] = []
+    with TemporaryDirectory(prefix="coursework-") as temporary:
+        path = Path(temporary) / file_name(sent)
         path.write_bytes(sent.data)
         try:
-            students, told = read_apart(
+            students, messages = read_apart(
                 DESK_FILES, request.words["refused"]["too_much"], roster_and_notes, path
             )
         except BadInput as fault:
-            raise BadInput(str(fault).replace(f"{made}/", "")) from fault
-    known = {one.name: now.issued.student(one.name, tuple(one.columns.items())) for one in students}
-    columns = {name: dict(one.columns) for one in students if (name := known[one.name]) and one.columns}
+            raise BadInput(str(fault).replace(f"{temporary}/", "")) from fault
+    issued_names = {
+        entry.name: now.issued.student(entry.name, tuple(entry.columns.items())) for entry in students
+    }
+    columns = {
+        name: dict(entry.columns)
+        for entry in students
+        if (name := issued_names[entry.name]) and entry.columns
+    }
     with request.site.store.begin() as connection:
         content = issued_content(connection, now.about.id)
         content["students"] = {**content.get("students", {}), **_merged(content.get("students", {}), columns)}
@@ -190,18 +200,18 @@ def roster_in(request: Request) -> Response:
             assignment=now.about.id,
             students=len(columns),
         )
-    strangers = [one.name for one in students if not known[one.name]]
-    told = [note.replace(f"{made}/", "") for note in told]
-    told.insert(0, said["roster_came"].format(len(students) - len(strangers), len(students)))
+    strangers = [entry.name for entry in students if not issued_names[entry.name]]
+    messages = [note.replace(f"{temporary}/", "") for note in messages]
+    messages.insert(0, texts["roster_came"].format(len(students) - len(strangers), len(students)))
     if strangers:
-        told.append(said["roster_strangers"].format(_list(strangers)))
-    return files_page(request, told)
+        messages.append(texts["roster_strangers"].format(_list(strangers)))
+    return files_page(request, messages)
 
 
 def _merged(
     before: Mapping[str, Mapping[str, str]], columns: Mapping[str, Mapping[str, str]]
 ) -> dict[str, dict[str, str]]:
-    return {name: {**before.get(name, {}), **own} for name, own in columns.items()}
+    return {name: {**before.get(name, {}), **added} for name, added in columns.items()}
 
 
 def _list(names: Sequence[str]) -> str:
@@ -213,13 +223,13 @@ def _list(names: Sequence[str]) -> str:
 
 def _spreadsheet(request: Request) -> Spreadsheet:
     """Return the spreadsheet format of tables: that of the query, or else that of the language."""
-    told = request.query_params.get("decimal", "comma" if request.lang == "fr" else "point")
-    return SPREADSHEETS.get(told, SPREADSHEETS["point"])
+    decimal = request.query_params.get("decimal", "comma" if request.lang == "fr" else "point")
+    return SPREADSHEETS.get(decimal, SPREADSHEETS["point"])
 
 
 def _marks(request: Request, now: ClassNow) -> bytes:
-    submitted = any(one.submitted for one in now.graded.values())
-    rows = (row for one in now.graded.values() for row in marks_rows(one))
+    submitted = any(graded.submitted for graded in now.graded.values())
+    rows = (row for graded in now.graded.values() for row in marks_rows(graded))
     return csv_file(rows, marks_columns(now.issued, submitted=submitted), _spreadsheet(request))
 
 
@@ -235,8 +245,10 @@ def _rejected(request: Request, now: ClassNow) -> bytes:
 
 def _decided(request: Request, now: ClassNow) -> bytes:
     with request.site.store.reading() as connection:
-        made = decisions_of(connection, now.about.id)
-    rows = ({**one._asdict(), "made": one.made.isoformat(timespec="seconds")} for one in made)
+        decisions = decisions_of(connection, now.about.id)
+    rows = (
+        {**decision._asdict(), "made": decision.made.isoformat(timespec="seconds")} for decision in decisions
+    )
     return csv_file(
         ({c: "" if row[c] is None else row[c] for c in _DECISIONS} for row in rows),
         _DECISIONS,
@@ -253,10 +265,10 @@ def _issued(request: Request, now: ClassNow) -> bytes:
 
 def _answers(request: Request, now: ClassNow) -> bytes:
     with request.site.store.reading() as connection:
-        rows = [one for one in rows_of(connection, now.about.id) if isinstance(one, Row)]
+        rows = [row for row in rows_of(connection, now.about.id) if isinstance(row, Row)]
     columns = (*COLUMNS, "sitting", "submitted", "source")
-    told = ({**as_texts(one), "source": one.source, **_origin(one)} for one in rows)
-    return csv_file(told, columns)
+    answers = ({**as_texts(row), "source": row.source, **_origin(row)} for row in rows)
+    return csv_file(answers, columns)
 
 
 def _origin(row: Row) -> dict[str, str]:
@@ -267,7 +279,7 @@ def _origin(row: Row) -> dict[str, str]:
 
 def _submissions(request: Request, now: ClassNow) -> bytes:
     with request.site.store.reading() as connection:
-        rows = [one._asdict() for one in deliveries(connection, now.about.id)]
+        rows = [submission._asdict() for submission in deliveries(connection, now.about.id)]
     return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
 
 
@@ -287,7 +299,7 @@ def table(request: Request) -> Response:
     now = class_now(request.site, assignment_of(request))
     name = str(request.path_params["file"])
     if name == "archive.zip":
-        files = {own: make(request, now) for own, make in _TABLES.items()} | {
+        files = {member: make(request, now) for member, make in _TABLES.items()} | {
             "deliveries.csv": _submissions(request, now)
         }
         return Response(
@@ -307,13 +319,13 @@ def feedback(request: Request) -> Response:
     """Return the feedback of a student, or of all students in an archive."""
     now = class_now(request.site, assignment_of(request))
     only = request.query_params.get("student", "")
-    shown = [one for one in now.graded.values() if not only or one.student == only]
-    if not shown:
+    selected = [graded for graded in now.graded.values() if not only or graded.student == only]
+    if not selected:
         raise BadInput(request.words["class"]["nothing"])
-    with TemporaryDirectory(prefix="coursework-") as made:
-        folder = Path(made) / "feedback"
+    with TemporaryDirectory(prefix="coursework-") as temporary:
+        folder = Path(temporary) / "feedback"
         book = now.book if not only else _book_of_student(now, only)
-        write_feedback(now.course, book, shown, folder, lambda done, of: None)
+        write_feedback(now.course, book, selected, folder, lambda done, of: None)
         files = {path.name: path.read_bytes() for path in sorted(folder.glob("*.pdf"))}
     if only and files:
         name, data = next(iter(files.items()))
@@ -350,14 +362,14 @@ def gradebook(request: Request) -> Response:
         Nothing was sent, or it cannot be filled; nothing is written then.
     """
     now = class_now(request.site, assignment_of(request))
-    said, form = request.words["files"], request.form
-    sent = next((one for one in form.files.get("template", ()) if one.data), None)
+    texts, form = request.words["files"], request.form
+    sent = next((upload for upload in form.files.get("template", ()) if upload.data), None)
     if sent is None:
-        raise BadInput(said["none_sent"])
+        raise BadInput(texts["none_sent"])
     score = form.text("score", "points")
     platform = platform_gradebook(form.text("platform"))
-    with TemporaryDirectory(prefix="coursework-") as made:
-        folder = Path(made)
+    with TemporaryDirectory(prefix="coursework-") as temporary:
+        folder = Path(temporary)
         (folder / "summary.csv").write_bytes(
             csv_file(summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)))
         )
@@ -373,13 +385,15 @@ def gradebook(request: Request) -> Response:
             )  # fmt: skip
         except ValueError as fault:
             if isinstance(fault, CourseworkError):
-                raise BadInput(str(fault).replace(f"{made}/sent/", "").replace(f"{made}/", "")) from fault
-            raise BadInput(said["no_number"]) from None
-    told = [said["filled"].format(filled.written, filled.column)]
-    for what in ("strangers", "unclear", "absent", "kept"):
-        if names := getattr(filled, what):
-            told.append(said[what].format(len(names), _list(names)))
-    return files_page(request, told, filled, file_name(sent))
+                raise BadInput(
+                    str(fault).replace(f"{temporary}/sent/", "").replace(f"{temporary}/", "")
+                ) from fault
+            raise BadInput(texts["no_number"]) from None
+    messages = [texts["filled"].format(filled.written, filled.column)]
+    for outcome in ("strangers", "unclear", "absent", "kept"):
+        if names := getattr(filled, outcome):
+            messages.append(texts[outcome].format(len(names), _list(names)))
+    return files_page(request, messages, filled, file_name(sent))
 
 
 def _filled_in(

@@ -38,12 +38,14 @@ class Tile:
 def overview(request: Request) -> Response:
     """Return the overview of the assignments, the latest first."""
     with request.site.store.reading() as connection:
-        found = listed(connection)
+        assignments = listed(connection)
         leap = last_leap(connection, request.received_at)
     return request.render(
         "site_desk",
         tiles=[
-            _tile(request, one.id) for one in found if request.user.may(Permission.MARKS_READ, one.id, "")
+            _tile(request, about.id)
+            for about in assignments
+            if request.user.may(Permission.MARKS_READ, about.id, "")
         ],
         told=request.query_params.get("told", ""),
         clock="" if leap is None else _clock_text(request, leap),
@@ -76,7 +78,7 @@ def _counted(request: Request, now: ClassNow) -> Tile:
     last = moment(about.last, request.lang) if about.last else ""
     return Tile(
         about.id, assignment_title(about, request.lang), about.name, len(now.issued.students) or len(now.results),
-        len({one.student for one in now.machine.values()}), now.waiting, last, about.published is not None,
+        len({graded.student for graded in now.machine.values()}), now.waiting, last, about.published is not None,
     )  # fmt: skip
 
 
@@ -105,9 +107,9 @@ def bring(request: Request) -> Response:
 def _content(file: Upload) -> dict[str, object]:
     import json
 
-    found = json.loads(file.data.decode("utf-8"))
-    assert isinstance(found, dict)  # Issued.of has seen it
-    return found
+    content = json.loads(file.data.decode("utf-8"))
+    assert isinstance(content, dict)  # Issued.of has seen it
+    return content
 
 
 def figure(request: Request) -> Response:
@@ -115,7 +117,12 @@ def figure(request: Request) -> Response:
     now = class_now(request.site, assignment_of(request))
     exercise, seed = request.query_params.get("exercise", ""), request.query_params.get("seed", "")
     sheet = next(
-        (one for one in now.machine.values() if (one.exercise, str(one.seed)) == (exercise, seed)), None
+        (
+            graded
+            for graded in now.machine.values()
+            if (graded.exercise, str(graded.seed)) == (exercise, seed)
+        ),
+        None,
     )
     if sheet is None or not sheet.lines:
         raise HTTPException("own", 404)

@@ -28,11 +28,11 @@ def sheets(request: Request) -> Response:
         Nobody was issued a paper.
     """
     with request.site.store.reading() as connection:
-        one = assignment_here(request, connection)
-        papers = _papers(request, connection, one.id)
+        assignment = assignment_here(request, connection)
+        papers = _papers(request, connection, assignment.id)
     if not papers:
         raise BadInput(request.words["publishing"]["print_none"])
-    stem = "-".join(file_stems([one.name])) or "class"
+    stem = "-".join(file_stems([assignment.name])) or "class"
     files = dict(_printed(request, papers, stem))
     if len(files) == 1:
         name, data = next(iter(files.items()))
@@ -43,22 +43,22 @@ def sheets(request: Request) -> Response:
 def _papers(request: Request, connection: Connection, number: int) -> list[StudentPaper]:
     """In the order in which they were issued, each in the language that it was issued in."""
     ticked = set(request.form.texts.get("who", ())) if request.is_post else set()
-    found = []
+    papers = []
     for holder in holders(connection, number):
         if ticked and str(holder.person) not in ticked:
             continue
-        [place] = places(connection, holder.person, number)[:1]
+        [assignment] = places(connection, holder.person, number)[:1]
         lang = holder.lang or request.lang
-        found.append(student_paper(connection, request.site.course, place, holder.person, lang))
-    return found
+        papers.append(student_paper(connection, request.site.course, assignment, holder.person, lang))
+    return papers
 
 
 def _printed(request: Request, papers: Sequence[StudentPaper], stem: str) -> Iterator[tuple[str, bytes]]:
     """Yield the files with their names."""
     renderer = renderer_of(request.site.course.folder)
-    for lang in dict.fromkeys(one.lang for one in papers):
-        for name, part in parted(f"{stem}.{lang}", [one for one in papers if one.lang == lang]):
-            yield f"{name}.pdf", renderer.papers_pdf([one.paper for one in part])[0]
+    for lang in dict.fromkeys(paper.lang for paper in papers):
+        for name, part in parted(f"{stem}.{lang}", [paper for paper in papers if paper.lang == lang]):
+            yield f"{name}.pdf", renderer.papers_pdf([paper.paper for paper in part])[0]
 
 
 ROUTES = (

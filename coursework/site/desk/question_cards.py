@@ -80,8 +80,8 @@ class QuestionCard:
 def question_card(course: Course, issued: Issued, graded: Graded, part: str, lang: str) -> QuestionCard:
     """Return the question of an answer, in the reader's language if its exercise has it."""
     exercise = course[graded.exercise]
-    own = str(graded.record.get("lang", ""))
-    spoken = lang if lang in exercise.languages else own
+    issued_lang = str(graded.record.get("lang", ""))
+    spoken = lang if lang in exercise.languages else issued_lang
     return _question_card(_Hashed(course, rules_of(course, issued), {**graded.record, "lang": spoken}), part)
 
 
@@ -121,8 +121,8 @@ def steps(out_of: float) -> tuple[float, ...]:
     while out_of / step > _STEPS:
         step *= 2
     count = int(out_of / step + 1e-9)
-    found = [step * k for k in range(count + 1)]
-    return tuple(found if abs(found[-1] - out_of) < 1e-9 else [*found, out_of])
+    values = [step * k for k in range(count + 1)]
+    return tuple(values if abs(values[-1] - out_of) < 1e-9 else [*values, out_of])
 
 
 def sign_of(mark: Mark) -> str:
@@ -141,12 +141,14 @@ def moment(at: datetime, lang: str) -> str:
     return moment_text(at.replace(second=0, microsecond=0), lang)
 
 
-def decided_words(request: Request, made: Any) -> str:
+def decided_words(request: Request, decision: Any) -> str:
     """Return a line on a decision: its kind, its author and its time."""
-    said = request.words["queue"]["made"]
-    points = localise(f"{made.points or 0:g}", request.lang)
-    told = str(said[made.kind]).format(by=made.by, at=moment(made.made, request.lang), points=points)
-    return f"{told} {quoted(made.reason, request.lang)}" if made.reason else told
+    texts = request.words["queue"]["made"]
+    points = localise(f"{decision.points or 0:g}", request.lang)
+    line = str(texts[decision.kind]).format(
+        by=decision.by, at=moment(decision.made, request.lang), points=points
+    )
+    return f"{line} {quoted(decision.reason, request.lang)}" if decision.reason else line
 
 
 def raw_texts(marks: Sequence[Mark]) -> tuple[str, ...]:

@@ -44,13 +44,15 @@ class QuestionRow:
 def questions(request: Request) -> Response:
     """Return the page of the questions, in the order of the sheets or the hardest first."""
     now = class_now(request.site, assignment_of(request))
-    told = statistics_of(now)
-    names = Names(now.course, told, request.lang)
-    known = {(one.exercise, one.part): one for one in told.parts}
-    asked_for = [QuestionRow(*one, now.number(*one), known.get(one)) for one in now.questions]
-    listed = [replace(one, words=names.question(one)) for one in asked_for]
+    class_statistics = statistics_of(now)
+    names = Names(now.course, class_statistics, request.lang)
+    by_question = {(item.exercise, item.part): item for item in class_statistics.parts}
+    asked_for = [QuestionRow(*item, now.number(*item), by_question.get(item)) for item in now.questions]
+    listed = [replace(item, words=names.question(item)) for item in asked_for]
     if request.query_params.get("sort") == "hard":
-        listed.sort(key=lambda one: one.statistics.mean if one.statistics and one.statistics.marked else 2.0)
+        listed.sort(
+            key=lambda item: item.statistics.mean if item.statistics and item.statistics.marked else 2.0
+        )
     return class_page_of(
         request,
         now,
@@ -58,7 +60,7 @@ def questions(request: Request) -> Response:
         "questions",
         listed=listed,
         sort=request.query_params.get("sort", ""),
-        told=told,
+        told=class_statistics,
     )
 
 
@@ -80,63 +82,69 @@ def question(request: Request) -> Response:
     exercise, part = request.query_params.get("exercise", ""), request.query_params.get("part", "")
     if (exercise, part) not in now.questions:
         raise HTTPException("own", 404)
-    told = statistics_of(now)
-    own = next((one for one in told.parts if (one.exercise, one.part) == (exercise, part)), None)
-    names = Names(now.course, told, request.lang)
+    class_statistics = statistics_of(now)
+    part_statistics = next(
+        (item for item in class_statistics.parts if (item.exercise, item.part) == (exercise, part)), None
+    )
+    names = Names(now.course, class_statistics, request.lang)
     mistakes = [
-        (one, names.says(one) or one.name)
-        for one in told.mistakes
-        if (one.exercise, one.part) == (exercise, part)
+        (item, names.says(item) or item.name)
+        for item in class_statistics.mistakes
+        if (item.exercise, item.part) == (exercise, part)
     ]
     sheet = next(
-        (one for one in now.machine.values() if one.exercise == exercise and part in one.lines), None
+        (item for item in now.machine.values() if item.exercise == exercise and part in item.lines), None
     )
-    shown = None if sheet is None else question_card(now.course, now.issued, sheet, part, request.lang)
+    card = None if sheet is None else question_card(now.course, now.issued, sheet, part, request.lang)
     only = request.query_params.get("verdict", "")
     answers = _answers(request, now, exercise, part)
     return class_page_of(
-        request, now, "site_desk_question", "questions", exercise=exercise, part=part, own=own, mistakes=mistakes,
-        shown=shown, number=now.number(exercise, part), only=only,
-        answers=[one for one in answers if not only or only in one.matches][:_ANSWERS], count=len(answers),
-        waiting=sum((one.group.exercise, one.group.part) == (exercise, part) for one in now.open.values()),
-        examples=_EXAMPLES, verdicts=_verdicts(request, own),
+        request, now, "site_desk_question", "questions", exercise=exercise, part=part, own=part_statistics, mistakes=mistakes,
+        shown=card, number=now.number(exercise, part), only=only,
+        answers=[item for item in answers if not only or only in item.matches][:_ANSWERS], count=len(answers),
+        waiting=sum((item.group.exercise, item.group.part) == (exercise, part) for item in now.open.values()),
+        examples=_EXAMPLES, verdicts=_verdicts(request, part_statistics),
     )  # fmt: skip
 
 
 def _answers(request: Request, now: ClassNow, exercise: str, part: str) -> list[DistinctAnswer]:
-    found: dict[tuple[str, str], list[tuple[str, Mark]]] = {}
-    for one in now.graded.values():
-        mark = one.lines.get(part) if one.exercise == exercise else None
-        if mark is not None and mark.verdict != "missing" and one.sitting == now.results[one.student].sitting:
-            found.setdefault((mark.verdict, written(mark)), []).append((one.student, mark))
-    listed = [_written(request, own) for own in found.values()]
-    return sorted(listed, key=lambda one: (-len(one.students), one.sign == "full", one.text))
+    by_text: dict[tuple[str, str], list[tuple[str, Mark]]] = {}
+    for graded in now.graded.values():
+        mark = graded.lines.get(part) if graded.exercise == exercise else None
+        if (
+            mark is not None
+            and mark.verdict != "missing"
+            and graded.sitting == now.results[graded.student].sitting
+        ):
+            by_text.setdefault((mark.verdict, written(mark)), []).append((graded.student, mark))
+    listed = [_written(request, marks) for marks in by_text.values()]
+    return sorted(listed, key=lambda graded: (-len(graded.students), graded.sign == "full", graded.text))
 
 
-def _written(request: Request, own: list[tuple[str, Mark]]) -> DistinctAnswer:
-    mark = own[0][1]
+def _written(request: Request, marks: list[tuple[str, Mark]]) -> DistinctAnswer:
+    mark = marks[0][1]
     return DistinctAnswer(
         mark.answer, verdict_word(mark.verdict, request.lang), sign_of(mark), mark.says,
-        tuple(dict.fromkeys(student for student, _ in own)), (mark.verdict.partition(":")[0], mark.verdict),
+        tuple(dict.fromkeys(student for student, _ in marks)), (mark.verdict.partition(":")[0], mark.verdict),
     )  # fmt: skip
 
 
-def _verdicts(request: Request, own: PartStatistics | None) -> list[tuple[str, str, int]]:
+def _verdicts(request: Request, part_statistics: PartStatistics | None) -> list[tuple[str, str, int]]:
     """Return the verdicts that occur among the answers: name, word, count."""
-    counts: Mapping[str, int] = Counter() if own is None else own.counts
+    counts: Mapping[str, int] = Counter() if part_statistics is None else part_statistics.counts
     return [(name, verdict_word(name, request.lang), count) for name, count in counts.items() if count]
 
 
 def statistics(request: Request) -> Response:
     """Return the report of the statistics as a page, or as a PDF."""
     now = class_now(request.site, assignment_of(request))
-    told = report(now.course, statistics_of(now), request.lang)
+    document = report(now.course, statistics_of(now), request.lang)
     renderer = renderer_of(now.course.folder)
     if request.path.endswith(".pdf"):
         return Response(
-            media_type="application/pdf", content=renderer.report_pdf(told), filename="report.pdf"
+            media_type="application/pdf", content=renderer.report_pdf(document), filename="report.pdf"
         )
-    return Response(renderer.report_html(told))
+    return Response(renderer.report_html(document))
 
 
 ROUTES = (

@@ -43,9 +43,11 @@ class Filters:
     part: str = ""
 
     @staticmethod
-    def of(told: Mapping[str, str]) -> Filters:
-        why = told.get("why", "")
-        return Filters(why if why in (*WHY, REJECTED) else "", told.get("exercise", ""), told.get("part", ""))
+    def of(params: Mapping[str, str]) -> Filters:
+        why = params.get("why", "")
+        return Filters(
+            why if why in (*WHY, REJECTED) else "", params.get("exercise", ""), params.get("part", "")
+        )
 
     @property
     def query(self) -> dict[str, str]:
@@ -73,18 +75,25 @@ class QueueItem:
 
 def items(now: ClassNow, filters: Filters) -> list[QueueItem]:
     """Return the waiting cards that the filters select, in order."""
-    found = [
-        QueueItem(one.group.id, one.why, one.group.exercise, one.group.part, len(one.members), one.group)
-        for one in now.open.values()
-    ]
-    found += [
+    cards = [
         QueueItem(
-            f"r{one.id}", REJECTED, one.row.row.get("exercise", ""), one.row.row.get("part", ""), 1, row=one
+            entry.group.id, entry.why, entry.group.exercise, entry.group.part, len(entry.members), entry.group
         )
-        for one in now.named
-        if one.waits
+        for entry in now.open.values()
     ]
-    return [one for one in found if filters.shows(one.why, one.exercise, one.part)]
+    cards += [
+        QueueItem(
+            f"r{entry.id}",
+            REJECTED,
+            entry.row.row.get("exercise", ""),
+            entry.row.row.get("part", ""),
+            1,
+            row=entry,
+        )
+        for entry in now.named
+        if entry.waits
+    ]
+    return [entry for entry in cards if filters.shows(entry.why, entry.exercise, entry.part)]
 
 
 # --------------------------------------------------------------------------- card
@@ -112,8 +121,8 @@ class QueueCard:
     @property
     def scans(self) -> tuple[tuple[str, str], ...]:
         """Route and field of the pictures that an answer on paper is."""
-        told = [_SCAN.fullmatch(one) for one in str(self.first.mark.answer).split("; ")]
-        return tuple((one[1], one[2]) for one in told if one)
+        matches = [_SCAN.fullmatch(piece) for piece in str(self.first.mark.answer).split("; ")]
+        return tuple((piece[1], piece[2]) for piece in matches if piece)
 
 
 def card_of(request: Request, now: ClassNow, item: QueueItem) -> QueueCard:
@@ -121,14 +130,14 @@ def card_of(request: Request, now: ClassNow, item: QueueItem) -> QueueCard:
     assert item.group is not None
     group = item.group
     waits = now.open[group.id].members if group.id in now.open else ()
-    made = [(one, now.decisions.standing(one.sheet, one.mark)) for one in group.members]
+    decisions = [(entry, now.decisions.standing(entry.sheet, entry.mark)) for entry in group.members]
     first = (waits or group.members)[0]
     margin = "" if first.margin is None else localise(significant(first.margin, 2), request.lang)
     return QueueCard(
         item, question_card(now.course, now.issued, first.sheet, group.part, request.lang), first, waits,
-        tuple((one.student, decided_words(request, done)) for one, done in made if done is not None), now.number(group.exercise, group.part), margin,
-        raw_texts([one.mark for one in group.members]), steps(first.mark.out_of),
-        sum(len(one.members) for one in _alike(now, group)),
+        tuple((entry.student, decided_words(request, done)) for entry, done in decisions if done is not None), now.number(group.exercise, group.part), margin,
+        raw_texts([entry.mark for entry in group.members]), steps(first.mark.out_of),
+        sum(len(entry.members) for entry in _alike(now, group)),
     )  # fmt: skip
 
 
@@ -137,8 +146,10 @@ def _alike(now: ClassNow, group: Group) -> list[Open]:
     if group.why != "unreadable":
         return []
     text = written(group.first.mark)
-    others = (one for one in now.open.values() if one.why == "unreadable" and one.group.id != group.id)
-    return [one for one in others if written(one.group.first.mark) == text]
+    others = (
+        entry for entry in now.open.values() if entry.why == "unreadable" and entry.group.id != group.id
+    )
+    return [entry for entry in others if written(entry.group.first.mark) == text]
 
 
 # --------------------------------------------------------------------------- pages
@@ -159,16 +170,16 @@ def decided(request: Request) -> Response:
     if asked_for == "undo":
         return _undone(request, now, filters)
     name = request.form.text("group")
-    group = next((one for one in now.groups if one.id == name), None)
+    group = next((candidate for candidate in now.groups if candidate.id == name), None)
     if group is None:
-        return card_response(request, now, filters, "", told=request.words["queue"]["anew"])
-    before = [one.id for one in _around(now, filters)]
+        return card_response(request, now, filters, "", message=request.words["queue"]["anew"])
+    before = [candidate.id for candidate in _around(now, filters)]
     try:
-        told = _decide(request, now, group, asked_for)
+        message = _decide(request, now, group, asked_for)
     except BadInput as fault:
-        return card_response(request, now, filters, name, told=str(fault))
+        return card_response(request, now, filters, name, message=str(fault))
     later = class_now(request.site, now.about.id)
-    return card_response(request, later, filters, _after(before, name, later, filters), told=told)
+    return card_response(request, later, filters, _after(before, name, later, filters), message=message)
 
 
 def queue_page(request: Request) -> Response:
@@ -179,12 +190,12 @@ def watch(request: Request) -> Response:
     """Return a message if somebody else has decided on a card meanwhile; otherwise an empty response."""
     now = class_now(request.site, assignment_of(request))
     name = request.query_params.get("group", "")
-    group = next((one for one in now.groups if one.id == name), None)
+    group = next((candidate for candidate in now.groups if candidate.id == name), None)
     if group is None or name in now.open:
         return Response(status_code=204)
-    made = now.decisions.standing(group.first.sheet, group.first.mark)
-    told = request.words["queue"]["taken"].format(made.by, 1) if made else ""
-    return request.render("_desk_told", told=told)
+    decision = now.decisions.standing(group.first.sheet, group.first.mark)
+    message = request.words["queue"]["taken"].format(decision.by, 1) if decision else ""
+    return request.render("_desk_told", told=message)
 
 
 def _around(now: ClassNow, filters: Filters) -> list[QueueItem]:
@@ -193,33 +204,35 @@ def _around(now: ClassNow, filters: Filters) -> list[QueueItem]:
 
 def _after(before: Sequence[str], name: str, now: ClassNow, filters: Filters) -> str:
     """Return the card after another in the previous order; the same card if some of its answers still wait."""
-    left = {one.id for one in items(now, filters)}
+    left = {candidate.id for candidate in items(now, filters)}
     if name in before:
-        place = before.index(name)
-        return next((one for one in (*before[place:], *before[:place]) if one in left), "")
+        index = before.index(name)
+        return next((candidate for candidate in (*before[index:], *before[:index]) if candidate in left), "")
     return ""
 
 
-def card_response(request: Request, now: ClassNow, filters: Filters, at: str, told: str = "") -> Response:
+def card_response(request: Request, now: ClassNow, filters: Filters, at: str, message: str = "") -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
-    shown = items(now, filters)
-    place = next((k for k, one in enumerate(shown) if one.id == at), None)
-    item = shown[place or 0] if shown else None
-    if place is None and at:
+    waiting_items = items(now, filters)
+    index = next((k for k, candidate in enumerate(waiting_items) if candidate.id == at), None)
+    item = waiting_items[index or 0] if waiting_items else None
+    if index is None and at:
         item = _closed(now, at) or item
-        told = told or _already_decided_message(request, now, at)
+        message = message or _already_decided_message(request, now, at)
     card = card_of(request, now, item) if item is not None and item.group is not None else None
-    number = next((k for k, one in enumerate(shown) if item is not None and one.id == item.id), 0)
+    number = next(
+        (k for k, candidate in enumerate(waiting_items) if item is not None and candidate.id == item.id), 0
+    )
     names: dict[str, Any] = {
         "filters": filters,
         "item": item,
         "card": card,
         "row": item.row if item is not None else None,
         "place": number + 1,
-        "count": len(shown),
-        "before": shown[number - 1].id if shown else "",
-        "after": shown[(number + 1) % len(shown)].id if shown else "",
-        "told": told,
+        "count": len(waiting_items),
+        "before": waiting_items[number - 1].id if waiting_items else "",
+        "after": waiting_items[(number + 1) % len(waiting_items)].id if waiting_items else "",
+        "told": message,
         "counts": _counts(now),
         "done": _done(now),
         "since": now.stamp.decisions[1],
@@ -234,7 +247,7 @@ def card_response(request: Request, now: ClassNow, filters: Filters, at: str, to
 
 def _closed(now: ClassNow, name: str) -> QueueItem | None:
     """Return a decided card, to be shown again."""
-    group = next((one for one in now.groups if one.id == name), None)
+    group = next((candidate for candidate in now.groups if candidate.id == name), None)
     if group is None:
         return None
     return QueueItem(group.id, group.why, group.exercise, group.part, len(group.members), group)
@@ -245,20 +258,22 @@ def _already_decided_message(request: Request, now: ClassNow, name: str) -> str:
     if item is None or item.group is None:
         return str(request.words["queue"]["anew"])
     first = item.group.first
-    made = now.decisions.standing(first.sheet, first.mark)
-    return str(request.words["queue"]["taken"]).format(made.by, len(item.group.members)) if made else ""
+    decision = now.decisions.standing(first.sheet, first.mark)
+    return (
+        str(request.words["queue"]["taken"]).format(decision.by, len(item.group.members)) if decision else ""
+    )
 
 
 def _counts(now: ClassNow) -> list[tuple[str, int]]:
     """Return the number of waiting cards, by reason."""
-    found = Counter(one.why for one in now.open.values())
-    found[REJECTED] = sum(one.waits for one in now.named)
-    return [(why, found[why]) for why in (*WHY, REJECTED) if found[why]]
+    counts = Counter(entry.why for entry in now.open.values())
+    counts[REJECTED] = sum(entry.waits for entry in now.named)
+    return [(why, counts[why]) for why in (*WHY, REJECTED) if counts[why]]
 
 
 def _done(now: ClassNow) -> int:
     """Return the number of decided answers."""
-    return sum(now.is_decided(one) for group in now.groups for one in group.members)
+    return sum(now.is_decided(answer) for group in now.groups for answer in group.members)
 
 
 def _can_undo(request: Request, now: ClassNow) -> bool:
@@ -270,10 +285,12 @@ def _can_undo(request: Request, now: ClassNow) -> bool:
 
 def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, int]]:
     """Return the questions with waiting cards: number, exercise, part, cards."""
-    shown = items(now, replace(filters, exercise="", part=""))
-    found = Counter((one.exercise, one.part) for one in shown if one.group is not None)
+    waiting_items = items(now, replace(filters, exercise="", part=""))
+    counts = Counter(
+        (waiting.exercise, waiting.part) for waiting in waiting_items if waiting.group is not None
+    )
     return [
-        (now.number(*question), *question, found[question]) for question in now.questions if found[question]
+        (now.number(*question), *question, counts[question]) for question in now.questions if counts[question]
     ]
 
 
@@ -285,15 +302,15 @@ def _decide(request: Request, now: ClassNow, group: Group, asked_for: str) -> st
     kind, points = _requested_decision(asked_for, request, group)
     members = list(_chosen(request, now, group))
     if request.form.text("everywhere") and not points:
-        members += [one for other in _alike(now, group) for one in other.members]
+        members += [answer for other in _alike(now, group) for answer in other.members]
     since = request.form.text("since")
     with request.site.store.begin() as connection:
-        taken = _decided_meanwhile(
+        decided_meanwhile = _decided_meanwhile(
             decided_since(
                 connection, now.about.id, int(since) if since.isdecimal() and len(since) < 16 else 0
             )
         )
-        free = [one for one in members if _key(one) not in taken]
+        free = [answer for answer in members if _key(answer) not in decided_meanwhile]
         comment = request.form.text("comment").strip()[:LONGEST]
         decide(connection, now.about.id, map(_target, free), kind, points, comment, by_whom(request))
         about = {"assignment": now.about.id, "exercise": group.exercise, "part": group.part, "kind": kind}
@@ -307,7 +324,7 @@ def _decide(request: Request, now: ClassNow, group: Group, asked_for: str) -> st
                 points=points,
                 **about,
             )
-    others = [taken[_key(one)].by for one in members if _key(one) in taken]
+    others = [decided_meanwhile[_key(answer)].by for answer in members if _key(answer) in decided_meanwhile]
     return _decision_message(request, kind, points, len(free), others)
 
 
@@ -315,15 +332,15 @@ def _decision_message(
     request: Request, kind: str, points: float | None, count: int, others: Sequence[str]
 ) -> str:
     """Return the message on a decision, with the number of answers that somebody else had already decided."""
-    said = request.words["queue"]
-    told = (
-        str(said["decided"][kind]).format(count, localise(f"{points or 0:g}", request.lang)) if count else ""
+    texts = request.words["queue"]
+    message = (
+        str(texts["decided"][kind]).format(count, localise(f"{points or 0:g}", request.lang)) if count else ""
     )
-    return f"{told} {said['taken'].format(others[0], len(others))}".strip() if others else told
+    return f"{message} {texts['taken'].format(others[0], len(others))}".strip() if others else message
 
 
-def _key(one: Waits) -> tuple[str, str, str, str]:
-    return one.student, one.sheet.exercise, str(one.sheet.seed), one.mark.part
+def _key(answer: Waits) -> tuple[str, str, str, str]:
+    return answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part
 
 
 def _chosen(request: Request, now: ClassNow, group: Group) -> Sequence[Waits]:
@@ -333,7 +350,7 @@ def _chosen(request: Request, now: ClassNow, group: Group) -> Sequence[Waits]:
     if request.form.text("all"):
         return waits
     student = request.form.text("student")
-    return [one for one in waits if one.student == student] or waits[:1]
+    return [answer for answer in waits if answer.student == student] or waits[:1]
 
 
 def _requested_decision(asked_for: str, request: Request, group: Group) -> tuple[str, float | None]:
@@ -350,37 +367,39 @@ def _requested_decision(asked_for: str, request: Request, group: Group) -> tuple
         return ACCEPTED, None
     if asked_for == "refuse":
         return (GIVEN, 0.0) if group.first.mark.verdict in ("unreadable", "to_mark") else (KEPT, None)
-    told = request.form.text("points") if asked_for == "points" else asked_for.removeprefix("give:")
+    points_text = request.form.text("points") if asked_for == "points" else asked_for.removeprefix("give:")
     if asked_for != "points" and not asked_for.startswith("give:"):
         raise HTTPException("bad_request", 400)
-    points = points_of(told.strip(), request.words["queue"]["points"])
+    points = points_of(points_text.strip(), request.words["queue"]["points"])
     if points is None:
         raise BadInput(request.words["queue"]["no_points"])
     if points > group.first.mark.out_of:
         most = localise(f"{group.first.mark.out_of:g}", request.lang)
-        raise BadInput(request.words["queue"]["too_many"].format(localise(told, request.lang), most))
+        raise BadInput(request.words["queue"]["too_many"].format(localise(points_text, request.lang), most))
     return GIVEN, points
 
 
-def _target(one: Waits) -> Place:
-    return Place(one.student, one.sheet.exercise, str(one.sheet.seed), one.mark.part, one.mark.answer)
+def _target(answer: Waits) -> Place:
+    return Place(
+        answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part, answer.mark.answer
+    )
 
 
 def _decided_meanwhile(later: Sequence[Made]) -> dict[tuple[str, str, str, str], Made]:
     """Return the answers with a later decision."""
-    found: dict[tuple[str, str, str, str], Made] = {}
-    for one in later:
-        key = one.student, one.exercise, one.seed, one.part
-        if one.kind == WITHDRAWN:
-            found.pop(key, None)
+    decisions: dict[tuple[str, str, str, str], Made] = {}
+    for decision in later:
+        key = decision.student, decision.exercise, decision.seed, decision.part
+        if decision.kind == WITHDRAWN:
+            decisions.pop(key, None)
         else:
-            found[key] = one
-    return found
+            decisions[key] = decision
+    return decisions
 
 
 def _undone(request: Request, now: ClassNow, filters: Filters) -> Response:
     """Withdraw what was decided last, and show its card."""
-    said = request.words["queue"]
+    texts = request.words["queue"]
     with request.site.store.begin() as connection:
         batch = undoable(connection, now.about.id, by_whom(request))
         if batch:
@@ -396,15 +415,19 @@ def _undone(request: Request, now: ClassNow, filters: Filters) -> Response:
     later = class_now(request.site, now.about.id)
     if not batch:
         return card_response(
-            request, later, filters, request.form.text("group"), told=said["nothing_to_undo"]
+            request, later, filters, request.form.text("group"), message=texts["nothing_to_undo"]
         )
-    at = next((one.group.id for one in later.open.values() if _is_of(one.members, batch[0])), "")
-    shown = filters if any(one.id == at for one in items(later, filters)) else Filters()
-    return card_response(request, later, shown, at, told=said["undone"].format(len(batch)))
+    at = next(
+        (candidate.group.id for candidate in later.open.values() if _is_of(candidate.members, batch[0])), ""
+    )
+    next_filters = filters if any(candidate.id == at for candidate in items(later, filters)) else Filters()
+    return card_response(request, later, next_filters, at, message=texts["undone"].format(len(batch)))
 
 
-def _is_of(members: Sequence[Waits], one: Made) -> bool:
-    return any(_key(w) == (one.student, one.exercise, one.seed, one.part) for w in members)
+def _is_of(members: Sequence[Waits], decision: Made) -> bool:
+    return any(
+        _key(w) == (decision.student, decision.exercise, decision.seed, decision.part) for w in members
+    )
 
 
 ROUTES = (

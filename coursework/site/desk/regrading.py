@@ -40,18 +40,18 @@ def regrade(request: Request) -> Response:
     course = _current_course(request.site, now)
     done = request.is_post and request.form.text("do") == "regrade"
     if done:
-        told = mark_new(course, request.site.store, now.about.id)
+        result = mark_new(course, request.site.store, now.about.id)
         request.site.take(course)
         with request.site.store.begin() as connection:
-            about = {"assignment": now.about.id, "sheets": told.marked, "changes": len(told.changes)}
+            about = {"assignment": now.about.id, "sheets": result.marked, "changes": len(result.changes)}
             note(connection, request.received_at, by_whom(request), "regrade", **about)
         now = class_now(request.site, now.about.id)
     else:
-        told = would_change(course, request.site.store, now.about.id)
+        result = would_change(course, request.site.store, now.about.id)
     return class_page_of(
-        request, now, "site_desk_regrade", "regrade", told=told, done=done, is_new=course is not request.site.course,
-        rows=[_row(request, now, one) for one in told.changes[:_MOST_ROWS]], questions=_questions(request, now, told),
-        students=len({one.student for one in told.changes}),
+        request, now, "site_desk_regrade", "regrade", told=result, done=done, is_new=course is not request.site.course,
+        rows=[_row(request, now, change) for change in result.changes[:_MOST_ROWS]], questions=_questions(request, now, result),
+        students=len({change.student for change in result.changes}),
     )  # fmt: skip
 
 
@@ -64,30 +64,30 @@ def _current_course(site: Site, now: ClassNow) -> Course[Any]:
     return course if same else fresh
 
 
-def _row(request: Request, now: ClassNow, one: Change) -> ChangeRow:
+def _row(request: Request, now: ClassNow, change: Change) -> ChangeRow:
     before, after = (
-        verdict_word(v, request.lang) if v else "" for v in (one.verdict_before, one.verdict_now)
+        verdict_word(v, request.lang) if v else "" for v in (change.verdict_before, change.verdict_now)
     )
-    points_before, points_now = (localise(p, request.lang) for p in (one.points_before, one.points_now))
-    is_less = _number(one.points_now) < _number(one.points_before)
-    number = now.number(one.exercise, one.part)
-    return ChangeRow(one.student, number, one.answer, before, after, points_before, points_now, is_less)
+    points_before, points_now = (localise(p, request.lang) for p in (change.points_before, change.points_now))
+    is_less = _number(change.points_now) < _number(change.points_before)
+    number = now.number(change.exercise, change.part)
+    return ChangeRow(change.student, number, change.answer, before, after, points_before, points_now, is_less)
 
 
-def _questions(request: Request, now: ClassNow, told: MarkedNow) -> list[tuple[str, int, int, str]]:
+def _questions(request: Request, now: ClassNow, result: MarkedNow) -> list[tuple[str, int, int, str]]:
     """By question: its number, how many marks rise, how many fall, and the points that the class gains or loses."""
-    found: dict[tuple[str, str], list[float]] = {}
-    for one in told.changes:
-        gain = _number(one.points_now) - _number(one.points_before)
-        found.setdefault((one.exercise, one.part), []).append(gain)
+    gains_by_question: dict[tuple[str, str], list[float]] = {}
+    for change in result.changes:
+        gain = _number(change.points_now) - _number(change.points_before)
+        gains_by_question.setdefault((change.exercise, change.part), []).append(gain)
     return [
         (
             now.number(*question),
-            *_signs(found[question]),
-            localise(f"{sum(found[question]):+g}", request.lang),
+            *_signs(gains_by_question[question]),
+            localise(f"{sum(gains_by_question[question]):+g}", request.lang),
         )
         for question in now.questions
-        if question in found
+        if question in gains_by_question
     ]
 
 
@@ -103,9 +103,9 @@ def _number(points: str) -> float:
 def changes(request: Request) -> Response:
     """Return the table of changed marks as a file."""
     now = class_now(request.site, assignment_of(request))
-    told = would_change(_current_course(request.site, now), request.site.store, now.about.id)
+    result = would_change(_current_course(request.site, now), request.site.store, now.about.id)
     spreadsheet = SPREADSHEETS["comma" if request.lang == "fr" else "point"]
-    data = csv_file((one.row() for one in told.changes), Change._fields, spreadsheet)
+    data = csv_file((change.row() for change in result.changes), Change._fields, spreadsheet)
     return Response(media_type="text/csv; charset=utf-8", content=data, filename="changes.csv")
 
 

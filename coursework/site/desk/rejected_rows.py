@@ -20,17 +20,17 @@ _LONGEST = 500  #: characters of a reason
 def rejected(request: Request) -> Response:
     """Decide on a rejected row; back to where it was shown."""
     now = class_now(request.site, assignment_of(request))
-    row = next((one for one in now.rejected if one.id == request.form.text("row")), None)
+    row = next((candidate for candidate in now.rejected if candidate.id == request.form.text("row")), None)
     if row is None:
         raise HTTPException("own", 404)
     try:
-        told = _decided(request, now, row)
+        message = _decided(request, now, row)
     except BadInput as fault:
-        told = str(fault)
+        message = str(fault)
     if request.form.text("from") == "queue":
         filters = Filters.of({k: request.form.text(k) for k in ("why", "exercise", "part")})
-        return card_response(request, class_now(request.site, now.about.id), filters, "", told)
-    return files_page(request, [told])
+        return card_response(request, class_now(request.site, now.about.id), filters, "", message)
+    return files_page(request, [message])
 
 
 def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
@@ -41,13 +41,13 @@ def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
     BadInput
         Nobody and nothing is named, or an answer stands there already.
     """
-    said, asked_for = request.words["files"], request.form.text("do")
+    texts, asked_for = request.words["files"], request.form.text("do")
     if asked_for == "back":
         with request.site.store.begin() as connection:
             drop_placing(connection, now.about.id, row.id)
-        return str(said["is_back"])
+        return str(texts["is_back"])
     if row.became is not None:
-        return str(said["was_placed" if row.became.delivery_id else "was_aside"]).format(row.became.by)
+        return str(texts["was_placed" if row.became.delivery_id else "was_aside"]).format(row.became.by)
     reason = request.form.text("reason").strip()[:_LONGEST]
     if asked_for == "aside":
         with request.site.store.begin() as connection:
@@ -62,13 +62,13 @@ def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
                 assignment=now.about.id,
                 row=row.id,
             )
-        return str(said["aside_done"])
+        return str(texts["aside_done"])
     if asked_for != "place":
         raise HTTPException("bad_request", 400)
     answer = _answer(request, now, row)
-    source = f"{row.row.source} ({said['by_hand'].format(by_whom(request))})"
+    source = f"{row.row.source} ({texts['by_hand'].format(by_whom(request))})"
     with request.site.store.begin() as connection:
-        came = deliver(
+        submission = deliver(
             connection,
             now.about.id,
             [answer._replace(source=source)],
@@ -77,7 +77,9 @@ def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
             in_place=True,
         )
         put_placing(
-            connection, now.about.id, Placed(row.id, came.id, reason, by_whom(request), request.received_at)
+            connection,
+            now.about.id,
+            Placed(row.id, submission.id, reason, by_whom(request), request.received_at),
         )
         note(
             connection,
@@ -87,27 +89,37 @@ def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
             assignment=now.about.id,
             row=row.id,
         )
-    mark_delivery(request.site.course, request.site.store, came.id)
-    return str(said["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
+    mark_delivery(request.site.course, request.site.store, submission.id)
+    return str(texts["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
 
 
 def _answer(request: Request, now: ClassNow, row: RejectedRow) -> Row:
     """Return the answer that a person assigns to a rejected row."""
-    said, issued = request.words["files"], now.issued
+    texts, issued = request.words["files"], now.issued
     student = issued.student(request.form.text("student"))
     exercise, _, part = request.form.text("question").partition("/")
     if not student or (exercise, part) not in now.questions:
-        raise BadInput(said["place_whose"])
+        raise BadInput(texts["place_whose"])
     text = row.row.row.get("answer", "")
-    own = [(place, one) for place, one in now.machine.items() if place[:2] == (student, exercise)]
-    place, sheet = max(own, key=lambda found: found[1].sitting) if own else (None, None)
+    sheets = [
+        (sheet_key, graded)
+        for sheet_key, graded in now.machine.items()
+        if sheet_key[:2] == (student, exercise)
+    ]
+    sheet_key, sheet = max(sheets, key=lambda pair: pair[1].sitting) if sheets else (None, None)
     if sheet is not None and part in sheet.lines and sheet.lines[part].verdict != "missing":
         raise BadInput(
-            said["place_taken"].format(student, now.number(exercise, part), sheet.lines[part].answer[:80])
+            texts["place_taken"].format(student, now.number(exercise, part), sheet.lines[part].answer[:80])
         )
     seeds = issued.seeds_of(student, exercise)
-    seed = str(place[2]) if place is not None else str(seeds[-1]) if seeds else row.row.row.get("seed", "")
-    attempt = place[3] if place is not None else 0
+    seed = (
+        str(sheet_key[2])
+        if sheet_key is not None
+        else str(seeds[-1])
+        if seeds
+        else row.row.row.get("seed", "")
+    )
+    attempt = sheet_key[3] if sheet_key is not None else 0
     return Row(
         student, exercise, seed, part, text, "", origin=Collected(sitting=attempt) if attempt else None
     )

@@ -62,14 +62,14 @@ def job(site: Site, number: int) -> ScanJob | None:
     """Return the state of the last job; None if nothing was ever uploaded. An interrupted job counts as
     failed."""
     with site.store.reading() as connection:
-        kept = value_of(connection, _key(number))
-    if kept is None:
+        stored = value_of(connection, _key(number))
+    if stored is None:
         return None
-    state, files, pages, told = kept["job"]
-    found = ScanJob(state, files, pages, tuple(told))
-    if state == RUNNING and site.clock() - datetime.fromisoformat(kept["at"]) > _GIVEN_UP:
-        return found._replace(state=FAILED)
-    return found
+    state, files, pages, messages = stored["job"]
+    status = ScanJob(state, files, pages, tuple(messages))
+    if state == RUNNING and site.clock() - datetime.fromisoformat(stored["at"]) > _GIVEN_UP:
+        return status._replace(state=FAILED)
+    return status
 
 
 def _key(number: int) -> str:
@@ -86,8 +86,8 @@ def _run(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
     try:
         with site.store.reading() as connection:
             content = issued_content(connection, number)
-        found = _read_apart(str(site.course.folder.root), content, sent)
-        pages = _store(site, number, content, found, by)
+        scanned = _read_apart(str(site.course.folder.root), content, sent)
+        pages = _store(site, number, content, scanned, by)
         _store_state(site, number, begun._replace(state=DONE, pages=pages))
     except CourseworkError as fault:
         _store_state(site, number, begun._replace(state=FAILED, messages=(str(fault),)))
@@ -99,14 +99,14 @@ def _read_apart(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]
     if workers(2) < 2:
         return _read(root, content, sent)
     with processes(1) as submit:
-        found: list[_ScannedPage] = submit(_read, root, content, sent).result()
-        return found
+        scanned: list[_ScannedPage] = submit(_read, root, content, sent).result()
+        return scanned
 
 
 def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_ScannedPage]:
     course = opened(root, Variant)
-    with TemporaryDirectory(prefix="coursework-") as made:
-        folder = Path(made).resolve()
+    with TemporaryDirectory(prefix="coursework-") as temporary:
+        folder = Path(temporary).resolve()
         issued, scans, out = folder / "issued.json", folder / "scans", folder / "read"
         issued.write_text(json.dumps(content), "utf-8")
         scans.mkdir()
@@ -114,22 +114,22 @@ def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> l
             (scans / name).write_bytes(data)
         files, _ = read_files(Papers(course, content), [scans], issued, out)
         return [
-            found
+            page
             for file in files
-            for found in _scanned_pages(out, file.name, file.digest, file.pages, file.fault)
+            for page in _scanned_pages(out, file.name, file.digest, file.pages, file.fault)
         ]
 
 
 def _scanned_pages(out: Path, name: str, digest: str, pages: int, fault: str) -> Sequence[_ScannedPage]:
     if fault:
         return [_ScannedPage(page_id(digest, 0), name, 0, PageKept(REFUSED, fault, has_picture=False), b"")]
-    found = []
+    scanned = []
     for number in range(1, pages + 1):
-        own = page_id(digest, number)
-        page = page_kept(out, own)
+        page_name = page_id(digest, number)
+        page = page_kept(out, page_name)
         if page is not None:
-            found.append(_ScannedPage(own, name, number, page, _bytes(out / picture_of(own))))
-    return found
+            scanned.append(_ScannedPage(page_name, name, number, page, _bytes(out / picture_of(page_name))))
+    return scanned
 
 
 def _bytes(path: Path) -> bytes:
@@ -137,17 +137,17 @@ def _bytes(path: Path) -> bytes:
 
 
 def _store(
-    site: Site, number: int, content: Mapping[str, Any], found: Sequence[_ScannedPage], by: str
+    site: Site, number: int, content: Mapping[str, Any], scanned: Sequence[_ScannedPage], by: str
 ) -> int:
     """Store all pages in one transaction; return the number of new ones."""
     papers = Papers(site.course, content).papers
     at = site.clock()
     with site.store.begin() as connection:
         new = 0
-        for one in found:
-            student = papers[one.content.code].student if one.content.code in papers else ""
-            page = Page(one.page, one.file, one.number, student, page_as_json(one.content), at)
-            is_new = put_scanned(connection, number, page, one.picture)
-            new += is_new and one.number > 0
-        note(connection, at, by, "scans", assignment=number, pages=len(found), new=new)
+        for item in scanned:
+            student = papers[item.content.code].student if item.content.code in papers else ""
+            page = Page(item.page, item.file, item.number, student, page_as_json(item.content), at)
+            is_new = put_scanned(connection, number, page, item.picture)
+            new += is_new and item.number > 0
+        note(connection, at, by, "scans", assignment=number, pages=len(scanned), new=new)
     return new

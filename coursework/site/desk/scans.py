@@ -44,18 +44,18 @@ class ScanCard:
 # ------------------------------------------------------------------------ pages
 
 
-def scans_page(request: Request, told: str = "") -> Response:
+def scans_page(request: Request, message: str = "") -> Response:
     """Return the page of scans and their state; store an upload, if a form brings one."""
     now = class_now(request.site, assignment_of(request))
     if request.is_post:
-        told = _sent(request, now)
+        message = _sent(request, now)
     job = scan_jobs.job(request.site, now.about.id)
     scans = class_scans(request.site, now.about.id)
     if request.is_post and request.form.text("do") == "hand over":
-        told = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, scans))
+        message = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, scans))
     absent = _absent(now, scans)
     return class_page_of(
-        request, now, "site_desk_scans", "scans", told=told, job=job, scans=scans, endings=",".join((*ENDINGS, ".zip")),
+        request, now, "site_desk_scans", "scans", told=message, job=job, scans=scans, endings=",".join((*ENDINGS, ".zip")),
         absent=absent if scans.pages else [],
     )  # fmt: skip
 
@@ -70,7 +70,7 @@ def _sent(request: Request, now: ClassNow) -> str:
     """
     if request.form.text("do") == "hand over":
         return ""
-    sent = [one for one in request.form.files.get("scans", ()) if one.data]
+    sent = [upload for upload in request.form.files.get("scans", ()) if upload.data]
     if not sent:
         raise BadInput(request.words["files"]["none_sent"])
     scan_jobs.begin(request.site, now.about.id, _by_names(sent), by_whom(request))
@@ -79,11 +79,11 @@ def _sent(request: Request, now: ClassNow) -> str:
 
 def _by_names(sent: list[Upload]) -> dict[str, bytes]:
     """Return files by names, made distinct."""
-    found: dict[str, bytes] = {}
-    for number, one in enumerate(sent, 1):
-        name = file_name(one)
-        found[name if name not in found else f"{number}-{name}"] = one.data
-    return found
+    files: dict[str, bytes] = {}
+    for number, upload in enumerate(sent, 1):
+        name = file_name(upload)
+        files[name if name not in files else f"{number}-{name}"] = upload.data
+    return files
 
 
 def _absent(now: ClassNow, scans: ClassScans) -> list[str]:
@@ -100,19 +100,19 @@ def cards_page(request: Request) -> Response:
         return _card_response(request, now, scans, request.query_params.get("at", ""))
     asked_for, id_ = request.form.text("do"), request.form.text("card")
     before = [card.id for card in scans.cards]
-    card = next((one for one in scans.cards if one.id == id_), None)
+    card = next((candidate for candidate in scans.cards if candidate.id == id_), None)
     if card is None:
         return _card_response(request, now, scans, "", request.words["scans"]["taken"])
     if asked_for not in ("confirm", "nothing"):
         raise HTTPException("bad_request", 400)
-    told = _typed(request, now, scans, card, "" if asked_for == "nothing" else _answer(request, card))
+    message = _typed(request, now, scans, card, "" if asked_for == "nothing" else _answer(request, card))
     later = class_scans(request.site, now.about.id)
     if not later.cards:
-        told = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, later))
-    left = {one.id for one in later.cards}
-    place = before.index(id_)
-    at = next((one for one in (*before[place:], *before[:place]) if one in left), "")
-    return _card_response(request, class_now(request.site, now.about.id), later, at, told)
+        message = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, later))
+    left = {candidate.id for candidate in later.cards}
+    index = before.index(id_)
+    at = next((candidate for candidate in (*before[index:], *before[:index]) if candidate in left), "")
+    return _card_response(request, class_now(request.site, now.about.id), later, at, message)
 
 
 def _answer(request: Request, card: Card) -> str:
@@ -123,12 +123,12 @@ def _answer(request: Request, card: Card) -> str:
     BadInput
         It is no page, or no name, where one is asked.
     """
-    told = request.form.text("answer").strip()[:LONGEST]
+    text = request.form.text("answer").strip()[:LONGEST]
     if card.exercise == PAGE:
         return f"{request.form.text('paper')} {request.form.text('number').strip() or '1'}"
-    if card.exercise == NAME and not told:
+    if card.exercise == NAME and not text:
         raise BadInput(request.words["scans"]["no_name"])
-    return told
+    return text
 
 
 def _typed(request: Request, now: ClassNow, scans: ClassScans, card: Card, answer: str) -> str:
@@ -161,18 +161,20 @@ def _numbers(scans: ClassScans, code: str) -> list[str]:
     return [str(page.number) for page in scans.papers[code]]
 
 
-def _card_response(request: Request, now: ClassNow, scans: ClassScans, at: str, told: str = "") -> Response:
+def _card_response(
+    request: Request, now: ClassNow, scans: ClassScans, at: str, message: str = ""
+) -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
     cards = scans.cards
-    place = next((k for k, one in enumerate(cards) if one.id == at), 0)
+    index = next((k for k, card in enumerate(cards) if card.id == at), 0)
     names: dict[str, Any] = {
-        "shown": _scan_card(request, now, scans, cards[place]) if cards else None,
-        "place": place + 1,
+        "shown": _scan_card(request, now, scans, cards[index]) if cards else None,
+        "place": index + 1,
         "count": len(cards),
-        "before": cards[place - 1].id if cards else "",
-        "after": cards[(place + 1) % len(cards)].id if cards else "",
+        "before": cards[index - 1].id if cards else "",
+        "after": cards[(index + 1) % len(cards)].id if cards else "",
         "scans": scans,
-        "told": told,
+        "told": message,
         "place_url": f"/desk/{now.about.id}/scans/queue",
         "papers": [(code, p.student) for code, p in scans.papers.papers.items() if p.size == "a4"],
     }
@@ -182,11 +184,11 @@ def _card_response(request: Request, now: ClassNow, scans: ClassScans, at: str, 
 
 
 def _scan_card(request: Request, now: ClassNow, scans: ClassScans, card: Card) -> ScanCard:
-    said = words(request.lang, "scan")["waits"]
+    texts = words(request.lang, "scan")["waits"]
     base = f"/desk/{now.about.id}/scans"
     pages = tuple(f"{base}/picture?page={name}" for name in card.pages)
-    crops = tuple(f"{base}/crop?page={one.page}&field={one.index}" for one in card.said) or pages
-    why = said.get(card.waits) or said["other"].format(card.waits)
+    crops = tuple(f"{base}/crop?page={field.page}&field={field.index}" for field in card.said) or pages
+    why = texts.get(card.waits) or texts["other"].format(card.waits)
     return ScanCard(card, scans.queue.group(card), why, crops, pages)
 
 
@@ -203,8 +205,10 @@ def crop(request: Request) -> Response:
     """Return the picture of a field of a page."""
     name, data = _picture(request)
     scans = class_scans(request.site, assignment_of(request))
-    told, page = request.query_params.get("field", ""), scans.by_id[name].page
-    number = int(told) if told.isascii() and told.isdecimal() and len(told) < 5 else -1
+    index_text, page = request.query_params.get("field", ""), scans.by_id[name].page
+    number = (
+        int(index_text) if index_text.isascii() and index_text.isdecimal() and len(index_text) < 5 else -1
+    )
     if not 0 <= number < len(page.fields):
         raise HTTPException("own", 404)
     if not page.is_straight:

@@ -76,12 +76,12 @@ def student_page(request: Request) -> Response:
     """Return the page of a student; a form decides on one of the answers."""
     now = class_now(request.site, assignment_of(request))
     student = _student(request, now)
-    told = ""
+    message = ""
     if request.is_post:
         try:
-            told = _decided(request, now, student)
+            message = _decided(request, now, student)
         except BadInput as fault:
-            told = str(fault)
+            message = str(fault)
         now = class_now(request.site, now.about.id)
     result = now.results[student]
     with request.site.store.reading() as connection:
@@ -90,84 +90,84 @@ def student_page(request: Request) -> Response:
         person = people_of(connection, now.about.id).get(student)
         alone = practised(connection, person, now.issued.exercises) if person else {}
     by_place: dict[tuple[str, str], list[Happened]] = {}
-    for _, exercise, part, one in happened:
-        by_place.setdefault((exercise, part), []).append(one)
-    sheets = [_sheet(request, now, place, by_place) for place in now.machine if place[0] == student]
-    sheets.sort(key=lambda one: (-one.graded.sitting, now.issued.exercises.index(one.graded.exercise)))
+    for _, exercise, part, entry in happened:
+        by_place.setdefault((exercise, part), []).append(entry)
+    sheets = [_sheet(request, now, sheet, by_place) for sheet in now.machine if sheet[0] == student]
+    sheets.sort(key=lambda entry: (-entry.graded.sitting, now.issued.exercises.index(entry.graded.exercise)))
     return class_page_of(
-        request, now, "site_desk_student", "class", student=student, result=result, told=told,
+        request, now, "site_desk_student", "class", student=student, result=result, told=message,
         mark=localise(mark_of(now.issued, result.counts, result.out_of), request.lang), columns=_columns(now, student),
-        tries=[(moment(one.came, request.lang), one) for one in tries], known=person or 0,
-        sittings=[(n, list(own)) for n, own in groupby(sheets, key=lambda one: one.graded.sitting)],
+        tries=[(moment(entry.came, request.lang), entry) for entry in tries], known=person or 0,
+        sittings=[(n, list(group)) for n, group in groupby(sheets, key=lambda entry: entry.graded.sitting)],
         practised=[_practised(request, name, *alone[name]) for name in now.issued.exercises if name in alone],
-        rejected=[one for one in now.rejected if one.student == student],
+        rejected=[entry for entry in now.rejected if entry.student == student],
     )  # fmt: skip
 
 
 def _student(request: Request, now: ClassNow) -> str:
-    told = request.form.text("name") if request.is_post else request.query_params.get("name", "")
-    if told in now.results:
-        return told
-    found = {folded(name): name for name in now.results}.get(folded(told))
-    if found is None:
+    query = request.form.text("name") if request.is_post else request.query_params.get("name", "")
+    if query in now.results:
+        return query
+    student = {folded(name): name for name in now.results}.get(folded(query))
+    if student is None:
         raise HTTPException("own", 404)
-    return found
+    return student
 
 
 def _columns(now: ClassNow, student: str) -> list[tuple[str, str]]:
-    told = own_columns(now.issued, student)
+    columns = own_columns(now.issued, student)
     titles = {folded(title): title for title in now.issued.columns.get(student, {})}
-    return [(titles.get(key, key), value) for key, value in told.items() if value]
+    return [(titles.get(key, key), value) for key, value in columns.items() if value]
 
 
 def _sheet(
-    request: Request, now: ClassNow, place: Any, happened: dict[tuple[str, str], list[Happened]]
+    request: Request, now: ClassNow, sheet_key: Any, happened: dict[tuple[str, str], list[Happened]]
 ) -> StudentSheet:
-    machine, stands = now.machine[place], now.graded[place]
+    machine, graded = now.machine[sheet_key], now.graded[sheet_key]
     lines = [
-        _line(request, now, machine, stands, part, happened.get((machine.exercise, part), []))
+        _line(request, now, machine, graded, part, happened.get((machine.exercise, part), []))
         for part in machine.lines
     ]
     title = lines[0].question_card.handout.title if lines else machine.exercise
-    return StudentSheet(stands, title, tuple(lines), stands.sitting == now.results[stands.student].sitting)
+    return StudentSheet(graded, title, tuple(lines), graded.sitting == now.results[graded.student].sitting)
 
 
 def _line(
-    request: Request, now: ClassNow, machine: Graded, stands: Graded, part: str, happened: list[Happened]
+    request: Request, now: ClassNow, machine: Graded, graded: Graded, part: str, happened: list[Happened]
 ) -> AnswerLine:
-    own = [one for one in happened if one.seed in ("", str(machine.seed))]
-    own = [one for one in own if one.sitting in (0, machine.sitting)]
-    told = tuple(_history_line(request, one) for one in own)
-    mark, in_class = stands.lines[part], now.number(machine.exercise, part)
+    events = [event for event in happened if event.seed in ("", str(machine.seed))]
+    events = [event for event in events if event.sitting in (0, machine.sitting)]
+    lines = tuple(_history_line(request, event) for event in events)
+    mark, in_class = graded.lines[part], now.number(machine.exercise, part)
     number = f"{in_class.partition('.')[0]}.{list(machine.lines).index(part) + 1}"
     return AnswerLine(
         question_card(now.course, now.issued, machine, part, request.lang), number, in_class if in_class != number else "",
-        machine.lines[part], mark, sign_of(mark), told,
+        machine.lines[part], mark, sign_of(mark), lines,
         now.decisions.standing(machine, machine.lines[part]) is not None, steps(mark.out_of),
     )  # fmt: skip
 
 
-def _history_line(request: Request, one: Happened) -> str:
+def _history_line(request: Request, event: Happened) -> str:
     """Return a line of the history."""
-    if one.kind == "marked":
+    if event.kind == "marked":
         from coursework.rendering.feedback import verdict_word
 
-        said = request.words["class"]["marked"]
-        at = moment(one.at, request.lang)
-        return str(said).format(verdict_word(one.verdict, request.lang), f"{one.points or 0:g}", at)
-    return decided_words(request, _EventDecision(one))
+        text = request.words["class"]["marked"]
+        at = moment(event.at, request.lang)
+        return str(text).format(verdict_word(event.verdict, request.lang), f"{event.points or 0:g}", at)
+    return decided_words(request, _EventDecision(event))
 
 
 class _EventDecision:
     """Event of the history, in the form of a decision."""
 
-    def __init__(self, one: Happened):
+    def __init__(self, event: Happened):
         self.kind, self.points, self.by, self.made, self.reason = (
-            one.kind,
-            one.points,
-            one.by,
-            one.at,
-            one.reason,
+            event.kind,
+            event.points,
+            event.by,
+            event.at,
+            event.reason,
         )
 
 
@@ -185,26 +185,26 @@ def _decided(request: Request, now: ClassNow, student: str) -> str:
     BadInput
         The points are no number, or more than there are.
     """
-    form, said = request.form, request.words["queue"]
+    form, texts = request.form, request.words["queue"]
     exercise, seed, part = form.text("exercise"), form.text("seed"), form.text("part")
     sheet = next(
         (
-            one
-            for one in now.machine.values()
-            if (one.student, one.exercise, str(one.seed)) == (student, exercise, seed)
-            and str(one.sitting) == form.text("sitting")
+            graded
+            for graded in now.machine.values()
+            if (graded.student, graded.exercise, str(graded.seed)) == (student, exercise, seed)
+            and str(graded.sitting) == form.text("sitting")
         ),
         None,
     )
     if sheet is None or part not in sheet.lines:
         raise HTTPException("own", 404)
-    kind, points = _kind(form.text("do"), form.text("points"), sheet.lines[part], said)
-    place = Place(student, exercise, seed, part, sheet.lines[part].answer)
+    kind, points = _kind(form.text("do"), form.text("points"), sheet.lines[part], texts)
+    target = Place(student, exercise, seed, part, sheet.lines[part].answer)
     with request.site.store.begin() as connection:
         decide(
             connection,
             now.about.id,
-            [place],
+            [target],
             kind,
             points,
             form.text("comment").strip()[:_LONGEST],
@@ -214,16 +214,16 @@ def _decided(request: Request, now: ClassNow, student: str) -> str:
             connection, request.received_at, by_whom(request), "decision", assignment=now.about.id, exercise=exercise, part=part,
             kind=kind, points=points, count=1,
         )  # fmt: skip
-    return str(said["decided"][kind]).format(1, f"{points or 0:g}")
+    return str(texts["decided"][kind]).format(1, f"{points or 0:g}")
 
 
-def _kind(asked_for: str, points: str, mark: Mark, said: Any) -> tuple[str, float | None]:
+def _kind(asked_for: str, points: str, mark: Mark, texts: Any) -> tuple[str, float | None]:
     if asked_for == "points":
-        given = points_of(points.strip(), said["points"])
+        given = points_of(points.strip(), texts["points"])
         if given is None:
-            raise BadInput(said["no_points"])
+            raise BadInput(texts["no_points"])
         if given > mark.out_of:
-            raise BadInput(said["too_many"].format(points, f"{mark.out_of:g}"))
+            raise BadInput(texts["too_many"].format(points, f"{mark.out_of:g}"))
         return GIVEN, given
     kinds = {"accept": ACCEPTED, "keep": KEPT, "withdraw": WITHDRAWN}
     if asked_for not in kinds:

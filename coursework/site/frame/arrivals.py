@@ -50,8 +50,8 @@ _arrival: ContextVar[Arrival | None] = ContextVar("arrival", default=None)
 def arrived(clock: Clock) -> datetime:
     """Return the effective time of the current request: its arrival if it sends data, otherwise the current
     time."""
-    one = _arrival.get()
-    return clock() if one is None else one.counts
+    arrival = _arrival.get()
+    return clock() if arrival is None else arrival.counts
 
 
 class Arrivals:
@@ -64,9 +64,9 @@ class Arrivals:
         if scope["type"] != "http" or scope["method"] != "POST":
             await self._app(scope, receive, send)
             return
-        one = Arrival(self._clock, scope.get("state") or {})
-        token = _arrival.set(one)
-        body = _Body(receive, one)
+        arrival = Arrival(self._clock, scope.get("state") or {})
+        token = _arrival.set(arrival)
+        body = _Body(receive, arrival)
         ahead = asyncio.ensure_future(body.read_ahead()) if _is_small(scope) else None
         try:
             await self._app(scope, body.receive, send)
@@ -77,9 +77,9 @@ class Arrivals:
 
 
 def _is_small(scope: MutableMapping[str, Any]) -> bool:
-    told = {name: value for name, value in scope["headers"] if name in (b"content-length", b"expect")}
-    length = told.get(b"content-length", b"")
-    return b"expect" not in told and length.isdigit() and len(length) < 9 and int(length) <= _AHEAD
+    headers = {name: value for name, value in scope["headers"] if name in (b"content-length", b"expect")}
+    length = headers.get(b"content-length", b"")
+    return b"expect" not in headers and length.isdigit() and len(length) < 9 and int(length) <= _AHEAD
 
 
 class _Body:
@@ -109,10 +109,10 @@ class _Body:
         """Return the next message."""
         if self._read.empty() and not self._is_ahead:
             return await self._stamped()
-        found = await self._read.get()
-        if isinstance(found, Exception):
-            raise found
-        return found
+        message = await self._read.get()
+        if isinstance(message, Exception):
+            raise message
+        return message
 
     async def _stamped(self) -> Message:
         message = await self._receive()

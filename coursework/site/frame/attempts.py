@@ -62,11 +62,13 @@ class Attempts:
         TooMany
             Too many of the same kind wait already.
         """
-        counted = {one: attempt.failures.get(one.key, 0) + self._under_way[one.key] for one in attempt.tracks}
-        seconds = max((one.seconds(count) for one, count in counted.items()), default=0.0)
-        if seconds and any(self._under_way[one.key] >= one.most for one in attempt.tracks):
+        counted = {
+            track: attempt.failures.get(track.key, 0) + self._under_way[track.key] for track in attempt.tracks
+        }
+        seconds = max((track.seconds(count) for track, count in counted.items()), default=0.0)
+        if seconds and any(self._under_way[track.key] >= track.most for track in attempt.tracks):
             raise TooMany(math.ceil(seconds))
-        keys = [one.key for one in attempt.tracks]
+        keys = [track.key for track in attempt.tracks]
         self._under_way.update(keys)
         try:
             if seconds:

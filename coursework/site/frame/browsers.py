@@ -15,8 +15,8 @@ _SYSTEMS = (
 
 def described(user_agent: str) -> str:
     """Return ``Firefox, Linux`` for the header of a browser; an empty text for what is none of the usual ones."""
-    found = (
-        next((name for piece, name in known if piece in user_agent[:500]), "")
-        for known in (_PROGRAMS, _SYSTEMS)
+    names = (
+        next((name for piece, name in table if piece in user_agent[:500]), "")
+        for table in (_PROGRAMS, _SYSTEMS)
     )
-    return ", ".join(filter(None, found))
+    return ", ".join(filter(None, names))

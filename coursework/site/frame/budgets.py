@@ -61,7 +61,7 @@ DESK_FILE = DESK_FILES._replace(
 MOST_ROWS = 800  #: of a student's file of answers
 
 
-def read_apart(budget: Budget, too_much: str, function: Callable[..., Any], *told: Any) -> Any:
+def read_apart(budget: Budget, too_much: str, function: Callable[..., Any], *arguments: Any) -> Any:
     """Return what a function reads from a file, in a process with the means of the budget.
 
     Raises
@@ -71,6 +71,6 @@ def read_apart(budget: Budget, too_much: str, function: Callable[..., Any], *tol
     """
     assert budget.reading is not None, f"{budget.name} reads no files"
     try:
-        return confined(budget.reading, function, *told)
+        return confined(budget.reading, function, *arguments)
     except Exceeded:
         raise BadInput(too_much) from None

@@ -75,11 +75,11 @@ class SteadyClock:
         now, begun = self._wall(), self._elapsed()
         with store.reading() as connection:
             seen = value_of(connection, _SEEN) or {}
-        known = bool(self._boot) and seen.get("boot") == self._boot
+        is_same_boot = bool(self._boot) and seen.get("boot") == self._boot
         # The time that counted last, and when it did; what elapsed since is added.
-        self._last = datetime.fromisoformat(seen["at"]) if known else now
-        self._at = float(seen["elapsed"]) if known else begun
-        gap = now - datetime.fromisoformat(seen["at"]) if seen and not known else timedelta(0)
+        self._last = datetime.fromisoformat(seen["at"]) if is_same_boot else now
+        self._at = float(seen["elapsed"]) if is_same_boot else begun
+        gap = now - datetime.fromisoformat(seen["at"]) if seen and not is_same_boot else timedelta(0)
         self._steady_from = begun + STEADY if abs(gap) > LEAP else begun
         self._leapt: tuple[float, timedelta] | None = (
             None  #: since when the machine's clock is ahead, and by how much
@@ -137,8 +137,8 @@ class SteadyClock:
         try:
             with self._store.begin() as connection:
                 if leap is None or not leap.held:
-                    told = {"boot": self._boot, "at": now.isoformat(), "elapsed": elapsed}
-                    put_value(connection, _SEEN, told)
+                    value = {"boot": self._boot, "at": now.isoformat(), "elapsed": elapsed}
+                    put_value(connection, _SEEN, value)
                 if leap is not None:
                     put_value(connection, _LEAPT, [leap.at.isoformat(), leap.seconds, leap.held])
                     note(connection, now, _BY, "clock leapt", seconds=round(leap.seconds), held=leap.held)
@@ -153,11 +153,11 @@ def is_steady(clock: Callable[[], datetime]) -> bool:
 
 def last_leap(connection: Connection, now: datetime) -> Leap | None:
     """Return the last leap of the machine's clock, while the instructor's pages report it."""
-    told: list[Any] | None = value_of(connection, _LEAPT)
-    if told is None:
+    stored: list[Any] | None = value_of(connection, _LEAPT)
+    if stored is None:
         return None
-    found = Leap(datetime.fromisoformat(told[0]), float(told[1]), bool(told[2]))
-    return found if abs(now - found.at) < _REPORTED else None
+    leap = Leap(datetime.fromisoformat(stored[0]), float(stored[1]), bool(stored[2]))
+    return leap if abs(now - leap.at) < _REPORTED else None
 
 
 def _elapsed() -> float:

@@ -64,12 +64,12 @@ class Cookies:
     def fits(self, session: Session, token: str) -> bool:
         """Return True for a CSRF token of the session."""
         try:
-            told = bytes.fromhex(token)
+            data = bytes.fromhex(token)
         except ValueError:
             return False
-        if len(told) != 2 * _HALF:
+        if len(data) != 2 * _HALF:
             return False
-        return hmac.compare_digest(_mixed(told[:_HALF], told[_HALF:]), self._expected_token(session))
+        return hmac.compare_digest(_mixed(data[:_HALF], data[_HALF:]), self._expected_token(session))
 
     def _expected_token(self, session: Session) -> bytes:
         return hmac.new(self._key, f"form {session.token}".encode(), hashlib.sha256).digest()[:_HALF]
@@ -80,5 +80,5 @@ def may_be_token(cookie: str) -> bool:
     return len(cookie) == TOKEN_LENGTH and "." not in cookie
 
 
-def _mixed(one: bytes, other: bytes) -> bytes:
-    return bytes(a ^ b for a, b in zip(one, other, strict=True))
+def _mixed(left: bytes, right: bytes) -> bytes:
+    return bytes(a ^ b for a, b in zip(left, right, strict=True))

@@ -36,13 +36,13 @@ class Devices:
     def after_sign_in(self, cookie: str, login: str) -> str:
         """Return the cookie of a browser that has just signed in."""
         name, logins = self._read(cookie)
-        own = self.digest("device", login)[:_LENGTH]
-        kept = [one for one in logins if one != own][-(_MOST - 1) :]
-        return str(self._serializer.dumps([name or secrets.token_urlsafe(12), [*kept, own]]))
+        entry = self.digest("device", login)[:_LENGTH]
+        others = [other for other in logins if other != entry][-(_MOST - 1) :]
+        return str(self._serializer.dumps([name or secrets.token_urlsafe(12), [*others, entry]]))
 
-    def digest(self, *told: str) -> str:
+    def digest(self, *texts: str) -> str:
         """Return a keyed digest of texts, of which nobody reads a login or an address."""
-        text = "\0".join(told).encode("utf-8", "replace")
+        text = "\0".join(texts).encode("utf-8", "replace")
         return hmac.new(self._key, text, hashlib.sha256).hexdigest()
 
     def _read(self, cookie: str) -> tuple[str, list[str]]:
@@ -50,6 +50,6 @@ class Devices:
             return "", []
         try:
             name, logins = self._serializer.loads(cookie, max_age=DEVICE_SECONDS)
-            return str(name), [str(one) for one in logins]
+            return str(name), [str(entry) for entry in logins]
         except (BadSignature, ValueError, TypeError):
             return "", []

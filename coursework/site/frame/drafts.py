@@ -40,22 +40,22 @@ def save_drafts(
         others = save(connection, request.user.id, sheet, sent, request.received_at)
         now = drafts(connection, request.user.id, sheet)
     mine = [name for name in sent if name not in others]
-    told = {
+    answer = {
         "versions": {name: now[name].version if name in now else 0 for name in mine},
         "others": {name: box._asdict() for name, box in others.items()},
     }
     reads = {"read": {name: read(name, sent[name].text) for name in mine}} if read else {}
-    return json_response({**told, **reads})
+    return json_response({**answer, **reads})
 
 
 def _is_new(stood: Mapping[str, Box], sent: Mapping[str, Sent]) -> bool:
-    return not sent or any(one.text != stood.get(name, _BLANK).text for name, one in sent.items())
+    return not sent or any(box.text != stood.get(name, _BLANK).text for name, box in sent.items())
 
 
 def save_form_drafts(
-    request: Request, sheet: str, texts: Mapping[str, str], shown: Mapping[str, str], versions: str
+    request: Request, sheet: str, texts: Mapping[str, str], displayed: Mapping[str, str], versions: str
 ) -> tuple[dict[str, Box], dict[str, Box]]:
-    """Store the drafts of a form without a script: ``texts`` by box, if they differ from those ``shown`` or a
+    """Store the drafts of a form without a script: ``texts`` by box, if they differ from those ``displayed`` or a
     draft exists.
 
     ``versions`` is JSON, as :func:`draft_attributes` has it. Gives what is save_drafts now, and the boxes that another page wrote to since:
@@ -73,16 +73,16 @@ def save_form_drafts(
         sent = {
             name: Sent(text, over.get(name, 0))
             for name, text in texts.items()
-            if name in stood or text != shown.get(name, "")
+            if name in stood or text != displayed.get(name, "")
         }
         others = save(connection, request.user.id, sheet, sent, request.received_at)
         return drafts(connection, request.user.id, sheet), others
 
 
-def json_response(told: Mapping[str, Any], status: int = 200) -> Response:
+def json_response(content: Mapping[str, Any], status: int = 200) -> Response:
     return Response(
         media_type="application/json",
-        content=json.dumps(told, ensure_ascii=False).encode(),
+        content=json.dumps(content, ensure_ascii=False).encode(),
         status_code=status,
     )
 
@@ -90,7 +90,7 @@ def json_response(told: Mapping[str, Any], status: int = 200) -> Response:
 def sent_boxes(form: Form, boxes: Collection[str]) -> dict[str, Sent]:
     """Return the boxes that a page sends: ``text.NAME``, and ``over.NAME``, the version that the text
     replaces."""
-    found = {}
+    sent = {}
     for field in form.texts:
         name = field.removeprefix(_TEXT)
         if field.startswith(_TEXT):
@@ -99,8 +99,8 @@ def sent_boxes(form: Form, boxes: Collection[str]) -> dict[str, Sent]:
                 raise HTTPException("bad_request", 400)
             if len(text) > LONGEST:
                 raise HTTPException("too_large", 413, f"{LONGEST}")
-            found[name] = Sent(text, int(over))
-    return found
+            sent[name] = Sent(text, int(over))
+    return sent
 
 
 def versions_of(text: str) -> dict[str, int]:
@@ -118,20 +118,20 @@ def versions_of(text: str) -> dict[str, int]:
 
 
 def draft_attributes(
-    request: Request, address: str, sheet: str, boxes: Mapping[str, Box], own: str = "", **said: str
+    request: Request, address: str, sheet: str, boxes: Mapping[str, Box], prefix: str = "", **texts: str
 ) -> dict[str, str]:
     """Return the attributes of a form whose boxes are stored as drafts; ``boxes`` are those that the page
     shows.
 
-    ``own`` is what the names of the boxes begin with on the page, and ``said`` sentences beside those of ``[keeping]``, or
+    ``prefix`` is what the names of the boxes begin with on the page, and ``texts`` sentences beside those of ``[keeping]``, or
     in their places.
     """
     return {
         "data-keep": address,
         "data-keep-as": f"{request.user.id} {sheet}",
-        "data-keep-own": own,
+        "data-keep-own": prefix,
         "data-keep-versions": json.dumps({name: box.version for name, box in boxes.items()}),
-        "data-keep-words": json.dumps({**request.words["keeping"], **said}, ensure_ascii=False),
+        "data-keep-words": json.dumps({**request.words["keeping"], **texts}, ensure_ascii=False),
     }
 
 

@@ -48,34 +48,38 @@ async def read_form(request: Request, budget: Budget) -> Form:
 
 def _size(request: Request) -> int:
     """Return the stated length of the body; a chunked body is refused, since its length is unknown."""
-    told = request.headers.get("content-length", "")
+    length = request.headers.get("content-length", "")
     if "transfer-encoding" in request.headers:
         raise HTTPException("bad_request", 411)
-    if not (told.isascii() and told.isdecimal()) or len(told) > 15:
+    if not (length.isascii() and length.isdecimal()) or len(length) > 15:
         raise HTTPException("bad_request", 411)
-    return int(told)
+    return int(length)
 
 
 def _kind(request: Request) -> str:
     """Return the content type of a form; refuse one that the site's own pages never send, since it could be
     slow to read."""
-    told = Message()
-    told["content-type"] = request.headers.get("content-type", "")
-    if told.get_content_type() not in (_PLAIN, _WITH_FILES) or told.get_param("charset", "utf-8") not in (
+    message = Message()
+    message["content-type"] = request.headers.get("content-type", "")
+    if message.get_content_type() not in (_PLAIN, _WITH_FILES) or message.get_param(
+        "charset", "utf-8"
+    ) not in (
         "utf-8",
         "UTF-8",
     ):
         raise HTTPException("bad_request", 415)
-    return told.get_content_type()
+    return message.get_content_type()
 
 
 async def _read(request: Request, kind: str, budget: Budget) -> Form:
-    pieces, told = request.stream(), request.headers
+    pieces, headers = request.stream(), request.headers
     parser: Any
     if kind == _PLAIN:
-        parser = FormParser(told, pieces, max_fields=budget.fields, max_part_size=_TYPED)
+        parser = FormParser(headers, pieces, max_fields=budget.fields, max_part_size=_TYPED)
     else:
-        parser = _Parts(told, pieces, max_files=budget.files, max_fields=budget.fields, max_part_size=_TYPED)
+        parser = _Parts(
+            headers, pieces, max_files=budget.files, max_fields=budget.fields, max_part_size=_TYPED
+        )
         parser.by_ending = budget.by_ending
     sent = await parser.parse()
     try:

@@ -22,9 +22,9 @@ class LRUCache:
             if key in self._items:
                 self._items.move_to_end(key)
                 return self._items[key]
-        made = make()
+        item = make()
         with self._lock:
-            made = self._items.setdefault(key, made)
+            item = self._items.setdefault(key, item)
             while len(self._items) > self._most:
                 self._items.popitem(last=False)
-        return made
+        return item

@@ -111,7 +111,7 @@ class Middleware:
         took = 1000 * (time.perf_counter() - begun)
         level = logging.ERROR if why else logging.INFO
         person = getattr(http_request.state, "person", 0)
-        who, why = (f" person {person}" if person else ""), why and f" {why}"
+        by, why = (f" person {person}" if person else ""), why and f" {why}"
         LOG.log(
             level,
             "%s %s %d %.0f ms%s%s",
@@ -119,7 +119,7 @@ class Middleware:
             path,
             http_response.status_code,
             took,
-            who,
+            by,
             why,
         )
         log_events(http_request, path, _address(http_request))
@@ -289,13 +289,13 @@ class Middleware:
             return person_of(connection, row) if row is not None else None
 
     def _lang(self, http_request: HTTPRequest, person: Person | None) -> str:
-        known = self.site.languages
-        asked = [http_request.cookies.get(self._lang_cookie, ""), person.lang if person else ""]
-        asked += [
-            one.split(";")[0].strip()[:2].lower()
-            for one in http_request.headers.get("accept-language", "")[:500].split(",")
+        languages = self.site.languages
+        preferences = [http_request.cookies.get(self._lang_cookie, ""), person.lang if person else ""]
+        preferences += [
+            preference.split(";")[0].strip()[:2].lower()
+            for preference in http_request.headers.get("accept-language", "")[:500].split(",")
         ]
-        return next((lang for lang in asked if lang in known), known[0])
+        return next((lang for lang in preferences if lang in languages), languages[0])
 
     def _page_request(self, http_request: HTTPRequest, current_user: _CurrentUser, form: Form) -> Request:
         return Request(
@@ -314,7 +314,7 @@ class Middleware:
         if _host(f"//{http_request.headers.get('host', '')}") not in (_host(self.site.url), *_LOOPBACK):
             raise HTTPException("page", 421)
         if self.site.entrance is not Entrance.ACCOUNTS and any(
-            one in http_request.headers for one in _FORWARDED
+            header in http_request.headers for header in _FORWARDED
         ):
             raise HTTPException("forwarded", 421)
 
@@ -334,10 +334,10 @@ class Middleware:
     def _check_origin(self, http_request: HTTPRequest) -> None:
         """Check that a form comes from a page of this site, as far as the browser tells."""
         sent, host = http_request.headers.get("origin"), http_request.headers.get("host", "")
-        own = {_origin(self.site.url)}
+        origins = {_origin(self.site.url)}
         if _host(f"//{host}") in _LOOPBACK:
-            own.add(f"http://{host}")
-        if sent is not None and sent not in own:
+            origins.add(f"http://{host}")
+        if sent is not None and sent not in origins:
             raise HTTPException("form", 403)
         if http_request.headers.get("sec-fetch-site", "none") not in ("same-origin", "none"):
             raise HTTPException("form", 403)
@@ -426,10 +426,10 @@ class Middleware:
 
 
 def _refusal(request: Request, why: HTTPException) -> Response:
-    told = str(words(request.lang, "site")["refused"][why.sentence]).format(
+    message = str(words(request.lang, "site")["refused"][why.sentence]).format(
         *(localised(part, request.lang) if isinstance(part, Message) else part for part in why.parts)
     )
-    return request.render("site_refused", why.status_code, told=told)
+    return request.render("site_refused", why.status_code, told=message)
 
 
 def _mistaken(fault: BadInput) -> HTTPException:
@@ -445,7 +445,7 @@ def _check_path(http_request: HTTPRequest) -> None:
     """Check the path: refuse control characters and numbers too large for the database."""
     if any(ord(letter) < 32 or letter in "\x7f\ufffd" for letter in http_request.scope["path"]):
         raise HTTPException("page", 404)
-    if any(isinstance(one, int) and one > _GREATEST for one in http_request.path_params.values()):
+    if any(isinstance(value, int) and value > _GREATEST for value in http_request.path_params.values()):
         raise HTTPException("page", 404)
 
 
@@ -469,7 +469,7 @@ def _origin(url: str) -> str:
 
 def _location_of(fault: BaseException) -> str:
     frames = traceback.extract_tb(fault.__traceback__)[-5:]
-    told = " < ".join(
+    lines = " < ".join(
         f"{frame.filename.rpartition('coursework/')[2]}:{frame.lineno}" for frame in reversed(frames)
     )
-    return f"{type(fault).__name__} at {told}"
+    return f"{type(fault).__name__} at {lines}"

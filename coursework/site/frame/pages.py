@@ -37,13 +37,13 @@ class Pages:
 
     def page(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
         """Return the page of a template, with the names that all pages need."""
-        said = words(lang, "site")
+        texts = words(lang, "site")
         usual = {
             "lang": lang,
             "words": words(lang),
-            "said": said,
+            "said": texts,
             "paper": "a4",
-            "title": said["site"]["title"],
+            "title": texts["site"]["title"],
             "title_of_page": "",
             "course_title": self._folder.title(lang),
             "file": self.file,
@@ -58,8 +58,8 @@ class Pages:
         if name in _OF_SHEETS:
             env = environment_of(self._folder.template_folders, "en")
             return KINDS[Path(name).suffix], render(env, _OF_SHEETS[name], {"paper": "a4"}).encode()
-        known = {path.name: path for path in STATIC.iterdir() if path.suffix in KINDS}
-        return (KINDS[known[name].suffix], known[name].read_bytes()) if name in known else None
+        paths = {path.name: path for path in STATIC.iterdir() if path.suffix in KINDS}
+        return (KINDS[paths[name].suffix], paths[name].read_bytes()) if name in paths else None
 
     def file(self, name: str) -> str:
         """Return the address of a static file, which changes with the file so that browsers may cache it."""
@@ -68,5 +68,5 @@ class Pages:
 
 @cache
 def _stamp(pages: Pages, name: str) -> str:
-    found = pages.static(name)
-    return sha256(found[1]).hexdigest()[:12] if found else ""
+    static_file = pages.static(name)
+    return sha256(static_file[1]).hexdigest()[:12] if static_file else ""

@@ -84,8 +84,8 @@ def _assignment(path: Mapping[str, Any]) -> int | None:
     return _number(path.get("assignment", path.get("number")))
 
 
-def _number(told: Any) -> int | None:
-    text = str(told)
+def _number(value: Any) -> int | None:
+    text = str(value)
     return (
         int(text)
         if text.isascii() and text.isdecimal() and len(text) < 11 and int(text) <= _GREATEST

@@ -33,15 +33,15 @@ class PracticePool:
 
     def seeds(self, exercise: str) -> tuple[int, ...]:
         """Return the seeds found so far; search for the first of them if there are none."""
-        known = self._pools.get(exercise)
-        if known is None or not _is_complete(known):  # another process may have found more
-            known = self._extended(exercise, COUNTS[0])
-        return known.seeds
+        pool = self._pools.get(exercise)
+        if pool is None or not _is_complete(pool):  # another process may have found more
+            pool = self._extended(exercise, COUNTS[0])
+        return pool.seeds
 
     def holds(self, exercise: str, seed: int) -> bool:
         """Return True if the pool contains a seed."""
-        known = self._pools.get(exercise, Pooled())
-        return seed in known.seeds or seed in self.seeds(exercise)
+        pool = self._pools.get(exercise, Pooled())
+        return seed in pool.seeds or seed in self.seeds(exercise)
 
     def choose_seed(self, exercise: str, person: int, begun: Collection[int]) -> int:
         """Return a seed for a person who has begun the given ones: it depends on the person and the exercise,
@@ -73,43 +73,43 @@ class PracticePool:
                 return False
             if str(seed) in seeds:
                 return True
-            own = self._course[exercise].variant(seed).record["given"]
-            return any(given == own for given in issued_given(connection, exercise))
+            data = self._course[exercise].variant(seed).record["given"]
+            return any(given == data for given in issued_given(connection, exercise))
 
     def _extended(self, exercise: str, count: int) -> Pooled:
         """At least so many, or all that are found."""
-        one = self._course[exercise]
+        loaded = self._course[exercise]
         with self._lock:
             lock = self._locks.setdefault(exercise, Lock())
         with lock:
             with self._store.reading() as connection:
-                found = pooled(connection, exercise, one.version)
-            if len(found.seeds) < count and not found.are_all:
-                found = self._stored(exercise, one.version, _drawn(one, count))
-            self._pools[exercise] = found
-        return found
+                pool = pooled(connection, exercise, loaded.version)
+            if len(pool.seeds) < count and not pool.are_all:
+                pool = self._stored(exercise, loaded.version, _drawn(loaded, count))
+            self._pools[exercise] = pool
+        return pool
 
-    def _stored(self, exercise: str, version: int, found: Pooled) -> Pooled:
+    def _stored(self, exercise: str, version: int, new: Pooled) -> Pooled:
         """Store the seeds found; return those of another process if it has stored more meanwhile, so that no
         begun variant is lost."""
         with (
             suppress(IntegrityError),
             self._store.begin() as connection,
         ):  # what it kept this moment is the same
-            stands = pooled(connection, exercise, version)
-            if len(stands.seeds) > len(found.seeds):
-                return stands
-            put_pooled(connection, exercise, version, found)
-        return found
+            stored = pooled(connection, exercise, version)
+            if len(stored.seeds) > len(new.seeds):
+                return stored
+            put_pooled(connection, exercise, version, new)
+        return new
 
     # ---------------------------------------------------------------------- ahead
 
     def is_filled(self) -> bool:
         """Return True if the pool contains all the seeds wanted in advance; one query of the database."""
-        known = {name: self._course[name].version for name in self._course.folder.study_order}
+        versions = {name: self._course[name].version for name in self._course.folder.study_order}
         with self._store.reading() as connection:
-            found = pools(connection, known)
-        return all(_is_complete(found.get(name, Pooled())) for name in known)
+            by_exercise = pools(connection, versions)
+        return all(_is_complete(by_exercise.get(name, Pooled())) for name in versions)
 
     def fill(self) -> None:
         """Find all that is wanted ahead, exercise after exercise in the order in which they are learnt."""
@@ -121,8 +121,8 @@ class PracticePool:
                     LOG.error("no variants of %s were drawn ahead: %s", exercise, type(fault).__name__)
 
 
-def _is_complete(found: Pooled) -> bool:
-    return found.are_all or len(found.seeds) >= COUNTS[-1]
+def _is_complete(pool: Pooled) -> bool:
+    return pool.are_all or len(pool.seeds) >= COUNTS[-1]
 
 
 def _drawn(exercise: Any, count: int) -> Pooled:
@@ -130,8 +130,8 @@ def _drawn(exercise: Any, count: int) -> Pooled:
     wanted = count
     while wanted:
         with suppress(Starved):
-            found = distinct_variants(exercise, FIRST_SEED, wanted, exercise.languages[0])
-            return Pooled(tuple(one.seed for one in found), wanted < count)
+            variants = distinct_variants(exercise, FIRST_SEED, wanted, exercise.languages[0])
+            return Pooled(tuple(variant.seed for variant in variants), wanted < count)
         wanted = wanted * 3 // 4
     return Pooled((), True)
 

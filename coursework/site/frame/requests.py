@@ -128,8 +128,8 @@ class Request:
 
     def render(self, template: str, status_code: int = 200, **names: Any) -> Response:
         """Return the page of a template such as ``site_practice``, with the frame of all pages."""
-        own = {"request": self, "person": self.person, "csrf_token": self.csrf_token}
-        return Response(self.site.pages.page(template, self.lang, {**own, **names}), status_code)
+        common = {"request": self, "person": self.person, "csrf_token": self.csrf_token}
+        return Response(self.site.pages.page(template, self.lang, {**common, **names}), status_code)
 
 
 @dataclass(frozen=True)

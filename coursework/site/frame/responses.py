@@ -61,8 +61,8 @@ def attached(name: str) -> str:
     plain = "".join(
         letter if letter.isascii() and (letter.isalnum() or letter in " ._-()") else "_" for letter in name
     )
-    whole = quote(name.encode("utf-8", "replace"), safe="")
-    return f"attachment; filename=\"{plain}\"; filename*=UTF-8''{whole}"
+    encoded = quote(name.encode("utf-8", "replace"), safe="")
+    return f"attachment; filename=\"{plain}\"; filename*=UTF-8''{encoded}"
 
 
 def _written(address: str) -> str:

@@ -43,5 +43,5 @@ def log_events(request: Request, path: str, address: str) -> None:
     """Write the events of a request, a line each, with the page's path as the table of pages has it."""
     for event, person in getattr(request.state, "events", ()):
         level = logging.INFO if event in (SIGNED_IN, SIGNED_OUT) else logging.WARNING
-        who = f"person {person}" if person else "nobody"
-        LOG.log(level, "security: %s, %s %s, %s, from %s", event, request.method, path, who, network(address))
+        by = f"person {person}" if person else "nobody"
+        LOG.log(level, "security: %s, %s %s, %s, from %s", event, request.method, path, by, network(address))

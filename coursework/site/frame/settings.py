@@ -111,8 +111,8 @@ class Site:
     @property
     def languages(self) -> tuple[str, ...]:
         """Those of the course, its own first."""
-        own = self.course.folder.language
-        return (own, *(one for one in self.course.folder.languages if one != own))
+        default = self.course.folder.language
+        return (default, *(lang for lang in self.course.folder.languages if lang != default))
 
     @property
     def is_secure(self) -> bool:
@@ -127,6 +127,6 @@ class Site:
         UnknownName
             The course has no such exercise.
         """
-        one = self.course[exercise]
-        spoken = lang if lang in one.languages else one.languages[0]
-        return self.cache.get((exercise, seed, spoken), lambda: one.variant(seed, spoken))
+        loaded = self.course[exercise]
+        spoken = lang if lang in loaded.languages else loaded.languages[0]
+        return self.cache.get((exercise, seed, spoken), lambda: loaded.variant(seed, spoken))

@@ -31,22 +31,22 @@ class Lanes:
         self._threads = ThreadPoolExecutor(1 if store.has_one_writer else _SHORT, thread_name_prefix="short")
         self._lock, self._count = Lock(), 0
 
-    async def short(self, function: Callable[..., T], *told: Any) -> T:
+    async def short(self, function: Callable[..., T], *arguments: Any) -> T:
         """Call a function that takes a few milliseconds, in the order of the requests."""
         self._add(1)
         try:
-            call = partial(contextvars.copy_context().run, function, *told)
+            call = partial(contextvars.copy_context().run, function, *arguments)
             return await asyncio.get_running_loop().run_in_executor(self._threads, call)
         finally:
             self._add(-1)
 
-    async def usual(self, function: Callable[..., T], *told: Any) -> T:
+    async def usual(self, function: Callable[..., T], *arguments: Any) -> T:
         """Call a function that may take long, once nothing short waits, or after a moment."""
         waited = 0.0
         while self._count and waited < _LONGEST:
             await asyncio.sleep(_PAUSE)
             waited += _PAUSE
-        return await run_in_threadpool(function, *told)
+        return await run_in_threadpool(function, *arguments)
 
     def _add(self, more: int) -> None:
         with self._lock:

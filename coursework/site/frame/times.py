@@ -13,15 +13,15 @@ _FORM = "%Y-%m-%dT%H:%M"  #: of a field of a form
 def moment_text(at: datetime, lang: str) -> str:
     """``4 décembre 2026, 14 h 05``; with its seconds where it has some."""
     here = at.astimezone()
-    said = words(lang, "site")["moments"]
-    form = said["time_seconds"] if here.second or here.microsecond else said["time"]
-    return str(said["moment"]).format(date_text(here.date(), lang), _time(here, str(form)))
+    texts = words(lang, "site")["moments"]
+    form = texts["time_seconds"] if here.second or here.microsecond else texts["time"]
+    return str(texts["moment"]).format(date_text(here.date(), lang), _time(here, str(form)))
 
 
 def exact_text(at: datetime, lang: str) -> str:
     """With its seconds, whatever they are."""
-    here, said = at.astimezone(), words(lang, "site")["moments"]
-    return str(said["moment"]).format(date_text(here.date(), lang), _time(here, str(said["time_seconds"])))
+    here, texts = at.astimezone(), words(lang, "site")["moments"]
+    return str(texts["moment"]).format(date_text(here.date(), lang), _time(here, str(texts["time_seconds"])))
 
 
 def _time(here: datetime, form: str) -> str:
@@ -35,20 +35,20 @@ def zone_name(at: datetime) -> str:
 
 def length_text(length: timedelta, lang: str) -> str:
     """Return a duration in its two greatest units, ``3 days 4 hours``; less than a minute in seconds."""
-    said = words(lang, "site")["moments"]
+    texts = words(lang, "site")["moments"]
     seconds = max(0, int(length.total_seconds()))
     units = (("day", 86400), ("hour", 3600), ("minute", 60))
     counts = []
     for name, size in units:
         counts.append((name, seconds // size))
         seconds %= size
-    found = [(name, count) for name, count in counts if count][:2]
-    if not found:
-        found = [("second", seconds)]
+    largest = [(name, count) for name, count in counts if count][:2]
+    if not largest:
+        largest = [("second", seconds)]
     below_two = words(lang)["numbers"]["one_below_two"]
     return " ".join(
-        str(said[name]["one" if (count < 2 if below_two else count == 1) else "many"]).format(count)
-        for name, count in found
+        str(texts[name]["one" if (count < 2 if below_two else count == 1) else "many"]).format(count)
+        for name, count in largest
     )
 
 
@@ -67,7 +67,7 @@ def from_field(text: str) -> datetime | None:
     """
     if not text.strip():
         return None
-    found = datetime.fromisoformat(text.strip())
-    if not 2000 <= found.year <= 2200:
-        raise ValueError(f"no year for a course: {found.year}")
-    return found.astimezone(UTC)
+    moment = datetime.fromisoformat(text.strip())
+    if not 2000 <= moment.year <= 2200:
+        raise ValueError(f"no year for a course: {moment.year}")
+    return moment.astimezone(UTC)

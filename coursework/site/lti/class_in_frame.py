@@ -46,7 +46,7 @@ def class_rows(
     """
     people, subjects = people_of(connection, now.about.id), _subjects(connection, visit.launch.issuer)
     charges = Publication.of(now.about.published or {}).late == CHARGE
-    scores, found = visit.scores(), []
+    scores, rows = visit.scores(), []
     for row in class_page.rows(now):
         person = people.get(row.student, 0)
         subject = subjects.get(person, "")
@@ -60,50 +60,60 @@ def class_rows(
         ):
             marked = marked_in(now, row.student)
             points = marked.given(state) if marked else points
-        told = (
+        points_text = (
             f"{number_text(points, visit.lang)} / {number_text(row.out_of, visit.lang)}"
             if row.handed_in
             else ""
         )
         on_its_way = _score_state(scores.get(subject), subject, visit.lang) if row.handed_in else ""
-        found.append(
+        rows.append(
             LaunchClassRow(
-                row.student, subject, row.tries, row.minutes_late, told, row.mark, row.waits, on_its_way
+                row.student,
+                subject,
+                row.tries,
+                row.minutes_late,
+                points_text,
+                row.mark,
+                row.waits,
+                on_its_way,
             )
         )
-    return found
+    return rows
 
 
 def _subjects(connection: Connection, issuer: str) -> dict[int, str]:
-    found = select(identity.c.person_id, identity.c.subject).where(identity.c.issuer == issuer)
-    return {row.person_id: row.subject for row in connection.execute(found)}
+    query = select(identity.c.person_id, identity.c.subject).where(identity.c.issuer == issuer)
+    return {row.person_id: row.subject for row in connection.execute(query)}
 
 
 def _score_state(waiting: Waiting | None, subject: str, lang: str) -> str:
     """Return the state of a score on its way to the platform."""
-    said, own = words(lang)["lti"]["class"], words(lang, "site")["lti"]["class"]
+    link_texts, site_texts = words(lang)["lti"]["class"], words(lang, "site")["lti"]["class"]
     if waiting is None:
-        return str(own["kept_back"] if subject else own["never_came"])
+        return str(site_texts["kept_back"] if subject else site_texts["never_came"])
     if waiting.due is None:
-        return str(said["waits_person"] if waiting.score.waits else said["arrived"])
-    return str(said["waits_because"].format(waiting.said) if waiting.said else said["on_its_way"])
+        return str(link_texts["waits_person"] if waiting.score.waits else link_texts["arrived"])
+    return str(link_texts["waits_because"].format(waiting.said) if waiting.said else link_texts["on_its_way"])
 
 
-def rules_rows(visit: Visit, now: ClassNow, said: Publication | None) -> list[tuple[str, str]]:
+def rules_rows(visit: Visit, now: ClassNow, publication: Publication | None) -> list[tuple[str, str]]:
     """Return the rules with which the assignment is published, each with its label."""
-    link, own = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
-    if said is None:
-        return [(own["published"], own["hidden"])]
+    link, site_texts = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
+    if publication is None:
+        return [(site_texts["published"], site_texts["hidden"])]
     counts = (now.about.stated or {}).get("sittings", "best")
 
     def moment(at: object) -> str:
-        return moment_text(at, visit.lang) if at else own["never"]  # type: ignore[arg-type]
+        return moment_text(at, visit.lang) if at else site_texts["never"]  # type: ignore[arg-type]
 
     return [
-        (own["opens"], moment(said.opens) if said.opens else own["at_once"]),
-        (own["closes"], moment(said.closes)),
-        (link["tries"], link["any_number"] if said.tries is None else str(said.tries)),
+        (site_texts["opens"], moment(publication.opens) if publication.opens else site_texts["at_once"]),
+        (site_texts["closes"], moment(publication.closes)),
+        (link["tries"], link["any_number"] if publication.tries is None else str(publication.tries)),
         (link["counts"], link["best" if counts == "best" else "last"]),
-        (own["feedback"], own["feedback_is"][said.feedback].format(moment(said.feedback_on))),
+        (
+            site_texts["feedback"],
+            site_texts["feedback_is"][publication.feedback].format(moment(publication.feedback_on)),
+        ),
         (link["sends"], link["yes" if visit.launch.line or visit.launch.lines else "no"]),
     ]

@@ -32,8 +32,8 @@ def _signed(site: Site) -> URLSafeTimedSerializer:
 
 def address(site: Site, launch: Launch, person: int) -> str:
     """Return where the person whom a launch tells may connect it with their account: no other person can there."""
-    told = [launch.issuer, launch.person, launch.name, person]
-    return f"{site.url}/connect/{_signed(site).dumps(told)}"
+    content = [launch.issuer, launch.person, launch.name, person]
+    return f"{site.url}/connect/{_signed(site).dumps(content)}"
 
 
 def connect(request: Request) -> Response:
@@ -51,8 +51,8 @@ def connect(request: Request) -> Response:
         guessing.fitted(request, mine.login)
         _tie(request, issuer, subject, platform)
         return Response(redirect="/account")
-    told = {"platform": platform, "name": name or subject, "login": mine.login, "missed": missed}
-    return request.render("site_connect", 422 if missed else 200, **told)
+    names = {"platform": platform, "name": name or subject, "login": mine.login, "missed": missed}
+    return request.render("site_connect", 422 if missed else 200, **names)
 
 
 def _read_token(request: Request) -> tuple[str, str, str]:

@@ -38,22 +38,22 @@ def platform_name(launch: Launch) -> str:
 def launch_person(site: Site, launch: Launch, lang: str) -> Any:
     """Return the person of a launch, with its name and language; add a new one."""
     with site.store.reading() as connection:
-        known = person_known(connection, launch.issuer, launch.person)
-    if known is not None and _is_current(known, launch, lang):
-        return known
+        person = person_known(connection, launch.issuer, launch.person)
+    if person is not None and _is_current(person, launch, lang):
+        return person
     with site.store.begin() as connection:
-        known = person_known(connection, launch.issuer, launch.person)
-        if known is None:
+        person = person_known(connection, launch.issuer, launch.person)
+        if person is None:
             _add_person(site, connection, launch, lang)
-        elif not known.login:
-            take_over(connection, known.id, launch.name, lang)
+        elif not person.login:
+            take_over(connection, person.id, launch.name, lang)
         return person_known(connection, launch.issuer, launch.person)
 
 
-def _is_current(known: Any, launch: Launch, lang: str) -> bool:
+def _is_current(person: Any, launch: Launch, lang: str) -> bool:
     """Return True if nothing is to be updated from the launch; a person with an account keeps the account's
     name."""
-    return bool(known.login) or (launch.name in ("", known.name) and lang == known.lang)
+    return bool(person.login) or (launch.name in ("", person.name) and lang == person.lang)
 
 
 def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
@@ -64,14 +64,14 @@ def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -
     HTTPException
         The one person has a password, which is to be entered once.
     """
-    found = fitting(connection, launch.issuer, launch.email, launch.number)
-    if len(found) == 1 and has_password(connection, found[0].id):
-        raise HTTPException("connect", 403, connecting.address(site, launch, found[0].id))
-    if len(found) == 1:
-        number, how = found[0].id, "roster"
+    matches = fitting(connection, launch.issuer, launch.email, launch.number)
+    if len(matches) == 1 and has_password(connection, matches[0].id):
+        raise HTTPException("connect", 403, connecting.address(site, launch, matches[0].id))
+    if len(matches) == 1:
+        number, how = matches[0].id, "roster"
     else:
-        own = _new(connection, launch)
-        number, how = put_person(connection, own.who, launch.name, lang, own.columns), "new"
+        student = _new(connection, launch)
+        number, how = put_person(connection, student.who, launch.name, lang, student.columns), "new"
     tie(connection, number, launch.issuer, launch.person)
     about = {"person": number, "platform": platform_name(launch), "how": how}
     note(connection, site.clock(), platform_name(launch), "came from a platform", **about)
@@ -80,23 +80,23 @@ def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -
 def _new(connection: Connection, launch: Launch) -> Student:
     """Return a new student as a roster would list them: identified by number or e-mail, unless another has
     it; never by the name."""
-    told = [
+    candidates = [
         {"number": launch.number.strip()},
         {"email": launch.email.strip()},
         {"number": f"{launch.person} {platform_name(launch)}"},
         {"number": f"{launch.person} {launch.issuer}"},
     ]
-    for columns in told:
-        one = Student(launch.name, columns=columns)
-        if all(columns.values()) and person_by_who(connection, one.who) is None:
-            return one
+    for columns in candidates:
+        student = Student(launch.name, columns=columns)
+        if all(columns.values()) and person_by_who(connection, student.who) is None:
+            return student
     raise HTTPException("own", 404)
 
 
 # ------------------------------------------------------------------------- dealing
 
 
-def assign_paper(site: Site, number: int, known: Any, launch: Launch, lang: str) -> None:
+def assign_paper(site: Site, number: int, person: Any, launch: Launch, lang: str) -> None:
     """Assign a paper to somebody who joins late; all other papers remain as they are.
 
     Raises
@@ -111,31 +111,33 @@ def assign_paper(site: Site, number: int, known: Any, launch: Launch, lang: str)
             about = connection.execute(select(assignment).where(assignment.c.id == number)).one()
         if about.asked is None:
             raise HTTPException("not_dealt", 409)
-        asked = assignment_of(about.name, about.asked, site.course)
+        definition = assignment_of(about.name, about.asked, site.course)
         everybody = holders(before)
-        own = _student(known, launch, _spoken(site, asked, lang), {folded(one.name) for one in everybody})
-        made = deal(site.course, asked, [*everybody, own], [site.languages[0]], before)
+        student = _student(
+            person, launch, _spoken(site, definition, lang), {folded(other.name) for other in everybody}
+        )
+        assigned = deal(site.course, definition, [*everybody, student], [site.languages[0]], before)
         with site.store.begin() as connection:
             connection.execute(
                 select(assignment.c.id).where(assignment.c.id == number).with_for_update(key_share=True)
             )
             if stamp(connection, number).dealt == stood:
-                put_issued(connection, content_of(made.issues, asked, made.secret), about.name)
-                told = {"assignment": about.name, "students": 1, "person": known.id}
-                note(connection, site.clock(), platform_name(launch), "late ones added", **told)
+                put_issued(connection, content_of(assigned.issues, definition, assigned.secret), about.name)
+                details = {"assignment": about.name, "students": 1, "person": person.id}
+                note(connection, site.clock(), platform_name(launch), "late ones added", **details)
                 return
     raise HTTPException("busy", 503, _AGAIN)
 
 
-def _spoken(site: Site, asked: Assignment, lang: str) -> str:
+def _spoken(site: Site, definition: Assignment, lang: str) -> str:
     """Return the language if all the exercises have it; otherwise an empty text."""
-    return lang if all(lang in site.course[name].languages for name in asked.names) else ""
+    return lang if all(lang in site.course[name].languages for name in definition.names) else ""
 
 
-def _student(known: Any, launch: Launch, lang: str, taken: set[str]) -> Student:
+def _student(person: Any, launch: Launch, lang: str, names: set[str]) -> Student:
     """Return the student of a launch as a roster would list them; two students of one name are distinguished."""
-    name = launch.name or known.name or launch.person
-    if folded(name) in taken:
+    name = launch.name or person.name or launch.person
+    if folded(name) in names:
         name = f"{name} ({launch.number or launch.email or launch.person})"
-    own = Student(name, lang, {title: str(text) for title, text in known.columns.items()})
-    return own if own.who == known.who else Student(name, lang, {"number": known.who})
+    student = Student(name, lang, {title: str(text) for title, text in person.columns.items()})
+    return student if student.who == person.who else Student(name, lang, {"number": person.who})

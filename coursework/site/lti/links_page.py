@@ -22,14 +22,14 @@ def waiting(request: Request) -> Response:
         names = _names(connection)
     rows: list[dict[str, Any]] = [
         {
-            "link": one.title or one.link,
-            "name": names.get(one.person, one.person),
-            "points": f"{number_text(one.score.given, request.lang)} / {number_text(one.score.maximum, request.lang)}",
-            "failures": one.failures,
-            "why": one.said,
+            "link": entry.title or entry.link,
+            "name": names.get(entry.person, entry.person),
+            "points": f"{number_text(entry.score.given, request.lang)} / {number_text(entry.score.maximum, request.lang)}",
+            "failures": entry.failures,
+            "why": entry.said,
         }
-        for one in every
-        if one.due is not None
+        for entry in every
+        if entry.due is not None
     ]
     return request.render("site_lti", is_on=True, rows=rows, arrived=len(every) - len(rows))
 
@@ -37,8 +37,8 @@ def waiting(request: Request) -> Response:
 def _names(connection: Connection) -> dict[str, str]:
     """Return the names of people by their identifiers on platforms; for an identifier on two platforms, the
     first."""
-    found = select(identity.c.subject, person.c.name).join(person).order_by(identity.c.id.desc())
-    return {row.subject: row.name for row in connection.execute(found)}
+    query = select(identity.c.subject, person.c.name).join(person).order_by(identity.c.id.desc())
+    return {row.subject: row.name for row in connection.execute(query)}
 
 
 ROUTES = (Route("/desk/lti", waiting, Permission.PLATFORMS_READ),)

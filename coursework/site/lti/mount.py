@@ -31,13 +31,13 @@ def settings_of(folder: Path, url: str) -> Settings:
     BadInput
         The file cannot be read, or was written for a service at another address.
     """
-    settings, own = read_settings(folder), checked_url(url, "the site's --url") + PATH
-    if settings.url not in ("", own):
+    settings, folder_settings = read_settings(folder), checked_url(url, "the site's --url") + PATH
+    if settings.url not in ("", folder_settings):
         raise BadInput(
-            f"{folder}: platforms.toml is for a service at {settings.url}, and the site has it at {own}: "
-            f"coursework lti platform --in {folder} --url {own}, and register that address on the platform"
+            f"{folder}: platforms.toml is for a service at {settings.url}, and the site has it at {folder_settings}: "
+            f"coursework lti platform --in {folder} --url {folder_settings}, and register that address on the platform"
         )
-    return replace(settings, url=own)
+    return replace(settings, url=folder_settings)
 
 
 def mounted(site: Site, folder: Path, client: Any = None, settings: Settings | None = None) -> Starlette:

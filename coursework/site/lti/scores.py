@@ -55,39 +55,41 @@ class Marked(NamedTuple):
 
     def given(self, state: AssignmentState) -> float:
         """Return the points after the penalty for lateness."""
-        late = next((one.late for one in state.done if one.number == self.result.sitting), 0)
+        late = next(
+            (submission.late for submission in state.done if submission.number == self.result.sitting), 0
+        )
         return round(self.result.points * (1 - state.assignment.own.charged(late)), 9)
 
 
 def marked_in(now: ClassNow, student: str) -> Marked | None:
     """Of somebody of a class; none before anything was handed in."""
-    sheets = [one for one in now.graded.values() if one.student == student]
+    sheets = [graded for graded in now.graded.values() if graded.student == student]
     return _marked(now.issued, now.results.get(student), sheets, now.decisions)
 
 
 def marked_of(connection: Connection, number: int, student: str) -> Marked | None:
     """Return the marks of one student alone, at a cost that does not depend on the size of the class."""
-    stands = stood(connection, number, student).values()
+    markings = stood(connection, number, student).values()
     issued = issued_of(connection, number, student=student)
     decisions = Decisions.read(connection, number, student)
-    found = machine_marks(issued, stands, lines_of(connection, stands))
-    sheets = [decisions.apply(one) for _, one in found if not isinstance(one, str)]
+    marked = machine_marks(issued, markings, lines_of(connection, markings))
+    sheets = [decisions.apply(graded) for _, graded in marked if not isinstance(graded, str)]
     book = Gradebook(issued)
-    for one in sheets:
-        book.add(one)
+    for graded in sheets:
+        book.add(graded)
     return _marked(issued, dict(results(book)).get(student), sheets, decisions)
 
 
 def _marked(
     issued: Issued, result: Result | None, sheets: Sequence[Graded], decisions: Decisions
 ) -> Marked | None:
-    counted = [one for one in sheets if result and one.sitting == result.sitting]
+    counted = [graded for graded in sheets if result and graded.sitting == result.sitting]
     if result is None or not counted:
         return None
     waits = any(
-        line.verdict in WAITS and decisions.standing(one, line) is None
-        for one in counted
-        for line in one.lines.values()
+        line.verdict in WAITS and decisions.standing(graded, line) is None
+        for graded in counted
+        for line in graded.lines.values()
     )
     return Marked(issued, result, counted, waits)
 
@@ -98,8 +100,10 @@ def score_of(site: Site, launch: Launch, now: ClassNow | None = None) -> Score |
     if number is None:
         return None
     with site.store.reading() as connection:
-        known = person_known(connection, launch.issuer, launch.person)
-        state = None if known is None else assignment_state(connection, number, known.id, lang, site.clock())
+        person = person_known(connection, launch.issuer, launch.person)
+        state = (
+            None if person is None else assignment_state(connection, number, person.id, lang, site.clock())
+        )
         if state is None or not state.done or not state.releases("feedback"):
             return None
         student = state.assignment.student
@@ -125,26 +129,26 @@ def assignment_state(
     connection: Connection, number: int, person: int, lang: str, at: datetime
 ) -> AssignmentState | None:
     """Return the state of a published assignment for a person; None if they have no paper of it."""
-    place = next(iter(places(connection, person, number)), None)
-    if place is None or place.publication is None:
+    assignment = next(iter(places(connection, person, number)), None)
+    if assignment is None or assignment.publication is None:
         return None
-    ends = last_end(place.publication, list(extensions(connection, number).values()))
+    ends = last_end(assignment.publication, list(extensions(connection, number).values()))
     return AssignmentState(
-        place, lang, place.publication.now(at), deliveries(connection, number, person), ends
+        assignment, lang, assignment.publication.now(at), deliveries(connection, number, person), ends
     )
 
 
 def _comment(marked: Marked, given: float, lang: str) -> str:
-    said = words(lang)["lti"]
+    texts = words(lang)["lti"]
     stated = (marked.issued.assignment or {}).get("exercises") or marked.issued.exercises
-    order = {str(exercise): place for place, exercise in enumerate(stated, 1)}
+    order = {str(exercise): index for index, exercise in enumerate(stated, 1)}
     lines = [
-        said["comment_line"].format(f"{order[one.exercise]}.{k}", verdict_word(line.verdict, lang))
-        for one in sorted(marked.sheets, key=lambda one: order[one.exercise])
-        for k, line in enumerate(one.lines.values(), 1)
+        texts["comment_line"].format(f"{order[sheet.exercise]}.{k}", verdict_word(line.verdict, lang))
+        for sheet in sorted(marked.sheets, key=lambda sheet: order[sheet.exercise])
+        for k, line in enumerate(sheet.lines.values(), 1)
     ]
-    told = {"points": number_text(given, lang), "out_of": number_text(marked.result.out_of, lang)}
-    comment = str(said["comment"]).format(**told, number=marked.result.sitting, verdicts="; ".join(lines))
+    values = {"points": number_text(given, lang), "out_of": number_text(marked.result.out_of, lang)}
+    comment = str(texts["comment"]).format(**values, number=marked.result.sitting, verdicts="; ".join(lines))
     return comment if len(comment) <= _COMMENT else comment[:_COMMENT].rpartition(";")[0] + "; …"
 
 
@@ -167,21 +171,21 @@ class ScoreWatch:
         return sum(self._look(number, launches) for number, launches in self._opened().items())
 
     def _opened(self) -> Mapping[int, list[Launch]]:
-        found: dict[int, list[Launch]] = {}
+        by_assignment: dict[int, list[Launch]] = {}
         for launch in self._storage.opened():
             number = assignment_number(self._site, launch)
             if number is not None and (launch.line or launch.lines):
-                found.setdefault(number, []).append(launch)
-        return found
+                by_assignment.setdefault(number, []).append(launch)
+        return by_assignment
 
     def _look(self, number: int, launches: Sequence[Launch]) -> int:
         pass_dates(self._site, number, self._site.clock())
-        what, stands = f"assignment {number}", f"{self._state_text(number)} {len(launches)}"
-        if self._storage.stood(what) == stands:
+        key, state = f"assignment {number}", f"{self._state_text(number)} {len(launches)}"
+        if self._storage.stood(key) == state:
             return 0
         now = class_now(self._site, number)
         new = sum(self._queue_score(launch, now) for launch in launches)
-        self._storage.looked(what, stands)
+        self._storage.looked(key, state)
         if new:
             self._wake()
         return new
@@ -189,12 +193,14 @@ class ScoreWatch:
     def _state_text(self, number: int) -> str:
         """Return a text that changes whenever a score may have changed."""
         with self._site.store.reading() as connection:
-            said, more = published(connection, number), extensions(connection, number)
+            publication, more = published(connection, number), extensions(connection, number)
             stamped = stamp(connection, number)
-        if said is None:
+        if publication is None:
             return str(stamped)
-        passed = sum(one < said.now(self._site.clock()) for one in said.dates(list(more.values())))
-        rules = replace(said, reached=None).as_json()
+        passed = sum(
+            date < publication.now(self._site.clock()) for date in publication.dates(list(more.values()))
+        )
+        rules = replace(publication, reached=None).as_json()
         return f"{stamped} {passed} {sorted(rules.items())} {len(more)}"
 
     def _queue_score(self, launch: Launch, now: ClassNow) -> bool:
@@ -222,5 +228,5 @@ class ScoreWatch:
 
 def lang_of(site: Site, launch: Launch) -> str:
     """Return the language of a launch."""
-    told = launch.locale[:2].lower()
-    return told if told in site.languages else site.languages[0]
+    locale = launch.locale[:2].lower()
+    return locale if locale in site.languages else site.languages[0]

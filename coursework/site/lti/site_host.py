@@ -82,16 +82,20 @@ class SiteHost:
     def shelves(self, lang: str) -> Sequence[Shelf]:
         """Return the published assignments, then the exercises by chapter."""
         with self._site.store.reading() as connection:
-            found = [one for one in listed_assignments(connection) if one.publication is not None]
+            assignments = [
+                assignment
+                for assignment in listed_assignments(connection)
+                if assignment.publication is not None
+            ]
             offers = [
                 Offer(
-                    f"assignment:{one.name}", one.title(lang), _worth(connection, one.id),
-                    " ".join([one.name, *(one.stated.get("title") or {}).values()]),
+                    f"assignment:{assignment.name}", assignment.title(lang), _worth(connection, assignment.id),
+                    " ".join([assignment.name, *(assignment.stated.get("title") or {}).values()]),
                 )
-                for one in found
+                for assignment in assignments
             ]  # fmt: skip
-        own = [Shelf(words(lang, "site")["lti"]["shelf"], tuple(offers))] if offers else []
-        return [*own, *self.practice.shelves(lang)]
+        site_groups = [Shelf(words(lang, "site")["lti"]["shelf"], tuple(offers))] if offers else []
+        return [*site_groups, *self.practice.shelves(lang)]
 
     # ---------------------------------------------------------------------- pages
 
@@ -127,14 +131,14 @@ class SiteHost:
             return self._refused(visit, HTTPException("mistaken", 422, as_message(fault)))
 
     def _refused(self, visit: Visit, why: HTTPException) -> Reply:
-        said = words(visit.lang, "site")
-        sentence = said["lti"]["refused"].get(why.sentence) or said["refused"][why.sentence]
+        texts = words(visit.lang, "site")
+        sentence = texts["lti"]["refused"].get(why.sentence) or texts["refused"][why.sentence]
         names = {
-            "title": said["refused"]["title"], "message": str(sentence).format(*why.parts), "again": "", "action": "",
+            "title": texts["refused"]["title"], "message": str(sentence).format(*why.parts), "again": "", "action": "",
             "targets": "", "back": "",
         }  # fmt: skip
         if why.sentence == "connect":
-            names |= {"connect": str(why.parts[0]), "connect_word": said["connect"]["title"]}
+            names |= {"connect": str(why.parts[0]), "connect_word": texts["connect"]["title"]}
         return Reply(self.pages.page("lti_message", visit.lang, names), why.status_code)
 
     def _student_page(self, visit: Visit, number: int) -> Reply:
@@ -143,13 +147,13 @@ class SiteHost:
         if visit.path:
             raise LtiRefused("page", 404, "a student")
         site_request = self._site_request(visit, number, SiteForm())
-        state, own = state_and_paper(site_request)
+        state, paper = state_and_paper(site_request)
         if state.done and not ("again" in visit.query and state.may_hand_in):
-            return self._after_submission(visit, site_request, state, own)
+            return self._after_submission(visit, site_request, state, paper)
         if not state.may_hand_in:
             raise HTTPException("closed", 409)
-        texts = self._handed_in(state, own) if state.done else {}
-        return Reply(self._sheet(visit, state, own, texts))
+        texts = self._handed_in(state, paper) if state.done else {}
+        return Reply(self._sheet(visit, state, paper, texts))
 
     # ------------------------------------------------------------------- a student
 
@@ -165,9 +169,9 @@ class SiteHost:
         with site.store.reading() as connection:
             if published(connection, number) is None:
                 raise HTTPException("own", 404)
-        known = launch_persons.launch_person(site, launch, visit.lang)
-        self._assign(visit, number, known)
-        person = Person(known.id, known.name, "student", visit.lang)
+        row = launch_persons.launch_person(site, launch, visit.lang)
+        self._assign(visit, number, row)
+        person = Person(row.id, row.name, "student", visit.lang)
         return SiteRequest(
             site,
             person,
@@ -179,20 +183,22 @@ class SiteHost:
             is_post=bool(form.texts),
         )
 
-    def _assign(self, visit: Visit, number: int, known: Any) -> None:
+    def _assign(self, visit: Visit, number: int, person: Any) -> None:
         with self._site.store.reading() as connection:
-            said = published(connection, number)
-            if said is None or places(connection, known.id, number):
+            publication = published(connection, number)
+            if publication is None or places(connection, person.id, number):
                 return
-        phase = said.phase(said.now(self._site.clock()))
+        phase = publication.phase(publication.now(self._site.clock()))
         if phase is Phase.TO_COME:
-            raise HTTPException("not_yet", 409, moment_text(said.opens, visit.lang) if said.opens else "")
+            raise HTTPException(
+                "not_yet", 409, moment_text(publication.opens, visit.lang) if publication.opens else ""
+            )
         if not phase.takes:
             raise HTTPException("closed", 409)
-        launch_persons.assign_paper(self._site, number, known, visit.launch, visit.lang)
+        launch_persons.assign_paper(self._site, number, person, visit.launch, visit.lang)
 
     def _sheet(
-        self, visit: Visit, state: AssignmentState, own: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
+        self, visit: Visit, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
         unread: Sequence[str] = (),
     ) -> str:  # fmt: skip
         filled = {
@@ -205,105 +211,105 @@ class SiteHost:
             visit.home, visit.seal, len(state.done) + 1, filled, (*notes, *self._rules(visit, state)), tuple(unread),
             bool(unread), tuple(more), visit.launch.return_url,
         )  # fmt: skip
-        return self.pages.sheet(own.paper, form, alone=False)
+        return self.pages.sheet(paper.paper, form, alone=False)
 
-    def _handed_in(self, state: AssignmentState, own: StudentPaper) -> dict[str, str]:
+    def _handed_in(self, state: AssignmentState, paper: StudentPaper) -> dict[str, str]:
         """Return the last submission, by box."""
         with self._site.store.reading() as connection:
             rows = [
-                one
-                for one in rows_of(connection, state.assignment.id, state.done[-1].id)
-                if isinstance(one, Row)
+                row
+                for row in rows_of(connection, state.assignment.id, state.done[-1].id)
+                if isinstance(row, Row)
             ]
-        told = {(one.exercise, one.seed, one.part): str(one.answer or "") for one in rows}
+        answers = {(row.exercise, row.seed, row.part): str(row.answer or "") for row in rows}
         return {
-            name: told.get((box.variant.exercise.name, str(box.variant.seed), box.part.id), "")
-            for name, box in own.boxes.items()
+            name: answers.get((box.variant.exercise.name, str(box.variant.seed), box.part.id), "")
+            for name, box in paper.boxes.items()
         }
 
     def _rules(self, visit: Visit, state: AssignmentState) -> list[str]:
         """Until when, how often, and what counts."""
-        said, own = words(visit.lang)["lti"], words(visit.lang, "site")["lti"]
-        found = []
+        texts, site_texts = words(visit.lang)["lti"], words(visit.lang, "site")["lti"]
+        rules = []
         if state.phase is Phase.OPEN and state.assignment.own.closes:
-            found.append(str(own["open_until"]).format(state.moment(state.assignment.own.closes)))
+            rules.append(str(site_texts["open_until"]).format(state.moment(state.assignment.own.closes)))
         elif state.phase is Phase.LATE:
-            found.append(str(own["late_now"]))
+            rules.append(str(site_texts["late_now"]))
         left = state.tries_left
         if left is None:
-            found.append(str(said["tries_free"]))
+            rules.append(str(texts["tries_free"]))
         elif state.phase.takes:
-            one = left < 2 if words(visit.lang)["numbers"]["one_below_two"] else left == 1
-            found.append(
-                str(said["tries_left"]["one" if one else "many"]).format(left)
+            is_one = left < 2 if words(visit.lang)["numbers"]["one_below_two"] else left == 1
+            rules.append(
+                str(texts["tries_left"]["one" if is_one else "many"]).format(left)
                 if left
-                else said["no_try_left"]
+                else texts["no_try_left"]
             )
         if state.assignment.own.tries != 1:
             counts = state.assignment.stated.get("sittings", _BEST)
-            found.append(str(said["counts_best" if counts == _BEST else "counts_last"]))
-        return [" ".join(found)]
+            rules.append(str(texts["counts_best" if counts == _BEST else "counts_last"]))
+        return [" ".join(rules)]
 
     def _after_submission(
-        self, visit: Visit, site_request: SiteRequest, state: AssignmentState, own: StudentPaper
+        self, visit: Visit, site_request: SiteRequest, state: AssignmentState, paper: StudentPaper
     ) -> Reply:
         """Return the feedback on the last submission if it is released; otherwise a confirmation."""
-        said, last = words(visit.lang)["lti"], state.done[-1]
-        came = said["try_number"].format(last.number, exact_text(last.came, visit.lang))
+        texts, last = words(visit.lang)["lti"], state.done[-1]
+        arrival = texts["try_number"].format(last.number, exact_text(last.came, visit.lang))
         receipt = site_request.words["lti"]["receipt"].format(last.receipt)
-        more = [(f"{visit.home}?again=1", said["again"])] if state.may_hand_in else []
+        more = [(f"{visit.home}?again=1", texts["again"])] if state.may_hand_in else []
         waits = pending_marking(site_request, last.id) if state.releases("feedback") else None
         if state.releases("feedback") and waits is None:
-            told, notes = feedback_of(site_request, state, own, last)
-            notes = [f"{came}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
+            document, notes = feedback_of(site_request, state, paper, last)
+            notes = [f"{arrival}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
             form = Surrounding("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
-            return Reply(self.pages.feedback(told, form, alone=False))
+            return Reply(self.pages.feedback(document, form, alone=False))
         notes = [
-            f"{came}.",
+            f"{arrival}.",
             receipt,
             waits.message if waits else feedback_from(site_request, state),
             *self._rules(visit, state),
             self._sent(visit, state),
         ]
         names = {
-            "title": state.title, "notes": [one for one in notes if one], "more": more, "leave": visit.launch.return_url,
+            "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": visit.launch.return_url,
             "handed_in": site_request.words["lti"]["handed_in"],
         }  # fmt: skip
         return Reply(self.pages.page("lti_site_handed_in", visit.lang, names))
 
     def _sent(self, visit: Visit, state: AssignmentState | None = None) -> str:
         """Return the state of the score on its way to the platform."""
-        said, launch = words(visit.lang)["lti"], visit.launch
+        texts, launch = words(visit.lang)["lti"], visit.launch
         if not (launch.line or launch.lines):
-            return str(said["score_none"])
+            return str(texts["score_none"])
         waiting = visit.scores().get(launch.person)
         if waiting is None and state is not None:
             kept_back = "score_never" if state.assignment.own.feedback == "never" else "score_later"
             return str(words(visit.lang, "site")["lti"][kept_back])
-        return str(said["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
+        return str(texts["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
 
     def _submit(self, visit: Visit, number: int, form: Form) -> Reply:
         """Hand in what a form brings: once, whatever comes twice."""
         if visit.launch.role is not Role.STUDENT or visit.path:
             raise LtiRefused("page", 404, "nothing is handed in there")
         site_request = self._site_request(visit, number, SiteForm(form))
-        state, own = state_and_paper(site_request)
-        texts, place = own.texts(site_request.form), _number(form)
-        if place <= len(state.done):
+        state, paper = state_and_paper(site_request)
+        texts, attempt = paper.texts(site_request.form), _number(form)
+        if attempt <= len(state.done):
             return Reply(goto=visit.home)  # the same form once more
         if not any(text.strip() for text in texts.values()):
             empty = words(visit.lang)["lti"]["empty"]
-            return Reply(self._sheet(visit, state, own, texts, notes=[empty]), 422)
-        unread = _unread(visit, own, texts)
+            return Reply(self._sheet(visit, state, paper, texts, notes=[empty]), 422)
+        unread = _unread(visit, paper, texts)
         if unread and not form.get("_as_it_is"):
-            return Reply(self._sheet(visit, state, own, texts, unread=unread), 422)
+            return Reply(self._sheet(visit, state, paper, texts, unread=unread), 422)
         submit(
             self._site,
             state.assignment,
-            own,
+            paper,
             site_request.user.id,
             texts,
-            place,
+            attempt,
             site_request.received_at,
             FROM_A_PLATFORM,
         )
@@ -314,8 +320,8 @@ class SiteHost:
     def _opened_by_course(self, launch: Launch) -> set[str]:
         """Return what the platform calls those who opened the assignment of a launch from the launch's course."""
         named = Wanted.of(launch.custom).assignment
-        opened = (one for one in self._storage.opened() if one.course == launch.course)
-        return {one.person for one in opened if one.custom.get("assignment", "").strip() == named}
+        opened = (other for other in self._storage.opened() if other.course == launch.course)
+        return {other.person for other in opened if other.custom.get("assignment", "").strip() == named}
 
     def _class(self, visit: Visit, number: int) -> Reply:
         """Return the class table, read-only; decisions are made on the site, with an account there."""
@@ -324,12 +330,12 @@ class SiteHost:
         now, lang = class_now(self._site, number), visit.lang
         members, note = _members(visit, lang)
         with self._site.store.reading() as connection:
-            said = published(connection, number)
+            publication = published(connection, number)
             rows = class_rows(connection, self._site, now, visit, self._opened_by_course(visit.launch))
         missing = _not_there(members, {folded(row.name) for row in rows}, {row.person for row in rows})
         names = {
             "title": visit.launch.link_title or assignment_title(now.about, lang), "context": visit.launch.context_title, "home": visit.home,
-            "desk": f"{self._site.url}/desk/{number}", "rules": rules_rows(visit, now, said), "rows": rows, "missing": missing,
+            "desk": f"{self._site.url}/desk/{number}", "rules": rules_rows(visit, now, publication), "rows": rows, "missing": missing,
             "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
         }  # fmt: skip
         return Reply(self.pages.page("lti_site_class", lang, names))
@@ -339,16 +345,18 @@ def _worth(connection: Connection, number: int) -> float:
     """Return the points of an assignment: those of the first issued paper."""
     issued = issued_of(connection, number)
     student = next(iter(issued.students), "")
-    own = issued.issued_to(student) if student else {}
-    records = [issued.record_of(student, exercise, seed) for exercise, seed in own.items()]
+    seeds = issued.issued_to(student) if student else {}
+    records = [issued.record_of(student, exercise, seed) for exercise, seed in seeds.items()]
     return sum(float(part["points"]) for record in records for part in record["parts"]) or 1.0
 
 
-def _unread(visit: Visit, own: StudentPaper, texts: Mapping[str, str]) -> list[str]:
+def _unread(visit: Visit, paper: StudentPaper, texts: Mapping[str, str]) -> list[str]:
     """Return a sentence for each answer that could not be read."""
     form = str(words(visit.lang)["lti"]["unread_line"])
     return [
-        form.format(box.number, told.message) for box, _, told in read_lines(own, texts) if told.is_in_doubt
+        form.format(box.number, reading.message)
+        for box, _, reading in read_lines(paper, texts)
+        if reading.is_in_doubt
     ]
 
 
@@ -361,18 +369,18 @@ def _number(form: Form) -> int:
 
 def _members(visit: Visit, lang: str) -> tuple[Sequence[Member] | None, str]:
     """Return the platform's roster, and the sentence to show if there is none."""
-    said = words(lang)["lti"]["class"]
+    texts = words(lang)["lti"]["class"]
     if visit.roster is None:
-        return None, said["no_roster"].format(said["roster_off"])
+        return None, texts["no_roster"].format(texts["roster_off"])
     try:
         return visit.roster(), ""
     except NotServed as fault:
-        return None, said["no_roster"].format(fault)
+        return None, texts["no_roster"].format(fault)
 
 
-def _not_there(members: Sequence[Member] | None, names: set[str], known: set[str]) -> list[str]:
+def _not_there(members: Sequence[Member] | None, names: set[str], persons: set[str]) -> list[str]:
     """Return the students of the platform who have no paper yet."""
     return sorted(
-        (one.name or one.person for one in students(members or ()) if one.person not in known and folded(one.name) not in names),
+        (member.name or member.person for member in students(members or ()) if member.person not in persons and folded(member.name) not in names),
         key=folded,
     )  # fmt: skip

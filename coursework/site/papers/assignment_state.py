@@ -57,10 +57,10 @@ class AssignmentState:
         ends = self.assignment.own.ends, self.assignment.publication.ends
         return None if ends[0] is None or ends[1] is None else max(ends[0], ends[1])
 
-    def releases(self, what: str) -> bool:
+    def releases(self, content: str) -> bool:
         """Return True if ``feedback`` or ``answers`` are released now."""
-        ends = self.closed_for_both if what == "feedback" else self.everybody_ends
-        return self.assignment.own.tells(what, self.now, ends)
+        ends = self.closed_for_both if content == "feedback" else self.everybody_ends
+        return self.assignment.own.tells(content, self.now, ends)
 
     def moment(self, at: datetime | None) -> str:
         return "" if at is None else moment_text(at, self.lang)
@@ -71,26 +71,26 @@ class AssignmentState:
     @property
     def left(self) -> str:
         """Remaining time as text; empty if the assignment does not close, or has closed."""
-        own = self.assignment.own
-        ends = own.closes if self.phase is Phase.OPEN else own.ends if self.phase is Phase.LATE else None
+        rules = self.assignment.own
+        ends = rules.closes if self.phase is Phase.OPEN else rules.ends if self.phase is Phase.LATE else None
         return "" if ends is None else length_text(ends - self.now, self.lang)
 
 
-def state_of(request: Request, place: Place, connection: Connection) -> AssignmentState:
-    assert place.publication is not None
-    done = deliveries(connection, place.id, request.user.id)
-    ends = last_end(place.publication, list(extensions(connection, place.id).values()))
-    used = tries_used(connection, place.id, request.user.id, done)
-    now = place.publication.counted(request.received_at, request.site.clock())
-    return AssignmentState(place, request.lang, now, done, ends, used)
+def state_of(request: Request, assignment: Place, connection: Connection) -> AssignmentState:
+    assert assignment.publication is not None
+    done = deliveries(connection, assignment.id, request.user.id)
+    ends = last_end(assignment.publication, list(extensions(connection, assignment.id).values()))
+    used = tries_used(connection, assignment.id, request.user.id, done)
+    now = assignment.publication.counted(request.received_at, request.site.clock())
+    return AssignmentState(assignment, request.lang, now, done, ends, used)
 
 
 def to_hand_in(request: Request) -> list[AssignmentState]:
     """Return the assignments that a person may submit now and has not submitted yet."""
     with request.site.store.reading() as connection:
-        published = [one for one in places(connection, request.user.id) if one.publication is not None]
-        found = [state_of(request, one, connection) for one in published]
-    return [one for one in found if one.may_hand_in and not one.done]
+        published = [item for item in places(connection, request.user.id) if item.publication is not None]
+        states = [state_of(request, item, connection) for item in published]
+    return [item for item in states if item.may_hand_in and not item.done]
 
 
 def user_assignment(request: Request, connection: Connection) -> Place:
@@ -101,29 +101,32 @@ def user_assignment(request: Request, connection: Connection) -> Place:
     HTTPException
         There is none such: nobody is told which of it is wanting.
     """
-    found = places(connection, request.user.id, int(request.path_params["number"]))
-    if len(found) != 1 or found[0].publication is None:
+    matches = places(connection, request.user.id, int(request.path_params["number"]))
+    if len(matches) != 1 or matches[0].publication is None:
         raise HTTPException("own", 404)
-    return found[0]
+    return matches[0]
 
 
 def state_and_paper(request: Request) -> tuple[AssignmentState, StudentPaper]:
     """Return the state of the assignment and the paper; refuse it before it opens."""
     pass_dates(request.site, int(request.path_params["number"]), request.received_at)
     with request.site.store.reading() as connection:
-        place, own = assignment_and_paper(request, connection, heads=True)
-        return state_of(request, place, connection), own
+        assignment, paper = assignment_and_paper(request, connection, heads=True)
+        return state_of(request, assignment, connection), paper
 
 
 def assignment_and_paper(
     request: Request, connection: Connection, *, heads: bool = False
 ) -> tuple[Place, StudentPaper]:
     """Return the assignment and the paper; refuse it before it opens. The heading needs ``heads``."""
-    site, place = request.site, user_assignment(request, connection)
-    assert place.publication is not None
-    if place.own.phase(place.publication.counted(request.received_at, site.clock())) is Phase.TO_COME:
-        opens = place.own.opens
+    site, assignment = request.site, user_assignment(request, connection)
+    assert assignment.publication is not None
+    if (
+        assignment.own.phase(assignment.publication.counted(request.received_at, site.clock()))
+        is Phase.TO_COME
+    ):
+        opens = assignment.own.opens
         raise HTTPException("not_yet", 409, moment_text(opens, request.lang) if opens else "")
-    return place, student_paper(
-        connection, site.course, place, request.user.id, request.lang, site.cache, heads=heads
+    return assignment, student_paper(
+        connection, site.course, assignment, request.user.id, request.lang, site.cache, heads=heads
     )

@@ -50,13 +50,13 @@ _ORDER = (Phase.OPEN, Phase.LATE, Phase.TO_COME, Phase.CLOSED)
 def list_page(request: Request) -> Response:
     """Return the page of the person's assignments, by phase."""
     with request.site.store.reading() as connection:
-        numbers = [one.id for one in places(connection, request.user.id) if one.publication is not None]
+        numbers = [item.id for item in places(connection, request.user.id) if item.publication is not None]
     for number in numbers:
         pass_dates(request.site, number, request.received_at)
     with request.site.store.reading() as connection:
-        found = [one for one in places(connection, request.user.id) if one.publication is not None]
-        states = [state_of(request, one, connection) for one in found]
-    groups = [(phase.value, [one for one in states if one.phase is phase]) for phase in _ORDER]
+        assignments = [item for item in places(connection, request.user.id) if item.publication is not None]
+        states = [state_of(request, item, connection) for item in assignments]
+    groups = [(phase.value, [item for item in states if item.phase is phase]) for phase in _ORDER]
     return request.render(
         "site_assignments", groups=[g for g in groups if g[1]], zone=zone_name(request.received_at)
     )
@@ -67,30 +67,30 @@ def list_page(request: Request) -> Response:
 
 def paper_page(request: Request) -> Response:
     """Return the person's paper to fill in; a submitted form returns with its reading."""
-    state, own = state_and_paper(request)
+    state, paper = state_and_paper(request)
     if request.is_post:
-        return _read_back(request, state, own)
+        return _read_back(request, state, paper)
     if not state.may_hand_in and state.done:
         return Response(redirect=f"{state.address}/receipts/{state.done[-1].receipt}")
-    return _paper_response(request, state, own)
+    return _paper_response(request, state, paper)
 
 
 def _paper_response(
     request: Request,
     state: AssignmentState,
-    own: StudentPaper,
+    paper: StudentPaper,
     boxes: Mapping[str, Box] | None = None,
     problem: str = "",
     status: int = 200,
 ) -> Response:
     """Return the page of the paper, with the drafts in its boxes, or with the given ``boxes``."""
-    number, who, sheet = state.assignment.id, request.user.id, sheet_of(state.assignment, own)
+    number, person_id, sheet = state.assignment.id, request.user.id, sheet_of(state.assignment, paper)
     with request.site.store.reading() as connection:
-        stands = drafts(connection, who, sheet) if boxes is None else boxes
-        found = prepared_pieces(connection, number, who, own.lang, own.state)
-    pieces = found or make_pieces(request.site, number, who, own, stores=state.phase.takes)
-    form = draft_attributes(request, f"{state.address}/keep", sheet, stands)
-    texts = {name: box.text for name, box in stands.items() if name in own.fields}
+        contents = drafts(connection, person_id, sheet) if boxes is None else boxes
+        prepared = prepared_pieces(connection, number, person_id, paper.lang, paper.state)
+    pieces = prepared or make_pieces(request.site, number, person_id, paper, stores=state.phase.takes)
+    form = draft_attributes(request, f"{state.address}/keep", sheet, contents)
+    texts = {name: box.text for name, box in contents.items() if name in paper.fields}
     return request.render(
         "site_assignment", status, state=state, form=form, versions=form["data-keep-versions"], problem=problem,
         look="", back="", zone=zone_name(request.received_at), paper_head=Markup(pieces.head),
@@ -102,30 +102,30 @@ def save_draft(request: Request) -> Response:
     """Store drafts while the assignment can be submitted."""
     if not request.is_post:
         raise HTTPException("method", 405)
-    state, own = state_and_paper(request)
-    sheet = sheet_of(state.assignment, own)
+    state, paper = state_and_paper(request)
+    sheet = sheet_of(state.assignment, paper)
     return save_drafts(
-        request, sheet, own.fields, lambda name, text: own.read(name, text).message, state.may_hand_in
+        request, sheet, paper.fields, lambda name, text: paper.read(name, text).message, state.may_hand_in
     )
 
 
-def _read_back(request: Request, state: AssignmentState, own: StudentPaper) -> Response:
-    texts = own.texts(request.form)
-    said = request.words["assignments"]
+def _read_back(request: Request, state: AssignmentState, paper: StudentPaper) -> Response:
+    texts = paper.texts(request.form)
+    messages = request.words["assignments"]
     if not state.may_hand_in:
         return _too_late(request, state)
-    boxes = _save_form(request, state, own, texts)
+    boxes = _save_form(request, state, paper, texts)
     if not any(text.strip() for text in texts.values()):
-        return _paper_response(request, state, own, boxes, said["nothing_typed"], 422)
-    return _confirming(request, state, own, texts, ON_THE_PAGE)
+        return _paper_response(request, state, paper, boxes, messages["nothing_typed"], 422)
+    return _confirming(request, state, paper, texts, ON_THE_PAGE)
 
 
 def _save_form(
-    request: Request, state: AssignmentState, own: StudentPaper, texts: Mapping[str, str]
+    request: Request, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str]
 ) -> dict[str, Box]:
     """Store the drafts of a form without a script as well; return the boxes for this page."""
     now, _ = save_form_drafts(
-        request, sheet_of(state.assignment, own), texts, {}, request.form.text("_versions")
+        request, sheet_of(state.assignment, paper), texts, {}, request.form.text("_versions")
     )
     return {name: Box(text, now[name].version if name in now else 0) for name, text in texts.items()}
 
@@ -140,20 +140,20 @@ def _too_late(request: Request, state: AssignmentState) -> Response:
 def _confirming(
     request: Request,
     state: AssignmentState,
-    own: StudentPaper,
+    paper: StudentPaper,
     texts: Mapping[str, str],
     source: str,
     notes: Sequence[str] = (),
 ) -> Response:
     """Return the reading of each answer, for confirmation."""
-    lines = read_lines(own, texts)
+    lines = read_lines(paper, texts)
     late = state.assignment.own.late_seconds(state.now)
     charged = state.assignment.own.charged(late)
     return request.render(
         "site_assignment_read_back", state=state, lines=lines, counts=counts(lines), source=source, notes=notes,
         number=len(state.done) + 1, texts={name: text for name, text in texts.items() if text},
         late=length_text(timedelta(seconds=late), request.lang) if late else "",
-        charged=charged_text(charged, request.lang) if charged else "", heading=own.heading,
+        charged=charged_text(charged, request.lang) if charged else "", heading=paper.heading,
     )  # fmt: skip
 
 
@@ -162,48 +162,50 @@ def _confirming(
 
 def files(request: Request) -> Response:
     """Return the paper as a PDF or as a notebook."""
-    state, own = state_and_paper(request)
-    renderer, stem = renderer_of(request.site.course.folder), _stem(state, own)
+    state, paper = state_and_paper(request)
+    renderer, stem = renderer_of(request.site.course.folder), _stem(state, paper)
     if request.path_params["file"] == "paper.pdf":
         return Response(
-            media_type="application/pdf", content=renderer.paper_pdf(own.paper), filename=f"{stem}.pdf"
+            media_type="application/pdf", content=renderer.paper_pdf(paper.paper), filename=f"{stem}.pdf"
         )
     if request.path_params["file"] == "notebook.ipynb":
-        data = renderer.paper_notebook(own.paper).encode()
+        data = renderer.paper_notebook(paper.paper).encode()
         return Response(media_type="application/x-ipynb+json", content=data, filename=f"{stem}.ipynb")
     raise HTTPException("page", 404)
 
 
-def _stem(state: AssignmentState, own: StudentPaper) -> str:
-    return "-".join(filter(None, file_stems([state.assignment.name, own.student]))) or "paper"
+def _stem(state: AssignmentState, paper: StudentPaper) -> str:
+    return "-".join(filter(None, file_stems([state.assignment.name, paper.student]))) or "paper"
 
 
 def take_file(request: Request) -> Response:
     """Read a completed notebook or file of answers, without running it, and return its reading."""
     if not request.is_post:
         raise HTTPException("method", 405)
-    state, own = state_and_paper(request)
-    said = request.words["assignments"]
+    state, paper = state_and_paper(request)
+    messages = request.words["assignments"]
     if not state.may_hand_in:
         return _too_late(request, state)
     sent = next(iter(request.form.files.get("file", ())), None)
     if sent is None or _ending(sent) not in _FILES:
-        return _paper_response(request, state, own, None, said["which_file"].format(", ".join(_FILES)), 422)
+        return _paper_response(
+            request, state, paper, None, messages["which_file"].format(", ".join(_FILES)), 422
+        )
     try:
-        texts, notes = _of_file(request, own, sent)
+        texts, notes = _of_file(request, paper, sent)
     except BadInput as fault:
-        return _paper_response(request, state, own, None, str(fault), 422)
+        return _paper_response(request, state, paper, None, str(fault), 422)
     if not any(text.strip() for text in texts.values()):
-        return _paper_response(request, state, own, None, " ".join([said["file_empty"], *notes]), 422)
-    return _confirming(request, state, own, texts, IN_A_FILE, notes)
+        return _paper_response(request, state, paper, None, " ".join([messages["file_empty"], *notes]), 422)
+    return _confirming(request, state, paper, texts, IN_A_FILE, notes)
 
 
 def _ending(sent: Upload) -> str:
-    found = re.search(r"\.[a-z]{1,8}$", sent.name.lower())
-    return found[0] if found else ""
+    match = re.search(r"\.[a-z]{1,8}$", sent.name.lower())
+    return match[0] if match else ""
 
 
-def _of_file(request: Request, own: StudentPaper, sent: Upload) -> tuple[dict[str, str], list[str]]:
+def _of_file(request: Request, paper: StudentPaper, sent: Upload) -> tuple[dict[str, str], list[str]]:
     """Return the answers of a file to the person's own paper, by box, and messages about the file.
 
     Raises
@@ -211,27 +213,27 @@ def _of_file(request: Request, own: StudentPaper, sent: Upload) -> tuple[dict[st
     BadInput
         The file takes more to be read than it may, or holds more rows than a paper has.
     """
-    said, told = request.words["assignments"], []
+    messages, warnings = request.words["assignments"], []
     with tempfile.TemporaryDirectory(prefix="coursework-") as folder:
         path = Path(folder) / f"answers{_ending(sent)}"  # nothing of the name that it came by
         path.write_bytes(sent.data)
         rows = read_apart(ANSWER_FILE, request.words["refused"]["too_much"], read_rows, path, MOST_ROWS)
     if rows is None:
-        raise BadInput(said["file_too_long"].format(MOST_ROWS))
+        raise BadInput(messages["file_too_long"].format(MOST_ROWS))
     names = {row.student for row in rows if isinstance(row, Row) and row.student}
-    if others := sorted(one for one in names if folded(one) != folded(own.student)):
-        told.append(said["file_named"].format(", ".join(one[:60] for one in others[:3])))
-    sheets = placed(request.site.course, own.issued, as_students(own.issued, own.student, rows, []))
-    texts = dict.fromkeys(own.boxes, "")
-    for name, box in own.boxes.items():
-        row = sheets.sheets.get((own.student, box.variant.exercise.name, box.variant.seed, 0), {}).get(
+    if others := sorted(item for item in names if folded(item) != folded(paper.student)):
+        warnings.append(messages["file_named"].format(", ".join(item[:60] for item in others[:3])))
+    sheets = placed(request.site.course, paper.issued, as_students(paper.issued, paper.student, rows, []))
+    texts = dict.fromkeys(paper.boxes, "")
+    for name, box in paper.boxes.items():
+        row = sheets.sheets.get((paper.student, box.variant.exercise.name, box.variant.seed, 0), {}).get(
             box.part.id
         )
         texts[name] = "" if row is None or row.answer is None else str(row.answer)[:4000]
     if sheets.rejected:
-        told.append(said["file_rejected"].format(len(sheets.rejected)))
-        told += [for_student(one.reason) for one in sheets.rejected[:5]]
-    return texts, told
+        warnings.append(messages["file_rejected"].format(len(sheets.rejected)))
+        warnings += [for_student(item.reason) for item in sheets.rejected[:5]]
+    return texts, warnings
 
 
 # -------------------------------------------------------------------- handing in
@@ -241,40 +243,40 @@ def confirm(request: Request) -> Response:
     """Hand in what was read back, once."""
     if not request.is_post:
         raise HTTPException("method", 405)
-    site, who, number = request.site, request.user.id, request.form.text("_number")
+    site, person_id, number = request.site, request.user.id, request.form.text("_number")
     source = IN_A_FILE if request.form.text("_source") == IN_A_FILE else ON_THE_PAGE
     pass_dates(site, int(request.path_params["number"]), request.received_at)
     with site.store.begin() as connection:
-        hold(connection, who)
-        place, own = assignment_and_paper(request, connection)
+        hold(connection, person_id)
+        assignment, paper = assignment_and_paper(request, connection)
         if not re.fullmatch("[1-9][0-9]{0,5}", number):
             raise HTTPException("bad_request", 400)
-        texts = own.texts(request.form)
-        made = submission.store_submission(
-            connection, site, place, own, who, texts, int(number), request.received_at, source
+        texts = paper.texts(request.form)
+        result = submission.store_submission(
+            connection, site, assignment, paper, person_id, texts, int(number), request.received_at, source
         )
-    if made.is_new:
-        submission.mark(site, made.delivery.id)
-    again = "" if made.is_new else "?again=other" if made.differs else "?again=same"
-    return Response(redirect=f"/assignments/{place.id}/receipts/{made.delivery.receipt}{again}")
+    if result.is_new:
+        submission.mark(site, result.delivery.id)
+    again = "" if result.is_new else "?again=other" if result.differs else "?again=same"
+    return Response(redirect=f"/assignments/{assignment.id}/receipts/{result.delivery.receipt}{again}")
 
 
 def receipt(request: Request) -> Response:
     """Return the receipt of a submission, with the next steps."""
     pass_dates(request.site, int(request.path_params["number"]), request.received_at)
     with request.site.store.reading() as connection:
-        place, own = assignment_and_paper(request, connection)
-        state = state_of(request, place, connection)
+        assignment, paper = assignment_and_paper(request, connection)
+        state = state_of(request, assignment, connection)
         row = receipts.find(state.done, str(request.path_params["code"]))
-        told = receipts.receipt_content(connection, row, place.name, request.user.name)
+        content = receipts.receipt_content(connection, row, assignment.name, request.user.name)
     again = request.query_params.get("again", "")
-    shown = {(e, s, p): a for e, s, p, a in told["answers"]}
+    answers = {(e, s, p): a for e, s, p, a in content["answers"]}
     texts = {
-        name: shown.get((box.variant.exercise.name, str(box.variant.seed), box.part.id), "")
-        for name, box in own.boxes.items()
+        name: answers.get((box.variant.exercise.name, str(box.variant.seed), box.part.id), "")
+        for name, box in paper.boxes.items()
     }
     return request.render(
-        "site_assignment_receipt", state=state, row=row, told=told, lines=read_lines(own, texts),
+        "site_assignment_receipt", state=state, row=row, told=content, lines=read_lines(paper, texts),
         came=exact_text(row.came, request.lang), zone=zone_name(row.came), again=again if again in ("same", "other") else "",
         late=length_text(timedelta(seconds=row.late), request.lang) if row.late else "",
         charged=charged_text(state.assignment.own.charged(row.late), request.lang) if state.assignment.own.charged(row.late) else "",
@@ -285,18 +287,18 @@ def receipt(request: Request) -> Response:
 
 def feedback_from(request: Request, state: AssignmentState) -> str:
     """Return the time of the feedback, as a sentence."""
-    said, own = request.words["assignments"]["feedback_when"], state.assignment.own
-    if own.feedback == "date":
-        return str(said["date"]).format(state.moment(own.feedback_on))
-    if own.feedback == "closed":
+    messages, rules = request.words["assignments"]["feedback_when"], state.assignment.own
+    if rules.feedback == "date":
+        return str(messages["date"]).format(state.moment(rules.feedback_on))
+    if rules.feedback == "closed":
         ends = state.closed_for_both
-        return str(said["closed"]).format(state.moment(ends)) if ends else ""
-    return str(said[own.feedback])
+        return str(messages["closed"]).format(state.moment(ends)) if ends else ""
+    return str(messages[rules.feedback])
 
 
 def feedback(request: Request) -> Response:
     """Return the feedback on a submission, as far as it is released."""
-    state, own = state_and_paper(request)
+    state, paper = state_and_paper(request)
     if not state.releases("feedback"):
         raise HTTPException("feedback_later", 409)
     if not state.done:
@@ -304,15 +306,19 @@ def feedback(request: Request) -> Response:
     chosen = _chosen(request, state)
     if pending_marking(request, chosen.id) is not None:
         return Response(redirect=f"{state.address}/receipts/{chosen.receipt}")
-    told, notes = feedback_of(request, state, own, chosen)
+    document, notes = feedback_of(request, state, paper, chosen)
     return request.render(
-        "site_assignment_feedback", state=state, notes=notes, delivery=chosen, **own.template_names(told)
+        "site_assignment_feedback",
+        state=state,
+        notes=notes,
+        delivery=chosen,
+        **paper.template_names(document),
     )
 
 
 def _chosen(request: Request, state: AssignmentState) -> Delivery:
-    asked = request.query_params.get("number", "")
-    return next((one for one in state.done if str(one.number) == asked), state.done[-1])
+    number = request.query_params.get("number", "")
+    return next((handed_in for handed_in in state.done if str(handed_in.number) == number), state.done[-1])
 
 
 ROUTES = (

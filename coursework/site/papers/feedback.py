@@ -22,21 +22,23 @@ from coursework.site.papers.student_paper import StudentPaper
 
 
 def feedback_of(
-    request: Request, state: AssignmentState, own: StudentPaper, chosen: Delivery
+    request: Request, state: AssignmentState, paper: StudentPaper, chosen: Delivery
 ) -> tuple[FeedbackPaper, list[str]]:
     """Return the feedback on a submission, and the notes above it: for a late one, the penalty."""
     mark_delivery(request.site.course, request.site.store, chosen.id)
     with request.site.store.reading() as connection:
         sheets = [
-            one
-            for one in graded(connection, state.assignment.id, own.student)
-            if one.sitting == chosen.number
+            sheet
+            for sheet in graded(connection, state.assignment.id, paper.student)
+            if sheet.sitting == chosen.number
         ]
         content = issued_content(connection, state.assignment.id, request.user.id)
     issued = Issued(_allowed(content, state), state.assignment.name)
     telling = Telling(solutions=_shows_solutions(issued, state))
-    told = feedback_paper(request.site.course, issued, own.student, sheets, request.lang, telling=telling)
-    return told, _charged(request, state, issued, told, chosen)
+    document = feedback_paper(
+        request.site.course, issued, paper.student, sheets, request.lang, telling=telling
+    )
+    return document, _charged(request, state, issued, document, chosen)
 
 
 def _allowed(content: dict[str, Any], state: AssignmentState) -> dict[str, Any]:
@@ -62,22 +64,22 @@ def _shows_solutions(issued: Issued, state: AssignmentState) -> bool:
 
 
 def _charged(
-    request: Request, state: AssignmentState, issued: Issued, told: FeedbackPaper, chosen: Delivery
+    request: Request, state: AssignmentState, issued: Issued, document: FeedbackPaper, chosen: Delivery
 ) -> list[str]:
     """Return notes on the penalty for lateness, which is separate from the marks of the answers."""
     if not chosen.late:
         return []
-    said = request.words["assignments"]
+    messages = request.words["assignments"]
     late = length_text(timedelta(seconds=chosen.late), request.lang)
     share = state.assignment.own.charged(min(chosen.late, state.assignment.own.late_seconds(chosen.came)))
     if not share:
-        return [said["was_late"].format(late)]
-    left = round(told.points * (1 - share), 9)
-    points, out_of = _number(left, request.lang), _number(told.out_of, request.lang)
-    found = [said["was_charged"].format(late, charged_text(share, request.lang), points, out_of)]
-    if mark := mark_of(issued, left, told.out_of):
-        found.append(said["charged_mark"].format(localise(mark, request.lang)))
-    return found
+        return [messages["was_late"].format(late)]
+    left = round(document.points * (1 - share), 9)
+    points, out_of = _number(left, request.lang), _number(document.out_of, request.lang)
+    notes = [messages["was_charged"].format(late, charged_text(share, request.lang), points, out_of)]
+    if mark := mark_of(issued, left, document.out_of):
+        notes.append(messages["charged_mark"].format(localise(mark, request.lang)))
+    return notes
 
 
 def _number(number: float, lang: str) -> str:

@@ -27,15 +27,15 @@ _AFTER_NAME = re.compile(r' name="[^"]*"(?: class="[^"]*")?')
 _AFTER_VALUE = re.compile(r' value="[^"]*"')
 
 
-def make_pieces(site: Site, number: int, person_id: int, own: StudentPaper, *, stores: bool) -> Pieces:
+def make_pieces(site: Site, number: int, person_id: int, paper: StudentPaper, *, stores: bool) -> Pieces:
     """Make the parts of a page; cache them if ``stores``.
 
     A database that takes nothing refuses no reader, and of who was erased meanwhile nothing is kept.
     """
-    pieces = own.pieces()
+    pieces = paper.pieces()
     if stores:
         with suppress(BadInput, IntegrityError), site.store.begin() as connection:
-            put_prepared(connection, number, person_id, own.lang, own.state, pieces)
+            put_prepared(connection, number, person_id, paper.lang, paper.state, pieces)
     return pieces
 
 
@@ -53,41 +53,41 @@ def prepare(site: Site, number: int, person_id: int, at: datetime, cache: LRUCac
     count = 0
     for lang in _langs(site, person_id):
         with site.store.reading() as connection:
-            found = places(connection, person_id, number)
-            place = found[0] if len(found) == 1 else None
-            if place is None or place.publication is None:
+            assignments = places(connection, person_id, number)
+            assignment = assignments[0] if len(assignments) == 1 else None
+            if assignment is None or assignment.publication is None:
                 return count
-            if place.own.phase(place.publication.now(at)) is Phase.CLOSED:
+            if assignment.own.phase(assignment.publication.now(at)) is Phase.CLOSED:
                 return count
-            own = student_paper(connection, site.course, place, person_id, lang, cache)
-            stands = prepared_state(connection, number, person_id, lang)
-        if stands != own.state:
-            make_pieces(site, number, person_id, own, stores=True)
+            paper = student_paper(connection, site.course, assignment, person_id, lang, cache)
+            state = prepared_state(connection, number, person_id, lang)
+        if state != paper.state:
+            make_pieces(site, number, person_id, paper, stores=True)
             count += 1
     return count
 
 
 def _langs(site: Site, person_id: int) -> tuple[str, ...]:
     with site.store.reading() as connection:
-        told = connection.execute(select(person.c.lang).where(person.c.id == person_id)).scalar()
-    return (told,) if told in site.languages else site.languages
+        lang = connection.execute(select(person.c.lang).where(person.c.id == person_id)).scalar()
+    return (lang,) if lang in site.languages else site.languages
 
 
 def filled_in(body: str, texts: Texts) -> str:
     """Return the body of a page with texts in its boxes, by their names."""
-    stands = {name: box_values(text) for name, text in texts.items() if text}
-    return _BOX.sub(partial(_filled, stands), body) if stands else body
+    values = {name: box_values(text) for name, text in texts.items() if text}
+    return _BOX.sub(partial(_filled, values), body) if values else body
 
 
-def _filled(stands: Mapping[str, list[str]], found: re.Match[str]) -> str:
-    tag = found[0]
-    own = dict(_ATTRIBUTE.findall(tag))
-    texts = stands.get(unescape(own.get("name", "")))
+def _filled(values: Mapping[str, list[str]], match: re.Match[str]) -> str:
+    tag = match[0]
+    attributes = dict(_ATTRIBUTE.findall(tag))
+    texts = values.get(unescape(attributes.get("name", "")))
     if texts is None:
         return tag
     if tag.startswith("<textarea"):
         return f"{tag}\n{escape(texts[0])}"
-    if own.get("type") in ("radio", "checkbox"):
-        is_held = unescape(own.get("value", "")) in texts
-        return _AFTER_VALUE.sub(lambda told: f"{told[0]} checked", tag, count=1) if is_held else tag
-    return _AFTER_NAME.sub(lambda told: f'{told[0]} value="{escape(texts[0])}"', tag, count=1)
+    if attributes.get("type") in ("radio", "checkbox"):
+        is_held = unescape(attributes.get("value", "")) in texts
+        return _AFTER_VALUE.sub(lambda part: f"{part[0]} checked", tag, count=1) if is_held else tag
+    return _AFTER_NAME.sub(lambda part: f'{part[0]} value="{escape(texts[0])}"', tag, count=1)

@@ -25,14 +25,14 @@ class PendingMarking(NamedTuple):
 
 def pending_marking(request: Request, delivery: int) -> PendingMarking | None:
     """Return the message for a submission that waits for its marks; None if it is marked."""
-    said = request.words["assignments"]
+    messages = request.words["assignments"]
     with request.site.store.reading() as connection:
-        one = job_of(connection, delivery)
-        if one is None or not request.site.has_worker:
+        job = job_of(connection, delivery)
+        if job is None or not request.site.has_worker:
             return None
-        if one.fault:
-            return PendingMarking(str(said["not_marked"]), 0)
-        seconds = round(min(_LONGEST, _SOON + _EACH * before(connection, one)))
+        if job.fault:
+            return PendingMarking(str(messages["not_marked"]), 0)
+        seconds = round(min(_LONGEST, _SOON + _EACH * before(connection, job)))
     return PendingMarking(
-        str(said["being_marked"]).format(length_text(timedelta(seconds=seconds), request.lang)), seconds
+        str(messages["being_marked"]).format(length_text(timedelta(seconds=seconds), request.lang)), seconds
     )

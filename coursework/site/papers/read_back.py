@@ -26,13 +26,13 @@ class ReadBack(NamedTuple):
 def read_back(variant: Any, part: Part, text: str) -> ReadBack:
     """Return the reading of an answer, or the reason for which it cannot be read. Two plausible readings are
     both returned: the choice between them depends on the reference, which is not used here."""
-    reading, said = read(variant, part, text), words(variant.lang, "site")["read_back"]
+    reading, texts = read(variant, part, text), words(variant.lang, "site")["read_back"]
     if reading.status == "missing":
         return ReadBack("missing", "")
     if reading.status != "read":
         return ReadBack(reading.status, say_not_read(variant, part, reading).plain(variant.lang))
     if part.sort.is_open:
-        return ReadBack("waits", said["waits"])
-    shown = [plain_line(one, variant.lang) for one in readings(variant, part, text)[1]]
-    form = said["two"] if len(shown) > 1 else said["read_as"]
-    return ReadBack("read", form.format(*shown))
+        return ReadBack("waits", texts["waits"])
+    lines = [plain_line(line, variant.lang) for line in readings(variant, part, text)[1]]
+    form = texts["two"] if len(lines) > 1 else texts["read_as"]
+    return ReadBack("read", form.format(*lines))

@@ -30,27 +30,27 @@ def receipt_content(connection: Connection, row: Any, assignment: str, student: 
         "number": row.number,
         "handed_in": row.came.isoformat(timespec="seconds"),
         "late_seconds": row.late,
-        "answered": sum(bool(one[3].strip()) for one in handed),
+        "answered": sum(bool(answer[3].strip()) for answer in handed),
         "asked": len(handed),
         "sha256": digest(handed),
         "answers": handed,
     }
 
 
-def as_text(request: Request, told: dict[str, Any], row: Any) -> str:
+def as_text(request: Request, content: dict[str, Any], row: Any) -> str:
     """Return a receipt as text."""
-    said = words(request.lang, "site")["receipts"]
+    texts = words(request.lang, "site")["receipts"]
     lines = [
-        said["title"], "",
-        f"{said['code']}: {told['receipt']}",
-        f"{said['assignment']}: {told['assignment']}",
-        f"{said['student']}: {told['student']}",
-        f"{said['came']}: {exact_text(row.came, request.lang)} ({zone_name(row.came)})",
-        *([f"{said['late']}: {length_text(timedelta(seconds=row.late), request.lang)}"] if row.late else []),
-        f"{said['answered']}: {told['answered']} / {told['asked']}",
-        f"SHA-256: {told['sha256']}", "",
-        *(f"{exercise} {seed} {part}: {' '.join(answer.split())}" for exercise, seed, part, answer in told["answers"]),
-        "", said["how"], "",
+        texts["title"], "",
+        f"{texts['code']}: {content['receipt']}",
+        f"{texts['assignment']}: {content['assignment']}",
+        f"{texts['student']}: {content['student']}",
+        f"{texts['came']}: {exact_text(row.came, request.lang)} ({zone_name(row.came)})",
+        *([f"{texts['late']}: {length_text(timedelta(seconds=row.late), request.lang)}"] if row.late else []),
+        f"{texts['answered']}: {content['answered']} / {content['asked']}",
+        f"SHA-256: {content['sha256']}", "",
+        *(f"{exercise} {seed} {part}: {' '.join(answer.split())}" for exercise, seed, part, answer in content["answers"]),
+        "", texts["how"], "",
     ]  # fmt: skip
     return "\n".join(lines)
 
@@ -63,9 +63,9 @@ def find(done: Sequence[Delivery], code: str) -> Delivery:
     HTTPException
         There is none: it may be somebody else's.
     """
-    for one in done:
-        if one.receipt and one.receipt == code.strip().upper():
-            return one
+    for submission in done:
+        if submission.receipt and submission.receipt == code.strip().upper():
+            return submission
     raise HTTPException("own", 404)
 
 
@@ -77,13 +77,13 @@ def file(request: Request) -> Response:
         )
         if row is None or row.person_id != request.user.id:
             raise HTTPException("own", 404)
-        told = receipt_content(connection, row, row.assignment, row.student)
+        content = receipt_content(connection, row, row.assignment, row.student)
     if request.path_params["ending"] == "json":
-        data = json.dumps(told, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
+        data = json.dumps(content, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
         return Response(media_type="application/json", content=data, filename=f"receipt-{row.receipt}.json")
     if request.path_params["ending"] != "txt":
         raise HTTPException("page", 404)
-    data = as_text(request, told, row).encode("utf-8", "backslashreplace")
+    data = as_text(request, content, row).encode("utf-8", "backslashreplace")
     return Response(
         media_type="text/plain; charset=utf-8", content=data, filename=f"receipt-{row.receipt}.txt"
     )
@@ -95,7 +95,7 @@ def verify(request: Request) -> Response:
         request.query_params.get("code", "")[:40],
         request.query_params.get("digest", "").strip().lower()[:80],
     )
-    row = told = None
+    row = content = None
     if code:
         with request.site.store.begin() as connection:
             row = submission_of_receipt(connection, code)
@@ -109,8 +109,8 @@ def verify(request: Request) -> Response:
                 code=code,
                 found=row is not None,
             )
-            told = None if row is None else receipt_content(connection, row, row.assignment, row.student)
-    names: dict[str, Any] = {"code": code, "row": row, "told": told, "digest": told_digest}
+            content = None if row is None else receipt_content(connection, row, row.assignment, row.student)
+    names: dict[str, Any] = {"code": code, "row": row, "told": content, "digest": told_digest}
     if row is not None:
         names |= {"came": exact_text(row.came, request.lang), "zone": zone_name(row.came)}
         names["late"] = length_text(timedelta(seconds=row.late), request.lang) if row.late else ""

@@ -31,13 +31,15 @@ def release_to(connection: Connection, request: Request) -> Callable[[int], Rele
     if request.user.may(Permission.ASSIGNMENTS_READ):
         return full_release
     states = [
-        state_of(request, one, connection) for one in places(connection, request.user.id) if one.publication
+        state_of(request, item, connection)
+        for item in places(connection, request.user.id)
+        if item.publication
     ]
     # A mark's sentence may say what is right.
-    known = {
-        one.assignment.id: Release(
-            one.phase is not Phase.TO_COME, one.releases("feedback") and one.releases("answers")
+    releases = {
+        item.assignment.id: Release(
+            item.phase is not Phase.TO_COME, item.releases("feedback") and item.releases("answers")
         )
-        for one in states
+        for item in states
     }
-    return lambda number: known.get(number, Release(False, False))
+    return lambda number: releases.get(number, Release(False, False))

@@ -70,15 +70,15 @@ class StudentPaper:
     def state(self) -> str:
         """Digest of all that its page depends on but what is typed."""
         exercises = {str(item["record"]["exercise"]) for item in self.content["issued"]}
-        told = self.content, self.student, self.lang, dict(self.instructions)
-        return page_state(self.course, sorted(exercises), *told)
+        content = self.content, self.student, self.lang, dict(self.instructions)
+        return page_state(self.course, sorted(exercises), *content)
 
     @cached_property
     def seeds(self) -> Mapping[str, int]:
         """The seeds of the sheet that is to be done, by exercise in the paper's order: of a make-up, where there is one."""
-        own = self.issued.issued_to(self.student)
+        seeds = self.issued.issued_to(self.student)
         stated = (self.issued.assignment or {}).get("exercises") or self.issued.exercises
-        return {exercise: own[exercise] for exercise in map(str, stated) if exercise in own} or own
+        return {exercise: seeds[exercise] for exercise in map(str, stated) if exercise in seeds} or seeds
 
     @property
     def sitting(self) -> int:
@@ -90,9 +90,11 @@ class StudentPaper:
         return tuple(self._variant(exercise, seed) for exercise, seed in self.seeds.items())
 
     def _variant(self, exercise: str, seed: int) -> Any:
-        one, record = self.course[exercise], self.issued.record_of(self.student, exercise, seed)
-        whole = {**record, "lang": self._spoken(exercise)}
-        return self.cache.get(("issued", dumps(whole, sort_keys=True)), lambda: one.from_record(whole))
+        loaded, record = self.course[exercise], self.issued.record_of(self.student, exercise, seed)
+        full_record = {**record, "lang": self._spoken(exercise)}
+        return self.cache.get(
+            ("issued", dumps(full_record, sort_keys=True)), lambda: loaded.from_record(full_record)
+        )
 
     def _spoken(self, exercise: str) -> str:
         """Return the language of an exercise on this paper."""
@@ -102,12 +104,12 @@ class StudentPaper:
     @cached_property
     def fields(self) -> dict[str, BoxRecord]:
         """The same boxes by their names, for what is stored and not shown."""
-        found = {}
-        for place, (exercise, seed) in enumerate(self.seeds.items(), 1):
+        fields = {}
+        for index, (exercise, seed) in enumerate(self.seeds.items(), 1):
             record, lang = self.issued.record_of(self.student, exercise, seed), self._spoken(exercise)
             for part in record["parts"]:
-                found[f"e{place}-{part['id']}"] = BoxRecord(exercise, seed, str(part["id"]), lang)
-        return found
+                fields[f"e{index}-{part['id']}"] = BoxRecord(exercise, seed, str(part["id"]), lang)
+        return fields
 
     @cached_property
     def boxes(self) -> dict[str, PaperBox]:
@@ -115,16 +117,16 @@ class StudentPaper:
         return {box.name: box for box in self._boxes()}
 
     def _boxes(self) -> Iterator[PaperBox]:
-        for place, variant in enumerate(self.variants, 1):
+        for index, variant in enumerate(self.variants, 1):
             title = variant.exercise.title(variant.lang)
             for number, part in enumerate(variant.parts, 1):
-                yield PaperBox(f"e{place}-{part.id}", f"{place}.{number}", title, variant, part)
+                yield PaperBox(f"e{index}-{part.id}", f"{index}.{number}", title, variant, part)
 
     @cached_property
     def heading(self) -> Heading:
         """Heading of the paper."""
-        found = heading_of(self.course, self.issued, self.student, self.sitting, self.lang)
-        return replace(found, instructions=text_in(self.instructions, self.lang))
+        printed = heading_of(self.course, self.issued, self.student, self.sitting, self.lang)
+        return replace(printed, instructions=text_in(self.instructions, self.lang))
 
     @cached_property
     def paper(self) -> Paper:
@@ -146,10 +148,10 @@ class StudentPaper:
         """
         if strange := [name for name in form.texts if name not in self.fields and not name.startswith("_")]:
             raise HTTPException("bad_request", 400, len(strange))
-        found = {name: ", ".join(form.texts.get(name, ())) for name in self.fields}
-        if any(len(text) > LONGEST for text in found.values()):
+        answers = {name: ", ".join(form.texts.get(name, ())) for name in self.fields}
+        if any(len(text) > LONGEST for text in answers.values()):
             raise HTTPException("too_large", 413, LONGEST)
-        return found
+        return answers
 
     def pieces(self) -> Pieces:
         """Return the parts of its page, with empty boxes."""
@@ -159,16 +161,20 @@ class StudentPaper:
         )
         return Pieces(render(env, "_paper_head.html.j2", names), render(env, "_paper_body.html.j2", names))
 
-    def template_names(self, one: Paper | FeedbackPaper) -> dict[str, Any]:
+    def template_names(self, document: Paper | FeedbackPaper) -> dict[str, Any]:
         """Return the names for the template of a paper, or of its feedback."""
         env = environment_of(self.course.folder.template_folders, self.lang)
-        return {**papers.context(one, "html.j2", partial(render, env)), "image": papers.image, "keeping": ""}
+        return {
+            **papers.context(document, "html.j2", partial(render, env)),
+            "image": papers.image,
+            "keeping": "",
+        }
 
 
 def student_paper(
     connection: Connection,
     course: Course[Any],
-    place: Place,
+    assignment: Place,
     person: int,
     lang: str,
     cache: LRUCache | None = None,
@@ -180,13 +186,13 @@ def student_paper(
     Without ``heads`` the roster's columns are not loaded, which its heading needs: of a whole class they are long.
     """
     if heads:
-        content = issued_content(connection, place.id, person)
+        content = issued_content(connection, assignment.id, person)
     else:
-        content = sheet_content(connection, place.id, person, place.stated)
-    told = place.asked.get("instructions") or {}
-    instructions = {"": told} if isinstance(told, str) else told
-    kept = LRUCache(_VARIANTS) if cache is None else cache
-    return StudentPaper(course, content, place.student, lang, instructions, kept)
+        content = sheet_content(connection, assignment.id, person, assignment.stated)
+    stated = assignment.asked.get("instructions") or {}
+    instructions = {"": stated} if isinstance(stated, str) else stated
+    variants = LRUCache(_VARIANTS) if cache is None else cache
+    return StudentPaper(course, content, assignment.student, lang, instructions, variants)
 
 
 def read_lines(paper: StudentPaper, texts: Texts) -> list[tuple[PaperBox, str, ReadBack]]:
@@ -198,6 +204,6 @@ def read_lines(paper: StudentPaper, texts: Texts) -> list[tuple[PaperBox, str, R
 
 def counts(lines: Sequence[tuple[PaperBox, str, ReadBack]]) -> dict[str, int]:
     """Return the number of answered, doubtful, blank, and all questions."""
-    doubt = sum(one.is_in_doubt for _, _, one in lines)
-    blank = sum(one.status == "missing" for _, _, one in lines)
+    doubt = sum(reading.is_in_doubt for _, _, reading in lines)
+    blank = sum(reading.status == "missing" for _, _, reading in lines)
     return {"answered": len(lines) - doubt - blank, "doubt": doubt, "blank": blank, "all": len(lines)}

@@ -52,14 +52,16 @@ class SubmissionResult(NamedTuple):
     differs: bool = False  #: it holds something else than what was handed in under its number
 
 
-def sheet_of(place: Place, paper: StudentPaper) -> str:
+def sheet_of(assignment: Place, paper: StudentPaper) -> str:
     """Return the key under which drafts of the paper are stored."""
-    return f"assignment/{place.id}" if paper.sitting == 1 else f"assignment/{place.id}/{paper.sitting}"
+    return (
+        f"assignment/{assignment.id}" if paper.sitting == 1 else f"assignment/{assignment.id}/{paper.sitting}"
+    )
 
 
 def submit(
     site: Site,
-    place: Place,
+    assignment: Place,
     paper: StudentPaper,
     person_id: int,
     texts: Texts,
@@ -76,17 +78,17 @@ def submit(
     """
     with site.store.begin() as connection:
         hold(connection, person_id)
-        (fresh,) = places(connection, person_id, place.id)
-        found = store_submission(connection, site, fresh, paper, person_id, texts, number, at, source)
-    if found.is_new:
-        mark(site, found.delivery.id)
-    return found
+        (fresh,) = places(connection, person_id, assignment.id)
+        result = store_submission(connection, site, fresh, paper, person_id, texts, number, at, source)
+    if result.is_new:
+        mark(site, result.delivery.id)
+    return result
 
 
 def store_submission(
     connection: Connection,
     site: Site,
-    place: Place,
+    assignment: Place,
     paper: StudentPaper,
     person_id: int,
     texts: Texts,
@@ -101,32 +103,32 @@ def store_submission(
     HTTPException
         It is not open, or no try is left.
     """
-    done = deliveries(connection, place.id, person_id)
+    done = deliveries(connection, assignment.id, person_id)
     before = done[number - 1] if number <= len(done) else None
     if before is not None:
         is_same = _holds(connection, before, paper, texts)
-        if is_same or before.source != AS_SAVED or not _takes(place, at, site.clock()):
+        if is_same or before.source != AS_SAVED or not _takes(assignment, at, site.clock()):
             return SubmissionResult(before, False, not is_same)
     if done and _holds(connection, done[-1], paper, texts):
         return SubmissionResult(done[-1], False)  # what stands already costs no try
-    now = _check(connection, place, person_id, at, site.clock(), done)
-    made = _deliver(connection, place, paper, person_id, texts, now, source)
-    put_job(connection, MARK, place.id, site.clock(), delivery=made.id)
-    return SubmissionResult(made, True)
+    now = _check(connection, assignment, person_id, at, site.clock(), done)
+    submission = _deliver(connection, assignment, paper, person_id, texts, now, source)
+    put_job(connection, MARK, assignment.id, site.clock(), delivery=submission.id)
+    return SubmissionResult(submission, True)
 
 
-def _holds(connection: Connection, made: Delivery, paper: StudentPaper, texts: Texts) -> bool:
-    return answers_of(connection, made.id) == content_of(paper, texts)
+def _holds(connection: Connection, submission: Delivery, paper: StudentPaper, texts: Texts) -> bool:
+    return answers_of(connection, submission.id) == content_of(paper, texts)
 
 
-def _takes(place: Place, arrived: datetime, clock: datetime) -> bool:
-    said = place.publication
-    return said is not None and place.own.phase(said.counted(arrived, clock)).takes
+def _takes(assignment: Place, arrived: datetime, clock: datetime) -> bool:
+    publication = assignment.publication
+    return publication is not None and assignment.own.phase(publication.counted(arrived, clock)).takes
 
 
 def _check(
     connection: Connection,
-    place: Place,
+    assignment: Place,
     person_id: int,
     arrived: datetime,
     clock: datetime,
@@ -136,57 +138,67 @@ def _check(
 
     What was rescued as it closed costs no try of who handed in before that and was waiting for the database still.
     """
-    if place.publication is None:
+    if assignment.publication is None:
         raise HTTPException("own", 404)
-    own, now = place.own, place.publication.counted(arrived, clock)
-    if not own.phase(now).takes:
+    rules, now = assignment.own, assignment.publication.counted(arrived, clock)
+    if not rules.phase(now).takes:
         raise HTTPException("not_open", 409)
-    rescued = sum(one.source == AS_SAVED for one in done)
-    if own.tries is not None and tries_used(connection, place.id, person_id, done) - rescued >= own.tries:
+    rescued = sum(submission.source == AS_SAVED for submission in done)
+    if (
+        rules.tries is not None
+        and tries_used(connection, assignment.id, person_id, done) - rescued >= rules.tries
+    ):
         raise HTTPException("no_try_left", 409)
     return now
 
 
 def _deliver(
     connection: Connection,
-    place: Place,
+    assignment: Place,
     paper: StudentPaper,
     person_id: int,
     texts: Texts,
-    came: datetime,
+    received_at: datetime,
     source: str,
 ) -> Delivery:
-    number = next_number(connection, place.id, person_id, paper.student)
-    late = place.own.late_seconds(came)
-    rows = rows_for(paper, texts, number, came, source)
+    number = next_number(connection, assignment.id, person_id, paper.student)
+    late = assignment.own.late_seconds(received_at)
+    rows = rows_for(paper, texts, number, received_at, source)
     return deliver(
-        connection, place.id, rows, source=source, came=came, person_id=person_id, number=number, late=late
+        connection,
+        assignment.id,
+        rows,
+        source=source,
+        came=received_at,
+        person_id=person_id,
+        number=number,
+        late=late,
     )
 
 
-def mark(site: Site, made: int) -> None:
+def mark(site: Site, delivery_id: int) -> None:
     """Mark a submission, unless a worker does. The submission is already stored: after a fault, it is marked
     later."""
     if site.has_worker:
         return
     try:
-        mark_delivery(site.course, site.store, made)
+        mark_delivery(site.course, site.store, delivery_id)
         with site.store.begin() as connection:
-            drop_jobs(connection, made)
+            drop_jobs(connection, delivery_id)
     except Exception as fault:  # who handed in is told so, whatever becomes of the marking
-        LOG.error("delivery %d is not marked yet: %s", made, type(fault).__name__)
+        LOG.error("delivery %d is not marked yet: %s", delivery_id, type(fault).__name__)
 
 
-def rows_for(paper: StudentPaper, texts: Texts, number: int, came: datetime, source: str) -> list[Row]:
+def rows_for(paper: StudentPaper, texts: Texts, number: int, received_at: datetime, source: str) -> list[Row]:
     """Return a row for every question, including blank ones, so that the submission records the questions
     left blank."""
-    origin = Collected(sitting=number, submitted=came.isoformat(timespec="seconds"))
+    origin = Collected(sitting=number, submitted=received_at.isoformat(timespec="seconds"))
     return [
         Row(
-            paper.student, one.exercise, str(one.seed), one.part, texts.get(name, ""), source,
-            lang=one.lang, origin=origin,
+            paper.student, field.exercise, str(field.seed), field.part, texts.get(name, ""), source,
+            lang=field.lang, origin=origin,
         )
-        for name, one in paper.fields.items()
+        for name, field in paper.fields.items()
     ]  # fmt: skip
 
 
@@ -196,13 +208,14 @@ def rows_for(paper: StudentPaper, texts: Texts, number: int, came: datetime, sou
 def content_of(paper: StudentPaper, texts: Texts) -> list[list[str]]:
     """Return the answers in the form of :func:`coursework.database.deliveries.answers_of`."""
     return [
-        [one.exercise, str(one.seed), one.part, texts.get(name, "")] for name, one in paper.fields.items()
+        [field.exercise, str(field.seed), field.part, texts.get(name, "")]
+        for name, field in paper.fields.items()
     ]
 
 
-def digest(told: Sequence[Sequence[str]]) -> str:
+def digest(answers: Sequence[Sequence[str]]) -> str:
     """SHA-256 of what was handed in, as compact JSON: anybody can compute it again."""
-    text = json.dumps([list(one) for one in told], ensure_ascii=False, separators=(",", ":"))
+    text = json.dumps([list(answer) for answer in answers], ensure_ascii=False, separators=(",", ":"))
     return hashlib.sha256(text.encode("utf-8", "backslashreplace")).hexdigest()
 
 
@@ -234,14 +247,14 @@ def close_passed(
     if not is_steady(site.clock):
         return
     with site.store.reading() as connection:
-        said = published(connection, number)
-        if said is None:
+        publication = published(connection, number)
+        if publication is None:
             return
-        dates = said.dates(list(extensions(connection, number).values()))
-        passed = [one for one in dates if one < at]
-        if not passed or (said.reached is not None and passed[-1] < said.reached):
+        dates = publication.dates(list(extensions(connection, number).values()))
+        passed = [date for date in dates if date < at]
+        if not passed or (publication.reached is not None and passed[-1] < publication.reached):
             return
-        wrote = unsubmitted_persons(connection, number) if said.takes_saved else []
+        wrote = unsubmitted_persons(connection, number) if publication.takes_saved else []
     for person_id in wrote:
         try:
             rescue(site, number, person_id, at)
@@ -268,8 +281,8 @@ def unsubmitted_persons(connection: Connection, number: int) -> list[int]:
     done = select(delivery.c.person_id).where(
         delivery.c.assignment_id == number, delivery.c.person_id.is_not(None)
     )
-    found = theirs.where(dealt.c.person_id.in_(wrote), dealt.c.person_id.not_in(done)).distinct()
-    return list(connection.execute(found.order_by(dealt.c.person_id)).scalars())
+    query = theirs.where(dealt.c.person_id.in_(wrote), dealt.c.person_id.not_in(done)).distinct()
+    return list(connection.execute(query.order_by(dealt.c.person_id)).scalars())
 
 
 def rescue(site: Site, number: int, person_id: int, at: datetime) -> Delivery | None:
@@ -279,39 +292,44 @@ def rescue(site: Site, number: int, person_id: int, at: datetime) -> Delivery | 
     """
     with site.store.begin() as connection:
         hold(connection, person_id)
-        made = _saved(site, connection, number, person_id, at)
-        if made is not None:
-            put_job(connection, MARK, number, site.clock(), delivery=made.id)
-        return made
+        submission = _saved(site, connection, number, person_id, at)
+        if submission is not None:
+            put_job(connection, MARK, number, site.clock(), delivery=submission.id)
+        return submission
 
 
 def _saved(site: Site, connection: Connection, number: int, person_id: int, at: datetime) -> Delivery | None:
-    (place,) = places(connection, person_id, number)
-    if place.publication is None or place.own.phase(place.publication.now(at)) is not Phase.CLOSED:
+    (assignment,) = places(connection, person_id, number)
+    if (
+        assignment.publication is None
+        or assignment.own.phase(assignment.publication.now(at)) is not Phase.CLOSED
+    ):
         return None
     if deliveries(connection, number, person_id):
         return None
     lang = str(connection.execute(select(person.c.lang).where(person.c.id == person_id)).scalar() or "")
     paper = student_paper(
-        connection, site.course, place, person_id, lang if lang in site.languages else site.languages[0]
+        connection, site.course, assignment, person_id, lang if lang in site.languages else site.languages[0]
     )
-    boxes = drafts(connection, person_id, sheet_of(place, paper))
+    boxes = drafts(connection, person_id, sheet_of(assignment, paper))
     texts = {name: box.text for name, box in boxes.items() if name in paper.fields}
     if not any(text.strip() for text in texts.values()):
         return None
-    of_it = draft.c.person_id == person_id, draft.c.sheet == sheet_of(place, paper)
-    came = connection.execute(select(func.max(draft.c.changed)).where(*of_it)).scalar()
-    ends = place.own.ends or at
-    return _deliver(connection, place, paper, person_id, texts, min(_as_datetime(came, ends), ends), AS_SAVED)
+    of_it = draft.c.person_id == person_id, draft.c.sheet == sheet_of(assignment, paper)
+    changed = connection.execute(select(func.max(draft.c.changed)).where(*of_it)).scalar()
+    ends = assignment.own.ends or at
+    return _deliver(
+        connection, assignment, paper, person_id, texts, min(_as_datetime(changed, ends), ends), AS_SAVED
+    )
 
 
-def _as_datetime(came: Any, otherwise: datetime) -> datetime:
+def _as_datetime(value: Any, otherwise: datetime) -> datetime:
     """Return a time that the database computed; ``otherwise`` if it computed none."""
-    if isinstance(came, str):
-        came = datetime.fromisoformat(came)
-    if not isinstance(came, datetime):
+    if isinstance(value, str):
+        value = datetime.fromisoformat(value)
+    if not isinstance(value, datetime):
         return otherwise
-    return came if came.tzinfo else came.replace(tzinfo=otherwise.tzinfo)
+    return value if value.tzinfo else value.replace(tzinfo=otherwise.tzinfo)
 
 
 # ------------------------------------------------------------------------- papers
@@ -321,12 +339,12 @@ def submission_of_receipt(connection: Connection, code: str, number: int | None 
     """Return the submission of a receipt, with its assignment and its person; None for an unknown receipt."""
     from coursework.database.tables import assignment
 
-    found = (
+    query = (
         select(delivery, assignment.c.name.label("assignment"), person.c.name.label("student"))
         .join(assignment, assignment.c.id == delivery.c.assignment_id)
         .join(person, person.c.id == delivery.c.person_id)
         .where(delivery.c.receipt == code.strip().upper(), delivery.c.receipt != "")
     )
     if number is not None:
-        found = found.where(delivery.c.assignment_id == number)
-    return connection.execute(found).first()
+        query = query.where(delivery.c.assignment_id == number)
+    return connection.execute(query).first()

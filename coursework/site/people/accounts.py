@@ -55,16 +55,16 @@ def sign_in(request: Request) -> Response:
         return Response(redirect=after) if request.person else _sign_in_page(request, after)
     login, password = as_login(request.form.text("login")), request.form.text("password")
     with request.site.store.reading() as connection:
-        found = account_by_login(connection, login)
-    if not passwords.fits(found.secret if found else "", password) or found is None:
+        match = account_by_login(connection, login)
+    if not passwords.fits(match.secret if match else "", password) or match is None:
         waits = guessing.missed(request, login)
         return _sign_in_page(request, after, login=request.form.text("login"), missed=True, waits=waits)
     guessing.fitted(request, login)
-    if passwords.is_dated(found.secret):
+    if passwords.is_dated(match.secret):
         with request.site.store.begin() as connection:
-            set_secret(connection, found.id, passwords.hashed(password))
+            set_secret(connection, match.id, passwords.hashed(password))
     device = Devices(request.site.secret).after_sign_in(request.device, login)
-    return Response(redirect=after, signed_in=found.person_id, device=device)
+    return Response(redirect=after, signed_in=match.person_id, device=device)
 
 
 def sign_in_attempt(request: Request) -> Attempt:
@@ -83,8 +83,8 @@ def _without_account(request: Request) -> Response:
 def _sign_in_page(
     request: Request, after: str, login: str = "", missed: bool = False, waits: int = 0
 ) -> Response:
-    told = {"after": after, "login": login, "missed": missed, "waits": waits}
-    return request.render("site_sign_in", 401 if missed else 200, **told)
+    names = {"after": after, "login": login, "missed": missed, "waits": waits}
+    return request.render("site_sign_in", 401 if missed else 200, **names)
 
 
 def sign_out(request: Request) -> Response:
@@ -118,27 +118,27 @@ def invitation(request: Request) -> Response:
     """Accept an invitation, with the choice of a password: once, and before it expires."""
     end = digest_of(str(request.path_params["token"]))
     with request.site.store.reading() as connection:
-        found = account_invited(connection, end, request.received_at)
-    if found is None:
+        mine = account_invited(connection, end, request.received_at)
+    if mine is None:
         raise HTTPException("invitation", 410)
     if not request.is_post:
-        return _invitation_page(request, found)
-    secret, wrong = _chosen(request, found)
+        return _invitation_page(request, mine)
+    secret, wrong = _chosen(request, mine)
     if wrong:
-        return _invitation_page(request, found, 422, wrong=wrong)
+        return _invitation_page(request, mine, 422, wrong=wrong)
     with request.site.store.begin() as connection:
         person = take_up(connection, end, secret, request.received_at)
         if person is None:
             raise HTTPException("invitation", 410)
         end_sessions(connection, person)
-        by = Actor(found.name, person, request.client_address)
+        by = Actor(mine.name, person, request.client_address)
         note(connection, request.received_at, by, "invitation taken up", person=person)
-    device = Devices(request.site.secret).after_sign_in(request.device, found.login)
+    device = Devices(request.site.secret).after_sign_in(request.device, mine.login)
     return Response(redirect="/", signed_in=person, device=device)
 
 
-def _invitation_page(request: Request, mine: Any, status: int = 200, **told: Any) -> Response:
-    return request.render("site_invitation", status, mine=mine, shortest=passwords.SHORTEST, **told)
+def _invitation_page(request: Request, mine: Any, status: int = 200, **names: Any) -> Response:
+    return request.render("site_invitation", status, mine=mine, shortest=passwords.SHORTEST, **names)
 
 
 def _chosen(request: Request, mine: Any) -> tuple[str, str]:
@@ -160,9 +160,9 @@ def account(request: Request) -> Response:
     if request.form.text("do") == "everywhere":
         with request.site.store.begin() as connection:
             end_sessions(connection, request.user.id)
-            called = known_as(connection, request.user.id)
+            identities = known_as(connection, request.user.id)
         if request.site.lti is not None:
-            for issuer, subject in called:
+            for issuer, subject in identities:
                 Storage(request.site.lti).end_sessions(subject, issuer)
         return Response(redirect="/", signed_in=0)
     if "session" in request.form.texts:
@@ -193,19 +193,20 @@ def _end_chosen_session(request: Request) -> Response:
     return Response(redirect="/account")
 
 
-def _account_page(request: Request, mine: Any, status: int = 200, **told: Any) -> Response:
+def _account_page(request: Request, mine: Any, status: int = 200, **names: Any) -> Response:
     if request.query_params.get("changed") and status == 200:
-        told["changed"] = True
+        names["changed"] = True
     has_password = bool(mine and mine.secret) and request.site.entrance is Entrance.ACCOUNTS
     with request.site.store.reading() as connection:
         sessions = sessions_of(connection, request.user.id, datetime.now(UTC))
         happened = noted(connection, _HAPPENED, what=OF_ACCOUNTS, subject=request.user.id)
-    shown = [
-        (one, moment_text(one.seen, request.lang), moment_text(one.created, request.lang)) for one in sessions
+    rows = [
+        (session, moment_text(session.seen, request.lang), moment_text(session.created, request.lang))
+        for session in sessions
     ]
     return request.render(
-        "site_account", status, mine=mine, has_password=has_password, sessions=shown, shortest=passwords.SHORTEST,
-        happened=happened, **told,
+        "site_account", status, mine=mine, has_password=has_password, sessions=rows, shortest=passwords.SHORTEST,
+        happened=happened, **names,
     )  # fmt: skip
 
 
@@ -248,18 +249,18 @@ def invited_by_command(site: Site, login: str, role: str) -> str:
     BadInput
         The login is empty.
     """
-    told = as_login(login)
-    if not told:
+    normalised = as_login(login)
+    if not normalised:
         raise BadInput(f"--{role} needs a login, such as an e-mail: --{role} ada@example.org")
     with site.store.begin() as connection:
-        found = account_by_login(connection, told)
-        person = found.person_id if found else put_person(connection, told, login.strip(), "", {})
+        existing = account_by_login(connection, normalised)
+        person = existing.person_id if existing else put_person(connection, normalised, login.strip(), "", {})
         given = _raised(
-            found.role if found else "", role, is_first=not has_administrator(connection, site.clock())
+            existing.role if existing else "", role, is_first=not has_administrator(connection, site.clock())
         )
-        if found:
+        if existing:
             set_role(connection, person, given)
-        address = invited(site, connection, person, told, given)
+        address = invited(site, connection, person, normalised, given)
         note(connection, site.clock(), "command line", "invited", person=person, role=given)
     return address
 

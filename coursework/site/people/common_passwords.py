@@ -37,7 +37,7 @@ def is_common(password: str, *context: str) -> bool:
         Words about the person and the site: names, the login, the course.
     """
     plain = re.sub(r"\s+", "", password.casefold())
-    known = _WORDS | {piece for one in context for piece in _pieces(one)}
+    common = _WORDS | {piece for text in context for piece in _pieces(text)}
     cores = {
         _core(plain),
         _core(plain).translate(_LIKE),
@@ -45,8 +45,8 @@ def is_common(password: str, *context: str) -> bool:
         plain,
         plain.translate(_LIKE),
     }
-    doubled = {one[: len(one) // 2] for one in cores if one[: len(one) // 2] * 2 == one}
-    return bool((cores | doubled) & known) or _is_row(plain) or _is_repeated(plain)
+    doubled = {text[: len(text) // 2] for text in cores if text[: len(text) // 2] * 2 == text}
+    return bool((cores | doubled) & common) or _is_row(plain) or _is_repeated(plain)
 
 
 def _core(text: str) -> str:
@@ -56,8 +56,8 @@ def _core(text: str) -> str:
 
 def _pieces(text: str) -> list[str]:
     plain = text.casefold()
-    found = [*re.split(r"[\W_]+", plain), re.sub(r"\s+", "", plain), plain.partition("@")[0]]
-    return [one for one in found if len(one) > 2]
+    pieces = [*re.split(r"[\W_]+", plain), re.sub(r"\s+", "", plain), plain.partition("@")[0]]
+    return [piece for piece in pieces if len(piece) > 2]
 
 
 def _is_row(text: str) -> bool:

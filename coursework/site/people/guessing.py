@@ -31,23 +31,23 @@ def attempt_of(request: Request, login: str) -> Attempt:
     """Return an attempt to sign in, with the failures before it."""
     tracks = tracks_of(request, login)
     with request.site.store.reading() as connection:
-        return Attempt(tracks, failures_of(connection, [one.key for one in tracks], datetime.now(UTC)))
+        return Attempt(tracks, failures_of(connection, [track.key for track in tracks], datetime.now(UTC)))
 
 
 def missed(request: Request, login: str) -> int:
     """Count a password that did not fit; returns the seconds that the next one waits."""
     tracks, now = tracks_of(request, login), datetime.now(UTC)
     with request.site.store.begin() as connection:
-        add_failure(connection, [one.key for one in tracks], now)
-        counts = failures_of(connection, [one.key for one in tracks], now)
-    return int(max(one.seconds(counts.get(one.key, 0)) for one in tracks))
+        add_failure(connection, [track.key for track in tracks], now)
+        counts = failures_of(connection, [track.key for track in tracks], now)
+    return int(max(track.seconds(counts.get(track.key, 0)) for track in tracks))
 
 
 def fitted(request: Request, login: str) -> None:
     """Forget what was mistyped from here before a password did fit; what others tried elsewhere stays counted."""
-    own = [tracks_of(request, login)[0].key]
+    keys = [tracks_of(request, login)[0].key]
     with request.site.store.reading() as connection:
-        if not failures_of(connection, own, datetime.now(UTC)):
+        if not failures_of(connection, keys, datetime.now(UTC)):
             return
     with request.site.store.begin() as connection:
-        forget_failures(connection, own)
+        forget_failures(connection, keys)

@@ -29,10 +29,10 @@ def door_to(request: Request) -> str:
 
 
 def shared_file(request: Request) -> Response:
-    found = request.site.pages.static(str(request.path_params["name"]))
-    if found is None:
+    static_file = request.site.pages.static(str(request.path_params["name"]))
+    if static_file is None:
         raise HTTPException("page", 404)
-    return Response(media_type=found[0], content=found[1], max_age=_YEAR)
+    return Response(media_type=static_file[0], content=static_file[1], max_age=_YEAR)
 
 
 def choose_person(request: Request) -> Response:
@@ -40,30 +40,30 @@ def choose_person(request: Request) -> Response:
     if request.site.entrance is not Entrance.DEMO:
         raise HTTPException("page", 404)
     with request.site.store.reading() as connection:
-        known = people(connection)
+        persons = people(connection)
     if request.is_post:
-        chosen = next((one for one in known if str(one.id) == request.form.text("person")), None)
+        chosen = next((person for person in persons if str(person.id) == request.form.text("person")), None)
         if chosen is None:
             raise HTTPException("own", 404)
         return Response(redirect="/", signed_in=chosen.id)
-    return request.render("site_who", people=known)
+    return request.render("site_who", people=persons)
 
 
 def choose_language(request: Request) -> Response:
     """Switch to the next language; redirect to the page before."""
     if not request.is_post:
         return Response(redirect="/")
-    known = request.site.languages
-    after = known[(known.index(request.lang) + 1) % len(known)]
+    languages = request.site.languages
+    after = languages[(languages.index(request.lang) + 1) % len(languages)]
     return Response(redirect=local(request.form.text("back")), lang=after)
 
 
 def owner(site: Site) -> int:
     """Return the owner of a site on their own machine: an administrator who is also a student."""
     with site.store.reading() as connection:
-        known = person_by_who(connection, "owner")
-    if known is not None and known.role:
-        return int(known.id)
+        existing = person_by_who(connection, "owner")
+    if existing is not None and existing.role:
+        return int(existing.id)
     with site.store.begin() as connection:
         person = put_person(connection, who="owner", name="", lang="", columns={})
         put_account(connection, person, login="owner", role=ADMINISTRATOR)

@@ -17,16 +17,16 @@ _HASHER = PasswordHasher(time_cost=2, memory_cost=19 * 1024, parallelism=1)
 _AT_A_TIME = BoundedSemaphore(4)
 
 
-def weakness(password: str, *known: str) -> str:
-    """Why a password will not do: ``short``, ``long``, ``known`` where it says who one is, or ``common``; nothing where it will."""
-    told = _plain(password)
-    if len(told) < SHORTEST:
+def weakness(password: str, *names: str) -> str:
+    """Why a password will not do: ``short``, ``long``, ``names`` where it says who one is, or ``common``; nothing where it will."""
+    text = _plain(password)
+    if len(text) < SHORTEST:
         return "short"
-    if len(told) > LONGEST:
+    if len(text) > LONGEST:
         return "long"
-    if any(told.casefold() == _plain(one).casefold() for one in known if one):
+    if any(text.casefold() == _plain(name).casefold() for name in names if name):
         return "known"
-    return "common" if is_common(told, *known) else ""
+    return "common" if is_common(text, *names) else ""
 
 
 def hashed(password: str) -> str:

@@ -74,26 +74,27 @@ def _staff_roles(request: Request) -> list[str]:
 def _lines(request: Request, connection: Connection) -> list[PersonRow]:
     mine = accounts(connection)
     return [
-        _line(request, one, mine.get(one.id)) for one in {one.id: one for one in people(connection)}.values()
+        _line(request, person, mine.get(person.id))
+        for person in {person.id: person for person in people(connection)}.values()
     ]
 
 
-def _line(request: Request, one: Any, account: Any) -> PersonRow:
+def _line(request: Request, person: Any, account: Any) -> PersonRow:
     if account is None:
-        return PersonRow(one.id, one.name, login_of(one), STUDENT, "none")
+        return PersonRow(person.id, person.name, login_of(person), STUDENT, "none")
     waits = account.invited_until is not None
     state = "joined" if account.secret else "none" if not waits else "invited"
     if state == "invited" and account.invited_until < request.received_at:
         state = "over"
-    return PersonRow(one.id, one.name, account.login, account.role, state, True)
+    return PersonRow(person.id, person.name, account.login, account.role, state, True)
 
 
 def login_of(person: Any) -> str:
     """Return the login of a person from a roster: the e-mail address, or else the login, or else the
     identifier."""
-    told = {plain(title): str(value) for title, value in (person.columns or {}).items() if value}
-    found = next((told[title] for title in (*EMAIL, *LOGIN) if title in told), "")
-    return as_login(found or person.who)
+    values = {plain(title): str(value) for title, value in (person.columns or {}).items() if value}
+    login = next((values[title] for title in (*EMAIL, *LOGIN) if title in values), "")
+    return as_login(login or person.who)
 
 
 def _invite(request: Request) -> Response:
@@ -102,11 +103,11 @@ def _invite(request: Request) -> Response:
         lines = _lines(request, connection)
         if request.form.text("do").startswith("all"):
             wanted = {
-                str(one.id)
-                for one in lines
-                if one.state in ("none", "over") and may(request.user, to_invite(one.role))
+                str(row.id)
+                for row in lines
+                if row.state in ("none", "over") and may(request.user, to_invite(row.role))
             }
-        links = [_link(request, connection, one) for one in lines if str(one.id) in wanted]
+        links = [_link(request, connection, row) for row in lines if str(row.id) in wanted]
     if request.form.text("do").endswith("file"):
         return Response(
             media_type="text/csv; charset=utf-8", content=_as_csv(links), filename="invitations.csv"
@@ -114,7 +115,7 @@ def _invite(request: Request) -> Response:
     return request.render("site_links", links=links, days=DAYS)
 
 
-def _link(request: Request, connection: Connection, one: PersonRow) -> InvitationLink:
+def _link(request: Request, connection: Connection, row: PersonRow) -> InvitationLink:
     """Make a link for somebody whom the person who asks may invite; every link of the site's pages is made here.
 
     Raises
@@ -122,16 +123,16 @@ def _link(request: Request, connection: Connection, one: PersonRow) -> Invitatio
     HTTPException
         They may not, or the login is somebody else's.
     """
-    request.require(to_invite(one.role))
-    _check_login(connection, one.login, one.id)
-    address = invited(request.site, connection, one.id, one.login, one.role)
-    note(connection, request.received_at, request.actor, "invited", person=one.id, role=one.role)
-    return InvitationLink(one.name, one.login, address)
+    request.require(to_invite(row.role))
+    _check_login(connection, row.login, row.id)
+    address = invited(request.site, connection, row.id, row.login, row.role)
+    note(connection, request.received_at, request.actor, "invited", person=row.id, role=row.role)
+    return InvitationLink(row.name, row.login, address)
 
 
 def _check_login(connection: Connection, login: str, person: int) -> None:
-    taken = account_by_login(connection, login)
-    if taken is not None and taken.person_id != person:
+    other = account_by_login(connection, login)
+    if other is not None and other.person_id != person:
         raise HTTPException("login_taken", 409, login)
 
 
@@ -148,14 +149,14 @@ def add(request: Request) -> Response:
     uploads = request.form.files.get("roster", ())
     students = _of_roster(request, uploads[0]) if uploads else [_of_fields(request)]
     with request.site.store.begin() as connection:
-        before = {one.id for one in people(connection)}
-        ids = [_add_student(request, connection, one) for one in students]
+        before = {entry.id for entry in people(connection)}
+        ids = [_add_student(request, connection, entry) for entry in students]
         new = sorted(set(ids) - before)
         note(connection, request.received_at, request.actor, "people added", people=new)
     return Response(redirect=f"/desk/people?added={len(new)}")
 
 
-def _add_student(request: Request, connection: Connection, one: Student) -> int:
+def _add_student(request: Request, connection: Connection, student: Student) -> int:
     """Add somebody, or take in what a roster says of somebody who is known; a roster renames nobody of the staff.
 
     Raises
@@ -163,10 +164,10 @@ def _add_student(request: Request, connection: Connection, one: Student) -> int:
     HTTPException
         It names somebody of the staff, of whom the person who asks may change nothing.
     """
-    known = person_by_who(connection, one.who)
-    if known is not None and (known.role or STUDENT) in STAFF:
+    existing = person_by_who(connection, student.who)
+    if existing is not None and (existing.role or STUDENT) in STAFF:
         request.require(Permission.PEOPLE_ROLES)
-    return put_person(connection, one.who, one.name, one.lang, one.columns)
+    return put_person(connection, student.who, student.name, student.lang, student.columns)
 
 
 def _of_roster(request: Request, upload: Upload) -> list[Student]:
@@ -189,16 +190,16 @@ def _of_fields(request: Request) -> Student:
 def add_staff(request: Request) -> Response:
     """Add somebody of the staff by name and login, with the link by which they come in."""
     _check_is_post(request)
-    one, role = _of_fields(request), request.form.text("role")
+    student, role = _of_fields(request), request.form.text("role")
     if role not in STAFF:
         raise HTTPException("bad_request", 422)
     with request.site.store.begin() as connection:
-        person = _add_student(request, connection, one)
+        person = _add_student(request, connection, student)
         note(connection, request.received_at, request.actor, "people added", people=[person])
-        known = accounts(connection).get(person)
-        if known is not None:
-            raise HTTPException("login_taken", 409, known.login)
-        line = PersonRow(person, one.name, login_of(person_by_id(connection, person)), role, "none")
+        account = accounts(connection).get(person)
+        if account is not None:
+            raise HTTPException("login_taken", 409, account.login)
+        line = PersonRow(person, student.name, login_of(person_by_id(connection, person)), role, "none")
         link = _link(request, connection, line)
     return request.render("site_links", links=[link], days=DAYS)
 
@@ -209,15 +210,15 @@ def add_staff(request: Request) -> Response:
 def person_page(request: Request) -> Response:
     """Return the page of a person: the account, the role, and the available actions."""
     with request.site.store.reading() as connection:
-        one = somebody(request, connection)
-        line = _line(request, one, accounts(connection).get(one.id))
-        last = is_last_administrator(connection, one.id)
-        areas = areas_of(connection, one.id)
+        person = somebody(request, connection)
+        line = _line(request, person, accounts(connection).get(person.id))
+        last = is_last_administrator(connection, person.id)
+        areas = areas_of(connection, person.id)
         groups = groups_known(connection)
         assignments = [(about.id, assignment_title(about, request.lang)) for about in listed(connection)]
-        ties = _ties(connection, one.id)
+        ties = _ties(connection, person.id)
     return request.render(
-        "site_person", line=line, last=last, columns=one.columns or {}, roles=ROLES,
+        "site_person", line=line, last=last, columns=person.columns or {}, roles=ROLES,
         may_invite=may(request.user, to_invite(line.role)), groups={**groups, **_gone(areas, groups)},
         assignments=assignments, areas=areas, any=_ANY, ties=ties,
     )  # fmt: skip
@@ -225,7 +226,7 @@ def person_page(request: Request) -> Response:
 
 def _gone(areas: Sequence[Area], groups: Any) -> dict[str, str]:
     """Return the groups of an assistant that no roster contains any more."""
-    return {one.group: one.group for one in areas if one.group is not None and one.group not in groups}
+    return {area.group: area.group for area in areas if area.group is not None and area.group not in groups}
 
 
 def _ties(connection: Connection, person: int) -> list[tuple[Any, str]]:
@@ -233,8 +234,8 @@ def _ties(connection: Connection, person: int) -> list[tuple[Any, str]]:
     lines = noted(connection, what=("connected a platform",), subject=person)
     by_password = {str(line.about.get("platform")) for line in lines}
     return [
-        (one, "by_password" if urlsplit(one.issuer).hostname in by_password else "by_platform")
-        for one in ties_of(connection, person)
+        (tie, "by_password" if urlsplit(tie.issuer).hostname in by_password else "by_platform")
+        for tie in ties_of(connection, person)
     ]
 
 
@@ -242,23 +243,23 @@ def separate_tie(request: Request) -> Response:
     """Separate an account of a platform from a person, and end its sessions."""
     _check_is_post(request)
     with request.site.store.begin() as connection:
-        one = somebody(request, connection)
-        gone = separate(connection, one.id, number(request.form.text("tie")))
+        person = somebody(request, connection)
+        gone = separate(connection, person.id, number(request.form.text("tie")))
         if gone is None:
             raise HTTPException("own", 404)
-        about = {"person": one.id, "platform": urlsplit(gone[0]).hostname or gone[0]}
+        about = {"person": person.id, "platform": urlsplit(gone[0]).hostname or gone[0]}
         note(connection, request.received_at, request.actor, "separated from a platform", **about)
     if request.site.lti is not None:
         Storage(request.site.lti).end_sessions(gone[1], gone[0])
-    return Response(redirect=f"/desk/people/{one.id}")
+    return Response(redirect=f"/desk/people/{person.id}")
 
 
 def invite_person(request: Request) -> Response:
     """Make a link by which one person chooses a password."""
     _check_is_post(request)
     with request.site.store.begin() as connection:
-        one = somebody(request, connection)
-        link = _link(request, connection, _line(request, one, accounts(connection).get(one.id)))
+        person = somebody(request, connection)
+        link = _link(request, connection, _line(request, person, accounts(connection).get(person.id)))
     return request.render("site_links", links=[link], days=DAYS)
 
 
@@ -267,8 +268,8 @@ def change_role(request: Request) -> Response:
     _check_is_post(request)
     role = request.form.text("role")
     with request.site.store.begin() as connection:
-        one = somebody(request, connection)
-        line = _line(request, one, accounts(connection).get(one.id))
+        person = somebody(request, connection)
+        line = _line(request, person, accounts(connection).get(person.id))
         if role not in ROLES or not line.has_account:
             raise HTTPException("bad_request", 422)
         if role != line.role and is_last_administrator(connection, line.id):
@@ -296,13 +297,13 @@ def change_role(request: Request) -> Response:
 def _areas_of_form(request: Request, connection: Connection) -> list[Area]:
     """Return the areas that a form selects: each group in each assignment; none if one of the two lists is
     empty."""
-    known, groups = {str(one.id): one.id for one in listed(connection)}, groups_known(connection)
+    assignments, groups = {str(item.id): item.id for item in listed(connection)}, groups_known(connection)
     numbers = request.form.texts.get("assignment", ())
     named = request.form.texts.get("group", ())
-    where = [None] if _ANY in numbers else [known[one] for one in numbers if one in known]
+    where = [None] if _ANY in numbers else [assignments[item] for item in numbers if item in assignments]
     before = {area.group for area in areas_of(connection, number(str(request.path_params["person"])))}
-    whose = [None] if _ANY in named else [one for one in named if one in groups or one in before]
-    return [Area(assignment, group) for assignment in where for group in whose]
+    chosen_groups = [None] if _ANY in named else [item for item in named if item in groups or item in before]
+    return [Area(assignment, group) for assignment in where for group in chosen_groups]
 
 
 def _area_text(area: Area) -> str:
@@ -318,10 +319,10 @@ def somebody(request: Request, connection: Connection) -> Any:
     HTTPException
         There is none.
     """
-    found = person_by_id(connection, number(str(request.path_params["person"])))
-    if found is None:
+    person = person_by_id(connection, number(str(request.path_params["person"])))
+    if person is None:
         raise HTTPException("own", 404)
-    return found
+    return person
 
 
 def number(text: str) -> int:

@@ -46,36 +46,38 @@ def user_data(request: Request) -> Response:
 def their_data(request: Request) -> Response:
     """Return all stored data of a person, for staff."""
     with request.site.store.reading() as connection:
-        one = somebody(request, connection)
-        return _given(request, connection, one.id, full_release)
+        person = somebody(request, connection)
+        return _given(request, connection, person.id, full_release)
 
 
-def _given(request: Request, connection: Connection, person: int, told: Callable[[int], Release]) -> Response:
-    who = whose(connection, person)
-    if who is None:
+def _given(
+    request: Request, connection: Connection, person: int, release_of: Callable[[int], Release]
+) -> Response:
+    owner = whose(connection, person)
+    if owner is None:
         raise HTTPException("own", 404)
-    tables = _withheld(belongings(connection, who), told)
-    name = next(iter(file_stems([who.name or "me"])))
+    tables = _withheld(belongings(connection, owner), release_of)
+    name = next(iter(file_stems([owner.name or "me"])))
     return Response(
-        media_type="application/zip", content=_zip(request, tables, who.name), filename=f"{name}.zip"
+        media_type="application/zip", content=_zip(request, tables, owner.name), filename=f"{name}.zip"
     )
 
 
-def _withheld(tables: Mapping[str, Rows], told: Callable[[int], Release]) -> dict[str, Rows]:
+def _withheld(tables: Mapping[str, Rows], release_of: Callable[[int], Release]) -> dict[str, Rows]:
     """Return the tables without the content that is not released yet."""
     markings = {row["id"]: row["assignment_id"] for row in tables["marking"]}
     seen = {
-        "dealt": [row for row in tables["dealt"] if told(row["assignment_id"]).paper],
-        "marking": [row for row in tables["marking"] if told(row["assignment_id"]).marks],
-        "mark": [row for row in tables["mark"] if told(markings[row["marking_id"]]).marks],
-        "decision": [row for row in tables["decision"] if told(row["assignment_id"]).marks],
+        "dealt": [row for row in tables["dealt"] if release_of(row["assignment_id"]).paper],
+        "marking": [row for row in tables["marking"] if release_of(row["assignment_id"]).marks],
+        "mark": [row for row in tables["mark"] if release_of(markings[row["marking_id"]]).marks],
+        "decision": [row for row in tables["decision"] if release_of(row["assignment_id"]).marks],
     }
     return {**tables, **seen}
 
 
 def _zip(request: Request, tables: Mapping[str, Rows], name: str) -> bytes:
-    found = io.BytesIO()
-    with zipfile.ZipFile(found, "w", zipfile.ZIP_DEFLATED) as archive:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for lang in request.site.languages:
             archive.writestr(
                 _READ_ME.get(lang, f"README.{lang}.txt"), _explained(tables, lang, name, request.received_at)
@@ -84,19 +86,21 @@ def _zip(request: Request, tables: Mapping[str, Rows], name: str) -> bytes:
             if rows:
                 archive.writestr(f"{table}.csv", _as_csv(rows))
         archive.writestr("everything.json", json.dumps(tables, ensure_ascii=False, indent=1, default=str))
-    return found.getvalue()
+    return buffer.getvalue()
 
 
 def _explained(tables: Mapping[str, Rows], lang: str, name: str, at: datetime) -> str:
-    said = words(lang, "site")["data"]
-    lines = [str(said["title"]).format(name, f"{at:%Y-%m-%d %H:%M} UTC"), "", str(said["says"]), ""]
-    lines += [f"{table}.csv ({len(rows)}): {said['tables'][table]}" for table, rows in tables.items() if rows]
-    return "\r\n".join([*lines, "", str(said["withheld"]), "", str(said["hidden"]), ""])
+    texts = words(lang, "site")["data"]
+    lines = [str(texts["title"]).format(name, f"{at:%Y-%m-%d %H:%M} UTC"), "", str(texts["says"]), ""]
+    lines += [
+        f"{table}.csv ({len(rows)}): {texts['tables'][table]}" for table, rows in tables.items() if rows
+    ]
+    return "\r\n".join([*lines, "", str(texts["withheld"]), "", str(texts["hidden"]), ""])
 
 
 def _as_csv(rows: Rows) -> bytes:
-    told = ({column: _cell(value) for column, value in row.items()} for row in rows)
-    return csv_text(told, tuple(rows[0])).encode("utf-8-sig", "replace")
+    cells = ({column: _cell(value) for column, value in row.items()} for row in rows)
+    return csv_text(cells, tuple(rows[0])).encode("utf-8-sig", "replace")
 
 
 def _cell(value: Any) -> Any:
@@ -109,32 +113,34 @@ def _cell(value: Any) -> Any:
 def erase_person(request: Request) -> Response:
     """Take somebody away, when their name is typed once more."""
     with request.site.store.reading() as connection:
-        one = somebody(request, connection)
-        who = whose(connection, one.id)
-        if is_last_administrator(connection, one.id):
+        person = somebody(request, connection)
+        owner = whose(connection, person.id)
+        if is_last_administrator(connection, person.id):
             raise HTTPException("last_administrator", 409)
-        kept = (
-            {table: len(rows) for table, rows in belongings(connection, who).items() if rows} if who else {}
+        counts = (
+            {table: len(rows) for table, rows in belongings(connection, owner).items() if rows}
+            if owner
+            else {}
         )
     typed = " ".join(request.form.text("name").split())
-    if not request.is_post or typed != one.name:
+    if not request.is_post or typed != person.name:
         return request.render(
             "site_erase",
             422 if request.is_post else 200,
-            one=one,
-            kept=kept,
+            one=person,
+            kept=counts,
             mistyped=request.is_post,
             tables=request.words["data"]["tables"],
         )
     with request.site.store.begin() as connection:
-        if is_last_administrator(connection, one.id):
+        if is_last_administrator(connection, person.id):
             raise HTTPException("last_administrator", 409)
-        called = known_as(connection, one.id)
-        gone = erase(connection, one.id)
-        by = Actor("", 0, request.client_address) if one.id == request.user.id else request.actor
-        note(connection, request.received_at, by, "erased", person=one.id, rows=sum(gone.values()))
+        identities = known_as(connection, person.id)
+        gone = erase(connection, person.id)
+        by = Actor("", 0, request.client_address) if person.id == request.user.id else request.actor
+        note(connection, request.received_at, by, "erased", person=person.id, rows=sum(gone.values()))
     if request.site.lti is not None:
-        for issuer, subject in called:
+        for issuer, subject in identities:
             Storage(request.site.lti).forget(subject, issuer)
     if not scrubbing.scrub(request.site):
         scrubbing.scrub_until_done(request.site)
@@ -148,30 +154,30 @@ def erase_person(request: Request) -> Response:
 def audit(request: Request) -> Response:
     """Return the audit, the latest entries first, a hundred lines a page; of one person or of one kind, if
     the query names it."""
-    asked = {name: request.query_params.get(name, "").strip()[:200] for name in ("by", "what", "of")}
-    before, subject = number(request.query_params.get("before", "")), number(asked["of"])
+    filters = {name: request.query_params.get(name, "").strip()[:200] for name in ("by", "what", "of")}
+    before, subject = number(request.query_params.get("before", "")), number(filters["of"])
     with request.site.store.reading() as connection:
         lines = noted(
-            connection, _LINES, before, by=asked["by"], what=[asked["what"]] if asked["what"] else [],
+            connection, _LINES, before, by=filters["by"], what=[filters["what"]] if filters["what"] else [],
             subject=subject or None,
         )  # fmt: skip
-        names = {one.id: (one.name, one.created) for one in people(connection)}
-        known = kinds(connection)
-    shown = [(one, _about(one, names)) for one in lines]
+        names = {line.id: (line.name, line.created) for line in people(connection)}
+        event_kinds = kinds(connection)
+    rows = [(line, _about(line, names)) for line in lines]
     of = names[subject][0] if subject in names else ""
-    more = urlencode({**asked, "before": lines[-1].id}) if len(lines) == _LINES else ""
-    return request.render("site_audit", lines=shown, more=more, asked=asked, kinds=known, of=of)
+    more = urlencode({**filters, "before": lines[-1].id}) if len(lines) == _LINES else ""
+    return request.render("site_audit", lines=rows, more=more, asked=filters, kinds=event_kinds, of=of)
 
 
 def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:
     """Return the description of an audit line, with the names of people who still exist."""
-    told = dict(line.about) if isinstance(line.about, Mapping) else {"": line.about}
-    people = [*told.pop("people", ()), *([told.pop("person")] if "person" in told else [])]
-    called = [names[one][0] for one in people if one in names and names[one][1] <= line.at]
-    if len(called) < len(people):
-        called.append("…")
-    rest = [f"{key} {value}" if key else f"{value}" for key, value in told.items()]
-    return ", ".join([*called, *rest])
+    details = dict(line.about) if isinstance(line.about, Mapping) else {"": line.about}
+    people = [*details.pop("people", ()), *([details.pop("person")] if "person" in details else [])]
+    mentioned = [names[id_][0] for id_ in people if id_ in names and names[id_][1] <= line.at]
+    if len(mentioned) < len(people):
+        mentioned.append("…")
+    rest = [f"{key} {value}" if key else f"{value}" for key, value in details.items()]
+    return ", ".join([*mentioned, *rest])
 
 
 ROUTES: tuple[Route, ...] = (

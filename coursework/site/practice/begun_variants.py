@@ -32,9 +32,9 @@ def begun(request: Request, progress: Progress, exercise: str = "") -> Iterator[
     for name, seed in _touched(request, progress, exercise):
         if name not in request.site.course or not request.site.pool.holds(name, seed):
             continue
-        found = _standing(request, progress, name, seed)
-        if found is not None and found.right < found.questions:
-            yield found
+        variant = _standing(request, progress, name, seed)
+        if variant is not None and variant.right < variant.questions:
+            yield variant
 
 
 def _touched(request: Request, progress: Progress, exercise: str) -> list[tuple[str, int]]:
@@ -44,11 +44,11 @@ def _touched(request: Request, progress: Progress, exercise: str) -> list[tuple[
     for sheet, changed in typed.items():
         _, name, seed = sheet.split("/")
         when[name, int(seed)] = changed
-    for one in progress:
-        if exercise in ("", one["exercise"]):
-            place = str(one["exercise"]), int(one["seed"])
-            when[place] = max(when.get(place, date_of(one)), date_of(one))
-    return sorted(when, key=lambda place: when[place], reverse=True)
+    for entry in progress:
+        if exercise in ("", entry["exercise"]):
+            variant = str(entry["exercise"]), int(entry["seed"])
+            when[variant] = max(when.get(variant, date_of(entry)), date_of(entry))
+    return sorted(when, key=lambda variant: when[variant], reverse=True)
 
 
 def _standing(request: Request, progress: Progress, exercise: str, seed: int) -> BegunVariant | None:
@@ -58,5 +58,5 @@ def _standing(request: Request, progress: Progress, exercise: str, seed: int) ->
         return None
     last = {e["part"]: e.get("verdict") for e in mine if e["what"] == ANSWER}
     variant = request.site.variant(exercise, seed, request.lang)
-    asked = [part.id for part in variant.parts if not part.sort.is_open]
-    return BegunVariant(exercise, seed, sum(last.get(name) in RIGHT for name in asked), len(asked))
+    questions = [part.id for part in variant.parts if not part.sort.is_open]
+    return BegunVariant(exercise, seed, sum(last.get(name) in RIGHT for name in questions), len(questions))

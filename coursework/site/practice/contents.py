@@ -49,32 +49,34 @@ class ChapterEntry(NamedTuple):
 
     @property
     def exercises(self) -> tuple[ExerciseEntry, ...]:
-        return tuple(one for group in self.groups for one in group.exercises)
+        return tuple(entry for group in self.groups for entry in group.exercises)
 
     @property
     def begun(self) -> int:
-        return sum(one.state != "new" for one in self.exercises)
+        return sum(entry.state != "new" for entry in self.exercises)
 
 
 def contents(request: Request, progress: Progress) -> list[ChapterEntry]:
     """Return the chapters in the workbook's order, with the person's progress."""
-    stands = {one.exercise: one for one in standings(progress)}
+    progress_of = {standing.exercise: standing for standing in standings(progress)}
     return [
-        chapter._replace(groups=tuple(_group_state(request, group, stands) for group in chapter.groups))
+        chapter._replace(groups=tuple(_group_state(request, group, progress_of) for group in chapter.groups))
         for chapter in titles(request.site, request.lang)
     ]
 
 
-def _group_state(request: Request, group: LessonGroup, stands: Mapping[str, ExerciseProgress]) -> LessonGroup:
-    placed = tuple(_entry(request, one, stands.get(one.name)) for one in group.exercises)
+def _group_state(
+    request: Request, group: LessonGroup, progress_of: Mapping[str, ExerciseProgress]
+) -> LessonGroup:
+    placed = tuple(_entry(request, entry, progress_of.get(entry.name)) for entry in group.exercises)
     return group._replace(exercises=placed)
 
 
 def titles(site: Site, lang: str) -> tuple[ChapterEntry, ...]:
     """Return the chapters without anybody's progress, from a cache, since they depend on the course's files
     alone."""
-    found: tuple[ChapterEntry, ...] = site.cache.get(("contents", lang), lambda: _titles(site, lang))
-    return found
+    chapters: tuple[ChapterEntry, ...] = site.cache.get(("contents", lang), lambda: _titles(site, lang))
+    return chapters
 
 
 def _titles(site: Site, lang: str) -> tuple[ChapterEntry, ...]:
@@ -93,9 +95,9 @@ def _group(site: Site, section: Section, lang: str) -> LessonGroup:
             title = lesson_title(site.course.folder, section.lesson, lang)
         except BadCourse:  # not written in this language
             title = section.lesson
-    said = words(lang, "site")["practice"]["states"]["new"]
+    state_text = words(lang, "site")["practice"]["states"]["new"]
     placed = (
-        ExerciseEntry(name, exercise_title(site.course[name], lang), "new", said)
+        ExerciseEntry(name, exercise_title(site.course[name], lang), "new", state_text)
         for name in section.exercises
     )
     return LessonGroup(title, bool(section.lesson), tuple(placed))
@@ -104,15 +106,15 @@ def _group(site: Site, section: Section, lang: str) -> LessonGroup:
 def _entry(request: Request, new: ExerciseEntry, stand: ExerciseProgress | None) -> ExerciseEntry:
     if stand is None:
         return new
-    name, title, said = new.name, new.title, request.words["practice"]["states"]
+    name, title, texts = new.name, new.title, request.words["practice"]["states"]
     counts = {"right": stand.right, "of": stand.tried, "variants": stand.variants}
     if stand.due is not None and stand.due <= request.received_at.date():
-        return ExerciseEntry(name, title, "due", said["due"].format(**counts))
+        return ExerciseEntry(name, title, "due", texts["due"].format(**counts))
     if stand.due is not None:
         day = told_date(stand.due, request.lang)
-        return ExerciseEntry(name, title, "again", said["again"].format(**counts, day=day))
+        return ExerciseEntry(name, title, "again", texts["again"].format(**counts, day=day))
     state = "done" if stand.tried and stand.right == stand.tried else "begun"
-    return ExerciseEntry(name, title, state, said[state].format(**counts))
+    return ExerciseEntry(name, title, state, texts[state].format(**counts))
 
 
 def exercise_title(exercise: Any, lang: str) -> str:
@@ -135,9 +137,9 @@ def next_of(request: Request, progress: Progress) -> NextStep | None:
     advice: Advice | None = next_step(site.course, progress, request.received_at.date(), order)
     if advice is None:
         return None
-    said = told_advice(request.site.course, advice, request.lang, exercise_title)
+    text = told_advice(request.site.course, advice, request.lang, exercise_title)
     return NextStep(
         advice.exercise,
-        Markup(markdown.html_inline(said, request.lang)),
+        Markup(markdown.html_inline(text, request.lang)),
         advice.exercise not in progress.exercises,
     )

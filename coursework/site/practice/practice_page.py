@@ -47,7 +47,7 @@ def exercise(request: Request) -> Response:
     going = None if request.is_post else next(begun(request, progress, name), None)
     if going is not None:
         return Response(redirect=going.address)
-    seeds = {int(one["seed"]) for one in progress}
+    seeds = {int(entry["seed"]) for entry in progress}
     return Response(redirect=f"/practice/{name}/{site.pool.choose_seed(name, request.user.id, seeds)}")
 
 
@@ -74,61 +74,61 @@ def _warm(request: Request, work: Worksheet) -> None:
 def _form_response(request: Request, work: Worksheet) -> Response:
     others = {} if request.is_fragment else _save_typed(request, work)
     _save_predictions(request, work)
-    if place := request.form.text("go"):
-        return _gone(request, work, place)
+    if target := request.form.text("go"):
+        return _gone(request, work, target)
     texts = request.form.texts
     hinted: dict[str, tuple[QuestionHints, ...]] = {}
-    shown: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
     if "hint" in texts or "reveal" in texts:
         checked, hinted = work.attempt.marked(), _hinted(request, work)
     elif "check" in texts:
-        checked, shown = _checked(request, work)
+        checked, parts = _checked(request, work)
     else:
         checked = work.attempt.marked()
     if request.is_fragment:
-        return _pieces(request, work, checked, shown, hinted)
-    names = {"others": {BOX_PREFIX + n: box for n, box in others.items()}, "came": shown}
+        return _pieces(request, work, checked, parts, hinted)
+    names = {"others": {BOX_PREFIX + n: box for n, box in others.items()}, "came": parts}
     return _page(request, work, checked, work.typed, hinted, **names)
 
 
-def _gone(request: Request, work: Worksheet, place: str) -> Response:
+def _gone(request: Request, work: Worksheet, target: str) -> Response:
     """Return a redirect to another page, after the drafts have been stored."""
-    if place == "fresh":
+    if target == "fresh":
         return exercise(request)
-    if place not in ("solution", "motion"):
+    if target not in ("solution", "motion"):
         raise HTTPException("bad_request", 400)
-    return Response(redirect=f"{work.address}/{place}")
+    return Response(redirect=f"{work.address}/{target}")
 
 
 def _checked(request: Request, work: Worksheet) -> tuple[CheckedAnswers, tuple[str, ...]]:
     """Check one answer or all of them; return the result, and the parts to show again."""
-    one = request.form.text("check")
-    given = work.typed if not one else {work.part(one).id: work.typed[one]}
+    box = request.form.text("check")
+    given = work.typed if not box else {work.part(box).id: work.typed[box]}
     checked = work.attempt.check(given)
-    answered = (name for name in given if one or not is_blank(checked.answers.get(name)))
+    answered = (name for name in given if box or not is_blank(checked.answers.get(name)))
     return checked, tuple(dict.fromkeys((*answered, *checked.changed)))
 
 
 def _hinted(request: Request, work: Worksheet) -> dict[str, tuple[QuestionHints, ...]]:
     """Return the hints of a question, and below them those of the requested step towards it."""
-    what = "hint" if "hint" in request.form.texts else "reveal"
-    under, _, name = request.form.text(what).partition(" ")
+    action = "hint" if "hint" in request.form.texts else "reveal"
+    under, _, name = request.form.text(action).partition(" ")
     work.part(under)
     name = name or under
-    new = work.hint(name) if what == "hint" else work.reveal(name)
+    new = work.hint(name) if action == "hint" else work.reveal(name)
     return {under: (new,) if name == under else (work.hinted(under), new)}
 
 
 def _save_predictions(request: Request, work: Worksheet) -> None:
-    said = {name: request.form.text(f"predict-{name}") for name in work.parts}
-    work.store.add(work.seed, "predictions", dict(said))
+    choices = {name: request.form.text(f"predict-{name}") for name in work.parts}
+    work.store.add(work.seed, "predictions", dict(choices))
 
 
 def _page(
-    request: Request, work: Worksheet, checked: CheckedAnswers, stands: dict[str, str],
+    request: Request, work: Worksheet, checked: CheckedAnswers, texts: dict[str, str],
     hinted: dict[str, tuple[QuestionHints, ...]] | None = None, **more: Any,
 ) -> Response:  # fmt: skip
-    names = {"others": {}, "came": (), **work.names(checked, stands), **more}
+    names = {"others": {}, "came": (), **work.names(checked, texts), **more}
     names["hinted"] = {**names["hinted"], **(hinted or {})}
     for name in names["came"]:
         names["results"].setdefault(name, None)
@@ -136,7 +136,7 @@ def _page(
 
 
 def _pieces(
-    request: Request, work: Worksheet, checked: CheckedAnswers, shown: tuple[str, ...], hinted: dict[str, Any]
+    request: Request, work: Worksheet, checked: CheckedAnswers, parts: tuple[str, ...], hinted: dict[str, Any]
 ) -> Response:
     """Return the parts of the page that a script replaces."""
     results = work.results(checked, work.typed)
@@ -145,8 +145,8 @@ def _pieces(
         "site_practice_pieces",
         own=BOX_PREFIX,
         sheet_page=work,
-        results={name: results.get(name) for name in shown},
-        compared=work.compared(checked) if shown else {},
+        results={name: results.get(name) for name in parts},
+        compared=work.compared(checked) if parts else {},
         hinted=hinted,
         summary=summary,
         focus=_focus(request, hinted),
@@ -159,8 +159,8 @@ def _focus(request: Request, hinted: dict[str, Any]) -> str:
     """Return the id of the new element that receives the keyboard focus."""
     if hinted:
         return f"hints-{BOX_PREFIX}{next(iter(hinted))}"
-    one = request.form.text("check")
-    return f"told-{BOX_PREFIX}{one}" if one else "summary" if "check" in request.form.texts else ""
+    checked = request.form.text("check")
+    return f"told-{BOX_PREFIX}{checked}" if checked else "summary" if "check" in request.form.texts else ""
 
 
 def _after(request: Request, summary: dict[str, Any]) -> dict[str, Any]:
@@ -225,19 +225,19 @@ def motion(request: Request) -> Response:
     work = _worksheet(request)
     if not work.variant.exercise.is_animated:
         raise HTTPException("page", 404)
-    told = work.attempt.is_example or set(work.attempt.marked().right) >= {
+    has_numbers = work.attempt.is_example or set(work.attempt.marked().right) >= {
         part.id for part in work.variant.parts if not part.sort.is_open
     }
-    key = ("motion", work.exercise, work.seed, work.variant.lang, told)
-    names = request.site.cache.get(key, lambda: _motion(work.variant, told))
+    key = ("motion", work.exercise, work.seed, work.variant.lang, has_numbers)
+    names = request.site.cache.get(key, lambda: _motion(work.variant, has_numbers))
     more = {"sheet_page": work, "motion_title": work.variant.text.title, "is_piece": request.is_fragment}
     return request.render("site_practice_motion", **{**more, "motion": names})
 
 
-def _motion(variant: Any, told: bool) -> dict[str, Any]:
+def _motion(variant: Any, has_numbers: bool) -> dict[str, Any]:
     moving = DisplayedAnimation(variant)
-    usual = [one for one in EFFECTS[:2] if one == "position" or one in moving.available]
-    return motion_page.context(DisplayedAnimation(variant, usual), told=told)
+    usual = [effect for effect in EFFECTS[:2] if effect == "position" or effect in moving.available]
+    return motion_page.context(DisplayedAnimation(variant, usual), told=has_numbers)
 
 
 ROUTES = (

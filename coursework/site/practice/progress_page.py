@@ -21,23 +21,23 @@ _MOST_STORED = 30_000  #: entries of a person, with those that are brought
 
 def progress(request: Request) -> Response:
     """Return the page of the person's progress; a form uploads a file, whose entries are added."""
-    kept = PersonProgress(request.site.store, request.user.id, request.site.clock)
-    brought = _brought(request, kept) if request.is_post else None
-    skills = told_skills(request.site.course, kept.progress, request.lang, exercise_title)
-    begun = [c for c in contents(request, kept.progress) if c.begun]
+    store = PersonProgress(request.site.store, request.user.id, request.site.clock)
+    brought = _brought(request, store) if request.is_post else None
+    skills = told_skills(request.site.course, store.progress, request.lang, exercise_title)
+    begun = [c for c in contents(request, store.progress) if c.begun]
     return request.render(
         "site_progress",
         title=request.words["progress"]["title"],
         chapters=begun,
-        entries=len(kept.progress),
+        entries=len(store.progress),
         skills=Markup(markdown.to_html(skills, request.lang)) if skills else "",
-        next=next_of(request, kept.progress),
+        next=next_of(request, store.progress),
         brought=brought,
         file_name=FILE,
     )
 
 
-def _brought(request: Request, kept: PersonProgress) -> int:
+def _brought(request: Request, store: PersonProgress) -> int:
     """Add the entries of a file; return the number of new ones. Their answers are not marked, since that
     would test answers to a class's variants.
 
@@ -46,31 +46,31 @@ def _brought(request: Request, kept: PersonProgress) -> int:
     BadInput
         It is none of progress, of a later version, or far too long.
     """
-    said = request.words["progress"]
-    found = next(iter(request.form.files.get("file", ())), None)
-    if found is None:
-        raise BadInput(said["no_file"])
+    texts = request.words["progress"]
+    upload = next(iter(request.form.files.get("file", ())), None)
+    if upload is None:
+        raise BadInput(texts["no_file"])
     fault, theirs = read_apart(
-        PROGRESS_FILE, request.words["refused"]["too_much"], read_brought, found.data, _MOST
+        PROGRESS_FILE, request.words["refused"]["too_much"], read_brought, upload.data, _MOST
     )
     if fault is LaterVersion:
-        raise BadInput(said["later"].format(found.name))
+        raise BadInput(texts["later"].format(upload.name))
     if fault is TooLong:
-        raise BadInput(said["too_long"].format(found.name, _MOST))
+        raise BadInput(texts["too_long"].format(upload.name, _MOST))
     if fault is not None:
-        raise BadInput(said["not_progress"].format(found.name))
-    before = len(kept.progress)
+        raise BadInput(texts["not_progress"].format(upload.name))
+    before = len(store.progress)
     if before + len(theirs) > _MOST_STORED:
-        raise BadInput(said["too_long"].format(found.name, max(0, _MOST_STORED - before)))
-    kept.add(theirs)
-    kept.refresh()
-    return len(kept.progress) - before
+        raise BadInput(texts["too_long"].format(upload.name, max(0, _MOST_STORED - before)))
+    store.add(theirs)
+    store.refresh()
+    return len(store.progress) - before
 
 
 def file(request: Request) -> Response:
     """Return the whole progress, in the format of notebooks."""
-    kept = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
-    return Response(media_type="application/json", content=kept.text().encode(), filename=FILE)
+    entries = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
+    return Response(media_type="application/json", content=entries.text().encode(), filename=FILE)
 
 
 ROUTES = (

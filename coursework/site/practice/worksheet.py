@@ -87,15 +87,15 @@ class Worksheet:
 
     def _open_variant(self) -> Variant:
         """Return the variant; without its theory questions if another variant was begun before."""
-        whole: Variant = self.request.site.variant(self.exercise, self.seed, self.request.lang)
+        variant: Variant = self.request.site.variant(self.exercise, self.seed, self.request.lang)
         begun = list(self.store.progress)
-        known = theory(whole.exercise) if begun and begun[0]["seed"] != self.seed else frozenset()
-        known -= {e["part"] for e in begun if e["seed"] == self.seed}
-        if not known:
-            return whole
-        key = ("without", self.exercise, self.seed, whole.lang, known)
-        left = [part for part in whole.parts if part.id not in known]
-        return self.request.site.cache.get(key, lambda: whole.asking(left))
+        theory_parts = theory(variant.exercise) if begun and begun[0]["seed"] != self.seed else frozenset()
+        theory_parts -= {e["part"] for e in begun if e["seed"] == self.seed}
+        if not theory_parts:
+            return variant
+        key = ("without", self.exercise, self.seed, variant.lang, theory_parts)
+        left = [part for part in variant.parts if part.id not in theory_parts]
+        return self.request.site.cache.get(key, lambda: variant.asking(left))
 
     # ------------------------------------------------------------------ addresses
 
@@ -141,12 +141,12 @@ class Worksheet:
     def box_contents(self) -> dict[str, str]:
         """Content of each box: the draft, or else the last answer, in the form that the box uses."""
         answers = self.attempt.answers
-        found = {
+        texts = {
             name: self.drafts[name].text if name in self.drafts else str(answers.get(name) or "")
             for name in self.parts
         }
         return {
-            name: ", ".join(_ticked(self.variant, self.parts[name], text)) for name, text in found.items()
+            name: ", ".join(_ticked(self.variant, self.parts[name], text)) for name, text in texts.items()
         }
 
     def save_typed(self, versions: str) -> dict[str, Box]:
@@ -160,35 +160,36 @@ class Worksheet:
 
     def feedback(self, mark: Mark) -> AnswerFeedback:
         """Return the feedback on an answer."""
-        said = sentence_of(self.variant, mark, self._asks("reveal", mark.part))
-        html = self._with_buttons(markdown.html_inline(said, self.variant.lang), mark.part)
+        sentence = sentence_of(self.variant, mark, self._asks("reveal", mark.part))
+        html = self._with_buttons(markdown.html_inline(sentence, self.variant.lang), mark.part)
         says_all = mark.verdict in ("correct", "to_mark")
         word = "" if says_all else verdict_word(mark.verdict, self.variant.lang)
         return AnswerFeedback(sign_of(mark), word, html, mark.verdict == "correct")
 
-    def results(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, AnswerFeedback]:
+    def results(self, checked: CheckedAnswers, contents: Mapping[str, str]) -> dict[str, AnswerFeedback]:
         """Return the feedback on the answers that are still in their boxes."""
         return {
             name: self.feedback(mark)
             for name, mark in checked.marking.items()
-            if not is_blank(checked.answers.get(name)) and self._is_same(name, checked.answers[name], stands)
+            if not is_blank(checked.answers.get(name))
+            and self._is_same(name, checked.answers[name], contents)
         }
 
-    def _is_same(self, name: str, answer: Any, stands: Mapping[str, str]) -> bool:
+    def _is_same(self, name: str, answer: Any, contents: Mapping[str, str]) -> bool:
         part = self.parts[name]
-        return _ticked(self.variant, part, str(answer)) == _ticked(self.variant, part, stands[name])
+        return _ticked(self.variant, part, str(answer)) == _ticked(self.variant, part, contents[name])
 
     def read_as(self, name: str, text: str) -> Markup:
         """Return the reading of a box as HTML; empty for a blank box, and for one without text."""
-        part, said = self.parts[name], self.request.words["practice"]
+        part, texts = self.parts[name], self.request.words["practice"]
         if part.choices or is_blank(text):
             return Markup("")
         is_read, readings = read_back(self.variant, part, text)
         if is_read:
-            told = said["read_as"].format(said["or"].join(readings)) if readings else ""
+            line = texts["read_as"].format(texts["or"].join(readings)) if readings else ""
         else:
-            told = readings[0]
-        return Markup(markdown.html_inline(told, self.variant.lang))
+            line = readings[0]
+        return Markup(markdown.html_inline(line, self.variant.lang))
 
     def hinted(self, name: str, most: int | None = None) -> QuestionHints:
         """Return the first hints for a question or for a step towards it, by default those that were seen.
@@ -237,14 +238,14 @@ class Worksheet:
     def _is_revealed(self, name: str) -> bool:
         return any(e["what"] == REVEAL and e["part"] == name for e in self.store.happened(self.variant.seed))
 
-    def _asks(self, what: str, name: str) -> str:
+    def _asks(self, action: str, name: str) -> str:
         """Return a link in Markdown that :meth:`_with_buttons` turns into a button."""
-        return f"[{self.request.words['practice'][f'{what}_call']}](#{what}-{name})"
+        return f"[{self.request.words['practice'][f'{action}_call']}](#{action}-{name})"
 
     def _with_buttons(self, html: str, under: str) -> Markup:
-        def button(found: re.Match[str]) -> str:
-            what, name, text = found.groups()
-            return f'<button class="plain" name="{what}" value="{escape(under)} {name}" formaction="#hints-{BOX_PREFIX}{escape(under)}">{text}</button>'
+        def button(match: re.Match[str]) -> str:
+            action, name, text = match.groups()
+            return f'<button class="plain" name="{action}" value="{escape(under)} {name}" formaction="#hints-{BOX_PREFIX}{escape(under)}">{text}</button>'
 
         return Markup(_ASKS.sub(button, html))
 
@@ -253,25 +254,25 @@ class Worksheet:
     def predictions_to_make(self) -> list[dict[str, Any]]:
         """Return the predictions to make before the computation, each with its options and the person's
         choice."""
-        said = self.attempt.predictions
+        choices = self.attempt.predictions
         return [
             {
-                "id": one.id,
+                "id": prediction.id,
                 "question": Markup(
-                    markdown.html_inline(predictions.asked(self.variant, one), self.variant.lang)
+                    markdown.html_inline(predictions.asked(self.variant, prediction), self.variant.lang)
                 ),
-                "options": self._options(one),
-                "said": str(said.get(one.id, "")),
+                "options": self._options(prediction),
+                "said": str(choices.get(prediction.id, "")),
             }
-            for one in predictions.before_answers(self.variant)
+            for prediction in predictions.before_answers(self.variant)
         ]
 
-    def _options(self, one: predictions.Prediction) -> list[tuple[str, str]]:
+    def _options(self, prediction: predictions.Prediction) -> list[tuple[str, str]]:
         """Return the options of a prediction, each with its label."""
-        if one.kind != "guess":
-            told = self.request.words["practice"]["options"][one.kind]
-            return list(zip(told["values"], told["names"], strict=True))
-        part, letters = self.parts[one.id], self.variant.letters(self.parts[one.id])
+        if prediction.kind != "guess":
+            options = self.request.words["practice"]["options"][prediction.kind]
+            return list(zip(options["values"], options["names"], strict=True))
+        part, letters = self.parts[prediction.id], self.variant.letters(self.parts[prediction.id])
         lang = self.variant.lang
         return [
             (letters.get(case, case), markdown.plain_line(self.variant.called(part, case), lang))
@@ -280,23 +281,28 @@ class Worksheet:
 
     def compared(self, checked: CheckedAnswers) -> dict[str, Markup]:
         """Return the predictions compared with the results, for the parts that are answered correctly."""
-        asked = [one for one in predictions.before_answers(self.variant) if one.id in checked.right]
-        if not any(one.id in self.attempt.predictions for one in asked):
+        answered = [
+            prediction
+            for prediction in predictions.before_answers(self.variant)
+            if prediction.id in checked.right
+        ]
+        if not any(prediction.id in self.attempt.predictions for prediction in answered):
             return {}
-        said = words(self.variant.lang)["study"]["compared"]
+        texts = words(self.variant.lang)["study"]["compared"]
         return {
-            one.prediction.id: Markup(
-                f"{ {True: '✓', False: '✗', None: '?'}[one.right] } "
+            prediction.prediction.id: Markup(
+                f"{ {True: '✓', False: '✗', None: '?'}[prediction.right] } "
                 + markdown.html_inline(
-                    said.format(said=f"`{one.said.replace('`', '')}`", found=one.found), self.variant.lang
+                    texts.format(said=f"`{prediction.said.replace('`', '')}`", found=prediction.found),
+                    self.variant.lang,
                 )
             )
-            for one in self.attempt.compared(asked, self.attempt.own(checked))
+            for prediction in self.attempt.compared(answered, self.attempt.own(checked))
         }
 
     # ------------------------------------------------------------------------ the page
 
-    def summary(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Any]:
+    def summary(self, checked: CheckedAnswers, contents: Mapping[str, str]) -> dict[str, Any]:
         """Return the state of the variant: the points, and the numbers of the open questions."""
         numbers = {name: k for k, name in enumerate(self.parts, 1)}
         blank = [n for n in self.parts if is_blank(checked.answers.get(n)) and not self._is_drawn(n)]
@@ -311,7 +317,7 @@ class Worksheet:
             "answered": any(not is_blank(a) for a in checked.answers.values()),
             "blank": [(n, numbers[n]) for n in blank],
             "missed": [(n, numbers[n]) for n in missed],
-            "before": [(n, numbers[n]) for n in checked.answers if is_blank(stands.get(n))],
+            "before": [(n, numbers[n]) for n in checked.answers if is_blank(contents.get(n))],
             "is_done": not blank and not missed,
             "copied": checked.copied,
         }
@@ -322,40 +328,40 @@ class Worksheet:
     def _is_drawn(self, name: str) -> bool:
         return self.parts[name].sort.box in ("blank", "millimetre")
 
-    def names(self, checked: CheckedAnswers, stands: Mapping[str, str]) -> dict[str, Any]:
+    def names(self, checked: CheckedAnswers, contents: Mapping[str, str]) -> dict[str, Any]:
         """Return the names for the page's template."""
-        shown = views.context(handout(self.variant))
-        results = self.results(checked, stands)
-        said = self.request.words["practice"]["keeping"]
+        context = views.context(handout(self.variant))
+        results = self.results(checked, contents)
+        texts = self.request.words["practice"]["keeping"]
         return {
-            **shown,
+            **context,
             "own": BOX_PREFIX,
             "filled": {
-                BOX_PREFIX + n: _ticked(self.variant, self.parts[n], text) for n, text in stands.items()
+                BOX_PREFIX + n: _ticked(self.variant, self.parts[n], text) for n, text in contents.items()
             },
             "before_questions": "_site_practice_before.html.j2",
             "below_question": "_site_practice_below.html.j2",
             "sheet_page": self,
             "results": results,
-            "reads": {n: self.read_as(n, text) for n, text in stands.items()},
+            "reads": {n: self.read_as(n, text) for n, text in contents.items()},
             "hinted": {n: (self.hinted(n),) for n in self._hinted_before()},
             "compared": self.compared(checked),
             "predicted": self.predictions_to_make(),
-            "summary": self.summary(checked, stands),
+            "summary": self.summary(checked, contents),
             "is_shown": self.attempt.is_example,
             "moves": self.variant.exercise.is_animated,
             "lessons": self._lessons(),
             "form": draft_attributes(
-                self.request, f"{self.address}/draft", self.name, self.drafts, BOX_PREFIX, **said
+                self.request, f"{self.address}/draft", self.name, self.drafts, BOX_PREFIX, **texts
             ),
         }
 
     def _lessons(self) -> Sequence[Lesson]:
-        one, lang = self.variant.exercise, self.variant.lang
-        found: Sequence[Lesson] = self.request.site.cache.get(
-            ("lessons", self.exercise, lang), lambda: taught_by(one.folder, self.exercise, lang)
+        exercise, lang = self.variant.exercise, self.variant.lang
+        lessons: Sequence[Lesson] = self.request.site.cache.get(
+            ("lessons", self.exercise, lang), lambda: taught_by(exercise.folder, self.exercise, lang)
         )
-        return found
+        return lessons
 
     def _hinted_before(self) -> Iterable[str]:
         happened = self.store.happened(self.variant.seed)

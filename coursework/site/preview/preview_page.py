@@ -71,8 +71,8 @@ class _Choice:
     """Parameters of an address."""
 
     def __init__(self, query: Mapping[str, str], lang: str):
-        told = query.get("seed", "0")
-        self.seed = min(int(told[:_DIGITS]), _LARGEST) if told.isascii() and told.isdecimal() else 0
+        seed = query.get("seed", "0")
+        self.seed = min(int(seed[:_DIGITS]), _LARGEST) if seed.isascii() and seed.isdecimal() else 0
         self.lang = query.get("lang", lang) if query.get("lang", lang) in languages() else lang
         self.view = query.get("view", "sheet") if query.get("view") in VIEWS else "sheet"
 
@@ -91,16 +91,16 @@ class _PreviewPages:
         work, choice = self._work, _Choice(request.query_params, self._lang)
         stamp = work.stamp
         about = work.view(ViewRequest("about"))
-        known: Any = about.content or {"languages": [choice.lang], "version": ""}
-        if choice.lang not in known["languages"]:
-            choice.lang = known["languages"][0]
-        shown = self._view(choice, about)
-        said = words(choice.lang, "site")["preview"]
+        properties: Any = about.content or {"languages": [choice.lang], "version": ""}
+        if choice.lang not in properties["languages"]:
+            choice.lang = properties["languages"][0]
+        content = self._view(choice, about)
+        texts = words(choice.lang, "site")["preview"]
         names = {
-            "lang": choice.lang, "said": said, "exercise": work.exercise, "choice": choice, "stamp": stamp,
-            "views": list(VIEWS), "spoken": known["languages"], "version": known["version"], "shown": shown,
-            "framed": VIEWS[choice.view][1] and shown.content is not None, "check": work.check, "file": self._pages.file,
-            "worked": _clock(shown.worked), "words": words(choice.lang),
+            "lang": choice.lang, "said": texts, "exercise": work.exercise, "choice": choice, "stamp": stamp,
+            "views": list(VIEWS), "spoken": properties["languages"], "version": properties["version"], "shown": content,
+            "framed": VIEWS[choice.view][1] and content.content is not None, "check": work.check, "file": self._pages.file,
+            "worked": _clock(content.worked), "words": words(choice.lang),
         }  # fmt: skip
         return Response(
             self._pages.rendered("site_preview", choice.lang, names), 200, _PAGE_HEADERS, "text/html"
@@ -109,8 +109,8 @@ class _PreviewPages:
     def _view(self, choice: _Choice, about: View) -> View:
         view, form = VIEWS[choice.view]
         if view == "check":
-            made = self._work.check
-            return View(made and made.content, made.fault if made else about.fault, None)
+            result = self._work.check
+            return View(result and result.content, result.fault if result else about.fault, None)
         return self._work.view(ViewRequest(view, choice.seed, choice.lang, form or "html"))
 
     def state(self, request: Request) -> Response:
@@ -120,17 +120,19 @@ class _PreviewPages:
         """Return a sheet by itself, in its current state or its last valid one."""
         choice = _Choice({**request.query_params, "view": request.path_params["view"]}, self._lang)
         view, form = VIEWS[choice.view]
-        found = self._work.view(ViewRequest(view, choice.seed, choice.lang, form)) if form else None
-        if found is None or not isinstance(found.content, bytes):
+        result = self._work.view(ViewRequest(view, choice.seed, choice.lang, form)) if form else None
+        if result is None or not isinstance(result.content, bytes):
             return Response("", 404, _FRAMED)
         kind = "application/pdf" if form == "pdf" else "text/html; charset=utf-8"
-        return Response(found.content, 200, _FRAMED, kind)
+        return Response(result.content, 200, _FRAMED, kind)
 
     def static(self, request: Request) -> Response:
-        found = self._pages.static(str(request.path_params["name"]))
-        if found is None:
+        static_file = self._pages.static(str(request.path_params["name"]))
+        if static_file is None:
             return Response("", 404, _PAGE_HEADERS)
-        return Response(found[1], 200, {**_PAGE_HEADERS, "cache-control": "max-age=3600"}, found[0])
+        return Response(
+            static_file[1], 200, {**_PAGE_HEADERS, "cache-control": "max-age=3600"}, static_file[0]
+        )
 
 
 def _clock(at: datetime | None) -> str:

@@ -43,10 +43,10 @@ def work(pipe: Connection, folder: str | None, exercise: str) -> None:
     _warm_up()
     while True:
         try:
-            asked = pipe.recv()
+            request = pipe.recv()
         except (EOFError, KeyboardInterrupt):
             return
-        pipe.send(_result(folder, exercise, asked))
+        pipe.send(_result(folder, exercise, request))
 
 
 def _warm_up() -> None:
@@ -57,9 +57,9 @@ def _warm_up() -> None:
     sys.pycache_prefix = str(Path(__file__).parent / "no such folder")
 
 
-def _result(folder: str | None, exercise: str, asked: ViewRequest) -> ViewResult:
+def _result(folder: str | None, exercise: str, request: ViewRequest) -> ViewResult:
     try:
-        return ViewResult(_VIEWS[asked.view](folder, exercise, asked))
+        return ViewResult(_VIEWS[request.view](folder, exercise, request))
     except CourseworkError as fault:
         return ViewResult(fault=str(fault))
     except Exception as fault:  # an author's slip in a function of the course
@@ -67,40 +67,42 @@ def _result(folder: str | None, exercise: str, asked: ViewRequest) -> ViewResult
 
 
 def _fault_text(fault: Exception, folder: str | None) -> str:
-    said = f"{type(fault).__name__}: {fault}"
+    message = f"{type(fault).__name__}: {fault}"
     root = open_course(folder).folder.root
     frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]
     if not frames:
-        return said
-    return f"{Path(frames[-1].filename).relative_to(root).as_posix()}, line {frames[-1].lineno}: {said}"
+        return message
+    return f"{Path(frames[-1].filename).relative_to(root).as_posix()}, line {frames[-1].lineno}: {message}"
 
 
-def _about(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
-    found = open_course(folder)[exercise]
-    return {"languages": list(found.languages), "version": found.spec.version}
+def _about(folder: str | None, exercise: str, request: ViewRequest) -> Any:
+    loaded = open_course(folder)[exercise]
+    return {"languages": list(loaded.languages), "version": loaded.spec.version}
 
 
-def _sheet(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
-    return _printed(folder, handout(_variant(folder, exercise, asked)), asked)
+def _sheet(folder: str | None, exercise: str, request: ViewRequest) -> Any:
+    return _printed(folder, handout(_variant(folder, exercise, request)), request)
 
 
-def _solution(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
-    return _printed(folder, answer_sheet(_variant(folder, exercise, asked)), asked)
+def _solution(folder: str | None, exercise: str, request: ViewRequest) -> Any:
+    return _printed(folder, answer_sheet(_variant(folder, exercise, request)), request)
 
 
-def _printed(folder: str | None, sheet: Handout | AnswerSheet, asked: ViewRequest) -> bytes:
+def _printed(folder: str | None, sheet: Handout | AnswerSheet, request: ViewRequest) -> bytes:
     renderer = renderer_of(open_course(folder).folder)
-    return renderer.pdf(sheet) if asked.form == "pdf" else renderer.html(sheet).encode()
+    return renderer.pdf(sheet) if request.form == "pdf" else renderer.html(sheet).encode()
 
 
-def _variant(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
-    found = open_course(folder)[exercise]
-    return found.variant(asked.seed, asked.lang if asked.lang in found.languages else found.languages[0])
+def _variant(folder: str | None, exercise: str, request: ViewRequest) -> Any:
+    loaded = open_course(folder)[exercise]
+    return loaded.variant(
+        request.seed, request.lang if request.lang in loaded.languages else loaded.languages[0]
+    )
 
 
-def _key(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
+def _key(folder: str | None, exercise: str, request: ViewRequest) -> Any:
     """Given values; a row a part; and what each known mistake gives."""
-    variant = _variant(folder, exercise, asked)
+    variant = _variant(folder, exercise, request)
     key = variant.key
     return {
         "given": [(name, repr(value), variant.record["given"][name]["unit"]) for name, value in variant.given.items()],
@@ -116,12 +118,12 @@ def _key(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
     }  # fmt: skip
 
 
-def _check(folder: str | None, exercise: str, asked: ViewRequest) -> Any:
-    report = checks.check(open_course(folder)[exercise], asked.variants)
+def _check(folder: str | None, exercise: str, request: ViewRequest) -> Any:
+    report = checks.check(open_course(folder)[exercise], request.variants)
     (row,) = check_report.table([report])
-    told = [str(note) for note in check_report.notes([report])]
+    notes = [str(note) for note in check_report.notes([report])]
     return {"passed": report.passed, "failures": report.failures[:_MOST_FAILURES], "more": max(0, len(report.failures) - _MOST_FAILURES),
-            "row": {k: str(v) for k, v in row.items()}, "notes": told}  # fmt: skip
+            "row": {k: str(v) for k, v in row.items()}, "notes": notes}  # fmt: skip
 
 
 _VIEWS = {"about": _about, "sheet": _sheet, "solution": _solution, "key": _key, "check": _check}

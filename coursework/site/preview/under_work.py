@@ -45,18 +45,18 @@ class _Process:
         other.close()
         self._lock = threading.Lock()
 
-    def result(self, asked: ViewRequest, seconds: float = _LONGEST) -> ViewResult | None:
+    def result(self, request: ViewRequest, seconds: float = _LONGEST) -> ViewResult | None:
         """Return a view; None if the process was ended meanwhile."""
         with self._lock:
             try:
-                self._pipe.send(asked)
+                self._pipe.send(request)
                 if not self._pipe.poll(seconds):
                     self.end()
                     return ViewResult(
                         fault=f"this took more than {seconds:g} s, and was stopped: a loop that does not end?"
                     )
-                found: ViewResult = self._pipe.recv()
-                return found
+                answer: ViewResult = self._pipe.recv()
+                return answer
             except (EOFError, OSError):
                 return None
 
@@ -94,24 +94,24 @@ class EditedExercise:
         """Another one whenever there is something new to show."""
         return f"{self.state}.{int(self.check is not None)}"
 
-    def view(self, asked: ViewRequest) -> View:
+    def view(self, request: ViewRequest) -> View:
         """Return a view of the current state; if it cannot be made, the last valid one, with the reason."""
         while True:
             state, process = self.state, self._views
-            made = process.result(asked)
-            if made is not None and state == self.state:
+            result = process.result(request)
+            if result is not None and state == self.state:
                 break
             if (
-                made is None and process is self._views and not self._ended.is_set()
+                result is None and process is self._views and not self._ended.is_set()
             ):  # it was stopped, or fell
                 self._views = self._begun()
             if self._ended.is_set():
                 return View(None, "the preview has ended", None)
-        if not made.fault:
-            self._good[asked] = made.content, datetime.now().astimezone()
-            return View(made.content, "", None)
-        content, worked = self._good.get(asked, (None, None))
-        return View(content, made.fault, worked)
+        if not result.fault:
+            self._good[request] = result.content, datetime.now().astimezone()
+            return View(result.content, "", None)
+        content, worked = self._good.get(request, (None, None))
+        return View(content, result.fault, worked)
 
     def _take(self) -> None:
         """Start new processes for the current state of the files."""
@@ -128,10 +128,10 @@ class EditedExercise:
         """Once the page is there: it comes first where processors are few."""
         if self._ended.wait(_PAGE_FIRST) or not self._make_ready(state):
             return
-        made = process.result(ViewRequest("check", variants=self._variants), 10 * _LONGEST)
+        result = process.result(ViewRequest("check", variants=self._variants), 10 * _LONGEST)
         with self._lock:
-            if made is not None and state == self.state:
-                self.check = made
+            if result is not None and state == self.state:
+                self.check = result
 
     def _make_ready(self, state: int) -> bool:
         """Begin the processes of the next state; whether this one still stands."""
@@ -144,16 +144,16 @@ class EditedExercise:
 
     def _watch(self) -> None:
         """Take a new state once its files have not changed for a moment, since an editor may write in steps."""
-        taken = before = self._files()
+        current = before = self._files()
         while not self._ended.wait(_EVERY):
             now = self._files()
-            if now == before and now != taken:
-                taken = now
+            if now == before and now != current:
+                current = now
                 self._take()
             before = now
 
     def _files(self) -> _Files:
-        return dict(file for place in _PLACES for file in _files(self._root / place))
+        return dict(file for name in _PLACES for file in _files(self._root / name))
 
     def end(self) -> None:
         self._ended.set()

@@ -77,11 +77,11 @@ def holders(content: Mapping[str, Any]) -> list[Student]:
     return [Student(name, columns=content.get("students", {}).get(name, {})) for name in names if name]
 
 
-def begin(site: Site, wanted: AssignmentRequest, by: str, what: str) -> str:
-    """Deal, as ``by`` asks, and note it as ``what``; gives a name to ask after it by. Back at once, or when it is over."""
+def begin(site: Site, wanted: AssignmentRequest, by: str, event: str) -> str:
+    """Deal, as ``by`` asks, and note it as ``event``; gives a name to ask after it by. Back at once, or when it is over."""
     token = secrets.token_hex(8)
     _store_state(site, token, AssigningJob(RUNNING, wanted.name, wanted.papers))
-    thread = threading.Thread(target=_run, args=(site, token, wanted, by, what), daemon=True)
+    thread = threading.Thread(target=_run, args=(site, token, wanted, by, event), daemon=True)
     thread.start()
     thread.join(_PATIENCE)
     return token
@@ -91,14 +91,14 @@ def assigning_job(site: Site, token: str) -> AssigningJob | None:
     """Return the state of a job; None for an unknown one. An interrupted job counts as failed: none of its
     variants were issued."""
     with site.store.reading() as connection:
-        kept = value_of(connection, _key(token))
-    if kept is None:
+        stored = value_of(connection, _key(token))
+    if stored is None:
         return None
-    state, name, papers, number, told = kept["dealing"]
-    found = AssigningJob(state, name, papers, number, tuple(told))
-    if not found.is_over and site.clock() - datetime.fromisoformat(kept["at"]) > _GIVEN_UP:
-        return found._replace(state=FAILED)
-    return found
+    state, name, papers, number, messages = stored["dealing"]
+    job = AssigningJob(state, name, papers, number, tuple(messages))
+    if not job.is_over and site.clock() - datetime.fromisoformat(stored["at"]) > _GIVEN_UP:
+        return job._replace(state=FAILED)
+    return job
 
 
 def _key(token: str) -> str:
@@ -110,12 +110,12 @@ def _store_state(site: Site, token: str, now: AssigningJob) -> None:
         put_value(connection, _key(token), {"dealing": list(now), "at": site.clock().isoformat()})
 
 
-def _run(site: Site, token: str, wanted: AssignmentRequest, by: str, what: str) -> None:
+def _run(site: Site, token: str, wanted: AssignmentRequest, by: str, event: str) -> None:
     begun = AssigningJob(RUNNING, wanted.name, wanted.papers)
     try:
-        found = _assigned_in_process(site, wanted)
-        number = _store(site, wanted, found, by, what)
-        _store_state(site, token, begun._replace(state=DONE, number=number, messages=tuple(found.notes)))
+        outcome = _assigned_in_process(site, wanted)
+        number = _store(site, wanted, outcome, by, event)
+        _store_state(site, token, begun._replace(state=DONE, number=number, messages=tuple(outcome.notes)))
     except CourseworkError as fault:
         _store_state(site, token, begun._replace(state=FAILED, messages=(str(fault),)))
     except Exception as fault:  # nobody waits for this thread: what happened is told on the page
@@ -128,26 +128,30 @@ def _assigned_in_process(site: Site, wanted: AssignmentRequest) -> _Outcome:
     if wanted.papers <= _ALONE or workers(2) < 2:
         return _assigned(root, wanted)
     with processes(1) as submit:
-        found: _Outcome = submit(_assigned, root, wanted).result()
-        return found
+        outcome: _Outcome = submit(_assigned, root, wanted).result()
+        return outcome
 
 
 def _assigned(root: str, wanted: AssignmentRequest) -> _Outcome:
     course = opened(root, Variant)
-    asked = assignment_of(wanted.name, wanted.table, course)
-    found = deal(course, asked, wanted.students, [wanted.lang], wanted.before, wanted.make_up)
-    return _Outcome(issued_content(found.issues, asked, asked.secret or found.secret), found.notes)
+    definition = assignment_of(wanted.name, wanted.table, course)
+    assigned = deal(course, definition, wanted.students, [wanted.lang], wanted.before, wanted.make_up)
+    return _Outcome(
+        issued_content(assigned.issues, definition, definition.secret or assigned.secret), assigned.notes
+    )
 
 
-def _store(site: Site, wanted: AssignmentRequest, found: _Outcome, by: str, what: str) -> int:
+def _store(site: Site, wanted: AssignmentRequest, outcome: _Outcome, by: str, event: str) -> int:
     """Store all issued variants in one transaction; return the assignment's id."""
     with site.store.begin() as connection:
-        number = put_issued(connection, found.content, wanted.name)
-        asked = {key: value for key, value in wanted.table.items() if key != SECRET}  # it has its own column
-        connection.execute(update(assignment).where(assignment.c.id == number).values(asked=asked))
+        number = put_issued(connection, outcome.content, wanted.name)
+        definition = {
+            key: value for key, value in wanted.table.items() if key != SECRET
+        }  # it has its own column
+        connection.execute(update(assignment).where(assignment.c.id == number).values(asked=definition))
         prepare_soon(site, connection, number)
         note(
-            connection, site.clock(), by, what, assignment=wanted.name, students=len(wanted.students),
+            connection, site.clock(), by, event, assignment=wanted.name, students=len(wanted.students),
             make_up=list(wanted.make_up),
         )  # fmt: skip
     return number

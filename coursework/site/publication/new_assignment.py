@@ -52,26 +52,26 @@ def read(request: Request) -> NewAssignment:
     BadInput
         It says what makes no sense, or what there is already.
     """
-    said = request.words["publishing"]["faults"]
+    texts = request.words["publishing"]["faults"]
     if sent := _sent(request, "issued"):
         return _issued(request, sent)
     name, table, source = _stated(request)
     _check_new(request, name)
-    asked = assignment_of(name, table, request.site.course, source)
+    definition = assignment_of(name, table, request.site.course, source)
     students = roster(request)
     if not students:
-        raise BadInput(said["nobody"])
-    return NewAssignment(name, AssignmentRequest(name, table, students, spoken(request, asked)))
+        raise BadInput(texts["nobody"])
+    return NewAssignment(name, AssignmentRequest(name, table, students, spoken(request, definition)))
 
 
-def spoken(request: Request, asked: Assignment) -> str:
+def spoken(request: Request, definition: Assignment) -> str:
     """Return the reader's language if all the exercises have it, or else the course's default."""
-    all_have = all(request.lang in request.site.course[name].languages for name in asked.names)
+    all_have = all(request.lang in request.site.course[name].languages for name in definition.names)
     return request.lang if all_have else request.site.languages[0]
 
 
 def _sent(request: Request, field: str) -> Upload | None:
-    return next((one for one in request.form.files.get(field, ()) if one.data), None)
+    return next((upload for upload in request.form.files.get(field, ()) if upload.data), None)
 
 
 def _issued(request: Request, sent: Upload) -> NewAssignment:
@@ -109,21 +109,21 @@ def _stated(request: Request) -> tuple[str, dict[str, Any], str]:
 
 
 def _chosen(request: Request) -> tuple[str, dict[str, Any], str]:
-    form, said = request.form, request.words["publishing"]["faults"]
-    title, known = form.text("title").strip()[:200], set(request.site.course.names)
+    form, texts = request.form, request.words["publishing"]["faults"]
+    title, names_of_course = form.text("title").strip()[:200], set(request.site.course.names)
     name = _name(form.text("name") or title)
-    exercises = [one for one in form.texts.get("exercise", ()) if one in known]
+    exercises = [item for item in form.texts.get("exercise", ()) if item in names_of_course]
     if not name or not title:
-        raise BadInput(said["name"])
+        raise BadInput(texts["name"])
     if not exercises:
-        raise BadInput(said["exercises"])
-    table: dict[str, Any] = {"title": title, "exercises": [{"name": one} for one in exercises]}
+        raise BadInput(texts["exercises"])
+    table: dict[str, Any] = {"title": title, "exercises": [{"name": item} for item in exercises]}
     if form.text("instructions").strip():
         table["instructions"] = form.text("instructions").strip()[:4000]
     if form.text("mark_of").strip():
-        table["mark"] = {"of": _number(form.text("mark_of"), said["mark"])}
+        table["mark"] = {"of": _number(form.text("mark_of"), texts["mark"])}
     if (versions := form.text("versions", "each")) != "each":
-        table["versions"] = int(_number(versions, said["versions"]))
+        table["versions"] = int(_number(versions, texts["versions"]))
     return name, table, ""
 
 
@@ -145,9 +145,9 @@ def _name(text: str) -> str:
 def _as_json(value: Any) -> Any:
     """Return a table of TOML as JSON, with dates as texts."""
     if isinstance(value, dict):
-        return {key: _as_json(one) for key, one in value.items()}
+        return {key: _as_json(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [_as_json(one) for one in value]
+        return [_as_json(item) for item in value]
     return value.isoformat() if isinstance(value, (date, time)) else value
 
 
@@ -180,18 +180,18 @@ def roster(request: Request) -> list[Student]:
 def students_with_accounts(request: Request) -> list[Student]:
     """Everybody who signs in as a student, so named that the very same people are meant."""
     with request.site.store.reading() as connection:
-        found = {one.id: one for one in people(connection) if one.role == "student"}.values()
-    often = Counter(one.name for one in found)
-    return [_student(one, apart=often[one.name] > 1) for one in found]
+        persons = {person.id: person for person in people(connection) if person.role == "student"}.values()
+    often = Counter(person.name for person in persons)
+    return [_student(person, apart=often[person.name] > 1) for person in persons]
 
 
-def _student(one: Any, *, apart: bool) -> Student:
-    name = f"{one.name} ({one.who})" if apart else one.name
-    plain = Student(name, one.lang, dict(one.columns or {}))
-    if plain.who == one.who:
+def _student(person: Any, *, apart: bool) -> Student:
+    name = f"{person.name} ({person.who})" if apart else person.name
+    plain = Student(name, person.lang, dict(person.columns or {}))
+    if plain.who == person.who:
         return plain
-    column = "email" if "@" in one.who else "number"
-    return Student(name, one.lang, {column: one.who, **plain.columns})
+    column = "email" if "@" in person.who else "number"
+    return Student(name, person.lang, {column: person.who, **plain.columns})
 
 
 # ------------------------------------------------------------------------ exercises
@@ -213,8 +213,8 @@ def _exercise_groups(course: Course[Any], lang: str) -> Iterator[ExerciseGroup]:
     yield ExerciseGroup("…", _titled(course, [name for name in folder.names if name not in placed], lang))
 
 
-def _titled(course: Course[Any], found: Sequence[str], lang: str) -> tuple[tuple[str, str], ...]:
-    return tuple((name, _title(course, name, lang)) for name in found)
+def _titled(course: Course[Any], chosen: Sequence[str], lang: str) -> tuple[tuple[str, str], ...]:
+    return tuple((name, _title(course, name, lang)) for name in chosen)
 
 
 def _title(course: Course[Any], name: str, lang: str) -> str:

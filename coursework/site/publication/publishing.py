@@ -83,25 +83,25 @@ def listed_assignments(connection: Connection, number: int | None = None) -> lis
         assignment.c.asked,
         assignment.c.published,
     )
-    found = select(*columns).order_by(assignment.c.id.desc())
+    query = select(*columns).order_by(assignment.c.id.desc())
     if number is not None:
-        found = found.where(assignment.c.id == number)
+        query = query.where(assignment.c.id == number)
     many = select(variant.c.assignment_id, func.count(dealt.c.student.distinct())).select_from(
         dealt.join(variant)
     )
     many = many.where(dealt.c.person_id.is_not(None)).group_by(variant.c.assignment_id)
     students = _by_number(connection, many)
-    came = select(delivery.c.assignment_id, func.count(delivery.c.person_id.distinct())).group_by(
+    submitted = select(delivery.c.assignment_id, func.count(delivery.c.person_id.distinct())).group_by(
         delivery.c.assignment_id
     )
-    handed = _by_number(connection, came)
+    handed = _by_number(connection, submitted)
     return [
         ListedAssignment(
             row.id, row.name, row.stated or {}, row.asked,
             None if row.published is None else Publication.of(row.published),
             students.get(row.id, 0), handed.get(row.id, 0),
         )
-        for row in connection.execute(found)
+        for row in connection.execute(query)
     ]  # fmt: skip
 
 
@@ -111,10 +111,10 @@ def _by_number(connection: Connection, counted: Select[Any]) -> dict[int, int]:
 
 
 def assignment_here(request: Request, connection: Connection) -> ListedAssignment:
-    found = listed_assignments(connection, int(request.path_params["number"]))
-    if not found:
+    matches = listed_assignments(connection, int(request.path_params["number"]))
+    if not matches:
         raise HTTPException("page", 404)
-    return found[0]
+    return matches[0]
 
 
 # ------------------------------------------------------------------------- lists
@@ -122,9 +122,9 @@ def assignment_here(request: Request, connection: Connection) -> ListedAssignmen
 
 def list_page(request: Request) -> Response:
     with request.site.store.reading() as connection:
-        found = listed_assignments(connection)
-    phases = {one.id: _phase(one.publication, request.received_at) for one in found}
-    return request.render("site_publish_list", found=found, phases=phases, lang_of=request.lang)
+        assignments = listed_assignments(connection)
+    phases = {item.id: _phase(item.publication, request.received_at) for item in assignments}
+    return request.render("site_publish_list", found=assignments, phases=phases, lang_of=request.lang)
 
 
 def _phase(publication: Publication | None, clock: datetime) -> str:
@@ -136,13 +136,13 @@ def new(request: Request) -> Response:
     if not request.is_post:
         return _new_page(request)
     try:
-        made = new_assignment.read(request)
+        form = new_assignment.read(request)
     except BadInput as fault:
         return _new_page(request, str(fault), 422)
-    if made.issued is not None:
-        return Response(redirect=f"/desk/assignments/{_take_in(request, made)}")
-    assert made.wanted is not None
-    token = assigning.begin(request.site, made.wanted, request.user.name, "assignment dealt")
+    if form.issued is not None:
+        return Response(redirect=f"/desk/assignments/{_take_in(request, form)}")
+    assert form.wanted is not None
+    token = assigning.begin(request.site, form.wanted, request.user.name, "assignment dealt")
     return Response(redirect=f"/desk/assignments/dealing/{token}")
 
 
@@ -154,23 +154,25 @@ def _new_page(request: Request, problem: str = "", status: int = 200) -> Respons
     )  # fmt: skip
 
 
-def _take_in(request: Request, made: new_assignment.NewAssignment) -> int:
+def _take_in(request: Request, new_one: new_assignment.NewAssignment) -> int:
     """Store an assignment that was issued elsewhere; return its id."""
-    assert made.issued is not None
+    assert new_one.issued is not None
     with request.site.store.begin() as connection:
-        number = put_issued(connection, made.issued, made.name)
-        note(connection, request.received_at, request.user.name, "assignment taken in", assignment=made.name)
+        number = put_issued(connection, new_one.issued, new_one.name)
+        note(
+            connection, request.received_at, request.user.name, "assignment taken in", assignment=new_one.name
+        )
     return number
 
 
 def assigning_page(request: Request) -> Response:
     """Return the state of a job; redirect to the assignment when it is done, unless there is a message."""
-    found = assigning.assigning_job(request.site, str(request.path_params["token"]))
-    if found is None:
+    job = assigning.assigning_job(request.site, str(request.path_params["token"]))
+    if job is None:
         raise HTTPException("page", 404)
-    if found.state == assigning.DONE and not found.messages:
-        return Response(redirect=f"/desk/assignments/{found.number}")
-    return request.render("site_publish_dealing", dealing=found)
+    if job.state == assigning.DONE and not job.messages:
+        return Response(redirect=f"/desk/assignments/{job.number}")
+    return request.render("site_publish_dealing", dealing=job)
 
 
 # ------------------------------------------------------------------- one assignment
@@ -178,27 +180,27 @@ def assigning_page(request: Request) -> Response:
 
 def assignment_page(request: Request) -> Response:
     with request.site.store.reading() as connection:
-        one = assignment_here(request, connection)
-    return _page(request, one, one.publication or Publication())
+        listed = assignment_here(request, connection)
+    return _page(request, listed, listed.publication or Publication())
 
 
 def _page(
     request: Request,
-    one: ListedAssignment,
+    listed: ListedAssignment,
     publication: Publication,
     faults: Sequence[Fault] = (),
     problem: str = "",
 ) -> Response:
     with request.site.store.reading() as connection:
-        people = holders(connection, one.id)
-        more = extensions(connection, one.id)
-        noted = _noted(connection, one.name)
+        people = holders(connection, listed.id)
+        more = extensions(connection, listed.id)
+        noted = _noted(connection, listed.name)
     return request.render(
-        "site_publish", 422 if faults or problem else 200, one=one, said_now=publication, faults=faults, problem=problem,
-        people=people, extensions=more, noted=noted, phase=_phase(one.publication, request.received_at), zone=zone_name(request.received_at),
+        "site_publish", 422 if faults or problem else 200, one=listed, said_now=publication, faults=faults, problem=problem,
+        people=people, extensions=more, noted=noted, phase=_phase(listed.publication, request.received_at), zone=zone_name(request.received_at),
         field=field_text, moment=lambda at: "" if at is None else moment_text(at, request.lang),
         exact=lambda at: exact_text(at, request.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
-        sittings=SITTINGS, sittings_now=one.stated.get("sittings", SITTINGS[0]), most_tries=MOST_TRIES,
+        sittings=SITTINGS, sittings_now=listed.stated.get("sittings", SITTINGS[0]), most_tries=MOST_TRIES,
     )  # fmt: skip
 
 
@@ -215,7 +217,7 @@ class PaperHolder(NamedTuple):
 
 def holders(connection: Connection, number: int) -> list[PaperHolder]:
     """Return the students with a paper, in the order of issue."""
-    found = (
+    query = (
         select(
             dealt.c.person_id, dealt.c.student, func.max(variant.c.letter), func.max(dealt.c.sitting), func.max(dealt.c.lang),
             func.min(dealt.c.place),
@@ -225,27 +227,29 @@ def holders(connection: Connection, number: int) -> list[PaperHolder]:
         .group_by(dealt.c.person_id, dealt.c.student)
         .order_by(func.min(dealt.c.place))
     )  # fmt: skip
-    came = select(delivery.c.person_id, func.count()).where(delivery.c.assignment_id == number)
-    done = _by_number(connection, came.group_by(delivery.c.person_id))
+    submitted = select(delivery.c.person_id, func.count()).where(delivery.c.assignment_id == number)
+    done = _by_number(connection, submitted.group_by(delivery.c.person_id))
     return [
         PaperHolder(row[0], row[1], row[2], row[3], row[4], done.get(row[0], 0))
-        for row in connection.execute(found)
+        for row in connection.execute(query)
     ]
 
 
 def _noted(connection: Connection, name: str) -> list[Any]:
     """Return the audit entries of an assignment, the latest first."""
-    found = select(audit).order_by(audit.c.id.desc()).limit(500)
-    own = [row for row in connection.execute(found) if row.about.get("assignment") == name]
-    return own[:_NOTED]
+    query = select(audit).order_by(audit.c.id.desc()).limit(500)
+    entries = [row for row in connection.execute(query) if row.about.get("assignment") == name]
+    return entries[:_NOTED]
 
 
-def _note(request: Request, connection: Connection, one: ListedAssignment, what: str, **about: Any) -> None:
-    note(connection, request.received_at, request.user.name, what, assignment=one.name, **about)
+def _note(
+    request: Request, connection: Connection, listed: ListedAssignment, event: str, **about: Any
+) -> None:
+    note(connection, request.received_at, request.user.name, event, assignment=listed.name, **about)
 
 
-def _redirect(one: ListedAssignment) -> Response:
-    return Response(redirect=f"/desk/assignments/{one.id}")
+def _redirect(listed: ListedAssignment) -> Response:
+    return Response(redirect=f"/desk/assignments/{listed.id}")
 
 
 # --------------------------------------------------------------------- publishing
@@ -255,20 +259,20 @@ def publish_assignment(request: Request) -> Response:
     """Publish it with what the form says, or say what makes no sense; published again, by the new dates."""
     _check_is_post(request)
     with request.site.store.reading() as connection:
-        one = assignment_here(request, connection)
+        listed = assignment_here(request, connection)
     publication, faults = publication_of(request.form)
     faults += publication.faults()
     sittings = request.form.text("sittings", SITTINGS[0])
     if sittings not in SITTINGS:
         faults.append(Fault("sittings", "choice"))
     if faults:
-        return _page(request, one, publication, faults)
+        return _page(request, listed, publication, faults)
     with request.site.store.begin() as connection:
-        publish(connection, one.id, publication)
-        say_sittings(connection, one.id, sittings)
-        prepare_soon(request.site, connection, one.id)
-        _note(request, connection, one, "assignment published", **publication.as_json(), sittings=sittings)
-    return _redirect(one)
+        publish(connection, listed.id, publication)
+        say_sittings(connection, listed.id, sittings)
+        prepare_soon(request.site, connection, listed.id)
+        _note(request, connection, listed, "assignment published", **publication.as_json(), sittings=sittings)
+    return _redirect(listed)
 
 
 def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
@@ -285,22 +289,22 @@ def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
     def number(name: str, kind: Any, usual: Any) -> Any:
         text = form.text(name).strip().replace(",", ".")
         try:
-            found = kind(text) if text else usual
-            if found is not None and not math.isfinite(found):
+            publication = kind(text) if text else usual
+            if publication is not None and not math.isfinite(publication):
                 raise ValueError(text)
-            return found
+            return publication
         except (ValueError, OverflowError):
             faults.append(Fault(name, "number"))
             return usual
 
-    def choice(name: str, known: Sequence[str], usual: str) -> str:
-        told = form.text(name, usual)
-        if told not in known:
+    def choice(name: str, choices: Sequence[str], usual: str) -> str:
+        chosen = form.text(name, usual)
+        if chosen not in choices:
             faults.append(Fault(name, "choice"))
-        return told if told in known else usual
+        return chosen if chosen in choices else usual
 
     usual = Publication()
-    found = Publication(
+    publication = Publication(
         opens=moment("opens"),
         closes=moment("closes"),
         tries=number("tries", int, None),
@@ -313,46 +317,54 @@ def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
         answers_on=moment("answers_on"),
         takes_saved=bool(form.text("takes_saved")),
     )
-    return found, faults
+    return publication, faults
 
 
 def unpublish(request: Request) -> Response:
     """Unpublish it: no student sees it any more; what was handed in stays."""
     _check_is_post(request)
     with request.site.store.begin() as connection:
-        one = assignment_here(request, connection)
-        publish(connection, one.id, None)
-        drop_prepared(connection, one.id)
-        _note(request, connection, one, "assignment unpublished")
-    return _redirect(one)
+        listed = assignment_here(request, connection)
+        publish(connection, listed.id, None)
+        drop_prepared(connection, listed.id)
+        _note(request, connection, listed, "assignment unpublished")
+    return _redirect(listed)
 
 
 def extend_assignment(request: Request) -> Response:
     """Give one person an extension, with its reason."""
     _check_is_post(request)
     with request.site.store.reading() as connection:
-        one = assignment_here(request, connection)
+        listed = assignment_here(request, connection)
         holder = next(
-            (h for h in holders(connection, one.id) if str(h.person) == request.form.text("person")), None
+            (h for h in holders(connection, listed.id) if str(h.person) == request.form.text("person")), None
         )
-    said = request.words["publishing"]["faults"]
+    texts = request.words["publishing"]["faults"]
     reason = request.form.text("reason").strip()[:500]
-    told, faults = publication_of(
+    stated, faults = publication_of(
         Form({"closes": [request.form.text("closes")], "tries": [request.form.text("tries")]})
     )
     if holder is None:
-        return _page(request, one, one.publication or Publication(), problem=said["who"])
-    if faults or (told.tries is not None and not 1 <= told.tries <= MOST_TRIES):
-        return _page(request, one, one.publication or Publication(), problem=said["extension"])
+        return _page(request, listed, listed.publication or Publication(), problem=texts["who"])
+    if faults or (stated.tries is not None and not 1 <= stated.tries <= MOST_TRIES):
+        return _page(request, listed, listed.publication or Publication(), problem=texts["extension"])
     if not reason:
-        return _page(request, one, one.publication or Publication(), problem=said["reason"])
-    more = Extension(told.closes, told.tries, reason, request.user.name, request.received_at)
+        return _page(request, listed, listed.publication or Publication(), problem=texts["reason"])
+    more = Extension(stated.closes, stated.tries, reason, request.user.name, request.received_at)
     with request.site.store.begin() as connection:
-        extend(connection, one.id, holder.person, more)
-        prepare_soon(request.site, connection, one.id, holder.person)
-        closes = told.closes.isoformat() if told.closes else ""
-        _note(request, connection, one, "extension", student=holder.student, closes=closes, tries=told.tries)
-    return _redirect(one)
+        extend(connection, listed.id, holder.person, more)
+        prepare_soon(request.site, connection, listed.id, holder.person)
+        closes = stated.closes.isoformat() if stated.closes else ""
+        _note(
+            request,
+            connection,
+            listed,
+            "extension",
+            student=holder.student,
+            closes=closes,
+            tries=stated.tries,
+        )
+    return _redirect(listed)
 
 
 def _check_is_post(request: Request) -> None:
@@ -375,22 +387,25 @@ def make_up(request: Request) -> Response:
     return _deal_more(request, [], (request.form.text("student"),), "make-up dealt")
 
 
-def _deal_more(request: Request, students: Sequence[Student], names: Sequence[str], what: str) -> Response:
+def _deal_more(request: Request, students: Sequence[Student], names: Sequence[str], event: str) -> Response:
     with request.site.store.reading() as connection:
-        one = assignment_here(request, connection)
-        content = issued_content(connection, one.id, secret=True)
-    if one.definition is None:
+        listed = assignment_here(request, connection)
+        content = issued_content(connection, listed.id, secret=True)
+    if listed.definition is None:
         return _page(
-            request, one, one.publication or Publication(), problem=request.words["publishing"]["no_file"]
+            request,
+            listed,
+            listed.publication or Publication(),
+            problem=request.words["publishing"]["no_file"],
         )
     issued = assigning.holders(content)
-    known = {student.who for student in issued}
-    everybody = [*issued, *(student for student in students if student.who not in known)]
+    known_students = {student.who for student in issued}
+    everybody = [*issued, *(student for student in students if student.who not in known_students)]
     wanted = AssignmentRequest(
-        one.name, one.definition, everybody, request.site.languages[0], content, tuple(names)
+        listed.name, listed.definition, everybody, request.site.languages[0], content, tuple(names)
     )
     return Response(
-        redirect=f"/desk/assignments/dealing/{assigning.begin(request.site, wanted, request.user.name, what)}"
+        redirect=f"/desk/assignments/dealing/{assigning.begin(request.site, wanted, request.user.name, event)}"
     )
 
 
@@ -400,72 +415,72 @@ def _deal_more(request: Request, students: Sequence[Student], names: Sequence[st
 def preview(request: Request) -> Response:
     """Return the page as students will see it, with a variant that is issued to nobody."""
     with request.site.store.reading() as connection:
-        one = assignment_here(request, connection)
-        issued = issued_of(connection, one.id)
-    asked = _definition(request, one, issued)
-    made = deal(
+        listed = assignment_here(request, connection)
+        issued = issued_of(connection, listed.id)
+    definition = _definition(request, listed, issued)
+    assigned = deal(
         request.site.course,
-        asked,
+        definition,
         [Student(request.words["publishing"]["nobody"])],
-        [new_assignment.spoken(request, asked)],
+        [new_assignment.spoken(request, definition)],
         secret=Secret(request.site.secret[:16]).under("preview"),
     )
-    student = made.issues[0].student
-    own = StudentPaper(
+    student = assigned.issues[0].student
+    paper = StudentPaper(
         request.site.course,
-        content_of(made.issues, asked),
+        content_of(assigned.issues, definition),
         student,
         request.lang,
-        asked.instructions,
+        definition.instructions,
     )
-    said = one.publication or Publication()
+    publication = listed.publication or Publication()
     state = AssignmentState(
-        Place(one.id, one.name, asked.stated(), student, said, None),
+        Place(listed.id, listed.name, definition.stated(), student, publication, None),
         request.lang,
-        said.now(request.received_at),
+        publication.now(request.received_at),
         (),
         None,
     )
-    return _seen(request, one, state, own, request.words["publishing"]["look_preview"])
+    return _seen(request, listed, state, paper, request.words["publishing"]["look_preview"])
 
 
-def _definition(request: Request, one: ListedAssignment, issued: Issued) -> Assignment:
+def _definition(request: Request, listed: ListedAssignment, issued: Issued) -> Assignment:
     """Return the assignment as its file states it; for one issued elsewhere, as its records state it."""
-    if one.definition is not None:
-        return assignment_of(one.name, one.definition, request.site.course)
+    if listed.definition is not None:
+        return assignment_of(listed.name, listed.definition, request.site.course)
     exercises = []
     for exercise in issued.exercises:
         record = next(record for (name, _), record in issued.records.items() if name == exercise)
         points = {str(part["id"]): float(part["points"]) for part in record["parts"]}
         exercises.append(AskedExercise(exercise, tuple(points), points))
-    return Assignment(one.name, tuple(exercises), title=dict(one.stated.get("title") or {}))
+    return Assignment(listed.name, tuple(exercises), title=dict(listed.stated.get("title") or {}))
 
 
 def as_somebody(request: Request) -> Response:
     """Return the page as a student sees it, read-only; without the student's drafts."""
     with request.site.store.begin() as connection:
-        one = assignment_here(request, connection)
+        listed = assignment_here(request, connection)
         person_id = int(request.path_params["person"])
-        found = places(connection, person_id, one.id)
-        if not found:
+        matches = places(connection, person_id, listed.id)
+        if not matches:
             raise HTTPException("page", 404)
-        _note(request, connection, one, "seen as a student", student=found[0].student)
-        place = found[0]._replace(publication=found[0].publication or Publication())
-        own = student_paper(connection, request.site.course, place, person_id, request.lang)
-        theirs = state_of(replace(request, person=request.user._replace(id=person_id)), place, connection)
-    look = request.words["publishing"]["look_as"].format(place.student)
-    if theirs.phase is Phase.TO_COME or one.publication is None:
+        _note(request, connection, listed, "seen as a student", student=matches[0].student)
+        personal = matches[0]._replace(publication=matches[0].publication or Publication())
+        paper = student_paper(connection, request.site.course, personal, person_id, request.lang)
+        theirs = state_of(replace(request, person=request.user._replace(id=person_id)), personal, connection)
+    look = request.words["publishing"]["look_as"].format(personal.student)
+    if theirs.phase is Phase.TO_COME or listed.publication is None:
         look += " " + request.words["publishing"]["look_hidden"]
-    return _seen(request, one, theirs, own, look)
+    return _seen(request, listed, theirs, paper, look)
 
 
 def _seen(
-    request: Request, one: ListedAssignment, state: AssignmentState, own: StudentPaper, look: str
+    request: Request, listed: ListedAssignment, state: AssignmentState, paper: StudentPaper, look: str
 ) -> Response:
-    pieces = own.pieces()
+    pieces = paper.pieces()
     return request.render(
         "site_assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(request.received_at),
-        back=f"/desk/assignments/{one.id}", paper_head=Markup(pieces.head), paper_body=Markup(pieces.body),
+        back=f"/desk/assignments/{listed.id}", paper_head=Markup(pieces.head), paper_body=Markup(pieces.body),
     )  # fmt: skip
 
 
