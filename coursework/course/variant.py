@@ -278,6 +278,12 @@ class Variant:
         text = self.exercise.texts.constants("solutions", self.lang).texts.get(name)
         return self.solution_text.section(name).text if text is None else text
 
+    @property
+    def stated(self) -> dict[str, tuple[float, str]]:
+        """The numbers that the statement gives by their names, each with its unit."""
+        units = self.exercise.units
+        return {n: (v, units[n]) for n, v in self.given.items() if not isinstance(v, str)}
+
     def reference(self, quantity: str) -> Any:
         """The right value of an asked quantity."""
         return self.key.reference[quantity]

@@ -51,6 +51,10 @@ class Asking(Protocol):
     def letters(self, part: Any) -> Mapping[str, str]:
         """The letters of a choice by case, in the order printed; none where the sheet has none."""
 
+    @property
+    def stated(self) -> Mapping[str, tuple[float, str]]:
+        """The numbers that the statement gives by their names, each with its unit."""
+
     def reference(self, quantity: str) -> Any:
         """A reference value: a vector has as many coordinates as its reference."""
 

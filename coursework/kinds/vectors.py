@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
 from coursework.language.numbers import significant
@@ -22,11 +22,22 @@ class Coordinates(Kind):
 
     family = "point"
     rank = 1
+    faults: ClassVar[Mapping[str, str]] = {
+        "unknown_symbol": "not_coordinates",
+        "not_a_number": "not_coordinates",
+    }
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        from coursework.reading.points import read_point
+        from coursework.reading.points import read_point, worked_out
+        from coursework.reading.reading import Reading
 
-        return read_point(answer, part.unit, len(asking.reference(part.quantity)))
+        count = len(asking.reference(part.quantity))
+        reading = read_point(answer, part.unit, count)
+        if reading.status != "unreadable":
+            return reading
+        values = worked_out(answer, part.unit, count, asking.stated)
+        read_as = "(" + "; ".join(f"{value:.6g}" for value in values) + ")"
+        return Reading(reading.text, "read", (values,), (read_as,), unit_given=True) if values else reading
 
     def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
         return axes(len(asking.reference(part.quantity)))

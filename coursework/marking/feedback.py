@@ -17,6 +17,8 @@ from coursework.model import Part
 from coursework.reading.choices import read_choice
 from coursework.reading.labels import head
 from coursework.reading.reading import Reading
+from coursework.reading.spelling import plain_spelling, spelled_out
+from coursework.reading.vocabulary import vocabulary_of
 
 if TYPE_CHECKING:
     from coursework.course.exercise import CourseExercise
@@ -117,7 +119,11 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
     if reading.status == "unreadable":
         kinds = table["unreadable"]
         code = part.sort.faults.get(reading.code, reading.code)
+        if code == "unknown_symbol" and (stated := _to_eliminate(variant, part, reading.found)):
+            code, pieces["found"] = "to_eliminate", stated
         sentence = kinds.get(code, kinds["otherwise"])
+        if "{symbols}" in sentence:
+            pieces["symbols"] = listed([f"`{name}`" for name in part.variables], variant.lang, "and")
         if "{offered}" in sentence:
             pieces["offered"] = _offered(variant, part)
         if code == "unknown_unit" and not unit:
@@ -127,6 +133,18 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
     else:
         sentence = table["missing"]
     return Said(sentence, pieces)
+
+
+def _to_eliminate(variant: Variant, part: Part, run: str) -> str:
+    """Return the symbol of the statement in a run of letters that an equation must not contain; nothing where none is."""
+    stated = {*variant.given, *(p.quantity for p in variant.parts if p.sort.is_scalar)}
+    stated |= {name for p in variant.parts for name in p.variables}
+    vocabulary, run = vocabulary_of(tuple(sorted(stated))), spelled_out(plain_spelling(run)).strip()
+    while run and (known := vocabulary.first(run)):
+        if known[1] == "variable" and known[2] not in part.variables:
+            return f"${symbol(variant, known[2])}$"
+        run = run[known[0] :]
+    return ""
 
 
 def shortened(answer: str) -> str:

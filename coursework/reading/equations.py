@@ -16,6 +16,7 @@ from coursework.reading.expressions import plain_expression
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.reading.spelling import plain_spelling, shorten
 from coursework.reading.trees import Expression, Operation, numbers_in_degrees
+from coursework.reading.units import plain_unit
 from coursework.reading.vocabulary import INVERSE, MAX_LENGTH, Unreadable, Value
 
 
@@ -124,6 +125,23 @@ def value_or_nan(expression: Expression, values: Mapping[str, np.ndarray]) -> Va
 _parsed_once = lru_cache(maxsize=1024)(plain_equation)
 
 
+_TITLE = re.compile(r"[^=:]{1,40}:\s*(?!=)")
+_BEHIND = re.compile(r"(?<=\S)\s+\(?(\S+?)\)?$")
+
+
+def _read(plain: str, variables: tuple[str, ...]) -> Equation:
+    """An equation, or what is left of it without a title before it, ``on y: …``, and without a unit behind it."""
+    try:
+        return _parsed_once(plain, variables)
+    except Unreadable:
+        if title := _TITLE.match(plain):
+            return _read(plain[title.end() :], variables)
+        behind = _BEHIND.search(plain)
+        if behind is None or plain_unit(behind[1]) is None or plain[: behind.start()].endswith("="):
+            raise
+    return _parsed_once(plain[: behind.start()], variables)
+
+
 # --- equations --------------------------------------------------------------------------
 
 
@@ -135,7 +153,7 @@ def read_equation(text: Any, variables: Iterable[str]) -> Reading:
 
     def read(plain: str) -> Reading:
         plain = plain.rstrip(" .;,")
-        equation = _parsed_once(plain, tuple(variables))
+        equation = _read(plain, tuple(variables))
         if not equation.variables:  # 0 = 0: nothing is said of the statement's symbols
             raise Stop("not_a_number", plain)
         return Reading(text, "read", (equation,), (plain,))

@@ -38,6 +38,12 @@ _NUMBER = re.compile(
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*")
 _TIMES = re.compile(r"(?<=[0-9)])\s*[xX]\s*(?=[0-9(])|(?<=[0-9A-Za-z)])\s+[xX]\s+(?=[0-9A-Za-z(\\])")
 _DOT_OF_PRODUCT = re.compile(r"(?<=[A-Za-z0-9)])\s*\.\s*(?=[A-Za-z(\\√])")  #: r2.cos(theta2)
+_NAME = r"\s*(?:\(\s*)?(?P<name{0}>[A-Za-z]\w*)(?:\s*\))?\s*"
+_SECOND = r"\s*(?P<second{0}>\^\s*(?:2|\(2\)|\{{2\}}))?"
+_DERIVATIVE = re.compile(
+    rf"\\[dt]?frac\s*\{{\s*d{_SECOND.format(1)}{_NAME.format(1)}\}}\s*\{{\s*d\s*t(?:\s*\^\s*(?:2|\(2\)|\{{2\}}))?\s*\}}"
+    rf"|(?<![A-Za-z0-9_])d{_SECOND.format(2)}{_NAME.format(2)}/\s*d\s*t(?![A-Za-z0-9_])(?:\s*\^\s*(?:2|\(2\)))?"
+)  #: ``dphi/dt``, ``d(phi)/dt``, ``d^2 phi/dt^2``, ``\\frac{d phi}{dt}``
 _FRACTION = re.compile(r"\\[dt]?frac\s*")
 _MINUS_ONE = re.compile(r"-\s*1(?![0-9.,])|\(\s*-\s*1\s*\)|\{\s*-\s*1\s*\}")
 _GROUPS = {"(": ")", "[": "]", "{": "}"}
@@ -306,6 +312,12 @@ class _Parser:
         return argument
 
 
+def _rate(found: re.Match[str], vocabulary: Vocabulary) -> str:
+    """The name of the rate that a quotient of differentials is; itself where there is no such rate."""
+    name = f"{found['name1'] or found['name2']}_{'ddot' if found['second1'] or found['second2'] else 'dot'}"
+    return f" {name} " if vocabulary.variable(name) else found[0]
+
+
 def _cotangent(args: tuple[Operation, ...]) -> Operation:
     return Operation("product", "*/", (Operation("call", "cos", args), Operation("call", "sin", args)))
 
@@ -340,6 +352,7 @@ def plain_expression(plain: str, variables: Iterable[str] = (), text: str = "") 
     if vocabulary.variables and ("'" in plain or '"' in plain):
         plain = primes_as_dots(plain)
     if vocabulary.variables:
+        plain = _DERIVATIVE.sub(lambda found: _rate(found, vocabulary), plain)
         plain = _DOT_OF_PRODUCT.sub("*", plain)
     if "x" not in vocabulary.variables:
         plain = _TIMES.sub("*", plain)

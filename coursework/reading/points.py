@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from numbers import Real
 from typing import Any
@@ -13,9 +13,9 @@ from coursework.reading.digits import in_unit, written_amount
 from coursework.reading.expressions import plain_expression
 from coursework.reading.numbers import NAME, RATIO, read_amounts, says_value, target_unit, without_name
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
-from coursework.reading.spelling import plain_spelling, shorten
-from coursework.reading.units import Unit, plain_unit
-from coursework.reading.vocabulary import Unreadable
+from coursework.reading.spelling import plain_spelling, shorten, unwrapped
+from coursework.reading.units import Unit, parse_unit, plain_unit, same_dimension
+from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
 
 # --- points -----------------------------------------------------------------------------
 
@@ -106,20 +106,24 @@ _TWO_SIGNS = re.compile(r"[+-]\s*[+-]")
 _MULTIPLE = re.compile(r"^(?:\\?(?:omega|lambda)|[ωλk])\s*[.*]?\s*(?=\()")  #: ``ω (x_a + z)``
 
 
-def _combination(text: str, count: int) -> tuple[float, ...] | None:
-    """The vector that a sum of vectors of the base is, ``x_a + 1.36 z``, ``(3x - 4y)/5``, or ``None``."""
-    names = tuple("xyz"[:count])
+def _combination(
+    text: str, count: int, symbols: Mapping[str, float] | None = None
+) -> tuple[float, ...] | None:
+    """The vector that a sum of vectors of the base is, ``x_a + 1.36 z``, ``(3x - 4y)/5``, ``(R + r) x``, or ``None``."""
+    names, symbols = tuple("xyz"[:count]), symbols or {}
     bare = _MULTIPLE.sub("", text, count=1)
     spelled = _VECTOR.sub(lambda match: f" {match[1] or match[2]} ", bare)
     if spelled == bare or _TWO_SIGNS.search(bare):
         return None
     try:
-        expression = plain_expression(spelled.strip(), names)
-        values = [expression.evaluate(dict(zip(names, at, strict=True))) for at in _trials(count)]
+        expression = plain_expression(spelled.strip(), (*names, *symbols))
+        values = [
+            expression.evaluate({**symbols, **dict(zip(names, at, strict=True))}) for at in _trials(count)
+        ]
     except Unreadable:
         return None
     *columns, nothing, together = values
-    if isinstance(together, complex) or not expression.variables or nothing:
+    if isinstance(together, complex) or not expression.variables & {*names} or nothing:
         return None
     total = sum(t * c for t, c in zip(_TOGETHER, columns, strict=False))
     return tuple(columns) if math.isclose(together, total, rel_tol=1e-9, abs_tol=1e-12) else None
@@ -184,6 +188,47 @@ def read_point(text: Any, unit: str, count: int) -> Reading:
         raw = text_of(text)
         return Reading(raw, "unreadable", code="wrong_count", found=shorten(raw))
     return reading_of(text, lambda plain: _point_once(plain, text, target, count))
+
+
+def worked_out(
+    text: Any, unit: str, count: int, symbols: Mapping[str, tuple[float, str]]
+) -> tuple[float, ...]:
+    """The coordinates of a vector of formulas, ``(R + 2r, 0, 0)``, ``(R + 2r) x``, in ``unit``.
+
+    ``symbols`` are those of the statement, each with its value and unit. Nothing where it is no such vector.
+    """
+    if isinstance(text, (list, tuple)):
+        text = "[" + " ; ".join(map(text_of, text[: count + 1])) + "]"
+    if not isinstance(text, str) or len(text) > MAX_LENGTH:
+        return ()
+    plain, target = NAME.sub("", plain_spelling(unwrapped(text)).rstrip(" .;,"), count=1), parse_unit(unit)
+    values = {name: _in_unit_of(target, value, parse_unit(own)) for name, (value, own) in symbols.items()}
+    try:
+        inside, behind = _bare_point(plain)
+        stated = plain_unit(behind) if behind else target
+        is_same = stated is not None and same_dimension(stated, target)
+        found = [_values(pieces, values) for pieces in _splits(inside) if len(pieces) == count and is_same]
+    except (Stop, Unreadable):
+        found = []
+    return next(filter(None, found), ()) or _combination(plain, count, values) or ()
+
+
+def _in_unit_of(target: Unit, value: float, own: Unit) -> float:
+    """A given value in the units of length and angle that a formula for a target counts in."""
+    if own.is_angle:
+        return value * own.factor
+    if target.dimension == RATIO:
+        return value
+    length = target.factor if target.dimension[0] == 1 else 1.0
+    return float(value * own.factor / length ** own.dimension[0])
+
+
+def _values(pieces: Sequence[str], symbols: Mapping[str, float]) -> tuple[float, ...]:
+    """The values of formulas, and of numbers beside them; nothing where none is a formula."""
+    formulas = [plain_expression(piece.strip(), symbols) for piece in pieces]
+    values = [formula.evaluate(symbols) for formula in formulas]
+    is_real = all(isinstance(value, float) and math.isfinite(value) for value in values)
+    return tuple(values) if is_real and any(formula.variables for formula in formulas) else ()
 
 
 #: Of a class many write the same: each is read once.

@@ -119,7 +119,8 @@ def as_typed(piece: str, text: str) -> str:
         if text[start].isspace():
             continue
         for end in range(len(text), start, -1):
-            if plain_spelling(text[start:end]) == piece:
+            plain = plain_spelling(text[start:end])
+            if piece in (plain, spelled_out(plain).strip()):
                 return text[start:end].strip()
     return piece
 
@@ -131,12 +132,17 @@ _SUBSCRIPT = re.compile(r"\s*_\s*\{\s*([A-Za-z0-9_]*)\s*\}")
 _COMMAND = re.compile(r"\\(?!frac|dfrac|tfrac)([A-Za-z]+)")
 
 
+_ACCENTS = "\u0300\u0301\u0302"  #: of the name of a letter: ``oméga``, ``thêta``
+
+
 def _greek(char: str) -> str:
-    """ASCII name of a Greek letter, ``θ`` -> ``theta``; of the dots above a letter; else the character."""
+    """ASCII name of a Greek letter, ``θ`` -> ``theta``; of the dots above a letter; an accent is dropped."""
     if char == "\u0307":
         return "_dot"
     if char == "\u0308":
         return "_ddot"
+    if char in _ACCENTS:
+        return ""
     name = unicodedata.name(char, "").split()
     if len(name) == 4 and name[0] == "GREEK" and name[2] == "LETTER":
         letter = name[3].lower().replace("lamda", "lambda")

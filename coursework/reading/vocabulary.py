@@ -68,7 +68,7 @@ _VARIANT = re.compile(r"var(?=phi|theta|epsilon|rho|sigma|kappa)")
 def _key(name: str) -> str:
     """Return the common form of all spellings of one name: no underscore, the dots of a derivative last, one
     ``phi``."""
-    name = _VARIANT.sub("", name.replace("_", ""), count=1)
+    name = _VARIANT.sub("", name.replace("_", ""), count=1).replace("point", "dot").replace("dotdot", "ddot")
     for dots in ("ddot", "dot"):
         if dots in name and name != dots:
             return name.replace(dots, "", 1) + dots
@@ -76,6 +76,8 @@ def _key(name: str) -> str:
 
 
 _RATE = re.compile(r"theta(\w*?)(d?dot)")
+_LETTERS = {"w": "omega", "teta": "theta"}  #: what is typed for a Greek letter
+_MISSPELLED = re.compile(rf"^(?:{'|'.join(_LETTERS)})(?=d?dot|[^a-z]|$)")
 
 
 class Vocabulary:
@@ -99,6 +101,8 @@ class Vocabulary:
             return name
         if (rate := _RATE.fullmatch(key)) is not None:
             return self.variables.get({"dot": "omega", "ddot": "alpha"}[rate[2]] + rate[1])
+        if (misspelled := _MISSPELLED.sub(lambda found: _LETTERS[found[0]], key)) != key:
+            return self.variable(misspelled)
         return self.any_capitals.get(key.casefold())
 
     def find(self, run: str) -> tuple[str, str] | None:

@@ -4,6 +4,7 @@ import pytest
 from strategies import NARROW, NBSP
 from tables import each_row
 
+import coursework
 from coursework.reading.points import read_point
 
 
@@ -121,3 +122,19 @@ def test_a_point_says_whether_a_unit_is_written():
     assert read_point("12,3 ; 4,5 mm", "mm", 2).unit_given
     assert not read_point("1.2e1 ; 4.5", "mm", 2).unit_given
     assert read_point("(12,3 ; 4,5) mm", "mm", 2).read_as == ("(12.3; 4.5) mm",)
+
+
+@each_row(
+    ("text", "verdict"),
+    [
+        *[(s, "correct") for s in (
+            "(R+2r, 0, 0)", "R + 2*r ; 0 ; 0", "[R+2r 0 0]", "P(R+2r, 0, 0)_a", "(R+2r, 0, 0) mm", "(R+2r) x_a",
+            "O_1P = (R+2r) \\vec{x}_a", "(R+r) x_a - r z", ["R+2r", 0, "0"], "(R+10, 0, 0)",
+        )],
+        ("(R, 0, 0)", "wrong"), ("(R+2r, 0)", "unreadable"), ("(q, 0, 0)", "unreadable"), ("(R/0, 0, 0)", "unreadable"),
+    ],
+)  # fmt: skip
+def test_a_vector_of_formulas_is_worked_out(text, verdict):
+    variant = coursework.open_course()["ball_reducer"].variant(0, lang="en")
+    assert variant.given["r"] == 5  # mm, for R + 10
+    assert variant.grade({"axis_30_point": text})["axis_30_point"].verdict == verdict
