@@ -185,6 +185,14 @@ def test_hints_come_one_after_another_and_hold_no_python(zoe):
     assert "Hint 3 of" in zoe.page()
 
 
+def test_an_unexplained_wrong_answer_offers_the_first_hint_until_it_was_seen(zoe):
+    page = zoe.send({"omega4": "1234.5"}, check="omega4").text
+    (asked,) = re.findall(r'name="hint" value="([^"]+)" formaction="[^"]+">See the first hint<', page)
+    assert "Hint 1 of" in zoe.send(hint=asked).text
+    assert "See the first hint" not in zoe.send({"omega4": "1234.6"}, check="omega4").text
+    assert "hint" not in zoe.variant.grade({"omega4": "1234.5"})["omega4"].feedback  # of paper and exams
+
+
 def test_a_step_on_the_way_is_asked_for_by_a_button(class_of_three, course):
     """The hints of a quantity that is not asked stand below those that name it."""
     one = Practising(class_of_three, class_of_three.browser(ZOE), "coupler_curve")

@@ -161,6 +161,8 @@ class Worksheet:
     def feedback(self, mark: Mark) -> AnswerFeedback:
         """Return the feedback on an answer."""
         sentence = sentence_of(self.variant, mark, self._asks("reveal", mark.part))
+        if mark.verdict == "wrong" and not self.attempt.hints_seen(mark.part):
+            sentence += f" {self._asks('first_hint', mark.part)}"
         html = self._with_buttons(markdown.html_inline(sentence, self.variant.lang), mark.part)
         says_all = mark.verdict in ("correct", "to_mark")
         word = "" if says_all else verdict_word(mark.verdict, self.variant.lang)
@@ -240,7 +242,8 @@ class Worksheet:
 
     def _asks(self, action: str, name: str) -> str:
         """Return a link in Markdown that :meth:`_with_buttons` turns into a button."""
-        return f"[{self.request.words['practice'][f'{action}_call']}](#{action}-{name})"
+        call = self.request.words["practice"][f"{action}_call"]
+        return f"[{call}](#{action.removeprefix('first_')}-{name})"
 
     def _with_buttons(self, html: str, under: str) -> Markup:
         def button(match: re.Match[str]) -> str:
