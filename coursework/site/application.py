@@ -1,4 +1,4 @@
-"""The site as an ASGI application: the table of its addresses."""
+"""ASGI application of the site, with the table of its routes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from coursework.site.publication import publishing
 from coursework.site.warming import begin_warming
 from coursework.system.headers import Guarded
 
-#: Every address of the site, a file's after another's.
+#: Routes of the site, module by module.
 ROUTES: tuple[Route, ...] = (
     *home.ROUTES,
     *practice_page.ROUTES,
@@ -83,7 +83,7 @@ def application(site: Site, lti: Starlette | None = None) -> Starlette:
         lifespan=lambda app: _background_work(site, lti),
     )
     app.add_middleware(Guarded, is_secure=lambda: site.is_secure)
-    app.router.redirect_slashes = False  # it would lead to whatever host a request names
+    app.router.redirect_slashes = False  # such a redirect would lead to any host that a request names
     app.add_middleware(Arrivals, clock=lambda: site.clock())
     return app
 

@@ -1,4 +1,4 @@
-"""The site on the network: an address to listen at, processes that answer, and a clean end."""
+"""Server of the site: its socket, its processes, and their termination."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
     from uvicorn import Config
 
 LOG = logging.getLogger("coursework.site")
-_LAST_REQUESTS = 15  #: seconds that requests under way are given when the server ends
-_SILENCE = 60  #: seconds after which a process that says nothing is taken for dead
-_WAITING = 1024  #: connections that may wait to be answered
-_MOST_FILES = 65_536  #: and connections that a process holds, where the machine lets it
+_LAST_REQUESTS = 15  #: seconds that requests under way have when the server terminates
+_SILENCE = 60  #: seconds after which a silent process counts as dead
+_WAITING = 1024  #: connections that may wait
+_MOST_FILES = 65_536  #: files and connections of a process, if the system allows it
 _PROTOCOL = "coursework.site.connections:Stamped"
-_KEEP_ALIVE = 75  #: seconds that a connection may rest: longer than browsers and proxies rest theirs before they use them again
-_NICENESS = 10  #: of the worker: requests go before
-_AGAIN = 2.0  #: seconds before a process that could not begin is begun again
+_KEEP_ALIVE = 75  #: idle seconds of a connection: longer than browsers and proxies reuse theirs
+_NICENESS = 10  #: of the worker, so that requests take precedence
+_AGAIN = 2.0  #: seconds before the restart of a process that could not start
 Application = Callable[..., Any]
 
 
@@ -47,12 +47,12 @@ Application = Callable[..., Any]
 class ServerSettings:
     """Settings of a process that serves the site."""
 
-    course: str | None  #: its folder; the built-in course where none is told
+    course: str | None  #: its folder; None for the built-in course
     db: str
     entrance: Entrance
     url: str
     lti: Path | None = None  #: folder of the platforms
-    worker: str = ""  #: name under which a worker marks beside the processes that answer; none where they mark themselves
+    worker: str = ""  #: name of the worker; empty if the server processes mark submissions themselves
 
     def site(self) -> Site:
         """Return the site.
@@ -66,12 +66,13 @@ class ServerSettings:
         return Site(course, store, self.entrance, self.url, lti=self.lti, has_worker=bool(self.worker))
 
     def check(self) -> str:
-        """Try once what every process will do; the database is made, or brought to this version. Gives where it is.
+        """Open the site once, as every process will; the database is created or upgraded. Return its
+        location.
 
         Raises
         ------
         CourseworkError
-            The course or the database cannot be opened, or nobody could come in to teach.
+            The course or the database cannot be opened, or no administrator has an account.
         """
         site = self.site()
         check_administrator(site)
@@ -85,7 +86,7 @@ def listening(host: str, port: int) -> socket.socket:
     Raises
     ------
     BadInput
-        The port is taken or not ours to take, or the machine has no such address.
+        The port is in use or reserved, or the machine has no such address.
     """
     if port > 65535:
         raise BadInput(f"--port {port}: a port is a number from 0 to 65535")
@@ -111,9 +112,10 @@ def _refusal(host: str, port: int, fault: OSError) -> str:
 
 
 def serve(serving: ServerSettings, at: socket.socket, workers: int, ready: Callable[[], None]) -> None:
-    """Answer until a signal says to end (Ctrl-C, SIGTERM, a closed terminal); requests under way are answered first.
+    """Serve until a signal to terminate (Ctrl-C, SIGTERM, a closed terminal); requests under way are
+    answered first.
 
-    ``ready`` is called once such a signal is heeded.
+    ``ready`` is called once the signals are handled.
     """
     is_shared = serving.entrance is Entrance.ACCOUNTS
     run(partial(_application, serving), at, workers, ready=ready, tells_all=is_shared, has_proxy=is_shared)
@@ -128,10 +130,11 @@ def run(
     tells_all: bool = False,
     has_proxy: bool = False,
 ) -> None:
-    """Serve the application that ``make_application`` gives in each process; ``ready`` is called once a signal to end is heeded.
+    """Serve the application that ``make_application`` gives in each process; ``ready`` is called once the
+    signals are handled.
 
-    ``tells_all`` writes a line of the log for each request, not for faults alone; ``has_proxy`` believes a proxy on this
-    machine who asks.
+    ``tells_all`` logs every request instead of faults alone; ``has_proxy`` trusts the client's address from
+    a proxy on this machine.
     """
     from uvicorn import Config
 
@@ -183,7 +186,7 @@ def _run_single(config: Config, at: socket.socket, ready: Callable[[], None]) ->
     from uvicorn import Server
 
     server = Server(config)
-    for number in (signal.SIGINT, signal.SIGTERM):  # heeded before it listens, and behind its end once more
+    for number in (signal.SIGINT, signal.SIGTERM):  # handled before it listens and after its end
         signal.signal(number, server.handle_exit)
     _end_with_terminal(lambda: signal.raise_signal(signal.SIGTERM))
     ready()
@@ -213,7 +216,7 @@ def _application_of_process(make_application: Callable[[], Application]) -> Appl
     threading.Thread(target=_follow, args=(parent.join,), daemon=True).start()
     try:
         return make_application()
-    except CourseworkError as fault:  # what stood when the server began, and is out of reach for a while
+    except CourseworkError as fault:  # it was available at the start and is not for now
         LOG.error("%s", fault)
         time.sleep(_AGAIN)
         sys.exit(1)
@@ -225,7 +228,8 @@ def _follow(ended: Callable[[], None]) -> None:
 
 
 def worker_name() -> str:
-    """Name of the worker of this server, which those that follow it bear too; none where none can start."""
+    """Return the name of this server's worker, also used by its successors; empty if no process can be
+    started."""
     return f"{socket.gethostname()[:40]} {os.getpid()}" if others_can_start() else ""
 
 
@@ -239,7 +243,7 @@ def _work(serving: ServerSettings) -> None:
     logging.config.dictConfig(_logs(False))
     try:
         work(serving.site(), serving.worker)
-    except CourseworkError as fault:  # the database is away: another one is begun in a while
+    except CourseworkError as fault:  # the database is unavailable: another worker starts later
         LOG.error("%s", fault)
 
 
@@ -258,7 +262,7 @@ def _fill(serving: ServerSettings) -> None:
         serving.site().pool.fill()
     except (
         CourseworkError
-    ) as fault:  # the database is away: the rest is found when it is asked for, or at the next start
+    ) as fault:  # the database is unavailable: the rest is found on request or at the next start
         LOG.error("%s", fault)
 
 

@@ -15,18 +15,18 @@ from coursework.site.frame.settings import Site
 from coursework.site.practice.contents import titles
 
 LOG = logging.getLogger("coursework.site")
-_PAUSE = 0.01  #: seconds between two pieces, for requests
+_PAUSE = 0.01  #: seconds between two steps, left to requests
 
 
 def begin_warming(site: Site) -> Event:
-    """Make all ready beside the requests, which takes a few seconds; gives what ends that."""
+    """Start the warm-up in the background, which takes a few seconds; return the event that stops it."""
     stop = Event()
     Thread(target=warm, args=(site, stop), name="warming", daemon=True).start()
     return stop
 
 
 def warm(site: Site, stop: Event) -> None:
-    """Make all ready, until that is stopped; what cannot be made tells so whoever asks for it."""
+    """Prepare everything until stopped; a fault is logged and reported again at the request that meets it."""
     for piece in _pieces(site):
         if stop.wait(_PAUSE):
             return

@@ -1,7 +1,7 @@
-"""Worker of the site: it marks what was handed in, hands in what was saved and prepares pages that will be opened, beside the
-requests and from a queue in the database.
+"""Worker of the site: it marks submissions, submits saved answers and prepares pages, from a queue in the
+database.
 
-One process does this for all that answer. It may be killed at any moment: what it had begun is taken again.
+One process serves all server processes. It may be killed at any time: another one repeats its unfinished job.
 """
 
 from __future__ import annotations
@@ -39,17 +39,17 @@ from coursework.site.papers.opening import prepare, prepare_soon
 from coursework.site.papers.submission import close_passed, rescue
 
 LOG = logging.getLogger("coursework.site")
-#: After a date has passed, until what is in the boxes is handed in: what arrived in time may wait for the database still.
+#: Delay after a date before saved answers are submitted, since a timely submission may still wait for the database.
 SETTLES = timedelta(seconds=20)
-_POLL = 0.3  #: seconds between two looks where there is nothing to do
-_DATES = 1.0  #: seconds between two looks at the dates
-#: Marking waits for a moment without a hand-in, so that it takes nothing from a rush; but not for long.
+_POLL = 0.3  #: seconds between two checks of an empty queue
+_DATES = 1.0  #: seconds between two checks of the dates
+#: Marking waits for a short time without submissions, so as not to slow a rush, but not for long.
 _QUIET, _LONGEST = timedelta(seconds=0.5), timedelta(seconds=5)
 _LONG_AGO = datetime.min.replace(tzinfo=UTC)
-_VARIANTS = 100  #: that are at hand: several students may have the same
+_VARIANTS = 100  #: items of the cache: students may share a variant
 _RECENT = timedelta(days=1)
 _PUBLISHED = select(assignment.c.id, assignment.c.published).where(assignment.c.published.is_not(None))
-_AWAY = 2.0  #: seconds before it is tried again where the database is away
+_AWAY = 2.0  #: seconds before the next try if the database is unavailable
 
 
 class Worker:
@@ -80,7 +80,8 @@ class Worker:
             return False
 
     def take_over(self) -> None:
-        """Put in the queue what was handed in and is in no queue: a version without a worker took it, or a backup did."""
+        """Queue unmarked submissions without a job, such as those from a server without a worker or from a
+        backup."""
         now = self.site.clock()
         with self.site.store.reading() as connection:
             numbers = list(connection.execute(select(assignment.c.id)).scalars())
@@ -96,8 +97,8 @@ class Worker:
                     put_job(connection, MARK, number, now, delivery=submission)
 
     def prepare_all(self) -> None:
-        """Have pages looked at that will be opened soon or were opened a moment ago: a new version or course may make them
-        otherwise. Of what opened before, each is made anew when it is asked for."""
+        """Queue the preparation of pages of assignments that open soon or opened within a day, since a new
+        version or course may change them. Older pages are made on request."""
         now = self.site.clock()
         with self.site.store.begin() as connection:
             for row in connection.execute(_PUBLISHED).all():
@@ -108,7 +109,7 @@ class Worker:
     # --------------------------------------------------------------------- jobs
 
     def work_once(self) -> bool:
-        """Do one job; False where there is none to do now."""
+        """Do one job; return False if there is none to do now."""
         if not self._is_time():
             return False
         with self.site.store.begin() as connection:
@@ -167,7 +168,7 @@ class Worker:
     # -------------------------------------------------------------------- dates
 
     def close(self) -> None:
-        """Write down the dates that have passed, and hand in what was saved."""
+        """Record the dates that have passed, and submit saved answers."""
         now = self.site.clock()
         with self.site.store.reading() as connection:
             publications = {row.id: Publication.of(row.published) for row in connection.execute(_PUBLISHED)}
@@ -181,7 +182,7 @@ class Worker:
                 close_passed(self.site, number, at, partial(self._later, number))
 
     def _later(self, number: int, person: int, fault: Exception) -> None:
-        """Try again with what somebody saved, and tell the staff where that fails too."""
+        """Queue another try to submit a person's saved answers; its failure is logged."""
         with self.site.store.begin() as connection:
             put_job(connection, RESCUE, number, self.site.clock(), person=person)
 

@@ -1,1 +1,1 @@
-"""Instructor's pages: the queue, the class, questions, students, files, marking again."""
+"""Instructor's pages: queue, class, questions, students, files, and regrading."""

@@ -36,17 +36,17 @@ from coursework.site.frame.requests import HTTPException, Request, Response
 from coursework.site.frame.settings import Site
 from coursework.site.papers.submission import mark, pass_dates
 
-_MARKING = timedelta(minutes=1)  #: after which nobody marks a hand-in any more who began to
+_MARKING = timedelta(minutes=1)  #: after which another process may mark a submission that one began to mark
 
 
 @dataclass(frozen=True)
 class RejectedRow:
     """A row that could not be placed."""
 
-    id: str  #: digest of what it says and where
+    id: str  #: digest of its content and source
     row: Rejected
-    student: str  #: whom it names, as issued; empty for a stranger
-    near: str  #: whose name is like the one that it tells, where it names a stranger
+    student: str  #: name of the student as issued; empty for a stranger
+    near: str  #: closest name of a student, if the row names a stranger
     became: Placed | None
 
     @property
@@ -69,21 +69,21 @@ class Open:
 
 @dataclass
 class ClassNow:
-    """An assignment and its class, at one stamp."""
+    """State of an assignment and its class at one stamp."""
 
     course: Course
     about: About
     issued: Issued
     stamp: Stamp
-    machine: Mapping[SheetPlace, Graded]  #: as the marking gave them
-    numbers: Mapping[SheetPlace, int]  #: of the markings
-    measured: Mapping[int, Measure]  #: by marking
+    machine: Mapping[SheetPlace, Graded]  #: results of the marking, without decisions
+    numbers: Mapping[SheetPlace, int]  #: ids of the markings
+    measured: Mapping[int, Measure]  #: by the id of the marking
     sheets: Sheets
     faults: Mapping[SheetPlace, str]
     decisions: Decisions
     placings: Mapping[str, Placed]
     received: Mapping[str, Came]
-    charged: Mapping[Sitting, float]  #: shares that are taken off of what came late
+    charged: Mapping[Sitting, float]  #: penalties for late submissions, as shares of the points
 
     @cached_property
     def is_marked(self) -> bool:
@@ -92,7 +92,7 @@ class ClassNow:
 
     @cached_property
     def graded(self) -> dict[SheetPlace, Graded]:
-        """As they stand: what people decided counts."""
+        """Graded sheets with the decisions of people applied."""
         return {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
 
     @cached_property
@@ -174,7 +174,7 @@ class ClassNow:
 
     @property
     def groups(self) -> list[Group]:
-        """All that a person may look at, decided or not."""
+        """Groups of answers for a person to review, decided or not."""
         return self._groups_of_all if self.one_sitting else self._groups_that_matter
 
     @cached_property
@@ -214,7 +214,8 @@ class ClassNow:
 
     @cached_property
     def unplaced(self) -> tuple[tuple[str, Rejected, str, str], ...]:
-        """Every row that could not be placed or marked: its digest, whom it names, and whose name is like that."""
+        """Rows that could not be placed or marked: digest, row, student named, and closest name of a
+        student."""
         sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected))
         list(rejecting(sheets, self.faults.items()))
         return tuple((row_id(row), row, *self._named_by(row)) for row in sheets.rejected)
@@ -228,7 +229,7 @@ class ClassNow:
 
     @cached_property
     def rejected(self) -> tuple[RejectedRow, ...]:
-        """Every row that could not be placed, with what became of it."""
+        """Rows that could not be placed, each with the decision on it."""
         return tuple(RejectedRow(*row, self.placings.get(row[0])) for row in self.unplaced)
 
     @property
@@ -238,7 +239,7 @@ class ClassNow:
 
     @property
     def named(self) -> tuple[RejectedRow, ...]:
-        """Those of a student of the class."""
+        """Rejected rows that name a student of the class."""
         return tuple(row for row in self.rejected if row.student and row.student in self.issued.students)
 
 
@@ -257,7 +258,7 @@ class _ClassCache:
 
     lock: Any = field(default_factory=RLock)
     now: ClassNow | None = None
-    marked: dict[int, Graded | str] = field(default_factory=dict)  #: by the marking's number
+    marked: dict[int, Graded | str] = field(default_factory=dict)  #: by the id of the marking
     measured: dict[int, Measure] = field(default_factory=dict)
 
 
@@ -352,7 +353,7 @@ def _has_come(at: Stamp, about: About) -> tuple[Any, ...]:
     return at.markings, at.deliveries, at.dealt, about.columns, about.stated
 
 
-#: What decisions do not change.
+#: Cached properties that decisions do not change.
 _LASTING = ("questions", "drawn", "last_sitting", "one_sitting", "_groups_of_all", "unplaced")
 
 
@@ -368,7 +369,7 @@ def assignment_of(request: Request) -> int:
     Raises
     ------
     HTTPException
-        None: it is no number.
+        It is not a number.
     """
     text = str(request.path_params.get("assignment", ""))
     if not text.isascii() or not text.isdecimal() or len(text) > 9:

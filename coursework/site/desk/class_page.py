@@ -1,4 +1,4 @@
-"""The class as a table that fills: students by questions, totals and marks; what is new comes by itself, row by row."""
+"""Table of a class: students by questions, totals and marks. A script updates the rows that change."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ SORTS = ("name", "total", "waits", "late", "tries")
 
 
 class Cell(NamedTuple):
-    """An answer in the table."""
+    """Answer in the table."""
 
-    sign: str  #: full, part, none, wait, missing; empty for what was not asked
+    sign: str  #: full, part, none, wait, missing; empty if the question was not asked
     points: float
     verdict: str
     by_hand: bool
@@ -37,9 +37,9 @@ BLANK = Cell("", 0.0, "", False)
 
 @dataclass(frozen=True)
 class ClassRow:
-    """A student in the table."""
+    """Student in the table."""
 
-    order: int  #: in the class's own order
+    order: int  #: position in the class
     student: str
     identity: str
     cells: tuple[Cell, ...]
@@ -60,7 +60,7 @@ class ClassRow:
 
 
 def rows(now: ClassNow) -> list[ClassRow]:
-    """Every student of the class, in its own order."""
+    """Return a row for every student of the class, in the order of the roster."""
     counted: dict[str, dict[tuple[str, str], Cell]] = {}
     for sheet, graded in now.graded.items():
         if graded.sitting == now.results[graded.student].sitting:
@@ -182,7 +182,7 @@ def _sorting(now: ClassNow, sort: str) -> Callable[[ClassRow], Any]:
 
 
 def _means(now: ClassNow, table_rows: Sequence[ClassRow]) -> list[str]:
-    """Of each question, the percent of its points that those have who handed in."""
+    """Return the mean of each question over the students who submitted, in percent of its points."""
     most: dict[tuple[str, str], float] = {}
     for (name, _), record in now.issued.records.items():
         most.update({(name, str(p["id"])): float(p["points"]) for p in record["parts"]})

@@ -1,4 +1,5 @@
-"""The scans of an assignment as they stand: what they say together, what waits, and what became of it."""
+"""Scans of an assignment: the answers on all pages together, the cards that wait for a person, and the
+submission."""
 
 from __future__ import annotations
 
@@ -22,13 +23,13 @@ from coursework.scanning.scan import LEAST, as_told, papers_asked, together
 from coursework.scanning.typed import Typed
 from coursework.site.frame.settings import Site
 
-SOURCE = "scans"  #: of the delivery that their answers are: the next one takes its place
+SOURCE = "scans"  #: source of the submission; the next submission of scans replaces it
 _GONE = PageKept(REFUSED, "read by another version: send its file again", has_picture=False)
 
 
 @dataclass(frozen=True)
 class ClassScans:
-    """The pages that were scanned, and what people typed."""
+    """Scanned pages of an assignment, and the answers that people typed."""
 
     papers: Papers
     pages: tuple[Scanned, ...]
@@ -56,7 +57,7 @@ class ClassScans:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Pages by what they are."""
+        """Number of pages of each kind."""
         totals: dict[str, int] = {}
         for page in self.pages:
             if page.number and not page.is_copy:
@@ -65,7 +66,7 @@ class ClassScans:
 
     @property
     def answers(self) -> list[Answer]:
-        """Answers of papers of which it is known whose they are."""
+        """Answers on papers whose student is known."""
         return [answer for answer in self.gathered.answers if answer.student not in self.papers.papers]
 
     @cached_property
@@ -104,7 +105,7 @@ def _stamp(content: dict[str, Any]) -> int:
 
 
 def hand_over(site: Site, number: int, now: ClassScans) -> int:
-    """Let the answers that are known be marked, in place of those of the scans before; gives how many they are."""
+    """Submit and mark the answers read so far, in place of those of earlier scans; return their number."""
     rows = [
         Row(
             answer.student,

@@ -1,4 +1,5 @@
-"""Files in and out: answers, rosters and what platforms collected; tables, feedback and archives. What is sent is read, never run."""
+"""Uploads and downloads: answers, rosters and collected files in; tables, feedback and archives out. Uploads
+are never run."""
 
 from __future__ import annotations
 
@@ -35,9 +36,9 @@ from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_t
 from coursework.system.unzipping import is_zip, unpack
 from coursework.system.zips import zipped
 
-MOST_ROWS = 500_000  #: of what is sent at once
-_NAME = 120  #: bytes of a file's name, the last ones
-_NAMED = 10  #: students that a sentence names
+MOST_ROWS = 500_000  #: of one upload
+_NAME = 120  #: bytes of a file's name; longer names lose their beginning
+_NAMED = 10  #: students named in a message
 _DECISIONS = ("made", "by", "kind", "student", "exercise", "seed", "part", "points", "reason", "answer")
 _DELIVERIES = ("came", "source", "number", "late", "receipt")
 
@@ -69,7 +70,7 @@ def answers_in(request: Request) -> Response:
     Raises
     ------
     BadInput
-        Nothing was sent, or an archive holds more than it may.
+        No file was sent, or an archive exceeds the limits.
     """
     number = class_now(request.site, assignment_of(request)).about.id
     sent = [item for item in request.form.files.get("answers", ()) if item.data]
@@ -163,7 +164,7 @@ def roster_in(request: Request) -> Response:
     Raises
     ------
     BadInput
-        The file is no roster.
+        The file is not a roster.
     """
     now = class_now(request.site, assignment_of(request))
     texts = request.words["files"]
@@ -258,7 +259,7 @@ def _decided(request: Request, now: ClassNow) -> bytes:
 
 def _issued(request: Request, now: ClassNow) -> bytes:
     with request.site.store.reading() as connection:
-        # Who only marks needs no secret, and draws no paper that is to come.
+        # The secret would reveal future papers, so only a publisher receives it.
         may_draw = request.user.may(Permission.ASSIGNMENTS_PUBLISH, now.about.id, "")
         return json_text(issued_content(connection, now.about.id, secret=may_draw)).encode()
 
@@ -283,7 +284,7 @@ def _submissions(request: Request, now: ClassNow) -> bytes:
     return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
 
 
-#: What can be had, by its file's name.
+#: Makers of the tables, by file name.
 _TABLES: Mapping[str, Callable[[Request, ClassNow], bytes]] = {
     "marks.csv": _marks,
     "summary.csv": _summary,
@@ -359,7 +360,7 @@ def gradebook(request: Request) -> Response:
     Raises
     ------
     BadInput
-        Nothing was sent, or it cannot be filled; nothing is written then.
+        No file was sent, or it cannot be filled in.
     """
     now = class_now(request.site, assignment_of(request))
     texts, form = request.words["files"], request.form

@@ -30,9 +30,9 @@ class Tile:
     students: int
     handed_in: int
     waiting: int
-    last: str  #: when something came; empty for never
+    last: str  #: time of the last submission; empty if there is none
     is_published: bool
-    fault: str = ""  #: why it cannot be shown
+    fault: str = ""  #: reason for which it cannot be shown
 
 
 def overview(request: Request) -> Response:
@@ -83,12 +83,12 @@ def _counted(request: Request, now: ClassNow) -> Tile:
 
 
 def bring(request: Request) -> Response:
-    """Take in what a build issued, so that its answers can be marked here.
+    """Store the variants that a build issued, so that the site can mark their answers.
 
     Raises
     ------
     BadInput
-        The file is no ``issued.json``, or is of another course.
+        The file is not an ``issued.json``, or belongs to another course.
     """
     file = next(iter(request.form.files.get("issued", ())), None)
     if file is None:
@@ -108,7 +108,7 @@ def _content(file: Upload) -> dict[str, object]:
     import json
 
     content = json.loads(file.data.decode("utf-8"))
-    assert isinstance(content, dict)  # Issued.of has seen it
+    assert isinstance(content, dict)  # Issued.of has checked it
     return content
 
 

@@ -1,4 +1,5 @@
-"""Sheets to print, for the staff: the papers of a class, or of some of it, a PDF a language, each from an odd page on."""
+"""Papers to print, for staff: those of a class or of selected students, one PDF per language; each paper
+begins on an odd page."""
 
 from __future__ import annotations
 
@@ -41,7 +42,7 @@ def sheets(request: Request) -> Response:
 
 
 def _papers(request: Request, connection: Connection, number: int) -> list[StudentPaper]:
-    """In the order in which they were issued, each in the language that it was issued in."""
+    """Return the selected papers in order of issue, each in its own language."""
     ticked = set(request.form.texts.get("who", ())) if request.is_post else set()
     papers = []
     for holder in holders(connection, number):

@@ -28,13 +28,13 @@ from coursework.sheets.sheet import Handout, Question
 from coursework.site.frame.requests import Request
 from coursework.site.frame.times import moment_text
 
-_HALF = 1.0  #: points from which a part is given by halves; a smaller one by its half
-_STEPS = 12  #: buttons of points at most
+_HALF = 1.0  #: points from which the step is half a point; below, it is half of the part's points
+_STEPS = 12  #: maximum number of buttons
 
 
 @dataclass(frozen=True)
 class QuestionCard:
-    """A question of somebody's variant, as the staff sees it."""
+    """Question of a student's variant, as staff see it."""
 
     variant: Variant
     part: Part
@@ -49,7 +49,7 @@ class QuestionCard:
 
     @cached_property
     def reference(self) -> str:
-        """The right answer, Markdown; of an open question its model answer, where the solution has one."""
+        """Right answer in Markdown; for an open question, the model answer if the solution has one."""
         if self.part.sort.is_open:
             section = self.variant.solution_text.sections.get(self.part.id)
             return section.text if section is not None else ""
@@ -60,7 +60,7 @@ class QuestionCard:
 
     @cached_property
     def half_width(self) -> str:
-        """The accepted half-width with its unit; empty where there is none."""
+        """Accepted half-width with its unit; empty if there is none."""
         if not self.part.has_margin or not self.part.sort.rounds or self.part.sort.is_open:
             return ""
         lang = self.variant.lang
@@ -86,7 +86,7 @@ def question_card(course: Course, issued: Issued, graded: Graded, part: str, lan
 
 
 class _Hashed:
-    """A record to be remembered by what it says of whom."""
+    """Hashable record of a variant, for the caches."""
 
     def __init__(self, course: Course, rules: Rules | None, record: Mapping[str, Any]):
         self.course, self.rules, self.record = course, rules, record
@@ -126,7 +126,7 @@ def steps(out_of: float) -> tuple[float, ...]:
 
 
 def sign_of(mark: Mark) -> str:
-    """``full``, ``part``, ``none``, ``wait`` or ``missing``: how an answer stands, for a table."""
+    """Return the state of an answer for a table: ``full``, ``part``, ``none``, ``wait`` or ``missing``."""
     if mark.verdict == "missing":
         return "missing"
     if mark.verdict in ("unreadable", "to_mark"):

@@ -1,5 +1,5 @@
-"""A question over the class: how hard it is, whether it tells good students from others, and what was answered; statistics as a
-report makes them."""
+"""Page of one question for the whole class: its difficulty, its discrimination, and the answers, with the
+report's statistics."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from coursework.statistics.measures import PartStatistics, Statistics, measure
 from coursework.statistics.of_class import marks_of_class
 from coursework.statistics.page import report, sheet_order
 
-_EXAMPLES = 8  #: students named beside what they wrote
-_ANSWERS = 60  #: ways of answering that are listed
+_EXAMPLES = 8  #: students named with an answer
+_ANSWERS = 60  #: answers listed
 
 
 def statistics_of(now: ClassNow) -> Statistics:
@@ -32,7 +32,7 @@ def statistics_of(now: ClassNow) -> Statistics:
 
 @dataclass(frozen=True)
 class QuestionRow:
-    """A question in the list."""
+    """Question in the list."""
 
     exercise: str
     part: str
@@ -66,7 +66,7 @@ def questions(request: Request) -> Response:
 
 @dataclass(frozen=True)
 class DistinctAnswer:
-    """One way of answering a question."""
+    """Distinct answer to a question, with the students who gave it."""
 
     text: str
     verdict: str  #: in words

@@ -1,5 +1,5 @@
-"""The queue: what waits for a person, a card a question and a way of answering it; decided by a key or a thumb, for all who
-wrote the same."""
+"""Queue of answers that wait for a person: one card for equal answers to one question, decided with one key
+or tap."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _SCAN = re.compile(r"scan ([0-9a-f]{16}-\d{4,6})/(\d{1,4})")  #: an answer that 
 class Filters:
     """Selection of the cards in the queue."""
 
-    why: str = ""  #: all but what waits for nobody, unless told
+    why: str = ""  #: reason; without one, all but those shown on request
     exercise: str = ""
     part: str = ""
 
@@ -101,18 +101,18 @@ def items(now: ClassNow, filters: Filters) -> list[QueueItem]:
 
 @dataclass(frozen=True)
 class QueueCard:
-    """A group as it is shown."""
+    """Card of a group of equal answers."""
 
     item: QueueItem
     question_card: QuestionCard
     first: Waits
-    members: tuple[Waits, ...]  #: those who wait
-    decided: tuple[tuple[str, str], ...]  #: those who wrote the same, and what was decided of it
+    members: tuple[Waits, ...]  #: answers that wait
+    decided: tuple[tuple[str, str], ...]  #: students with the same answer, each with the decision
     number: str
     margin: str
     spellings: tuple[str, ...]
     steps: tuple[float, ...]
-    elsewhere: int  #: answers to other questions in which the same cannot be read
+    elsewhere: int  #: answers to other questions with the same unreadable text
 
     @property
     def is_open(self) -> bool:
@@ -120,7 +120,7 @@ class QueueCard:
 
     @property
     def scans(self) -> tuple[tuple[str, str], ...]:
-        """Route and field of the pictures that an answer on paper is."""
+        """Page and field of the pictures of an answer on paper."""
         matches = [_SCAN.fullmatch(piece) for piece in str(self.first.mark.answer).split("; ")]
         return tuple((piece[1], piece[2]) for piece in matches if piece)
 
@@ -163,7 +163,7 @@ def queue(request: Request) -> Response:
 
 
 def decided(request: Request) -> Response:
-    """Decide what the form says, and show the next card."""
+    """Apply the decision of a form and return the next card."""
     filters = Filters.of({k: request.form.text(k) for k in ("why", "exercise", "part")})
     now = class_now(request.site, assignment_of(request))
     asked_for = request.form.text("do")
@@ -298,7 +298,7 @@ def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, i
 
 
 def _decide(request: Request, now: ClassNow, group: Group, asked_for: str) -> str:
-    """Keep the decision on those whom nobody decided on meanwhile; says what was done."""
+    """Store the decision on the answers that nobody else has decided on meanwhile; return the message."""
     kind, points = _requested_decision(asked_for, request, group)
     members = list(_chosen(request, now, group))
     if request.form.text("everywhere") and not points:
@@ -359,9 +359,9 @@ def _requested_decision(asked_for: str, request: Request, group: Group) -> tuple
     Raises
     ------
     HTTPException
-        It is none.
+        The form names no decision.
     BadInput
-        Its points are no number.
+        The points are not a number, or exceed the maximum.
     """
     if asked_for == "accept":
         return ACCEPTED, None
@@ -398,7 +398,7 @@ def _decided_meanwhile(later: Sequence[Made]) -> dict[tuple[str, str, str, str],
 
 
 def _undone(request: Request, now: ClassNow, filters: Filters) -> Response:
-    """Withdraw what was decided last, and show its card."""
+    """Withdraw the last decision and return its card."""
     texts = request.words["queue"]
     with request.site.store.begin() as connection:
         batch = undoable(connection, now.about.id, by_whom(request))

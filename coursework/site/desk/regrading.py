@@ -1,4 +1,5 @@
-"""Marking again, after a solution, a rule or the engine was corrected: what would change is shown before it changes."""
+"""Regrading after a correction of a solution, a rule or the engine; the changes are shown before they are
+made."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ _MOST_ROWS = 500  #: changes in the table
 
 
 class ChangeRow(NamedTuple):
-    """A change, in words."""
+    """Changed mark as text."""
 
     student: str
     number: str
@@ -75,7 +76,8 @@ def _row(request: Request, now: ClassNow, change: Change) -> ChangeRow:
 
 
 def _questions(request: Request, now: ClassNow, result: MarkedNow) -> list[tuple[str, int, int, str]]:
-    """By question: its number, how many marks rise, how many fall, and the points that the class gains or loses."""
+    """Return for each question its number, the number of marks that rise and fall, and the total change of
+    points."""
     gains_by_question: dict[tuple[str, str], list[float]] = {}
     for change in result.changes:
         gain = _number(change.points_now) - _number(change.points_before)

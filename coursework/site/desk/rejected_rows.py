@@ -18,7 +18,7 @@ _LONGEST = 500  #: characters of a reason
 
 
 def rejected(request: Request) -> Response:
-    """Decide on a rejected row; back to where it was shown."""
+    """Decide on a rejected row; return the page from which the form came."""
     now = class_now(request.site, assignment_of(request))
     row = next((candidate for candidate in now.rejected if candidate.id == request.form.text("row")), None)
     if row is None:
@@ -39,7 +39,7 @@ def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
     Raises
     ------
     BadInput
-        Nobody and nothing is named, or an answer stands there already.
+        The form names no student or question, or the question has an answer already.
     """
     texts, asked_for = request.words["files"], request.form.text("do")
     if asked_for == "back":

@@ -1,6 +1,6 @@
-"""Scans that were sent, read by a process of its own, so that no page of a student waits for it.
+"""Jobs that read uploaded scans, in a separate process so that no student waits for them.
 
-How far it is stands in the database: whoever serves the next page can tell.
+The state of a job is in the database, so that every process of the site can show it.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from coursework.scanning.scan import read_files
 from coursework.site.frame.settings import Site
 from coursework.system.processes import processes, workers
 
-_PATIENCE = 1.5  #: seconds for which a form waits for it
-_GIVEN_UP = timedelta(minutes=60)  #: after which what has not ended is taken for interrupted
+_PATIENCE = 1.5  #: seconds for which the request waits for the job
+_GIVEN_UP = timedelta(minutes=60)  #: after which an unfinished job counts as interrupted
 RUNNING, DONE, FAILED = "running", "done", "failed"
 
 
@@ -36,12 +36,12 @@ class ScanJob(NamedTuple):
 
     state: str
     files: int
-    pages: int = 0  #: that are new, when it is done
-    messages: tuple[str, ...] = ()  #: why it failed
+    pages: int = 0  #: number of new pages, at the end
+    messages: tuple[str, ...] = ()  #: reasons of a failure
 
 
 class _ScannedPage(NamedTuple):
-    """A page that was read."""
+    """Scanned page."""
 
     page: str
     file: str
@@ -51,7 +51,8 @@ class _ScannedPage(NamedTuple):
 
 
 def begin(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
-    """Read what was sent, files by their names, as ``by`` asks. Back at once, or when it is over."""
+    """Start to read the uploaded files, given by name, for the person ``by``; return at the end or after a
+    short wait."""
     _store_state(site, number, ScanJob(RUNNING, len(sent)))
     thread = threading.Thread(target=_run, args=(site, number, dict(sent), by), daemon=True)
     thread.start()
@@ -91,7 +92,7 @@ def _run(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
         _store_state(site, number, begun._replace(state=DONE, pages=pages))
     except CourseworkError as fault:
         _store_state(site, number, begun._replace(state=FAILED, messages=(str(fault),)))
-    except Exception as fault:  # nobody waits for this thread: what happened is told on the page
+    except Exception as fault:  # the page reports it, since nobody waits for this thread
         _store_state(site, number, begun._replace(state=FAILED, messages=(type(fault).__name__,)))
 
 

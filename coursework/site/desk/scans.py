@@ -32,7 +32,7 @@ _PICTURE_SECONDS = 3600  #: seconds for which a browser may keep a picture
 
 @dataclass(frozen=True)
 class ScanCard:
-    """A card as it is shown."""
+    """Card as the page shows it."""
 
     card: Card
     group: Mapping[str, Any]
@@ -61,12 +61,12 @@ def scans_page(request: Request, message: str = "") -> Response:
 
 
 def _sent(request: Request, now: ClassNow) -> str:
-    """Begin to read what was sent.
+    """Start to read the uploaded files.
 
     Raises
     ------
     BadInput
-        Nothing was.
+        No file was sent.
     """
     if request.form.text("do") == "hand over":
         return ""
@@ -121,7 +121,7 @@ def _answer(request: Request, card: Card) -> str:
     Raises
     ------
     BadInput
-        It is no page, or no name, where one is asked.
+        A name is asked for and none was typed.
     """
     text = request.form.text("answer").strip()[:LONGEST]
     if card.exercise == PAGE:
@@ -132,7 +132,7 @@ def _answer(request: Request, card: Card) -> str:
 
 
 def _typed(request: Request, now: ClassNow, scans: ClassScans, card: Card, answer: str) -> str:
-    """Keep what was typed; says so."""
+    """Store the typed answer; return the message."""
     student, exercise, seed, part, coordinate = place_of_card(card)
     row = TypedRow(
         student,

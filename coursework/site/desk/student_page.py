@@ -1,8 +1,8 @@
 """Instructor's page of a student: every attempt and its time, each answer with its reading, verdict and
 history; answers are decided here too.
 
-Of what a student practises alone the desk shows how often and when last, for the exercises of this assignment; never an
-answer, a mark or a mistake: practice is the student's own.
+Of a student's practice the page shows the number of variants and the last date, for the exercises of this
+assignment; never an answer, a mark or a mistake, since practice is private.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ _LONGEST = 2000  #: characters of a comment
 
 @dataclass(frozen=True)
 class AnswerLine:
-    """An answer as it stands, and what became of it."""
+    """Answer with its mark and its history."""
 
     question_card: QuestionCard
-    number: str  #: on the student's own paper
-    in_class: str  #: of the question among all that the class was asked; nothing where it is the same
+    number: str  #: on the student's paper
+    in_class: str  #: number of the question in the class, if different
     machine: Mark
     mark: Mark
     sign: str
@@ -55,7 +55,7 @@ class AnswerLine:
 
 @dataclass(frozen=True)
 class StudentSheet:
-    """One exercise of one try."""
+    """One exercise of one attempt."""
 
     graded: Graded
     title: str
@@ -178,12 +178,12 @@ def _practised(request: Request, name: str, variants: int, last: datetime | None
 
 
 def _decided(request: Request, now: ClassNow, student: str) -> str:
-    """Decide on one answer, or take back what was decided.
+    """Decide on one answer, or withdraw the decision.
 
     Raises
     ------
     BadInput
-        The points are no number, or more than there are.
+        The points are not a number, or exceed the maximum.
     """
     form, texts = request.form, request.words["queue"]
     exercise, seed, part = form.text("exercise"), form.text("seed"), form.text("part")

@@ -1,7 +1,7 @@
-"""Arrival of requests: stamped before any queue of threads or locks, since that is the time that counts.
+"""Arrival times of requests, taken before any queue of threads or locks, since they are the times that count.
 
-What is sent counts from the moment its last byte arrived, or from the moment its first bytes did where the rest followed within
-:data:`GRACE`: a slow line costs nobody anything, and a body that trickles buys no time beyond that.
+A request counts as received with its last byte, less at most :data:`GRACE` since its first. A slow line thus
+costs nobody time, and a body sent slowly on purpose gains no more than that.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from contextvars import ContextVar
 from datetime import datetime, timedelta
 from typing import Any
 
-GRACE = timedelta(seconds=5)  #: in which a body may follow its first bytes
-RECEIVED = "coursework.received"  #: where a server says in a request's state when the last bytes of its connection came
-_AHEAD = 64 * 1024  #: bytes of a body that are taken in before anybody asks for them
+GRACE = timedelta(seconds=5)  #: within which the body may follow its first bytes
+RECEIVED = "coursework.received"  #: key of a request's state under which the server puts the time of the connection's last bytes
+_AHEAD = 64 * 1024  #: bytes of a body that are read in advance
 
 Message = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[Message]]
@@ -31,12 +31,12 @@ class Arrival:
         self.first = self.last = self._now()
 
     def more(self) -> None:
-        """Note that more bytes have come."""
+        """Record the arrival of more bytes."""
         self.last = self._now()
 
     @property
     def counts(self) -> datetime:
-        """The time that counts."""
+        """Effective time of the request."""
         return max(self.first, self.last - GRACE)
 
     def _now(self) -> datetime:
@@ -55,7 +55,8 @@ def arrived(clock: Clock) -> datetime:
 
 
 class Arrivals:
-    """ASGI middleware that stamps what is sent, and takes in small bodies while the request waits for its turn."""
+    """ASGI middleware that records arrival times, and reads small bodies while the request waits for its
+    turn."""
 
     def __init__(self, app: Callable[..., Awaitable[None]], clock: Clock):
         self._app, self._clock = app, clock
@@ -96,7 +97,7 @@ class _Body:
         while is_more and size <= _AHEAD:
             try:
                 message = await self._stamped()
-            except Exception as fault:  # told to who asks for the body
+            except Exception as fault:  # raised for the reader of the body
                 self._is_ahead = False
                 self._read.put_nowait(fault)
                 return

@@ -1,9 +1,10 @@
-"""Waiting before a password is checked: guessing stays slow, and nobody can lock out somebody else.
+"""Delays before a password is checked: guessing stays slow, and nobody can lock out somebody else.
 
-A password that does not fit counts for the login from that network, for the login from anywhere and for the network; from a browser
-that signed in as this login before, it counts for that browser alone. The more it counts, the longer the next one waits before it
-is checked; none is refused for what others did. Failures are counted in the database, for all processes; requests under way are
-counted by each process, so that a hundred at once are no better than one after another.
+A wrong password counts against the login from that network, the login from anywhere, and the network; from a
+browser that signed in with this login before, it counts against that browser alone. The next attempt is
+delayed by the number of failures; none is refused because of other people's failures. The database counts
+failures for all processes. Each process counts the attempts under way, so that a hundred at once gain
+nothing over one after another.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ from coursework.errors import CourseworkError
 class Track(NamedTuple):
     """Counter of failed attempts, such as logins from one network."""
 
-    key: str  #: digest, of which nothing can be read
-    free: int  #: failures that cost no waiting
-    longest: float  #: seconds that one waits at most
-    most: int  #: requests of it that may wait at once in a process
+    key: str  #: digest that reveals nothing
+    free: int  #: failures without a delay
+    longest: float  #: longest delay in seconds
+    most: int  #: requests that may wait at once in a process
 
     def seconds(self, failures: int) -> float:
         """Return the seconds to wait after so many failures: 1, 2, 4 … up to the longest."""
@@ -33,14 +34,14 @@ class Track(NamedTuple):
 
 
 class Attempt(NamedTuple):
-    """A password that is about to be checked: what it is counted by, and the failures of each so far."""
+    """Attempt to sign in: the counters that it belongs to, and their failures so far."""
 
     tracks: Sequence[Track] = ()
     failures: Mapping[str, int] = {}
 
 
 class TooMany(CourseworkError):
-    """As many attempts of the same kind wait as may; ``seconds`` until one may try again."""
+    """Too many attempts of the same kind wait; the next one may come after ``seconds``."""
 
     def __init__(self, seconds: int):
         self.seconds = seconds
@@ -48,14 +49,14 @@ class TooMany(CourseworkError):
 
 
 class Attempts:
-    """Attempts under way in this process. Used in the event loop alone, which needs no lock."""
+    """Attempts under way in this process. Only the event loop uses them, so that no lock is needed."""
 
     def __init__(self) -> None:
         self._under_way: Counter[str] = Counter()
 
     @asynccontextmanager
     async def waited(self, attempt: Attempt) -> AsyncIterator[None]:
-        """Wait as long as the attempt must; it is under way until the block ends.
+        """Wait for the delay of an attempt; it is under way until the block ends.
 
         Raises
         ------
@@ -76,4 +77,4 @@ class Attempts:
             yield
         finally:
             self._under_way.subtract(keys)
-            self._under_way += Counter()  # keys that count nothing are let go
+            self._under_way += Counter()  # drops the keys whose count is 0

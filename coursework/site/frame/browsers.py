@@ -1,8 +1,8 @@
-"""Coarse description of a browser, for somebody's own list of sessions: nothing that tells two people apart."""
+"""Coarse description of a browser for a person's own list of sessions; it identifies nobody."""
 
 from __future__ import annotations
 
-#: What stands in the header ``User-Agent``, the most telling first: many browsers name others beside themselves.
+#: Parts of the header ``User-Agent``, the most specific first, since many browsers also name others.
 _PROGRAMS = (
     ("Edg", "Edge"), ("OPR/", "Opera"), ("SamsungBrowser", "Samsung Internet"), ("FxiOS", "Firefox"), ("Firefox/", "Firefox"),
     ("CriOS", "Chrome"), ("Chrome/", "Chrome"), ("Safari/", "Safari"),
@@ -14,7 +14,8 @@ _SYSTEMS = (
 
 
 def described(user_agent: str) -> str:
-    """Return ``Firefox, Linux`` for the header of a browser; an empty text for what is none of the usual ones."""
+    """Return a description such as ``Firefox, Linux`` from the header of a browser; empty for an unusual
+    one."""
     names = (
         next((name for piece, name in table if piece in user_agent[:500]), "")
         for table in (_PROGRAMS, _SYSTEMS)

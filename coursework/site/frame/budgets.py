@@ -1,4 +1,5 @@
-"""Budgets of requests: the size of a body, the requests of one person that are answered at once, the limits of reading a file."""
+"""Budgets of requests: size of a body, concurrent requests of one person, and resources for reading a
+file."""
 
 from __future__ import annotations
 
@@ -16,29 +17,29 @@ class Budget(NamedTuple):
     """Limits of the requests to a page."""
 
     name: str
-    largest: int  #: bytes of a body, refused by what its head says
-    fields: int  #: of a form
-    at_once: int  #: requests of one person that are answered at once; the others wait
+    largest: int  #: bytes of a body; the stated length is checked
+    fields: int  #: fields of a form
+    at_once: int  #: concurrent requests of one person; the others wait
     files: int = 0
     by_ending: Mapping[str, int] = MappingProxyType(
         {}
-    )  #: bytes of a file, where those of an ending have fewer
+    )  #: smaller limits in bytes for files with some suffixes
     reading: ResourceLimits | None = None  #: limits of the process in which files are read
-    readings: int = 1  #: of this budget, how many at once in a process of the site
+    readings: int = 1  #: concurrent readings of this budget in a process of the site
 
 
 #: Pages without answers: a choice, a name, a password.
 PLAIN = Budget("plain", 16 * KILOBYTE, 60, 2)
 #: Answers in boxes: as many as a paper has, each of 4000 characters at most.
 BOXES = Budget("boxes", 256 * KILOBYTE, 1000, 2)
-#: Handing in: in a queue of its own, which nothing else of the same person fills.
+#: Submission, in its own queue, which no other request of the same person fills.
 HAND_IN = Budget("hand_in", 256 * KILOBYTE, 1000, 1)
-#: A file of answers. A notebook brings its figures with it.
+#: A file of answers. A notebook contains its figures.
 ANSWER_FILE = Budget(
     "answer_file", 2 * MEGABYTE + 4 * KILOBYTE, 20, 1, 1, MappingProxyType({".csv": 256 * KILOBYTE, ".json": 256 * KILOBYTE}),
     ResourceLimits(4.0, 192 * MEGABYTE), 2,
 )  # fmt: skip
-#: The file of one's own practice.
+#: A file of practice progress.
 PROGRESS_FILE = Budget(
     "progress_file",
     MEGABYTE + 4 * KILOBYTE,
@@ -62,12 +63,12 @@ MOST_ROWS = 800  #: of a student's file of answers
 
 
 def read_apart(budget: Budget, too_much: str, function: Callable[..., Any], *arguments: Any) -> Any:
-    """Return what a function reads from a file, in a process with the means of the budget.
+    """Return the result of a function that reads a file, in a process with the budget's resource limits.
 
     Raises
     ------
     BadInput
-        The function raised it, or took more than it may: then with the sentence ``too_much``.
+        The function raised it, or exceeded its resource limits; the message is then ``too_much``.
     """
     assert budget.reading is not None, f"{budget.name} reads no files"
     try:

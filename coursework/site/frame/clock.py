@@ -1,11 +1,11 @@
-"""Clock of a site, which follows no leap of the machine's clock: an hour that is wrong for a moment opens no exam.
+"""Clock of a site that ignores leaps of the machine's clock, so that no exam opens because of a wrong time.
 
-The time that counts goes on by what has elapsed since the machine was started, suspended or not. The machine's clock is
-followed as long as it agrees. Where it is ahead all at once, by more than :data:`LEAP`, it is believed only after it has
-stood so for :data:`STEADY`; where it is set back, it is followed, and dates that have passed stay passed. A site that was
-off finds in the database when it was last seen: on the same start of the machine its time goes on from there; after another
-start nobody knows how long it was off, so the machine's clock counts at once, and no date is written down as passed before
-:data:`STEADY` is over.
+The site's time advances by the time elapsed since the machine started, suspended or not, and follows the
+machine's clock as long as the two agree. If that clock suddenly moves ahead by more than :data:`LEAP`, the
+site follows it only after :data:`STEADY`. If it is set back, the site follows at once; dates that have
+passed remain passed. After a stop, the site reads its last time from the database. If the machine has not
+restarted since, the site's time continues from there. Otherwise nobody knows how long it was off: the
+machine's clock counts at once, and no date is recorded as passed before :data:`STEADY` is over.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from coursework.database.store import Store
 from coursework.errors import BadInput
 
 LOG = logging.getLogger("coursework.site")
-LEAP = timedelta(minutes=5)  #: by which clocks are corrected every day
-STEADY = 15 * 60.0  #: seconds after which a clock that leapt is believed
-_EVERY = 60.0  #: seconds between two notes of the time in the database
-_REPORTED = timedelta(days=7)  #: for which the desk tells of a leap
+LEAP = timedelta(minutes=5)  #: larger than the usual corrections of clocks
+STEADY = 15 * 60.0  #: seconds after which the site follows a leap
+_EVERY = 60.0  #: seconds between two records of the time in the database
+_REPORTED = timedelta(days=7)  #: for which the instructor's pages report a leap
 _SEEN, _LEAPT = "clock seen", "clock leapt"
 _BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
 _BY = "clock"
@@ -40,24 +40,24 @@ _BY = "clock"
 class Leap(NamedTuple):
     """Leap of the machine's clock, as the instructor's pages report it."""
 
-    at: datetime  #: the time that counted
+    at: datetime  #: time of the site
     seconds: float  #: ahead; below 0 where it was set back
-    held: bool  #: the time that counts does not follow it
+    held: bool  #: the site does not follow it
 
 
 class SteadyClock:
-    """Time that counts on a site, in UTC.
+    """Clock of a site, in UTC.
 
     Parameters
     ----------
     store
-        Database that notes when the site was last seen, for its other processes and after a stop.
+        Database that records the last time of the site, for its other processes and after a stop.
     wall
         The machine's clock.
     elapsed
-        Seconds since the machine was started.
+        Function that returns the seconds since the machine started.
     boot
-        Name of this start of the machine; empty where it has none.
+        Identifier of this start of the machine; empty if there is none.
     """
 
     def __init__(
@@ -76,17 +76,15 @@ class SteadyClock:
         with store.reading() as connection:
             seen = value_of(connection, _SEEN) or {}
         is_same_boot = bool(self._boot) and seen.get("boot") == self._boot
-        # The time that counted last, and when it did; what elapsed since is added.
+        # Last time of the site, and the elapsed time then.
         self._last = datetime.fromisoformat(seen["at"]) if is_same_boot else now
         self._at = float(seen["elapsed"]) if is_same_boot else begun
         gap = now - datetime.fromisoformat(seen["at"]) if seen and not is_same_boot else timedelta(0)
         self._steady_from = begun + STEADY if abs(gap) > LEAP else begun
-        self._leapt: tuple[float, timedelta] | None = (
-            None  #: since when the machine's clock is ahead, and by how much
-        )
+        self._leapt: tuple[float, timedelta] | None = None  #: elapsed time at the leap, and its size
 
     def __call__(self) -> datetime:
-        """Return the time that counts."""
+        """Return the time of the site."""
         with self._lock:
             wall, elapsed = self._wall(), self._elapsed()
             expected = self._last + timedelta(seconds=elapsed - self._at)
@@ -97,18 +95,19 @@ class SteadyClock:
             is_due = leap is not None or elapsed - self._noted >= _EVERY
             if is_due:
                 self._noted = elapsed
-        if is_due:  # beside: who asks may be writing to the database
+        if is_due:  # in a thread, since the caller may hold a transaction
             self._noting = Thread(target=self._note, args=(now, elapsed, leap), name="clock", daemon=True)
             self._noting.start()
         return now
 
     def settle(self) -> None:
-        """Wait until what is to be noted is in the database."""
+        """Wait until the record in the database is written."""
         if self._noting is not None:
             self._noting.join()
 
     def _leap(self, ahead: timedelta, elapsed: float) -> Leap | None:
-        """Look whether the machine's clock has leapt, and whether it is believed; give a leap that is new."""
+        """Update the state of a leap from the difference to the machine's clock; return a leap that is
+        new."""
         if abs(ahead) <= LEAP or ahead < timedelta(0):
             was, self._leapt = self._leapt, None
             set_back = was is None and ahead < -LEAP
@@ -128,7 +127,7 @@ class SteadyClock:
         return self._leapt is None and self._elapsed() >= self._steady_from
 
     def _note(self, now: datetime, elapsed: float, leap: Leap | None) -> None:
-        """Write down that the site was seen, and a leap; a database that is busy or away stops nobody."""
+        """Record the time of the site and a new leap; an unavailable database is no fault here."""
         if leap is not None:
             LOG.error(
                 "the clock of this machine leapt by %.0f s; %s",
@@ -161,7 +160,7 @@ def last_leap(connection: Connection, now: datetime) -> Leap | None:
 
 
 def _elapsed() -> float:
-    """Return the seconds since the machine was started, those asleep as well where the system counts them."""
+    """Return the seconds since the machine started, including suspended time if the system counts it."""
     return time.clock_gettime(getattr(time, "CLOCK_BOOTTIME", time.CLOCK_MONOTONIC))
 
 

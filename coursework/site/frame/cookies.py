@@ -1,7 +1,7 @@
 """Cookies and CSRF tokens.
 
-The cookie of somebody who is signed in is the token of a row of the table ``session``. Anybody else has a signed one without a
-row, to which the CSRF tokens of the sign-in page are bound.
+The cookie of a signed-in user is the token of a row of the table ``session``. Other browsers have a signed
+cookie without a row, to which the CSRF tokens of the sign-in page are bound.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from itsdangerous import BadSignature, TimestampSigner
 from coursework.database.sessions import TOKEN_LENGTH
 
 COOKIE = "coursework"
-ANONYMOUS_SECONDS = 30 * 24 * 3600  #: that the cookie of an anonymous browser lasts
+ANONYMOUS_SECONDS = 30 * 24 * 3600  #: lifetime of an anonymous cookie
 _HALF = 16  #: bytes of a CSRF token, and of the mask before it
 
 
@@ -29,18 +29,18 @@ class Session(NamedTuple):
     """The session of a browser."""
 
     token: str  #: the value of its cookie
-    id: int = 0  #: of its row; 0 where nobody is signed in
+    id: int = 0  #: id of its row; 0 if nobody is signed in
 
 
 class Cookies:
-    """Makes anonymous cookies and CSRF tokens, and checks them."""
+    """Maker of anonymous cookies and CSRF tokens, which it also verifies."""
 
     def __init__(self, key: bytes):
         self._key = key
         self._signer = TimestampSigner(key, salt="anonymous", digest_method=hashlib.sha256)
 
     def anonymous(self) -> Session:
-        """Return a new session of nobody."""
+        """Return a new anonymous session."""
         return Session(self._signer.sign(secrets.token_urlsafe(16)).decode())
 
     def is_anonymous(self, cookie: str) -> bool:
@@ -56,8 +56,8 @@ class Cookies:
     # --------------------------------------------------------------- CSRF tokens
 
     def csrf_token(self, session: Session) -> str:
-        """Return a CSRF token of a session. It is another text each time, so that the length of a compressed page gives nothing of
-        it away."""
+        """Return a CSRF token of a session. It is masked differently each time, so that the length of a
+        compressed page reveals nothing of it."""
         mask = secrets.token_bytes(_HALF)
         return (mask + _mixed(mask, self._expected_token(session))).hex()
 

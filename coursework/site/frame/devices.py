@@ -1,5 +1,5 @@
-"""Device cookies: a signed note in a browser that it signed in as some logins before (OWASP, "slow down online guessing attacks
-with device cookies"). Who steals one can guess as slowly as anybody, and nothing else."""
+"""Device cookies: signed record in a browser of the logins that it has used (OWASP, "slow down online
+guessing attacks with device cookies"). A stolen cookie gives only the right to guess slowly."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from itsdangerous import BadSignature, URLSafeTimedSerializer
 
 DEVICE = "coursework-device"
 DEVICE_SECONDS = 365 * 24 * 3600
-_MOST = 5  #: logins of one browser; the first is forgotten for a sixth
-_LENGTH = 16  #: characters of what stands for a login
+_MOST = 5  #: logins of one browser; a new one replaces the oldest
+_LENGTH = 16  #: characters of the digest of a login
 
 
 class Devices:
-    """Makes device cookies, and reads them. ``key`` is the site's."""
+    """Maker and reader of device cookies, signed with the site's ``key``."""
 
     def __init__(self, key: bytes):
         self._key = key
@@ -25,12 +25,12 @@ class Devices:
         )
 
     def name_for_login(self, cookie: str, login: str) -> str:
-        """Return the name of a browser that signed in as a login before; an empty text for any other."""
+        """Return the name of a browser that has signed in with a login before; otherwise an empty text."""
         name, logins = self._read(cookie)
         return name if self.digest("device", login)[:_LENGTH] in logins else ""
 
     def name(self, cookie: str) -> str:
-        """Return the name of a browser in which somebody signed in before; an empty text for any other."""
+        """Return the name of a browser in which anybody has signed in before; otherwise an empty text."""
         return self._read(cookie)[0]
 
     def after_sign_in(self, cookie: str, login: str) -> str:
@@ -41,7 +41,7 @@ class Devices:
         return str(self._serializer.dumps([name or secrets.token_urlsafe(12), [*others, entry]]))
 
     def digest(self, *texts: str) -> str:
-        """Return a keyed digest of texts, of which nobody reads a login or an address."""
+        """Return a keyed digest of texts, which reveals neither a login nor an address."""
         text = "\0".join(texts).encode("utf-8", "replace")
         return hmac.new(self._key, text, hashlib.sha256).hexdigest()
 

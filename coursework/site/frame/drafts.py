@@ -1,4 +1,4 @@
-"""Storage of drafts as they are typed: the server's part of ``static/keeping.js``, for any sheet."""
+"""Storage of drafts while they are typed: the server's part of ``static/keeping.js``, for any sheet."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ def save_drafts(
     read: Callable[[str, str], str] | None = None,
     is_open: bool = True,
 ) -> Response:
-    """Store the boxes that a page sends; return those that another page has changed, and the reading of each
-    text.
+    """Store the boxes that a page sends; return the boxes that another page has changed, and the reading of
+    each text.
 
-    A sheet that is closed takes nothing new; what was save_drafts before it closed is said to be save_drafts, however often it is sent.
+    A closed sheet accepts nothing new. Texts that were stored before it closed are acknowledged however often they
+    are sent.
 
     Raises
     ------
     HTTPException
-        It sends what is no box of the sheet, or more than anybody types.
+        The request names an unknown box, or a text is too long.
     """
     sent = sent_boxes(request.form, boxes)
     with request.site.store.begin() as connection:
@@ -58,8 +59,8 @@ def save_form_drafts(
     """Store the drafts of a form without a script: ``texts`` by box, if they differ from those ``displayed`` or a
     draft exists.
 
-    ``versions`` is JSON, as :func:`draft_attributes` has it. Gives what is save_drafts now, and the boxes that another page wrote to since:
-    these are not overwritten.
+    ``versions`` is JSON, as in :func:`draft_attributes`. Return the stored boxes, and those that another page has
+    changed since, which are not overwritten.
 
     Raises
     ------
@@ -109,7 +110,7 @@ def versions_of(text: str) -> dict[str, int]:
     Raises
     ------
     HTTPException
-        They are none.
+        The text is not a table of versions.
     """
     try:
         return {str(name): int(number) for name, number in json.loads(text or "{}").items()}
@@ -123,8 +124,8 @@ def draft_attributes(
     """Return the attributes of a form whose boxes are stored as drafts; ``boxes`` are those that the page
     shows.
 
-    ``prefix`` is what the names of the boxes begin with on the page, and ``texts`` sentences beside those of ``[keeping]``, or
-    in their places.
+    ``prefix`` is the prefix of the names of the boxes on the page; ``texts`` adds to the texts of ``[keeping]`` or
+    replaces them.
     """
     return {
         "data-keep": address,

@@ -17,8 +17,8 @@ from starlette.requests import Request
 from coursework.site.frame.budgets import KILOBYTE, MEGABYTE, Budget
 from coursework.site.frame.requests import Form, HTTPException, Upload
 
-_TYPED = 1024 * 1024  #: bytes of a form without files, and of a field beside files
-_SECONDS, _RATE = 30.0, 20_000  #: that a form may take: at once, and bytes a second
+_TYPED = 1024 * 1024  #: bytes of a form without files, and of one field in a form with files
+_SECONDS, _RATE = 30.0, 20_000  #: time limit of a form: a fixed part, and the lowest rate in bytes per second
 _PLAIN, _WITH_FILES = "application/x-www-form-urlencoded", "multipart/form-data"
 
 
@@ -28,7 +28,7 @@ async def read_form(request: Request, budget: Budget) -> Form:
     Raises
     ------
     HTTPException
-        It is larger than its budget, does not say how large it is, takes too long, or cannot be read.
+        The form exceeds its budget, states no length, takes too long, or cannot be read.
     """
     size = _size(request)
     if not size:
@@ -89,7 +89,7 @@ async def _read(request: Request, kind: str, budget: Budget) -> Form:
 
 
 class _Parts(MultiPartParser):
-    """The parts of a form with files, of which one that is larger than its ending may be ends the reading."""
+    """Parser of a form with files; it stops at a file that exceeds the limit of its suffix."""
 
     by_ending: Mapping[str, int] = MappingProxyType({})
     _most = _so_far = 0

@@ -1,7 +1,7 @@
 """Limits on the rate of requests and on their processor time, counted in the memory of each process.
 
-A whole class may stand behind one address: who is signed in is counted by person, a browser that signed in before by itself, and
-an address alone only where nothing else is known.
+A whole class may share one address. Requests therefore count by person if somebody is signed in, otherwise
+by a known browser, and by address only if neither is known.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from limits.strategies import MovingWindowRateLimiter
 
 from coursework.system.allowances import Allowances, network
 
-FREE = "free"  #: a class without a limit: files that all pages share
+FREE = "free"  #: kind of page without a limit: the shared static files
 
-#: Of a person who is signed in, and of a browser that signed in before, by the class of a page.
+#: Rates of a person who is signed in, and of a known browser, by kind of page.
 PERSON = {
     "usual": "600/minute",
     "paper": "600/minute",
@@ -25,7 +25,7 @@ PERSON = {
     "upload": "300/10minutes",
     "sign_in": "60/10minutes",
 }
-#: Of an address, while nobody is signed in.
+#: Rates of an address, while nobody is signed in.
 ADDRESS = {
     "usual": "6000/minute",
     "paper": "6000/minute",
@@ -33,20 +33,20 @@ ADDRESS = {
     "upload": "300/10minutes",
     "sign_in": "3000/10minutes",
 }
-#: Seconds of a processor that a person has at once for the pages of each class, and that come back in a second.
+#: Processor time in seconds that a person may use at once for each kind of page, and its regain per second.
 AT_ONCE, BACK = 30.0, 0.1
 
 
 class Limits:
-    """Counts what is asked; gives the seconds to wait, 0 where it may be done now."""
+    """Counters of requests and processor time; their methods return the seconds to wait, 0 for none."""
 
     def __init__(self) -> None:
         self._limiter = MovingWindowRateLimiter(MemoryStorage())
         self._processor = Allowances(AT_ONCE, BACK)
 
     def wait_for_rate(self, kind: str, person: int, address: str, browser: str = "") -> int:
-        """Count a request for a page of a class, by a person, or without one (0) by address and known
-        browser."""
+        """Count a request of a kind of page by a person or, for person 0, by known browser or address;
+        return the seconds to wait."""
         if kind == FREE:
             return 0
         if person:
@@ -56,11 +56,11 @@ class Limits:
         return self._count(parse(ADDRESS[kind]), kind, f"address {network(address)}")
 
     def add_processor_time(self, kind: str, person: int, seconds: float) -> None:
-        """Count seconds of a processor that a page took."""
+        """Count the processor time of a page, in seconds."""
         self._processor.spend((kind, person), seconds)
 
     def wait_for_processor(self, kind: str, person: int) -> int:
-        """Return the seconds until somebody may have a page of a class, as far as pages before it took of a processor."""
+        """Return the seconds to wait because of the processor time of earlier pages."""
         return self._processor.wait((kind, person))
 
     def _count(self, item: RateLimitItem, *names: str) -> int:

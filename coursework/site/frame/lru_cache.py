@@ -9,7 +9,7 @@ from typing import Any
 
 
 class LRUCache:
-    """Things by their keys, made when they are first asked for."""
+    """LRU cache of items, each computed at the first request for its key."""
 
     def __init__(self, most: int):
         self._most = most

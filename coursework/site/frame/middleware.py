@@ -52,18 +52,18 @@ LOG = logging.getLogger("coursework.site")
 _LANG = "coursework-lang"  #: the cookie of the language that somebody chose
 _YEAR = 365 * 24 * 3600
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
-_GREATEST = 2**31 - 1  #: that numbers of a database reach
-_FORWARDED = ("x-forwarded-for", "x-forwarded-host", "forwarded", "x-real-ip")  #: what a proxy in front adds
-_STAFF_WAITING = 1000  #: requests of one of the staff that wait: a page of many pictures asks for all at once
-_CROWDED = 2  #: seconds after which to try again where too many wait
-_AGAIN = 5  #: seconds after which to try again what the database did not take
+_GREATEST = 2**31 - 1  #: greatest integer of a database column
+_FORWARDED = ("x-forwarded-for", "x-forwarded-host", "forwarded", "x-real-ip")  #: headers that a proxy adds
+_STAFF_WAITING = 1000  #: waiting requests of a member of staff: a page of many pictures requests all at once
+_CROWDED = 2  #: seconds to wait if too many requests wait
+_AGAIN = 5  #: seconds to wait if the database is unavailable
 
 
 class _CurrentUser(NamedTuple):
     """Current user of a request."""
 
     session: Session
-    is_new: bool  #: the browser holds no cookie of the session
+    is_new: bool  #: the browser has no cookie of the session yet
     person: Person | None
     lang: str
 
@@ -105,7 +105,7 @@ class Middleware:
             http_response: HTTPResponse = await answer()
         except ClientDisconnect:
             http_response = HTTPResponse(status_code=400)
-        except Exception as fault:  # written down without any value, since a message may hold an answer
+        except Exception as fault:  # logged without its message, which may contain an answer
             why = _location_of(fault)
             http_response = await run_in_threadpool(self._broken, http_request)
         took = 1000 * (time.perf_counter() - begun)
@@ -198,7 +198,7 @@ class Middleware:
             return self._without_person(http_request, why)
         try:
             current_user = self._current_user(http_request)
-        except BadInput:  # the database is gone
+        except BadInput:  # the database is unavailable
             return self._without_person(http_request, HTTPException("busy", 503, _AGAIN))
         try:
             self._check_often(http_request, route, current_user)
@@ -232,10 +232,10 @@ class Middleware:
             return self._refused(http_request, current_user, HTTPException("page", 404))
         except BadInput as fault:
             return self._refused(http_request, current_user, _mistaken(fault))
-        except BadCourse as fault:  # its folder is out of reach, or a file in it is not as it was
+        except BadCourse as fault:  # its folder is unavailable, or one of its files has changed
             LOG.error("the course: %s", _location_of(fault) if isinstance(fault, BrokenFunction) else fault)
             return self._refused(http_request, current_user, HTTPException("course", 503, _AGAIN))
-        except IntegrityError:  # somebody else wrote the same at the same time: nothing of this was kept
+        except IntegrityError:  # two transactions wrote the same row; this one was rolled back
             LOG.error("the database: two wrote the same at once")
             return self._refused(http_request, current_user, HTTPException("busy", 503, _AGAIN))
         finally:
@@ -252,7 +252,7 @@ class Middleware:
             return self._without_person(http_request, why)
         return self._refused(http_request, current_user, why)
 
-    # -------------------------------------------------------------- who comes
+    # ------------------------------------------------------------ current user
 
     def _current_user(self, http_request: HTTPRequest) -> _CurrentUser:
         cookie = http_request.cookies.get(self._cookie, "")
@@ -265,7 +265,8 @@ class Middleware:
         return _CurrentUser(session, is_new, person, self._lang(http_request, person))
 
     def _signed_in(self, token: str) -> tuple[Session | None, Person | None]:
-        """Return the session of a token and its person: one indexed read, and a write every few minutes."""
+        """Return the session of a token and its person, by one indexed read; its time is updated every few
+        minutes."""
         if not may_be_token(token):
             return None, None
         now = datetime.now(UTC)
@@ -276,12 +277,15 @@ class Middleware:
         if row is None:
             return None, None
         if now - row.session_seen > TOUCHED:
-            with suppress(BadInput), self.site.store.begin() as connection:  # a full disk refuses no reader
+            with (
+                suppress(BadInput),
+                self.site.store.begin() as connection,
+            ):  # a page can be read even if the disk is full
                 touch_session(connection, row.session_id, row.session_created, now)
         return Session(token, row.session_id), person
 
     def _owner(self) -> Person | None:
-        """Return who opens the site on their own machine."""
+        """Return the owner of the site on their own machine."""
         number = home.owner(self.site)
         with self.site.store.reading() as connection:
             row = person_by_id(connection, number)
@@ -306,7 +310,7 @@ class Middleware:
             _address(http_request), current_user.session.id, http_request.cookies.get(self._device, ""),
         )  # fmt: skip
 
-    # ------------------------------------------------------------ whether they may
+    # -------------------------------------------------------------- checks
 
     def _check_host(self, http_request: HTTPRequest) -> None:
         """Check the host name against DNS rebinding; where no password is needed, also refuse requests that a
@@ -321,7 +325,7 @@ class Middleware:
     def _check_often(self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser) -> None:
         """Check the limits on the rate of requests and on processor time.
 
-        What stores and shows nothing, handing in among it, is refused to nobody for what they did before.
+        Routes that only store, such as submission, are not refused because of earlier processor time.
         """
         person, limits = current_user.person.id if current_user.person else 0, self.site.limits
         browser = "" if person else Devices(self.site.secret).name(http_request.cookies.get(self._device, ""))
@@ -332,7 +336,7 @@ class Middleware:
             raise HTTPException("too_often", 429, wait)
 
     def _check_origin(self, http_request: HTTPRequest) -> None:
-        """Check that a form comes from a page of this site, as far as the browser tells."""
+        """Check that a form comes from a page of this site, according to the browser's headers."""
         sent, host = http_request.headers.get("origin"), http_request.headers.get("host", "")
         origins = {_origin(self.site.url)}
         if _host(f"//{host}") in _LOOPBACK:
@@ -347,7 +351,7 @@ class Middleware:
         if not self.cookies.fits(session, http_request.headers.get("x-seal") or form.text("_seal")):
             raise HTTPException("form", 403)
 
-    # ----------------------------------------------------------------- what goes back
+    # --------------------------------------------------------------- responses
 
     def _sent(
         self, http_request: HTTPRequest, current_user: _CurrentUser, response: Response
@@ -373,7 +377,8 @@ class Middleware:
     def _other_session(
         self, http_request: HTTPRequest, current_user: _CurrentUser, person: int
     ) -> tuple[str, int]:
-        """End the session that the browser had. Return the token of a new one, of nobody for 0, and its seconds."""
+        """End the browser's session. Return the token of a new one (anonymous for person 0), and its
+        lifetime in seconds."""
         browser = described(http_request.headers.get("user-agent", ""))
         if not person and not current_user.session.id:
             return self.cookies.anonymous().token, ANONYMOUS_SECONDS

@@ -1,4 +1,4 @@
-"""The pages of the site, through the templates of a course, in the dress of its sheets."""
+"""Pages of the site, rendered with the templates and the style of a course."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ KINDS = {
     ".svg": "image/svg+xml; charset=utf-8",
 }
 
-#: What sheets and pages hold as well, by the name of the file that it is here.
+#: Static files made from templates that sheets share, by file name.
 _OF_SHEETS = {
     "sheet.css": "_page_style.css.j2",
     "motion.css": "_motion_style.html.j2",
@@ -30,7 +30,7 @@ _OF_SHEETS = {
 
 
 class Pages:
-    """Renders pages of one course."""
+    """Renderer of the pages of one course."""
 
     def __init__(self, folder: Folder):
         self._folder = folder

@@ -1,4 +1,4 @@
-"""The check of permissions: whether who asks may have a page of the table, before anything of it is done."""
+"""Check of permissions, before a route does anything."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from coursework.database.permissions import STAFF, STUDENT, is_of_staff, may
 from coursework.site.frame.requests import HTTPException, Person, Request, Response, Route
 from coursework.site.frame.settings import Site
 
-_GREATEST = 2**31 - 1  #: that ids of a database reach
+_GREATEST = 2**31 - 1  #: greatest id of a database
 
 
 def person_of(connection: Connection, row: Any) -> Person:
-    """Return somebody who signed in, with what they may, of their row in the database."""
+    """Return a signed-in person with role and areas, from the row of the database."""
     role = row.role or STUDENT
     return Person(row.id, row.name, role, row.lang, held_by(connection, row.id, role))
 
@@ -31,16 +31,16 @@ def check_permission(
     Parameters
     ----------
     person
-        Who asks; None where nobody is signed in.
+        Current user; None if nobody is signed in.
     path
-        What the places of the page's path hold.
+        Parameters of the path.
     posted
-        Whether a form is sent.
+        True if a form is sent.
 
     Raises
     ------
     HTTPException
-        They may not: nobody is signed in, their role has not the permission, or not for this assignment or person.
+        Nobody is signed in, or the role lacks the permission, or lacks it for this assignment or person.
     """
     permission = (route.form_permission if is_post else None) or route.permission
     if may(None, permission):
@@ -58,7 +58,7 @@ def check_permission(
 
 
 def note_export(route: Route, request: Request, response: Response) -> None:
-    """Record that somebody of the staff took a file."""
+    """Record the download of a file by staff."""
     if not response.filename or not is_of_staff(route.permission):
         return
     about: dict[str, Any] = {"file": response.filename}
@@ -71,7 +71,7 @@ def note_export(route: Route, request: Request, response: Response) -> None:
 
 
 def _is_staff(site: Site, path: Mapping[str, Any]) -> bool:
-    """Return whether a path names somebody of the staff."""
+    """Return True if the path names a member of staff."""
     number = _number(path.get("person"))
     if number is None:
         return False

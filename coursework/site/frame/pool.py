@@ -1,4 +1,5 @@
-"""Variants to practise, drawn ahead, since some exercises pass over fifty draws for one that is worth issuing."""
+"""Pool of practice variants, drawn in advance, since some exercises reject fifty draws for one valid
+variant."""
 
 from __future__ import annotations
 
@@ -18,8 +19,8 @@ from coursework.errors import CourseworkError, Starved
 from coursework.making.issuing import distinct_variants
 
 LOG = logging.getLogger("coursework.site")
-FIRST_SEED = 3_000_000  #: far from those of classes, of self-study and of books
-COUNTS = (8, 60)  #: variants of an exercise that are found ahead, in turns
+FIRST_SEED = 3_000_000  #: far from the seeds of classes, self-study and books
+COUNTS = (8, 60)  #: variants of each exercise to find in advance, in two passes
 
 
 class PracticePool:
@@ -50,7 +51,7 @@ class PracticePool:
         Raises
         ------
         Starved
-            The exercise has no variant that is worth issuing.
+            The exercise has no valid variant.
         """
         left = self._left(exercise, begun)
         in_order = sorted(left, key=lambda seed: _draw(exercise, person, seed))
@@ -77,7 +78,7 @@ class PracticePool:
             return any(given == data for given in issued_given(connection, exercise))
 
     def _extended(self, exercise: str, count: int) -> Pooled:
-        """At least so many, or all that are found."""
+        """Return a pool of at least so many seeds, or of all that exist."""
         loaded = self._course[exercise]
         with self._lock:
             lock = self._locks.setdefault(exercise, Lock())
@@ -95,7 +96,7 @@ class PracticePool:
         with (
             suppress(IntegrityError),
             self._store.begin() as connection,
-        ):  # what it kept this moment is the same
+        ):  # another process stored the same at the same time
             stored = pooled(connection, exercise, version)
             if len(stored.seeds) > len(new.seeds):
                 return stored
@@ -112,7 +113,7 @@ class PracticePool:
         return all(_is_complete(by_exercise.get(name, Pooled())) for name in versions)
 
     def fill(self) -> None:
-        """Find all that is wanted ahead, exercise after exercise in the order in which they are learnt."""
+        """Find all the seeds wanted in advance, exercise by exercise in the order of study."""
         for count in COUNTS:
             for exercise in self._course.folder.study_order:
                 try:
@@ -126,7 +127,7 @@ def _is_complete(pool: Pooled) -> bool:
 
 
 def _drawn(exercise: Any, count: int) -> Pooled:
-    """So many of an exercise, or as many as are found."""
+    """Return so many seeds of an exercise, or as many as can be found."""
     wanted = count
     while wanted:
         with suppress(Starved):

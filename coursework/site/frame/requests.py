@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 def local(address: str, usual: str = "/") -> str:
     """Return an address of this site; the first page if the given address leads elsewhere."""
-    seen = "".join(letter for letter in address if ord(letter) >= 32)  # browsers take no notice of the others
+    seen = "".join(letter for letter in address if ord(letter) >= 32)  # browsers ignore the others
     leads_away = seen.startswith("//") or "\\" in seen.partition("?")[0]
     return seen if seen.startswith("/") and not leads_away else usual
 
 
 class HTTPException(CourseworkError):
-    """A page that is not shown: the name of a sentence of ``[refused]``, and the status that goes with it."""
+    """Refusal of a request: the key of a message in ``[refused]``, and the status code."""
 
     def __init__(self, sentence: str, status_code: int, *parts: object):
         self.sentence, self.status_code, self.parts = sentence, status_code, parts
@@ -41,7 +41,7 @@ class Person(NamedTuple):
     name: str
     role: str  #: one of :data:`coursework.database.permissions.ROLES`
     lang: str = ""
-    areas: tuple[Area, ...] = ()  #: in which an assistant works
+    areas: tuple[Area, ...] = ()  #: areas of an assistant
 
     @property
     def is_staff(self) -> bool:
@@ -53,7 +53,7 @@ class Person(NamedTuple):
 
 
 class Upload(NamedTuple):
-    """A file that was sent."""
+    """Uploaded file."""
 
     name: str
     data: bytes
@@ -72,7 +72,7 @@ class Form:
 
 @dataclass(frozen=True)
 class Request:
-    """A page that is asked for."""
+    """Request of a page, with the current user and the input."""
 
     site: Site
     person: Person | None
@@ -86,8 +86,8 @@ class Request:
     csrf_token: str = ""  #: value of the form field ``_seal``
     is_fragment: bool = False  #: a script asks for a fragment of the page
     client_address: str = ""  #: network address of the client
-    session: int = 0  #: number of the session; 0 where there is none
-    device: str = ""  #: the device cookie, as it came
+    session: int = 0  #: id of the session; 0 if there is none
+    device: str = ""  #: value of the device cookie
 
     @property
     def user(self) -> Person:
@@ -96,7 +96,7 @@ class Request:
         Raises
         ------
         HTTPException
-            Nobody is.
+            Nobody is signed in.
         """
         if self.person is None:
             raise HTTPException("sign_in", 401)
@@ -111,19 +111,19 @@ class Request:
     def require(
         self, permission: Permission, assignment: int | None = None, group: str | None = None
     ) -> None:
-        """Refuse the request unless the person may do what the form says beyond what its page needs.
+        """Refuse the request unless the user has a permission beyond that of the route.
 
         Raises
         ------
         HTTPException
-            They may not.
+            The user has not the permission.
         """
         if not may(self.person, permission, assignment, group):
             raise HTTPException("role", 403)
 
     @property
     def words(self) -> Mapping[str, Any]:
-        """The site's words."""
+        """Texts of the site in the language of the request."""
         return words(self.lang, "site")
 
     def render(self, template: str, status_code: int = 200, **names: Any) -> Response:
@@ -143,35 +143,33 @@ class Response:
     content: bytes = b""
     filename: str = ""  #: name of a download
     max_age: int = 0  #: seconds for which a browser may cache it
-    device: str = ""  #: the device cookie that the browser is to keep
-    signed_in: int | None = None  #: who is from now on; 0 for nobody
-    lang: str = ""  #: which the browser is to remember
+    device: str = ""  #: new value of the device cookie
+    signed_in: int | None = None  #: id of the user who signs in; 0 to sign out
+    lang: str = ""  #: language to store in a cookie
 
 
 class Route(NamedTuple):
-    """An address: the permission that it needs, and what answers.
+    """Route of the site: path, endpoint and permission.
 
-    Where its path names an ``assignment`` or its ``number``, the permission is needed for that assignment.
+    If the path names an ``assignment`` or its ``number``, the permission is needed for that assignment.
     """
 
     path: str
     endpoint: Callable[[Request], Response]
     permission: Permission
-    takes_forms: bool = False  #: it takes forms
-    limit: str = "usual"  #: which of the limits it falls under (:mod:`coursework.site.frame.limits`)
-    budget: Budget | None = None  #: of what is sent to it; who takes forms of students states it
-    is_short: bool = False  #: it stores what is sent and shows nothing: answered before pages are
-    form_permission: Permission | None = None  #: that a form needs, where it is another one
-    staff_permission: Permission | None = (
-        None  #: that it needs where its path names a ``person`` of the staff
-    )
-    attempt: Callable[[Request], Attempt] | None = None  #: what a form that holds a password is counted by
+    takes_forms: bool = False  #: POST requests are allowed
+    limit: str = "usual"  #: kind of page (:mod:`coursework.site.frame.limits`)
+    budget: Budget | None = None  #: budget of its forms; required if students send them
+    is_short: bool = False  #: it only stores data, and is answered before pages
+    form_permission: Permission | None = None  #: permission of a form, if different
+    staff_permission: Permission | None = None  #: permission if the path names a ``person`` of the staff
+    attempt: Callable[[Request], Attempt] | None = None  #: attempt counted for a form with a password
     by_group: bool = (
-        False  #: it shows an assistant the students of their groups alone; else it is for the whole class
+        False  #: an assistant sees the students of their groups; otherwise the whole class is needed
     )
-    audit_event: str = "exported"  #: how the audit calls a file that the staff takes there
+    audit_event: str = "exported"  #: name in the audit of a download by staff
 
     @property
     def request_budget(self) -> Budget:
-        """The budget of its requests: the least where none is stated."""
+        """Budget of its requests; the smallest if none is stated."""
         return self.budget or (DESK if is_of_staff(self.permission) else PLAIN)

@@ -14,12 +14,12 @@ from starlette.responses import Response as HTTPResponse
 from coursework.site.frame.requests import Response, local
 from coursework.system.headers import security_headers
 
-_COMPRESSED_FROM = 1000  #: bytes that are sent as they are
+_COMPRESSED_FROM = 1000  #: bytes from which a response is compressed
 _COMPRESSED_TYPES = ("text/", "application/json", "image/svg+xml")
 
 
 def to_http_response(http_request: HTTPRequest, response: Response, is_secure: bool) -> HTTPResponse:
-    """Return the response of a response."""
+    """Return the HTTP response of a page's response."""
     headers = security_headers(is_secure)
     headers["cache-control"] = (
         f"public, max-age={response.max_age}, immutable" if response.max_age else "no-store"

@@ -1,6 +1,7 @@
 """Log of security events: sign-ins and sign-outs with their addresses, and refused requests.
 
-A person is a number of the table ``person``; no line holds a name, a login, an answer or a token. Times are those of the log, UTC.
+A person appears as an id of the table ``person``; no line contains a name, a login, an answer or a token.
+Times are in UTC.
 """
 
 from __future__ import annotations
@@ -29,18 +30,18 @@ _BY_SENTENCE = {"form": "forged form", "own": "no permission", "role": "no permi
 
 
 def event_of(why: HTTPException) -> str:
-    """Return what a refusal is called in the log; "" for one that concerns no security."""
+    """Return the security event of a refusal; empty if it does not concern security."""
     return _BY_SENTENCE.get(why.sentence) or _BY_STATUS.get(why.status_code, "")
 
 
 def happened(request: Request, event: str, person: int = 0) -> None:
-    """Note an event of a request, to be logged with its reply; ``person`` is its number, 0 for nobody."""
+    """Record an event of a request, to be logged with the response; ``person`` is an id, 0 for nobody."""
     if event:
         request.state.events = [*getattr(request.state, "events", ()), (event, person)]
 
 
 def log_events(request: Request, path: str, address: str) -> None:
-    """Write the events of a request, a line each, with the page's path as the table of pages has it."""
+    """Write the events of a request, one line each, with the path of the route."""
     for event, person in getattr(request.state, "events", ()):
         level = logging.INFO if event in (SIGNED_IN, SIGNED_OUT) else logging.WARNING
         by = f"person {person}" if person else "nobody"

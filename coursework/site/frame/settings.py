@@ -25,9 +25,7 @@ from coursework.site.frame.pages import Pages
 from coursework.site.frame.pool import PracticePool
 from coursework.system.request_slots import RequestSlots
 
-_VARIANTS = (
-    1200  #: that are kept at hand: variants with the keys by which they are marked, and what is drawn of them
-)
+_VARIANTS = 1200  #: items of the cache: variants with their answer keys, and drawings
 
 Clock = Callable[[], datetime]
 
@@ -35,27 +33,25 @@ Clock = Callable[[], datetime]
 class Entrance(Enum):
     """Way in which people sign in."""
 
-    LOCAL = "local"  #: whoever opens it on this machine is its owner
-    DEMO = "demo"  #: one chooses who to be
+    LOCAL = "local"  #: the user of this machine is the owner
+    DEMO = "demo"  #: the visitor chooses a person
     ACCOUNTS = "accounts"  #: with a password, or from a platform
 
 
 @dataclass
 class Site:
-    """A site: one course, one database."""
+    """Site of one course and one database."""
 
     course: Course[Any]
     store: Store
     entrance: Entrance = Entrance.LOCAL
     url: str = "http://127.0.0.1:8000"
-    clock: Clock = None  # type: ignore[assignment]  #: one that follows no leap, unless told
+    clock: Clock = None  # type: ignore[assignment]  #: by default a :class:`SteadyClock`
     cache: LRUCache = field(default_factory=lambda: LRUCache(_VARIANTS))
     limits: Limits = field(default_factory=Limits)
     places: RequestSlots = field(default_factory=RequestSlots)
-    lti: Path | None = None  #: folder of the platforms from which links lead here
-    has_worker: bool = (
-        False  #: a process beside marks what is handed in; else the request does that handed it in
-    )
+    lti: Path | None = None  #: folder of the learning platforms
+    has_worker: bool = False  #: a worker marks submissions; otherwise the submitting request does
     _revision: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -73,7 +69,7 @@ class Site:
         return PracticePool(self.course, self.store)
 
     def ahead(self, key: Hashable, work: Callable[[], object]) -> None:
-        """Do something beside the requests that somebody will soon ask for; once."""
+        """Run work in the background that a request will soon need; once for each key."""
         self.cache.get(("ahead", key), lambda: self._aside.submit(work))
 
     @cached_property
@@ -87,14 +83,15 @@ class Site:
             return secret(connection)
 
     def take(self, course: Course[Any]) -> None:
-        """Go on with the course as its files stand now, in all processes; what is drawn ahead for practice stays until the next
+        """Switch all processes to the current files of the course; the practice pool stays until the next
         start."""
         with self.store.begin() as connection:
             self._revision = take_course(connection)
         self._go_on_with(course)
 
     def follow(self, connection: Connection, revision: int | None = None) -> None:
-        """Go on with the course that another process took; ``revision`` is which, where who calls knows it already."""
+        """Switch to the revision of the course that another process has taken; the caller may state a known
+        ``revision``."""
         revision = course_taken(connection) if revision is None else revision
         if revision != self._revision:
             self._revision = revision
@@ -110,7 +107,7 @@ class Site:
 
     @property
     def languages(self) -> tuple[str, ...]:
-        """Those of the course, its own first."""
+        """Languages of the course, its default first."""
         default = self.course.folder.language
         return (default, *(lang for lang in self.course.folder.languages if lang != default))
 

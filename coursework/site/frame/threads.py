@@ -1,4 +1,4 @@
-"""Threads that answer requests: those that store what is sent go before those that show pages, in threads of their own."""
+"""Threads that answer requests; requests that only store data have their own threads and precede pages."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from starlette.concurrency import run_in_threadpool
 
 from coursework.database.store import CONNECTIONS, Store
 
-_SHORT = 3  #: requests that a process stores at the same time; one where the database takes one writer
-#: Pages that a process makes at the same time: no request uses more than two connections to the database, so that none waits
-#: for one that never comes.
+_SHORT = 3  #: concurrent storing requests of a process; one if the database allows one writer
+#: Concurrent pages of a process. No request uses more than two connections to the database, so that none
+#: waits for a connection for ever.
 PAGES_AT_ONCE = CONNECTIONS // 2 - _SHORT
-_PAUSE, _LONGEST = 0.05, 3.0  #: seconds between two looks of a page that waits, and that it waits at most
+_PAUSE, _LONGEST = 0.05, 3.0  #: seconds between two checks of a waiting page, and its longest wait
 
 T = TypeVar("T")
 Run = Callable[..., Awaitable[Any]]  #: calls a function in a thread
 
 
 class Lanes:
-    """Two lanes of threads of one process."""
+    """Two groups of threads of a process: for short requests and for pages."""
 
     def __init__(self, store: Store):
         self._threads = ThreadPoolExecutor(1 if store.has_one_writer else _SHORT, thread_name_prefix="short")
@@ -41,7 +41,7 @@ class Lanes:
             self._add(-1)
 
     async def usual(self, function: Callable[..., T], *arguments: Any) -> T:
-        """Call a function that may take long, once nothing short waits, or after a moment."""
+        """Call a function that may take long, once no short call waits or after a moment."""
         waited = 0.0
         while self._count and waited < _LONGEST:
             await asyncio.sleep(_PAUSE)

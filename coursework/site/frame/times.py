@@ -1,4 +1,4 @@
-"""Times as people read and write them: in the zone of the machine that serves, which pages name."""
+"""Times as text and from text, in the time zone of the server, which the pages name."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from datetime import UTC, datetime, timedelta
 from coursework.language.words import words
 from coursework.making.papers import date_text
 
-_FORM = "%Y-%m-%dT%H:%M"  #: of a field of a form
+_FORM = "%Y-%m-%dT%H:%M"  #: format of a form field
 
 
 def moment_text(at: datetime, lang: str) -> str:
-    """``4 décembre 2026, 14 h 05``; with its seconds where it has some."""
+    """Return a time such as ``4 décembre 2026, 14 h 05``; with seconds if they are not zero."""
     here = at.astimezone()
     texts = words(lang, "site")["moments"]
     form = texts["time_seconds"] if here.second or here.microsecond else texts["time"]
@@ -19,7 +19,7 @@ def moment_text(at: datetime, lang: str) -> str:
 
 
 def exact_text(at: datetime, lang: str) -> str:
-    """With its seconds, whatever they are."""
+    """Return a time with its seconds."""
     here, texts = at.astimezone(), words(lang, "site")["moments"]
     return str(texts["moment"]).format(date_text(here.date(), lang), _time(here, str(texts["time_seconds"])))
 
@@ -63,7 +63,7 @@ def from_field(text: str) -> datetime | None:
     Raises
     ------
     ValueError
-        It holds no moment.
+        The text is not a time.
     """
     if not text.strip():
         return None

@@ -21,15 +21,15 @@ from coursework.site.lti.scores import assignment_state, marked_in, number_text
 
 
 class LaunchClassRow(NamedTuple):
-    """A student of the class."""
+    """Student in the class table of a platform."""
 
     name: str
-    person: str  #: what the platform calls them; empty for who never came by a launch
+    person: str  #: identifier on the platform; empty without a launch
     tries: int
     minutes_late: int
     points: str
     mark: str
-    waits: int  #: answers that a person has to look at
+    waits: int  #: answers that wait for a person
     gradebook: str
 
 
@@ -41,8 +41,8 @@ def class_rows(
     Parameters
     ----------
     here
-        What the platform calls those who opened the assignment from this course. Nobody else of the assignment is shown: who
-        teaches a course of the platform teaches no other.
+        Platform identifiers of the people who opened the assignment from this course. Nobody else is shown,
+        since an instructor of one course of the platform may not teach the others.
     """
     people, subjects = people_of(connection, now.about.id), _subjects(connection, visit.launch.issuer)
     charges = Publication.of(now.about.published or {}).late == CHARGE

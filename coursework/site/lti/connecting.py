@@ -1,4 +1,4 @@
-"""Connecting an account of a platform with an account of the site: who has a password enters it once."""
+"""Connection of an account of a platform with an account of the site, confirmed once by the password."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from coursework.site.people import guessing, passwords
 if TYPE_CHECKING:
     from coursework.lti.launch import Launch
 
-_SECONDS = 15 * 60  #: for which the address of a launch holds
+_SECONDS = 15 * 60  #: lifetime of the address in seconds
 
 
 def _signed(site: Site) -> URLSafeTimedSerializer:
@@ -31,13 +31,15 @@ def _signed(site: Site) -> URLSafeTimedSerializer:
 
 
 def address(site: Site, launch: Launch, person: int) -> str:
-    """Return where the person whom a launch tells may connect it with their account: no other person can there."""
+    """Return the address at which the person of a launch, and nobody else, may connect it with their
+    account."""
     content = [launch.issuer, launch.person, launch.name, person]
     return f"{site.url}/connect/{_signed(site).dumps(content)}"
 
 
 def connect(request: Request) -> Response:
-    """Answer the page that ties an account of a platform to who is signed in, once they enter their password again."""
+    """Return the page that connects an account of a platform with the current user, who enters the password
+    again."""
     issuer, subject, name = _read_token(request)
     platform = urlsplit(issuer).hostname or issuer
     with request.site.store.reading() as connection:

@@ -26,7 +26,7 @@ from coursework.site.publication.assigning import holders
 if TYPE_CHECKING:
     from coursework.lti.launch import Launch
 
-_ROUNDS = 20  #: tries to deal while others are dealt to
+_ROUNDS = 20  #: tries to assign a paper while others are assigned
 _AGAIN = 5  #: seconds after which to try again
 
 
@@ -57,12 +57,13 @@ def _is_current(person: Any, launch: Launch, lang: str) -> bool:
 
 
 def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
-    """Tie the one person of the rosters whom the platform's e-mail or number tells, else a new one.
+    """Connect the only person of the rosters with the platform's e-mail address or number, or else a new
+    person.
 
     Raises
     ------
     HTTPException
-        The one person has a password, which is to be entered once.
+        The person has a password, which must be entered once.
     """
     matches = fitting(connection, launch.issuer, launch.email, launch.number)
     if len(matches) == 1 and has_password(connection, matches[0].id):
@@ -93,7 +94,7 @@ def _new(connection: Connection, launch: Launch) -> Student:
     raise HTTPException("own", 404)
 
 
-# ------------------------------------------------------------------------- dealing
+# ----------------------------------------------------------------------- assigning
 
 
 def assign_paper(site: Site, number: int, person: Any, launch: Launch, lang: str) -> None:
@@ -102,7 +103,7 @@ def assign_paper(site: Site, number: int, person: Any, launch: Launch, lang: str
     Raises
     ------
     HTTPException
-        It was issued without a file that says what to deal, or others are dealt to all the time.
+        The assignment has no file that states its exercises, or concurrent assignments never end.
     """
     for _ in range(_ROUNDS):
         with site.store.reading() as connection:

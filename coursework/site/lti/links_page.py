@@ -1,4 +1,4 @@
-"""Points on their way to platforms, for the staff: which have not arrived, and why."""
+"""Scores on their way to platforms, for staff, with the reasons for delays."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Scores for platforms: the points of the class page, less the penalty for lateness, once they are released;
 sent again after each change.
 
-What changes them is not asked of the pages that change it: whoever decides, marks again or grades from the command line, the
-assignment's stamp is another afterwards, and that is looked at every few seconds.
+Every change of marks, on the site or from the command line, changes the stamp of the assignment. A thread
+compares the stamps every few seconds.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ from coursework.site.papers.assignment_state import AssignmentState
 from coursework.site.papers.submission import pass_dates
 
 LOG = logging.getLogger("coursework.lti")
-WAITS = ("to_mark", "unreadable")  #: verdicts of answers that a person has to look at
+WAITS = ("to_mark", "unreadable")  #: verdicts of answers that wait for a person
 _COMMENT = 900  #: characters of a comment in the gradebook
-_PAUSE = 5.0  #: seconds between two looks
+_PAUSE = 5.0  #: seconds between two checks
 
 
 class Marked(NamedTuple):
@@ -50,8 +50,8 @@ class Marked(NamedTuple):
 
     issued: Issued
     result: Result
-    sheets: Sequence[Graded]  #: of the hand-in that counts
-    waits: bool  #: a person has to look at some of it
+    sheets: Sequence[Graded]  #: of the submission that counts
+    waits: bool  #: some answers wait for a person
 
     def given(self, state: AssignmentState) -> float:
         """Return the points after the penalty for lateness."""
@@ -62,7 +62,7 @@ class Marked(NamedTuple):
 
 
 def marked_in(now: ClassNow, student: str) -> Marked | None:
-    """Of somebody of a class; none before anything was handed in."""
+    """Return the marks of a student from the state of the class; None before the first submission."""
     sheets = [graded for graded in now.graded.values() if graded.student == student]
     return _marked(now.issued, now.results.get(student), sheets, now.decisions)
 
@@ -156,18 +156,18 @@ def number_text(number: float, lang: str) -> str:
     return localise(plain(round(number, 3)), lang)
 
 
-# --------------------------------------------------------------------- sent anew
+# ----------------------------------------------------------------- changed scores
 
 
 class ScoreWatch:
-    """Puts scores on their way that something has changed."""
+    """Watch that queues changed scores for the platforms."""
 
     def __init__(self, site: Site, storage: Storage, wake: Any):
         self._site, self._storage, self._wake = site, storage, wake
         self._over = threading.Event()
 
     def look(self) -> int:
-        """Look at every assignment that a link opens; how many scores are new."""
+        """Check every assignment that a link opens; return the number of new scores."""
         return sum(self._look(number, launches) for number, launches in self._opened().items())
 
     def _opened(self) -> Mapping[int, list[Launch]]:

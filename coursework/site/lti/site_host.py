@@ -1,8 +1,8 @@
 """Host of the LTI service on the site: a link opens a published assignment of the database, or an exercise
 for practice.
 
-A student answers their own paper, which is handed in, marked and told of as on the site; who teaches sees the class. An
-exercise is served by the host that the package brings, with papers and tries of its own beside those of the site.
+A student answers a paper, which is submitted and marked as on the site; an instructor sees the class. An
+exercise is served by the package's own host, whose papers and attempts are separate from those of the site.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ _BEST = "best"
 
 
 class SiteHost:
-    """A site behind the service."""
+    """Host of the LTI service that shows the content of a site."""
 
     def __init__(self, site: Site, storage: Storage):
         self._site, self._storage = site, storage
@@ -66,7 +66,7 @@ class SiteHost:
 
     @property
     def practice(self) -> CourseHost:
-        """Behind links that open an exercise."""
+        """Host for links that open an exercise."""
         if self._practice is None or self._practice.course is not self._site.course:
             self._practice = CourseHost(
                 self._site.course, self._storage, clock=lambda: self._site.clock().timestamp()
@@ -77,7 +77,7 @@ class SiteHost:
     def pages(self) -> Pages:
         return Pages(self._site.course.folder)
 
-    # -------------------------------------------------------------- what there is
+    # -------------------------------------------------------------------- offers
 
     def shelves(self, lang: str) -> Sequence[Shelf]:
         """Return the published assignments, then the exercises by chapter."""
@@ -163,7 +163,7 @@ class SiteHost:
         Raises
         ------
         HTTPException
-            It is not published, not open, or there is nothing to be dealt.
+            The assignment is not published, not open, or cannot be assigned.
         """
         site, launch = self._site, visit.launch
         with site.store.reading() as connection:
@@ -228,7 +228,8 @@ class SiteHost:
         }
 
     def _rules(self, visit: Visit, state: AssignmentState) -> list[str]:
-        """Until when, how often, and what counts."""
+        """Return the rules of the assignment: closing time, remaining attempts, and the attempt that
+        counts."""
         texts, site_texts = words(visit.lang)["lti"], words(visit.lang, "site")["lti"]
         rules = []
         if state.phase is Phase.OPEN and state.assignment.own.closes:
@@ -289,14 +290,14 @@ class SiteHost:
         return str(texts["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
 
     def _submit(self, visit: Visit, number: int, form: Form) -> Reply:
-        """Hand in what a form brings: once, whatever comes twice."""
+        """Submit the answers of a form; a repeated form has no effect."""
         if visit.launch.role is not Role.STUDENT or visit.path:
             raise LtiRefused("page", 404, "nothing is handed in there")
         site_request = self._site_request(visit, number, SiteForm(form))
         state, paper = state_and_paper(site_request)
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):
-            return Reply(goto=visit.home)  # the same form once more
+            return Reply(goto=visit.home)  # repeated form
         if not any(text.strip() for text in texts.values()):
             empty = words(visit.lang)["lti"]["empty"]
             return Reply(self._sheet(visit, state, paper, texts, notes=[empty]), 422)
@@ -318,7 +319,8 @@ class SiteHost:
     # ------------------------------------------------------------------------ class
 
     def _opened_by_course(self, launch: Launch) -> set[str]:
-        """Return what the platform calls those who opened the assignment of a launch from the launch's course."""
+        """Return the platform identifiers of the people who opened the assignment from the launch's
+        course."""
         named = Wanted.of(launch.custom).assignment
         opened = (other for other in self._storage.opened() if other.course == launch.course)
         return {other.person for other in opened if other.custom.get("assignment", "").strip() == named}

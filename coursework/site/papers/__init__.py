@@ -1,1 +1,1 @@
-"""Assignments as students see them: their own papers, handing in, receipts, feedback."""
+"""Assignments for students: papers, submissions, receipts, and feedback."""

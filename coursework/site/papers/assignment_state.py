@@ -27,7 +27,7 @@ class AssignmentState:
     now: datetime
     done: Sequence[Delivery]
     everybody_ends: datetime | None
-    used: int = 0  #: tries of the paper that is to be done
+    used: int = 0  #: attempts made on the current paper
 
     @property
     def phase(self) -> Phase:
@@ -52,7 +52,7 @@ class AssignmentState:
 
     @property
     def closed_for_both(self) -> datetime | None:
-        """Time at which it has closed for the class and for this person; None if that never happens."""
+        """Time at which the assignment closes for the class and for this person; None if it never closes."""
         assert self.assignment.publication is not None
         ends = self.assignment.own.ends, self.assignment.publication.ends
         return None if ends[0] is None or ends[1] is None else max(ends[0], ends[1])
@@ -99,7 +99,7 @@ def user_assignment(request: Request, connection: Connection) -> Place:
     Raises
     ------
     HTTPException
-        There is none such: nobody is told which of it is wanting.
+        There is no such assignment; the response does not tell the reason.
     """
     matches = places(connection, request.user.id, int(request.path_params["number"]))
     if len(matches) != 1 or matches[0].publication is None:
@@ -118,7 +118,8 @@ def state_and_paper(request: Request) -> tuple[AssignmentState, StudentPaper]:
 def assignment_and_paper(
     request: Request, connection: Connection, *, heads: bool = False
 ) -> tuple[Place, StudentPaper]:
-    """Return the assignment and the paper; refuse it before it opens. The heading needs ``heads``."""
+    """Return the assignment and the paper, with the data of its heading if ``heads``; refuse it before it
+    opens."""
     site, assignment = request.site, user_assignment(request, connection)
     assert assignment.publication is not None
     if (

@@ -1,4 +1,4 @@
-"""A student's assignments: the list, one's own paper, what is read of it, handing it in, and what became of it."""
+"""Assignments of a student: list, paper, reading of the answers, submission, receipt, and feedback."""
 
 from __future__ import annotations
 
@@ -211,11 +211,11 @@ def _of_file(request: Request, paper: StudentPaper, sent: Upload) -> tuple[dict[
     Raises
     ------
     BadInput
-        The file takes more to be read than it may, or holds more rows than a paper has.
+        The file needs too many resources, or has more rows than a paper.
     """
     messages, warnings = request.words["assignments"], []
     with tempfile.TemporaryDirectory(prefix="coursework-") as folder:
-        path = Path(folder) / f"answers{_ending(sent)}"  # nothing of the name that it came by
+        path = Path(folder) / f"answers{_ending(sent)}"  # not the uploaded name, which is untrusted
         path.write_bytes(sent.data)
         rows = read_apart(ANSWER_FILE, request.words["refused"]["too_much"], read_rows, path, MOST_ROWS)
     if rows is None:
@@ -236,11 +236,11 @@ def _of_file(request: Request, paper: StudentPaper, sent: Upload) -> tuple[dict[
     return texts, warnings
 
 
-# -------------------------------------------------------------------- handing in
+# -------------------------------------------------------------------- submission
 
 
 def confirm(request: Request) -> Response:
-    """Hand in what was read back, once."""
+    """Submit the confirmed answers, once."""
     if not request.is_post:
         raise HTTPException("method", 405)
     site, person_id, number = request.site, request.user.id, request.form.text("_number")

@@ -1,4 +1,4 @@
-"""The page of a paper when it is opened: pieces that were prepared, with what somebody typed put in their boxes."""
+"""Page of a paper from parts that were prepared in advance, with the drafts filled into the boxes."""
 
 from __future__ import annotations
 
@@ -28,9 +28,10 @@ _AFTER_VALUE = re.compile(r' value="[^"]*"')
 
 
 def make_pieces(site: Site, number: int, person_id: int, paper: StudentPaper, *, stores: bool) -> Pieces:
-    """Make the parts of a page; cache them if ``stores``.
+    """Make the parts of a page; store them in the database if ``stores``.
 
-    A database that takes nothing refuses no reader, and of who was erased meanwhile nothing is kept.
+    A reader sees the page even if the database accepts no writes; nothing is stored for a person erased
+    meanwhile.
     """
     pieces = paper.pieces()
     if stores:
@@ -40,15 +41,16 @@ def make_pieces(site: Site, number: int, person_id: int, paper: StudentPaper, *,
 
 
 def prepare_soon(site: Site, connection: Connection, number: int, person_id: int | None = None) -> None:
-    """Have the pages of an assignment made, or that of one person, before they are opened, where a worker does that."""
+    """Queue the preparation of the pages of an assignment, or of one person's page, if the site has a
+    worker."""
     if site.has_worker and not is_over(connection, number, site.clock()):
         prepare_later(connection, number, site.clock(), person_id)
 
 
 def prepare(site: Site, number: int, person_id: int, at: datetime, cache: LRUCache | None = None) -> int:
-    """Make the page of a person's paper, where it is published and not closed, and return how many were made.
+    """Make the pages of a person's paper if it is published and not closed; return their number.
 
-    It is made in the person's language; in each of the site's where nobody knows theirs.
+    A page is made in the person's language, or in each language of the site if theirs is unknown.
     """
     count = 0
     for lang in _langs(site, person_id):

@@ -1,4 +1,4 @@
-"""Hand-ins that wait for their marks, as their pages tell it."""
+"""Submissions that wait for their marks, as the pages report them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _SOON, _EACH, _LONGEST = (
     3.0,
     0.2,
     60.0,
-)  #: seconds until a page looks again: at least, for each before it, at most
+)  #: seconds until a page reloads: minimum, addition for each earlier submission, maximum
 
 
 class PendingMarking(NamedTuple):
-    """Hand-in that has no marks yet."""
+    """Submission without marks."""
 
     message: str
-    seconds: int  #: until the page looks again; 0 where that is of no use
+    seconds: int  #: until the page reloads; 0 if reloading is useless
 
 
 def pending_marking(request: Request, delivery: int) -> PendingMarking | None:

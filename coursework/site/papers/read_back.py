@@ -16,7 +16,7 @@ class ReadBack(NamedTuple):
     """Reading of a text."""
 
     status: str  #: ``read``, ``waits`` for a person, ``missing``, ``unreadable`` or ``wrong_unit``
-    message: str  #: plain text; nothing of an empty box
+    message: str  #: plain text; empty for an empty box
 
     @property
     def is_in_doubt(self) -> bool:

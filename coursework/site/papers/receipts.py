@@ -61,7 +61,7 @@ def find(done: Sequence[Delivery], code: str) -> Delivery:
     Raises
     ------
     HTTPException
-        There is none: it may be somebody else's.
+        There is none, or it belongs to another person.
     """
     for submission in done:
         if submission.receipt and submission.receipt == code.strip().upper():
@@ -118,7 +118,7 @@ def verify(request: Request) -> Response:
 
 
 def _is_theirs(request: Request, connection: Connection, row: Any) -> bool:
-    """Return whether who asks may look up a receipt of this student."""
+    """Return True if the current user may look up receipts of the student."""
     number, issued_to = row.assignment_id, people_of(connection, row.assignment_id).items()
     names = [name for name, person in issued_to if person == row.person_id] or [row.student]
     return any(may_for(connection, request.user, Permission.RECEIPTS_CHECK, number, name) for name in names)

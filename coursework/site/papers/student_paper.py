@@ -1,4 +1,4 @@
-"""The paper that somebody was issued, as their pages show it."""
+"""Paper issued to a student, as the pages show it."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.requests import Form, HTTPException
 from coursework.site.papers.read_back import ReadBack, read_back
 
-_VARIANTS = 100  #: of one paper
-Texts = Mapping[str, str]  #: what stands in the boxes, by their names
+_VARIANTS = 100  #: items of the cache of one paper
+Texts = Mapping[str, str]  #: texts of the boxes, by name
 
 
 class BoxRecord(NamedTuple):
-    """A box of the paper, as the record of its variant has it: nothing is drawn to know it."""
+    """Box of a paper, known from the record of its variant without drawing the variant."""
 
     exercise: str
     seed: int
@@ -42,7 +42,7 @@ class BoxRecord(NamedTuple):
 
 
 class PaperBox(NamedTuple):
-    """A question of the paper, and where its answer is typed."""
+    """Question of a paper with the box of its answer."""
 
     name: str  #: on the page
     number: str  #: of the question, 2.1
@@ -56,11 +56,11 @@ class StudentPaper:
     """Paper of a student: a variant of each exercise, in one language."""
 
     course: Course[Any]
-    content: Mapping[str, Any]  #: what ``issued.json`` says of it
+    content: Mapping[str, Any]  #: content of ``issued.json`` for the student
     student: str
     lang: str
     instructions: Mapping[str, str]
-    cache: LRUCache = field(default_factory=lambda: LRUCache(_VARIANTS))  #: where its variants are at hand
+    cache: LRUCache = field(default_factory=lambda: LRUCache(_VARIANTS))  #: cache of the variants
 
     @cached_property
     def issued(self) -> Issued:
@@ -68,14 +68,14 @@ class StudentPaper:
 
     @cached_property
     def state(self) -> str:
-        """Digest of all that its page depends on but what is typed."""
+        """Digest of everything that determines the page, except the drafts."""
         exercises = {str(item["record"]["exercise"]) for item in self.content["issued"]}
         content = self.content, self.student, self.lang, dict(self.instructions)
         return page_state(self.course, sorted(exercises), *content)
 
     @cached_property
     def seeds(self) -> Mapping[str, int]:
-        """The seeds of the sheet that is to be done, by exercise in the paper's order: of a make-up, where there is one."""
+        """Seeds by exercise, in the order of the paper; those of the make-up if there is one."""
         seeds = self.issued.issued_to(self.student)
         stated = (self.issued.assignment or {}).get("exercises") or self.issued.exercises
         return {exercise: seeds[exercise] for exercise in map(str, stated) if exercise in seeds} or seeds
@@ -103,7 +103,7 @@ class StudentPaper:
 
     @cached_property
     def fields(self) -> dict[str, BoxRecord]:
-        """The same boxes by their names, for what is stored and not shown."""
+        """Boxes by name, for storage, without the variants."""
         fields = {}
         for index, (exercise, seed) in enumerate(self.seeds.items(), 1):
             record, lang = self.issued.record_of(self.student, exercise, seed), self._spoken(exercise)
@@ -113,7 +113,7 @@ class StudentPaper:
 
     @cached_property
     def boxes(self) -> dict[str, PaperBox]:
-        """The boxes of the page by their names, in order."""
+        """Boxes of the page by name, in order."""
         return {box.name: box for box in self._boxes()}
 
     def _boxes(self) -> Iterator[PaperBox]:
@@ -130,7 +130,7 @@ class StudentPaper:
 
     @cached_property
     def paper(self) -> Paper:
-        """As it is printed."""
+        """Printable paper."""
         return Paper(self.heading, tuple(variant.handout(self.student) for variant in self.variants))
 
     def read(self, name: str, text: str) -> ReadBack:
@@ -144,7 +144,7 @@ class StudentPaper:
         Raises
         ------
         HTTPException
-            A field is no box of the paper, or holds more than anybody types.
+            A field is not a box of the paper, or its text is too long.
         """
         if strange := [name for name in form.texts if name not in self.fields and not name.startswith("_")]:
             raise HTTPException("bad_request", 400, len(strange))
@@ -183,7 +183,8 @@ def student_paper(
 ) -> StudentPaper:
     """Return the paper of a person; its variants are cached in ``cache``, if given.
 
-    Without ``heads`` the roster's columns are not loaded, which its heading needs: of a whole class they are long.
+    The roster's columns, which only the heading needs, are loaded if ``heads``; for a large class they are
+    long.
     """
     if heads:
         content = issued_content(connection, assignment.id, person)
@@ -196,7 +197,7 @@ def student_paper(
 
 
 def read_lines(paper: StudentPaper, texts: Texts) -> list[tuple[PaperBox, str, ReadBack]]:
-    """Each question, what was typed, and how it is read."""
+    """Return each question with its text and the reading of the text."""
     return [
         (box, texts.get(name, ""), paper.read(name, texts.get(name, ""))) for name, box in paper.boxes.items()
     ]

@@ -1,8 +1,8 @@
 """Submission of answers: stored once, even if a form is sent twice, opened twice, or sent again after a lost
 connection.
 
-A form holds which of the person's hand-ins it is to be. A number that is taken is that hand-in again, and never another; the
-person's row in the database is held meanwhile, so that two that come together come one after the other.
+A form contains the number of the submission that it is to become. A form with a number already in use
+repeats that submission and makes no other. A row lock on the person serialises concurrent submissions.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class SubmissionResult(NamedTuple):
 
     delivery: Delivery
     is_new: bool
-    differs: bool = False  #: it holds something else than what was handed in under its number
+    differs: bool = False  #: its answers differ from those submitted under its number
 
 
 def sheet_of(assignment: Place, paper: StudentPaper) -> str:
@@ -69,12 +69,12 @@ def submit(
     at: datetime,
     source: str,
 ) -> SubmissionResult:
-    """Hand in what was typed, as which of the person's hand-ins the form says.
+    """Submit the texts under the number that the form states.
 
     Raises
     ------
     HTTPException
-        It is not open, or no try is left.
+        The assignment is not open, or no attempt is left.
     """
     with site.store.begin() as connection:
         hold(connection, person_id)
@@ -101,7 +101,7 @@ def store_submission(
     Raises
     ------
     HTTPException
-        It is not open, or no try is left.
+        The assignment is not open, or no attempt is left.
     """
     done = deliveries(connection, assignment.id, person_id)
     before = done[number - 1] if number <= len(done) else None
@@ -110,7 +110,7 @@ def store_submission(
         if is_same or before.source != AS_SAVED or not _takes(assignment, at, site.clock()):
             return SubmissionResult(before, False, not is_same)
     if done and _holds(connection, done[-1], paper, texts):
-        return SubmissionResult(done[-1], False)  # what stands already costs no try
+        return SubmissionResult(done[-1], False)  # equal answers cost no attempt
     now = _check(connection, assignment, person_id, at, site.clock(), done)
     submission = _deliver(connection, assignment, paper, person_id, texts, now, source)
     put_job(connection, MARK, assignment.id, site.clock(), delivery=submission.id)
@@ -134,9 +134,10 @@ def _check(
     clock: datetime,
     done: Sequence[Delivery],
 ) -> datetime:
-    """Return the time that counts, where the publication says that something is taken at it.
+    """Return the effective time, after a check that a submission is accepted then.
 
-    What was rescued as it closed costs no try of who handed in before that and was waiting for the database still.
+    A submission made automatically at the closing time costs no attempt, since an earlier one may still be
+    waiting for the database.
     """
     if assignment.publication is None:
         raise HTTPException("own", 404)
@@ -185,7 +186,7 @@ def mark(site: Site, delivery_id: int) -> None:
         mark_delivery(site.course, site.store, delivery_id)
         with site.store.begin() as connection:
             drop_jobs(connection, delivery_id)
-    except Exception as fault:  # who handed in is told so, whatever becomes of the marking
+    except Exception as fault:  # the submission is confirmed even if marking fails
         LOG.error("delivery %d is not marked yet: %s", delivery_id, type(fault).__name__)
 
 
@@ -214,18 +215,19 @@ def content_of(paper: StudentPaper, texts: Texts) -> list[list[str]]:
 
 
 def digest(answers: Sequence[Sequence[str]]) -> str:
-    """SHA-256 of what was handed in, as compact JSON: anybody can compute it again."""
+    """Return the SHA-256 digest of the answers as compact JSON, which anybody can recompute."""
     text = json.dumps([list(answer) for answer in answers], ensure_ascii=False, separators=(",", ":"))
     return hashlib.sha256(text.encode("utf-8", "backslashreplace")).hexdigest()
 
 
-# ------------------------------------------------------------------- when it closes
+# ----------------------------------------------------------------- closing time
 
 
 def pass_dates(site: Site, number: int, at: datetime) -> None:
-    """Write down which dates of an assignment have passed; of what was saved as it closed, hand in what is to be.
+    """Record the passed dates of an assignment, and submit saved answers at the closing time if the
+    publication requires it.
 
-    The worker does this where there is one: no request waits for it, and it is done when nobody asks for a page.
+    If the site has a worker, the worker does this instead, even without any request.
     """
     if not site.has_worker:
         close_passed(site, number, at)
@@ -234,15 +236,15 @@ def pass_dates(site: Site, number: int, at: datetime) -> None:
 def close_passed(
     site: Site, number: int, at: datetime, failed: Callable[[int, Exception], None] | None = None
 ) -> None:
-    """Hand in what was saved and write down the dates that have passed; in this order, so that nothing is forgotten when the
-    process falls between them.
+    """Submit the saved answers, then record the passed dates; in this order, so that nothing is lost if the
+    process ends in between.
 
     Parameters
     ----------
     at
-        The moment up to which dates have passed.
+        Time up to which dates have passed.
     failed
-        Is told of each person whose answers could not be handed in; without it the fault is raised.
+        Called for each person whose answers could not be submitted; without it the fault is raised.
     """
     if not is_steady(site.clock):
         return
@@ -258,9 +260,9 @@ def close_passed(
     for person_id in wrote:
         try:
             rescue(site, number, person_id, at)
-        except CourseworkError as fault:  # it stands in the boxes still; the others' is handed in
+        except CourseworkError as fault:  # the drafts remain; the other people's are submitted
             if isinstance(fault.__cause__, (DBAPIError, NoConnection)):
-                raise  # the database is away: nobody's was
+                raise  # the database is unavailable: none was submitted
             LOG.error("what person %d saved is not handed in: %s", person_id, type(fault).__name__)
             if failed is not None:
                 failed(person_id, fault)
@@ -275,7 +277,7 @@ def close_passed(
 
 
 def unsubmitted_persons(connection: Connection, number: int) -> list[int]:
-    """Return who has answers in the boxes of an assignment and handed in nothing."""
+    """Return the people with saved answers for an assignment and without a submission."""
     theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
     wrote = select(draft.c.person_id).where(draft.c.sheet.like(f"assignment/{number}%"), draft.c.text != "")
     done = select(delivery.c.person_id).where(
@@ -286,9 +288,10 @@ def unsubmitted_persons(connection: Connection, number: int) -> list[int]:
 
 
 def rescue(site: Site, number: int, person_id: int, at: datetime) -> Delivery | None:
-    """Hand in what stood in the boxes of who handed in nothing, once it closed for them; it is marked later.
+    """Submit the saved answers of a person without a submission, once the assignment has closed for them;
+    they are marked later.
 
-    It counts as handed in when the last of it was typed: in time, where that was in time.
+    The submission counts from the time of the last draft.
     """
     with site.store.begin() as connection:
         hold(connection, person_id)

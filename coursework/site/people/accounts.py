@@ -1,4 +1,4 @@
-"""Coming in and going: sign in, invitations, and one's own account."""
+"""Sign-in, invitations, and the page of the current user's account."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ from coursework.site.frame.settings import Entrance, Site
 from coursework.site.frame.times import moment_text
 from coursework.site.people import guessing, passwords
 
-DAYS = 21  #: that an invitation holds
-_HAPPENED = 20  #: lines on what was done with an account
+DAYS = 21  #: for which an invitation is valid
+_HAPPENED = 20  #: audit lines shown on the account page
 
 
 def as_login(text: str) -> str:
@@ -68,7 +68,7 @@ def sign_in(request: Request) -> Response:
 
 
 def sign_in_attempt(request: Request) -> Attempt:
-    """Return what a form of the sign-in page is counted by."""
+    """Return the attempt counted for a form of the sign-in page."""
     if request.site.entrance is not Entrance.ACCOUNTS:
         return Attempt()
     return guessing.attempt_of(request, as_login(request.form.text("login")))
@@ -77,7 +77,7 @@ def sign_in_attempt(request: Request) -> Attempt:
 def _without_account(request: Request) -> Response:
     if request.site.entrance is Entrance.DEMO:
         return Response(redirect="/who")
-    return Response(redirect="/")  # on one's own machine everybody is signed in
+    return Response(redirect="/")  # on a local site the user is always signed in
 
 
 def _sign_in_page(
@@ -88,7 +88,7 @@ def _sign_in_page(
 
 
 def sign_out(request: Request) -> Response:
-    """By a form alone: no link of another page signs anybody out."""
+    """Sign out, by a form only, so that no link of another page signs anybody out."""
     return Response(redirect="/", signed_in=0) if request.is_post else Response(redirect="/")
 
 
@@ -152,7 +152,7 @@ def _chosen(request: Request, mine: Any) -> tuple[str, str]:
 
 
 def account(request: Request) -> Response:
-    """Answer the page of one's own account: the password, and the sessions, which can be ended each and all."""
+    """Return the account page of the current user: the password, and the sessions, to end one or all."""
     with request.site.store.reading() as connection:
         mine = account_of(connection, request.user.id)
     if not request.is_post:
@@ -171,7 +171,7 @@ def account(request: Request) -> Response:
 
 
 def account_attempt(request: Request) -> Attempt:
-    """Return what a form with the present password is counted by."""
+    """Return the attempt counted for a form with the current password."""
     if "now" not in request.form.texts:
         return Attempt()
     with request.site.store.reading() as connection:
@@ -180,16 +180,14 @@ def account_attempt(request: Request) -> Attempt:
 
 
 def _end_chosen_session(request: Request) -> Response:
-    """End one of one's own sessions; the present one is signed out."""
+    """End one session of the current user; if it is the current one, sign out."""
     number = request.form.text("session")
     if not (number.isascii() and number.isdecimal() and len(number) < 10):
         raise HTTPException("bad_request", 422)
     if int(number) == request.session:
         return Response(redirect="/", signed_in=0)
     with request.site.store.begin() as connection:
-        end_session(
-            connection, int(number), request.user.id
-        )  # one that ended meanwhile is as the person wants it
+        end_session(connection, int(number), request.user.id)  # it may have ended meanwhile
     return Response(redirect="/account")
 
 
@@ -230,12 +228,12 @@ def _other_password(request: Request, mine: Any) -> Response:
 
 
 def invited_by_command(site: Site, login: str, role: str) -> str:
-    """Invite somebody to the staff from the command line.
+    """Invite a member of staff from the command line.
 
     Parameters
     ----------
     login
-        What they sign in with; of somebody who has an account, or somebody new.
+        Login of an existing account, or of a new person.
     role
         ``administrator`` or ``instructor``. The first instructor of a site is its administrator, and nobody's role is lowered.
 
@@ -266,12 +264,12 @@ def invited_by_command(site: Site, login: str, role: str) -> str:
 
 
 def _raised(before: str, role: str, *, is_first: bool) -> str:
-    """Return the role that somebody has from now on."""
+    """Return the new role of a person, never below the present one."""
     return ADMINISTRATOR if is_first or ADMINISTRATOR in (before, role) else role
 
 
 def check_administrator(site: Site) -> None:
-    """See to it that somebody can come in to administer.
+    """Check that an administrator can sign in.
 
     Raises
     ------

@@ -1,10 +1,11 @@
-"""Passwords that are guessed first: words that everybody takes, with figures and signs around them, rows of keys, repetitions."""
+"""Passwords that are guessed first: common words with digits and signs around them, rows of keys,
+repetitions."""
 
 from __future__ import annotations
 
 import re
 
-#: Words that make no password by themselves, however they are dressed with figures and signs.
+#: Words that are weak passwords, even with digits and signs around them.
 _WORDS = frozenset(
     "password passwort passwords motdepasse mdp secret admin administrator administrateur root user login letmein welcome welcometo "
     "bienvenue bonjour bonsoir hello helloworld iloveyou jetaime ilovemath loulou doudou chouchou soleil sunshine princess princesse "
@@ -22,8 +23,8 @@ _ROWS = (
     "01234567890123456789", "123456789101112131415161718192021222324", "abcdefghijklmnopqrstuvwxyz", "qwertyuiopasdfghjklzxcvbnm", "azertyuiopqsdfghjklmwxcvbn",
     "qwertzuiopasdfghjklyxcvbnm", "1qaz2wsx3edc4rfv5tgb6yhn7ujm", "a1z2e3r4t5y6u7i8o9p0", "q1w2e3r4t5y6u7i8o9p0",
 )  # fmt: skip
-_LIKE = str.maketrans("013457@$€!", "oieastasei")  #: figures and signs that stand for letters
-_LONGEST_UNIT = 4  #: characters that are repeated
+_LIKE = str.maketrans("013457@$€!", "oieastasei")  #: digits and signs used for letters
+_LONGEST_UNIT = 4  #: characters in a repeated unit
 
 
 def is_common(password: str, *context: str) -> bool:
@@ -61,7 +62,7 @@ def _pieces(text: str) -> list[str]:
 
 
 def _is_row(text: str) -> bool:
-    """Figures, letters or keys in their order, forwards or backwards."""
+    """Return True for digits, letters or keys in order, forwards or backwards."""
     return any(text in row * 2 or text in row[::-1] * 2 for row in _ROWS)
 
 

@@ -1,4 +1,4 @@
-"""Counts by which passwords that do not fit make the next one wait."""
+"""Counters of wrong passwords, which delay the next attempt."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from coursework.system.allowances import network
 
 
 def tracks_of(request: Request, login: str) -> tuple[Track, ...]:
-    """Return what an attempt counts for: the browser alone where it signed in as this login before.
+    """Return the counters of an attempt: for a browser that has signed in with this login before, its own
+    counter alone.
 
-    A class behind one address mistypes less than the network is free to.
+    The free failures of a network exceed the typing errors of a class behind one address.
     """
     devices, here = Devices(request.site.secret), network(request.client_address)
     device = devices.name_for_login(request.device, login)
@@ -35,7 +36,7 @@ def attempt_of(request: Request, login: str) -> Attempt:
 
 
 def missed(request: Request, login: str) -> int:
-    """Count a password that did not fit; returns the seconds that the next one waits."""
+    """Count a wrong password; return the delay of the next attempt in seconds."""
     tracks, now = tracks_of(request, login), datetime.now(UTC)
     with request.site.store.begin() as connection:
         add_failure(connection, [track.key for track in tracks], now)
@@ -44,7 +45,7 @@ def missed(request: Request, login: str) -> int:
 
 
 def fitted(request: Request, login: str) -> None:
-    """Forget what was mistyped from here before a password did fit; what others tried elsewhere stays counted."""
+    """Forget the failures from here after a correct password; failures elsewhere remain counted."""
     keys = [tracks_of(request, login)[0].key]
     with request.site.store.reading() as connection:
         if not failures_of(connection, keys, datetime.now(UTC)):

@@ -1,4 +1,4 @@
-"""The first page, the files that all pages share, the choice of a language, and of who to be in a demonstration."""
+"""First page, shared static files, choice of the language, and choice of a person in a demonstration."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def shared_file(request: Request) -> Response:
 
 
 def choose_person(request: Request) -> Response:
-    """Choose the current user, in a demonstration alone."""
+    """Choose the current user; only in a demonstration."""
     if request.site.entrance is not Entrance.DEMO:
         raise HTTPException("page", 404)
     with request.site.store.reading() as connection:

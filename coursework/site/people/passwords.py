@@ -12,13 +12,14 @@ from argon2.exceptions import Argon2Error, InvalidHash
 from coursework.site.people.common_passwords import is_common
 
 SHORTEST, LONGEST = 10, 200  #: characters
-#: One try takes 19 MiB; no more than so many are made at a time by a process, the others wait.
+#: One check takes 19 MiB, so a process makes only a few at a time; the others wait.
 _HASHER = PasswordHasher(time_cost=2, memory_cost=19 * 1024, parallelism=1)
 _AT_A_TIME = BoundedSemaphore(4)
 
 
 def weakness(password: str, *names: str) -> str:
-    """Why a password will not do: ``short``, ``long``, ``names`` where it says who one is, or ``common``; nothing where it will."""
+    """Return the weakness of a password: ``short``, ``long``, ``known`` for one of the person's ``names``,
+    ``common``, or an empty text."""
     text = _plain(password)
     if len(text) < SHORTEST:
         return "short"

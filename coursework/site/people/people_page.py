@@ -26,22 +26,22 @@ from coursework.site.frame.requests import HTTPException, Request, Response, Rou
 from coursework.site.people.accounts import DAYS, as_login, invited
 from coursework.system.tables import csv_file
 
-_ANY = "*"  #: of a form: every assignment, or the whole class
+_ANY = "*"  #: value of a form for every assignment or the whole class
 
 
 class PersonRow(NamedTuple):
-    """A person of the table."""
+    """Person in the table."""
 
     id: int
     name: str
-    login: str  #: of the account; what it would be where there is none
+    login: str  #: login of the account, or the one that it would have
     role: str
-    state: str  #: joined, invited, over (an invitation that nobody took up), none
+    state: str  #: joined, invited, over (an expired invitation), none
     has_account: bool = False
 
 
 class InvitationLink(NamedTuple):
-    """An invitation that was made just now."""
+    """New invitation."""
 
     name: str
     login: str
@@ -116,12 +116,12 @@ def _invite(request: Request) -> Response:
 
 
 def _link(request: Request, connection: Connection, row: PersonRow) -> InvitationLink:
-    """Make a link for somebody whom the person who asks may invite; every link of the site's pages is made here.
+    """Make an invitation link, if the current user may invite the person; all pages make links here.
 
     Raises
     ------
     HTTPException
-        They may not, or the login is somebody else's.
+        The current user may not, or another person has the login.
     """
     request.require(to_invite(row.role))
     _check_login(connection, row.login, row.id)
@@ -157,12 +157,12 @@ def add(request: Request) -> Response:
 
 
 def _add_student(request: Request, connection: Connection, student: Student) -> int:
-    """Add somebody, or take in what a roster says of somebody who is known; a roster renames nobody of the staff.
+    """Add a student, or update a known person from a roster; a roster does not change staff.
 
     Raises
     ------
     HTTPException
-        It names somebody of the staff, of whom the person who asks may change nothing.
+        It names a member of staff, whom the current user may not change.
     """
     existing = person_by_who(connection, student.who)
     if existing is not None and (existing.role or STUDENT) in STAFF:
@@ -188,7 +188,7 @@ def _of_fields(request: Request) -> Student:
 
 
 def add_staff(request: Request) -> Response:
-    """Add somebody of the staff by name and login, with the link by which they come in."""
+    """Add a member of staff by name and login; return the invitation link."""
     _check_is_post(request)
     student, role = _of_fields(request), request.form.text("role")
     if role not in STAFF:
@@ -326,7 +326,7 @@ def somebody(request: Request, connection: Connection) -> Any:
 
 
 def number(text: str) -> int:
-    """Return a number in an address; 0, which is nobody's, for anything else."""
+    """Return a number in an address; 0, which is nobody's id, for anything else."""
     return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else 0
 
 

@@ -34,7 +34,7 @@ _LINES = 100  #: of the audit on a page
 Rows = Sequence[Mapping[str, Any]]
 
 
-# ---------------------------------------------------------------- what is kept
+# ------------------------------------------------------------------- export
 
 
 def user_data(request: Request) -> Response:
@@ -111,7 +111,7 @@ def _cell(value: Any) -> Any:
 
 
 def erase_person(request: Request) -> Response:
-    """Take somebody away, when their name is typed once more."""
+    """Erase a person, after their name has been typed for confirmation."""
     with request.site.store.reading() as connection:
         person = somebody(request, connection)
         owner = whose(connection, person.id)

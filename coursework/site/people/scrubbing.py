@@ -12,12 +12,13 @@ from coursework.lti.storage import Storage
 from coursework.site.frame.settings import Site
 
 LOG = logging.getLogger("coursework.site")
-_LEFT = "bytes left"  #: the setting that stands while something is left
+_LEFT = "bytes left"  #: setting that exists while deleted bytes are left
 _AGAIN = 30.0  #: seconds between tries
 
 
 def scrub(site: Site) -> bool:
-    """Rewrite the files without what was deleted. Return False where something is left, which is tried again at the next start."""
+    """Rewrite the files without the deleted bytes. Return False if some are left, which the next start tries
+    again."""
     done = site.store.scrub()
     if site.lti is not None:
         done = Storage(site.lti).scrub() and done
@@ -36,7 +37,7 @@ def is_left(site: Site) -> bool:
 
 
 def scrub_until_done(site: Site, stop: Event | None = None) -> None:
-    """Try again, beside the requests, until nothing is left."""
+    """Retry in the background until nothing is left."""
 
     def work() -> None:
         while not (stop or Event()).wait(_AGAIN):

@@ -1,1 +1,1 @@
-"""Practice: the course in its order, a variant of one's own, progress."""
+"""Practice: the course in order of study, personal variants, and progress."""

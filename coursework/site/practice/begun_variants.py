@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class BegunVariant(NamedTuple):
-    """A variant that was begun, and is not done."""
+    """Variant that was begun and is not finished."""
 
     exercise: str
     seed: int

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class ExerciseEntry(NamedTuple):
-    """An exercise in its chapter."""
+    """Exercise in its chapter."""
 
     name: str
     title: str
@@ -33,7 +33,7 @@ class ExerciseEntry(NamedTuple):
 
 
 class LessonGroup(NamedTuple):
-    """A lesson, or a heading, and its exercises."""
+    """Lesson or heading with its exercises."""
 
     title: str
     is_lesson: bool
@@ -41,7 +41,7 @@ class LessonGroup(NamedTuple):
 
 
 class ChapterEntry(NamedTuple):
-    """A chapter with its groups, and how many of its exercises were begun."""
+    """Chapter with its groups of exercises."""
 
     number: int
     title: str
@@ -127,7 +127,7 @@ class NextStep(NamedTuple):
 
     exercise: str
     html: Markup
-    is_new: bool  #: nothing of the exercise was begun
+    is_new: bool  #: the exercise was not begun
 
 
 def next_of(request: Request, progress: Progress) -> NextStep | None:

@@ -1,4 +1,5 @@
-"""Practice: the course in its order, an exercise with a variant of one's own, answers checked one by one or together."""
+"""Practice: the course in order of study, and exercises with a personal variant, checked answer by answer or
+together."""
 
 from __future__ import annotations
 
@@ -39,7 +40,7 @@ def course(request: Request) -> Response:
 
 
 def exercise(request: Request) -> Response:
-    """On to the variant that one is at, or to a fresh one, which a form asks for."""
+    """Redirect to the current variant of an exercise, or to a new one if a form requests it."""
     name, site = str(request.path_params["exercise"]), request.site
     if name not in site.course:
         raise HTTPException("page", 404)
@@ -66,7 +67,7 @@ def _worksheet(request: Request) -> Worksheet:
 
 
 def _warm(request: Request, work: Worksheet) -> None:
-    """Find beforehand what wrong answers are compared with: it is the longest part of a first check."""
+    """Compute the data for wrong answers in advance, since it takes most of the time of the first check."""
     wrong = {part.id: "1.2345" for part in work.variant.parts if not part.choices}
     request.site.ahead(("keys", work.variant), partial(mark, work.variant, wrong))
 
@@ -174,17 +175,17 @@ def _after(request: Request, summary: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-# ------------------------------------------------------------------- what is typed
+# ------------------------------------------------------------------- drafts
 
 
 def _save_typed(request: Request, work: Worksheet) -> dict[str, Any]:
-    """Keep what a form without script brings; gives the boxes that another page wrote to since."""
+    """Store the texts of a form without a script; return the boxes that another page has changed since."""
     others = work.save_typed(request.form.text("versions"))
     return {n: box for n, box in others.items() if box.text != work.typed[n]}
 
 
 def draft(request: Request) -> Response:
-    """Keep what a script sends while one types."""
+    """Store the drafts that a script sends during typing."""
     _only_posted(request)
     work = _worksheet(request)
     return save_drafts(request, work.name, work.parts)

@@ -15,8 +15,8 @@ from coursework.site.frame.budgets import PROGRESS_FILE, read_apart
 from coursework.site.frame.requests import Request, Response, Route
 from coursework.site.practice.contents import contents, exercise_title, next_of
 
-_MOST = 6_000  #: entries of a file that is brought
-_MOST_STORED = 30_000  #: entries of a person, with those that are brought
+_MOST = 6_000  #: entries of an uploaded file
+_MOST_STORED = 30_000  #: entries of a person, uploaded ones included
 
 
 def progress(request: Request) -> Response:
@@ -44,7 +44,7 @@ def _brought(request: Request, store: PersonProgress) -> int:
     Raises
     ------
     BadInput
-        It is none of progress, of a later version, or far too long.
+        The file is not one of progress, is of a later version, or is too long.
     """
     texts = request.words["progress"]
     upload = next(iter(request.form.files.get("file", ())), None)
@@ -68,7 +68,7 @@ def _brought(request: Request, store: PersonProgress) -> int:
 
 
 def file(request: Request) -> Response:
-    """Return the whole progress, in the format of notebooks."""
+    """Return all the progress, in the format of notebooks."""
     entries = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
     return Response(media_type="application/json", content=entries.text().encode(), filename=FILE)
 

@@ -1,4 +1,4 @@
-"""A person's sheet of one variant to practise: what stands in its boxes, what was said of it, and the page that shows it."""
+"""Sheet of one practice variant for one person: the boxes, the feedback, and the page."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from coursework.model import Part
     from coursework.site.frame.requests import Request
 
-BOX_PREFIX = "a-"  #: before the names of boxes, which no other field of the form has
+BOX_PREFIX = "a-"  #: prefix of the names of boxes, used by no other field of the form
 _ASKS = re.compile(r'<a href="#(hint|reveal)-([^"]+)">(.*?)</a>')
 
 
@@ -45,13 +45,13 @@ class AnswerFeedback(NamedTuple):
     """Feedback on an answer."""
 
     sign: str
-    verdict: str  #: in a word or two; empty where the sentence says all
+    verdict: str  #: in a word or two; empty if the sentence suffices
     html: Markup
     is_right: bool = False
 
 
 class QuestionHints(NamedTuple):
-    """The hints of a question, or of a step on the way to it, that were asked for."""
+    """Requested hints of a question, or of a step towards it."""
 
     name: str
     title: Markup
@@ -61,12 +61,12 @@ class QuestionHints(NamedTuple):
 
 
 class Worksheet:
-    """One variant of one person.
+    """Practice sheet of one variant for one person.
 
     Raises
     ------
     HTTPException
-        There is no such exercise, or it is no variant to practise: those of classes stay theirs.
+        There is no such exercise, or the variant is not for practice: variants of classes are reserved.
     BadInput
         The solutions are not in this copy of the course.
     """
@@ -120,7 +120,7 @@ class Worksheet:
         Raises
         ------
         HTTPException
-            It is not asked here.
+            The variant has no such part.
         """
         if name not in self.parts:
             raise HTTPException("bad_request", 400)
@@ -150,13 +150,14 @@ class Worksheet:
         }
 
     def save_typed(self, versions: str) -> dict[str, Box]:
-        """Keep what a form without script brings; gives the boxes that another page wrote to since."""
+        """Store the texts of a form without a script; return the boxes that another page has changed
+        since."""
         self.drafts, others = save_form_drafts(
             self.request, self.name, self.typed, self.box_contents(), versions
         )
         return others
 
-    # -------------------------------------------------------------------- what is said
+    # -------------------------------------------------------------------- feedback
 
     def feedback(self, mark: Mark) -> AnswerFeedback:
         """Return the feedback on an answer."""
@@ -199,7 +200,7 @@ class Worksheet:
         Raises
         ------
         HTTPException
-            There is nothing of that name here.
+            The variant has no quantity of that name.
         """
         try:
             quantity = hints.quantity_of(self.variant, name)

@@ -1,1 +1,1 @@
-"""An exercise under work, its page anew at each save."""
+"""Preview of an exercise while its author edits it."""

@@ -1,4 +1,5 @@
-"""The page of an exercise under work, on this machine alone: variant, sheet, solution, key and check, anew at each save."""
+"""Page of an exercise that is being edited, on this machine only: variant, sheet, solution, key and check,
+renewed at each save."""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from coursework.site.frame.pages import Pages
 from coursework.site.preview.previewed import ViewRequest
 from coursework.site.preview.under_work import EditedExercise, View
 
-#: What may be looked at, in order: its name, the view and the form of it.
+#: Views by name, in order: content and format.
 VIEWS = {
     "sheet": ("sheet", "html"),
     "pdf": ("sheet", "pdf"),
@@ -28,14 +29,14 @@ VIEWS = {
     "check": ("check", ""),
 }
 _LARGEST = 2**31  #: seed
-_DIGITS = 12  #: of a seed in an address: more is beyond the largest, whatever they are
+_DIGITS = 12  #: of a seed in an address: a longer number exceeds the largest seed
 _PAGE_HEADERS = {
     "content-security-policy": "default-src 'none'; img-src 'self' data:; style-src 'self'; script-src 'self'; connect-src 'self'; "
     "frame-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
     "cache-control": "no-store",
     "x-content-type-options": "nosniff",
 }
-#: A sheet brings its own rule for its own scripts.
+#: A sheet states its own policy for its scripts.
 _FRAMED = {
     "content-security-policy": "frame-ancestors 'self'",
     "cache-control": "no-store",

@@ -17,17 +17,18 @@ from coursework.sheets.handout import handout
 from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.ending import follow_parent
 
-_MOST_FAILURES = 20  #: promises that do not hold, of one check
+_MOST_FAILURES = 20  #: failures shown of one check
 
 
 class ViewRequest(NamedTuple):
-    """A view of a variant: ``about``, ``sheet``, ``solution``, each as a page or ``pdf``, ``key``; or ``check``."""
+    """Request of a view: ``about``, ``sheet`` or ``solution`` (as a page or ``pdf``), ``key``, or
+    ``check``."""
 
     view: str
     seed: int = 0
     lang: str = ""
     form: str = "html"
-    variants: int = 0  #: of a check
+    variants: int = 0  #: number of variants of a check
 
 
 class ViewResult(NamedTuple):
@@ -38,7 +39,7 @@ class ViewResult(NamedTuple):
 
 
 def work(pipe: Connection, folder: str | None, exercise: str) -> None:
-    """Wait for what is asked of an exercise, and give it; the course is opened when the first comes."""
+    """Answer requests from a pipe with views of an exercise; the first request opens the course."""
     follow_parent()
     _warm_up()
     while True:
@@ -50,7 +51,8 @@ def work(pipe: Connection, folder: str | None, exercise: str) -> None:
 
 
 def _warm_up() -> None:
-    """Load what every view needs. From here on Python reads sources alone: a file saved twice within a second is another."""
+    """Import what every view needs; then let Python ignore compiled files, which miss a second save within
+    one second."""
 
     builtin_renderer().undrawn("a")
     sys.dont_write_bytecode = True
@@ -101,7 +103,7 @@ def _variant(folder: str | None, exercise: str, request: ViewRequest) -> Any:
 
 
 def _key(folder: str | None, exercise: str, request: ViewRequest) -> Any:
-    """Given values; a row a part; and what each known mistake gives."""
+    """Return the given values, the answer of each part, and the result of each known mistake."""
     variant = _variant(folder, exercise, request)
     key = variant.key
     return {

@@ -1,7 +1,7 @@
-"""An exercise under work: its course is watched, and each state of it is shown by a process of its own.
+"""Exercise that is being edited: its files are watched, and a new process shows each of their states.
 
-A process that has opened a course keeps what it has loaded; a file that is saved is therefore read by the next process, which
-stands ready with all libraries loaded.
+A process that has opened a course does not reload files. The next process, ready with all libraries loaded,
+therefore reads a saved file.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import NamedTuple
 from coursework.course.folder import course_folder
 from coursework.site.preview.previewed import ViewRequest, ViewResult, work
 
-_EVERY = 0.12  #: seconds between two looks at the files
+_EVERY = 0.12  #: seconds between two scans of the files
 _PAGE_FIRST = 0.6  #: seconds before a check begins
 _LONGEST = 60  #: seconds that a view may take
 _PLACES = ("exercises", "solutions", "templates")
@@ -28,15 +28,15 @@ _Files = dict[str, tuple[int, int]]
 
 
 class View(NamedTuple):
-    """A view as it is now, or as it last was where it cannot be made now."""
+    """Current view, or the last valid one if the current one cannot be made."""
 
     content: object
     fault: str
-    worked: datetime | None  #: when the content could be made, where that is not now
+    worked: datetime | None  #: time of the content, if it is not current
 
 
 class _Process:
-    """Makes views of one state of a course."""
+    """Process that makes views of one state of a course."""
 
     def __init__(self, folder: str | None, exercise: str):
         self._pipe, other = _SPAWN.Pipe()
@@ -61,14 +61,14 @@ class _Process:
                 return None
 
     def end(self) -> None:
-        """At once, whatever it does."""
+        """Kill the process."""
         self._process.kill()
         with suppress(OSError):
             self._pipe.close()
 
 
 class EditedExercise:
-    """An exercise whose files somebody is writing."""
+    """Exercise whose files an author is editing."""
 
     def __init__(self, folder: str | None, exercise: str, variants: int):
         self.exercise = exercise
@@ -91,7 +91,7 @@ class EditedExercise:
 
     @property
     def stamp(self) -> str:
-        """Another one whenever there is something new to show."""
+        """Text that changes when there is something new to show."""
         return f"{self.state}.{int(self.check is not None)}"
 
     def view(self, request: ViewRequest) -> View:
@@ -125,7 +125,7 @@ class EditedExercise:
             threading.Thread(target=self._run_check, args=(self.state, self._checks), daemon=True).start()
 
     def _run_check(self, state: int, process: _Process) -> None:
-        """Once the page is there: it comes first where processors are few."""
+        """Run the check after a delay, since the page comes first if processors are few."""
         if self._ended.wait(_PAGE_FIRST) or not self._make_ready(state):
             return
         result = process.result(ViewRequest("check", variants=self._variants), 10 * _LONGEST)
@@ -134,7 +134,7 @@ class EditedExercise:
                 self.check = result
 
     def _make_ready(self, state: int) -> bool:
-        """Begin the processes of the next state; whether this one still stands."""
+        """Start the processes of the next state; return True if the given state is still current."""
         with self._lock:
             if state == self.state and not self._spare:
                 self._spare = [self._begun(), self._begun()]
@@ -163,7 +163,7 @@ class EditedExercise:
 
 
 def _files(folder: Path) -> Iterator[tuple[str, tuple[int, int]]]:
-    """Every file that a course may read, with its date and size; what editors keep for themselves is none."""
+    """Yield the files that a course may read, with date and size, without temporary files of editors."""
     with suppress(OSError):
         for entry in os.scandir(folder):
             if entry.name.startswith((".", "#", "_" * 2 + "pycache")) or entry.name.endswith(

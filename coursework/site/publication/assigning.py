@@ -1,6 +1,6 @@
-"""Assignment of variants: drawn for a class by a process of its own, so that no page of a student waits for it.
+"""Jobs that assign variants to a class, in a separate process so that no student waits for them.
 
-What is asked for stands in the database until it is done, and so does what became of it: whoever serves the next page can tell.
+The state of a job is in the database, so that every process of the site can show it.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from coursework.site.frame.settings import Site
 from coursework.site.papers.opening import prepare_soon
 from coursework.system.processes import processes, workers
 
-_ALONE = 40  #: papers of exercises that are dealt before a process has started
-_PATIENCE = 1.5  #: seconds for which a form waits for it
-_GIVEN_UP = timedelta(minutes=20)  #: after which what has not ended is taken for interrupted
+_ALONE = 40  #: sheets that are assigned faster than a process starts
+_PATIENCE = 1.5  #: seconds for which the request waits for the job
+_GIVEN_UP = timedelta(minutes=20)  #: after which an unfinished job counts as interrupted
 RUNNING, DONE, FAILED = "running", "done", "failed"
 
 
@@ -43,7 +43,7 @@ class AssignmentRequest:
     table: Mapping[str, Any]
     students: Sequence[Student]
     lang: str
-    before: Mapping[str, Any] | None = None  #: what was issued
+    before: Mapping[str, Any] | None = None  #: content issued before
     make_up: Sequence[str] = ()
 
     @property
@@ -57,8 +57,8 @@ class AssigningJob(NamedTuple):
     state: str
     name: str
     papers: int
-    number: int = 0  #: of the assignment, when it is done
-    messages: tuple[str, ...] = ()  #: what is to be known of it, or why it failed
+    number: int = 0  #: id of the assignment, at the end
+    messages: tuple[str, ...] = ()  #: notes, or reasons of a failure
 
     @property
     def is_over(self) -> bool:
@@ -78,7 +78,8 @@ def holders(content: Mapping[str, Any]) -> list[Student]:
 
 
 def begin(site: Site, wanted: AssignmentRequest, by: str, event: str) -> str:
-    """Deal, as ``by`` asks, and note it as ``event``; gives a name to ask after it by. Back at once, or when it is over."""
+    """Start to assign variants for the person ``by``, with ``event`` in the audit; return the job's token at
+    the end or after a short wait."""
     token = secrets.token_hex(8)
     _store_state(site, token, AssigningJob(RUNNING, wanted.name, wanted.papers))
     thread = threading.Thread(target=_run, args=(site, token, wanted, by, event), daemon=True)
@@ -118,7 +119,7 @@ def _run(site: Site, token: str, wanted: AssignmentRequest, by: str, event: str)
         _store_state(site, token, begun._replace(state=DONE, number=number, messages=tuple(outcome.notes)))
     except CourseworkError as fault:
         _store_state(site, token, begun._replace(state=FAILED, messages=(str(fault),)))
-    except Exception as fault:  # nobody waits for this thread: what happened is told on the page
+    except Exception as fault:  # the page reports it, since nobody waits for this thread
         _store_state(site, token, begun._replace(state=FAILED, messages=(type(fault).__name__,)))
 
 

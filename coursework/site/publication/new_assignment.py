@@ -1,6 +1,6 @@
 """Form of a new assignment: its file or selected exercises, and a roster.
 
-What comes from a browser names no file on this machine: of a file that is sent, its contents alone are read.
+Input from a browser never names a file of this machine: only the content of an upload is read.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _LONGEST = 80  #: characters of a name
 
 
 class NewAssignment(NamedTuple):
-    """Assignment to hand out: with variants to draw here, or as issued elsewhere."""
+    """New assignment: with variants to draw here, or issued elsewhere."""
 
     name: str
     wanted: AssignmentRequest | None = None
@@ -38,7 +38,7 @@ class NewAssignment(NamedTuple):
 
 
 class ExerciseGroup(NamedTuple):
-    """Exercises that stand together: name and title of each."""
+    """Group of exercises with names and titles, under a title."""
 
     title: str
     exercises: tuple[tuple[str, str], ...]
@@ -50,7 +50,7 @@ def read(request: Request) -> NewAssignment:
     Raises
     ------
     BadInput
-        It says what makes no sense, or what there is already.
+        The form is inconsistent, or the assignment exists already.
     """
     texts = request.words["publishing"]["faults"]
     if sent := _sent(request, "issued"):
@@ -92,11 +92,11 @@ def _check_new(request: Request, name: str) -> None:
             raise BadInput(request.words["publishing"]["faults"]["known"].format(name))
 
 
-# ------------------------------------------------------------------------ the asked
+# ------------------------------------------------------------------ form
 
 
 def _stated(request: Request) -> tuple[str, dict[str, Any], str]:
-    """Name, table and text of the assignment: of a file, else of what was chosen."""
+    """Return name, table and source text of the assignment, from a file or else from the chosen exercises."""
     if sent := _sent(request, "file"):
         name = _name(PurePosixPath(sent.name.replace("\\", "/")).stem)
         try:
@@ -178,7 +178,7 @@ def roster(request: Request) -> list[Student]:
 
 
 def students_with_accounts(request: Request) -> list[Student]:
-    """Everybody who signs in as a student, so named that the very same people are meant."""
+    """Return all who sign in as students, with names and columns that identify the same people."""
     with request.site.store.reading() as connection:
         persons = {person.id: person for person in people(connection) if person.role == "student"}.values()
     often = Counter(person.name for person in persons)

@@ -1,4 +1,4 @@
-"""Publishing, for the staff: what is handed out, to whom, from when to when; and what a student sees of it."""
+"""Publication, for staff: assignments, their students and dates, extensions, and previews as a student."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ from coursework.site.papers.student_paper import StudentPaper, student_paper
 from coursework.site.publication import assigning, new_assignment
 from coursework.site.publication.assigning import AssignmentRequest
 
-_NOTED = 30  #: lines of what was done that a page shows
+_NOTED = 30  #: audit lines on a page
 
 
 class ListedAssignment(NamedTuple):
@@ -68,7 +68,7 @@ class ListedAssignment(NamedTuple):
     definition: Mapping[str, Any] | None
     publication: Publication | None
     students: int
-    handed_in: int  #: how many students have
+    handed_in: int  #: number of students with a submission
 
     def title(self, lang: str) -> str:
         return text_in(self.stated.get("title") or {}, lang) or self.name
@@ -132,7 +132,8 @@ def _phase(publication: Publication | None, clock: datetime) -> str:
 
 
 def new(request: Request) -> Response:
-    """Hand out a new one: a file of an assignment or exercises that are chosen, and a roster; or what ``build`` issued."""
+    """Create an assignment, from its file or chosen exercises and a roster, or from variants that ``build``
+    issued."""
     if not request.is_post:
         return _new_page(request)
     try:
@@ -205,14 +206,14 @@ def _page(
 
 
 class PaperHolder(NamedTuple):
-    """Somebody who was issued a paper."""
+    """Student to whom a paper was issued."""
 
     person: int
     student: str
     letter: str
     sittings: int
     lang: str  #: of the paper
-    done: int  #: hand-ins on the site
+    done: int  #: submissions on the site
 
 
 def holders(connection: Connection, number: int) -> list[PaperHolder]:
@@ -256,7 +257,7 @@ def _redirect(listed: ListedAssignment) -> Response:
 
 
 def publish_assignment(request: Request) -> Response:
-    """Publish it with what the form says, or say what makes no sense; published again, by the new dates."""
+    """Publish the assignment with the dates and rules of the form, or return the form with its faults."""
     _check_is_post(request)
     with request.site.store.reading() as connection:
         listed = assignment_here(request, connection)
@@ -321,7 +322,7 @@ def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
 
 
 def unpublish(request: Request) -> Response:
-    """Unpublish it: no student sees it any more; what was handed in stays."""
+    """Unpublish the assignment: no student sees it any more; submissions remain."""
     _check_is_post(request)
     with request.site.store.begin() as connection:
         listed = assignment_here(request, connection)
@@ -372,7 +373,7 @@ def _check_is_post(request: Request) -> None:
         raise HTTPException("method", 405)
 
 
-# ------------------------------------------------------------------- who comes later
+# ------------------------------------------------------------------- late students
 
 
 def add_late(request: Request) -> Response:
@@ -382,7 +383,7 @@ def add_late(request: Request) -> Response:
 
 
 def make_up(request: Request) -> Response:
-    """Another variant for one person, for a second sitting."""
+    """Assign another variant to one person, for a second sitting."""
     _check_is_post(request)
     return _deal_more(request, [], (request.form.text("student"),), "make-up dealt")
 
@@ -488,7 +489,7 @@ def issued_file(request: Request) -> Response:
     """Return the content of ``issued.json``, as ``grade`` reads it."""
     with request.site.store.reading() as connection:
         number = assignment_here(request, connection).id
-        # Who may not publish draws no paper that is to come.
+        # The secret would reveal future papers, so only a publisher receives it.
         may_draw = request.user.may(Permission.ASSIGNMENTS_PUBLISH, number, "")
         content = issued_content(connection, number, secret=may_draw)
     data = json.dumps(content, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
