@@ -56,7 +56,7 @@ class RejectedRow:
 
 
 @dataclass(frozen=True)
-class Open:
+class WaitingGroup:
     """Group of answers, with those of its members that still wait for a person."""
 
     group: Group
@@ -68,7 +68,7 @@ class Open:
 
 
 @dataclass
-class ClassNow:
+class CachedClass:
     """State of an assignment and its class at one stamp."""
 
     course: Course
@@ -194,13 +194,13 @@ class ClassNow:
         return groups(graded, measured, self.questions, self.drawn)
 
     @cached_property
-    def open(self) -> dict[str, Open]:
+    def open(self) -> dict[str, WaitingGroup]:
         """Groups that wait for a person, by id, in order; including those that are looked at only on request."""
         open_groups = {}
         for group in self.groups:
             members = tuple(answer for answer in group.members if not self.is_decided(answer))
             if members:
-                open_groups[group.id] = Open(group, members)
+                open_groups[group.id] = WaitingGroup(group, members)
         return open_groups
 
     def is_decided(self, answer: Waits) -> bool:
@@ -257,7 +257,7 @@ class _ClassCache:
     """Cached data of an assignment."""
 
     lock: Any = field(default_factory=RLock)
-    now: ClassNow | None = None
+    now: CachedClass | None = None
     marked: dict[int, Graded | str] = field(default_factory=dict)  #: by the id of the marking
     measured: dict[int, Measure] = field(default_factory=dict)
 
@@ -266,7 +266,7 @@ _class_caches: WeakKeyDictionary[Store, dict[int, _ClassCache]] = WeakKeyDiction
 _lock = Lock()
 
 
-def class_now(site: Site, assignment_id: int) -> ClassNow:
+def class_now(site: Site, assignment_id: int) -> CachedClass:
     """Return the current state of a class, after saved answers of a closed assignment are submitted and all
     new sheets are marked.
 
@@ -286,7 +286,7 @@ def class_now(site: Site, assignment_id: int) -> ClassNow:
     return _current_class(site, assignment_id) if left else now
 
 
-def _current_class(site: Site, assignment_id: int) -> ClassNow:
+def _current_class(site: Site, assignment_id: int) -> CachedClass:
     with _lock:
         cached = _class_caches.setdefault(site.store, {}).setdefault(assignment_id, _ClassCache())
     with cached.lock, site.store.reading() as connection:
@@ -305,12 +305,14 @@ def _current_class(site: Site, assignment_id: int) -> ClassNow:
         return now
 
 
-def _read(course: Course, connection: Connection, about: About, at: Stamp, cached: _ClassCache) -> ClassNow:
+def _read(
+    course: Course, connection: Connection, about: About, at: Stamp, cached: _ClassCache
+) -> CachedClass:
     before = cached.now if cached.now is not None and cached.now.course is course else None
     decisions, placed_by_hand = Decisions.read(connection, about.id), placings(connection, about.id)
     charged = charges(connection, about.id)
     if before is not None and _has_come(before.stamp, before.about) == _has_come(at, about):
-        now = ClassNow(
+        now = CachedClass(
             course, about, before.issued, at, before.machine, before.numbers, before.measured, before.sheets,
             before.faults, decisions, placed_by_hand, before.received, charged,
         )  # fmt: skip
@@ -331,7 +333,7 @@ def _read(course: Course, connection: Connection, about: About, at: Stamp, cache
     cached.measured.update(_measured(course, issued, [machine[p] for p in new], [numbers[p] for p in new]))
     faults = {sheet: marking for sheet, marking in outcomes.items() if isinstance(marking, str)}
     came_in = came_of(connection, about.id)
-    return ClassNow(
+    return CachedClass(
         course,
         about,
         issued,
@@ -382,7 +384,7 @@ def by_whom(request: Request) -> str:
     return request.user.name or str(request.words["site"]["local"])
 
 
-def class_page_of(request: Request, now: ClassNow, template: str, tab: str, **names: Any) -> Response:
+def class_page_of(request: Request, now: CachedClass, template: str, tab: str, **names: Any) -> Response:
     """Return an instructor's page of one assignment, under its heading."""
     return request.render(
         template, now=now, tab=tab, heading=assignment_title(now.about, request.lang), **names

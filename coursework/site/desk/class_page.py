@@ -16,7 +16,7 @@ from coursework.language.numbers import localise
 from coursework.making.students import folded
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_cache import ClassNow, assignment_of, class_now, class_page_of
+from coursework.site.desk.class_cache import CachedClass, assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import sign_of
 from coursework.site.frame.requests import Request, Response, Route
 
@@ -59,7 +59,7 @@ class ClassRow:
         return -(-self.late // 60)
 
 
-def rows(now: ClassNow) -> list[ClassRow]:
+def rows(now: CachedClass) -> list[ClassRow]:
     """Return a row for every student of the class, in the order of the roster."""
     counted: dict[str, dict[tuple[str, str], Cell]] = {}
     for sheet, graded in now.graded.items():
@@ -71,7 +71,7 @@ def rows(now: ClassNow) -> list[ClassRow]:
     ]
 
 
-def _cells(now: ClassNow, machine: Graded, graded: Graded) -> dict[tuple[str, str], Cell]:
+def _cells(now: CachedClass, machine: Graded, graded: Graded) -> dict[tuple[str, str], Cell]:
     return {
         (graded.exercise, part): Cell(
             sign_of(mark), mark.points, mark.verdict, _by_hand(machine.lines[part], mark)
@@ -85,7 +85,7 @@ def _by_hand(before: Mark, now: Mark) -> bool:
 
 
 def _row(
-    now: ClassNow, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
+    now: CachedClass, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
 ) -> ClassRow:
     columns = own_columns(now.issued, student)
     titles = (now.issued.assignment or {}).get("identity") or ()
@@ -166,7 +166,7 @@ def _matches(row: ClassRow, sought: str) -> bool:
     return folded(sought) in folded(f"{row.student} {row.identity}") if sought else True
 
 
-def _sorting(now: ClassNow, sort: str) -> Callable[[ClassRow], Any]:
+def _sorting(now: CachedClass, sort: str) -> Callable[[ClassRow], Any]:
     """Return the sort key of an order; students without a value are last."""
     by: dict[str, Callable[[ClassRow], Any]] = {
         "name": lambda row: folded(row.student),
@@ -181,7 +181,7 @@ def _sorting(now: ClassNow, sort: str) -> Callable[[ClassRow], Any]:
     return by.get(sort, lambda row: row.order)
 
 
-def _means(now: ClassNow, table_rows: Sequence[ClassRow]) -> list[str]:
+def _means(now: CachedClass, table_rows: Sequence[ClassRow]) -> list[str]:
     """Return the mean of each question over the students who submitted, in percent of its points."""
     most: dict[tuple[str, str], float] = {}
     for (name, _), record in now.issued.records.items():

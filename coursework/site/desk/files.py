@@ -28,7 +28,7 @@ from coursework.gradebook.rows import Rejected, Row, Seen
 from coursework.gradebook.submissions import find, read_file
 from coursework.making.issued import COLUMNS
 from coursework.making.roster import roster_and_notes
-from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
@@ -228,23 +228,23 @@ def _spreadsheet(request: Request) -> Spreadsheet:
     return SPREADSHEETS.get(decimal, SPREADSHEETS["point"])
 
 
-def _marks(request: Request, now: ClassNow) -> bytes:
+def _marks(request: Request, now: CachedClass) -> bytes:
     submitted = any(graded.submitted for graded in now.graded.values())
     rows = (row for graded in now.graded.values() for row in marks_rows(graded))
     return csv_file(rows, marks_columns(now.issued, submitted=submitted), _spreadsheet(request))
 
 
-def _summary(request: Request, now: ClassNow) -> bytes:
+def _summary(request: Request, now: CachedClass) -> bytes:
     return csv_file(
         summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)), _spreadsheet(request)
     )
 
 
-def _rejected(request: Request, now: ClassNow) -> bytes:
+def _rejected(request: Request, now: CachedClass) -> bytes:
     return csv_file(rejected_rows(now.book.rejected), REJECTED_COLUMNS, _spreadsheet(request))
 
 
-def _decided(request: Request, now: ClassNow) -> bytes:
+def _decided(request: Request, now: CachedClass) -> bytes:
     with request.site.store.reading() as connection:
         decisions = decisions_of(connection, now.about.id)
     rows = (
@@ -257,14 +257,14 @@ def _decided(request: Request, now: ClassNow) -> bytes:
     )
 
 
-def _issued(request: Request, now: ClassNow) -> bytes:
+def _issued(request: Request, now: CachedClass) -> bytes:
     with request.site.store.reading() as connection:
         # The secret would reveal future papers, so only a publisher receives it.
         may_draw = request.user.may(Permission.ASSIGNMENTS_PUBLISH, now.about.id, "")
         return json_text(issued_content(connection, now.about.id, secret=may_draw)).encode()
 
 
-def _answers(request: Request, now: ClassNow) -> bytes:
+def _answers(request: Request, now: CachedClass) -> bytes:
     with request.site.store.reading() as connection:
         rows = [row for row in rows_of(connection, now.about.id) if isinstance(row, Row)]
     columns = (*COLUMNS, "sitting", "submitted", "source")
@@ -278,14 +278,14 @@ def _origin(row: Row) -> dict[str, str]:
     return {"sitting": str(row.origin.sitting or ""), "submitted": row.origin.submitted}
 
 
-def _submissions(request: Request, now: ClassNow) -> bytes:
+def _submissions(request: Request, now: CachedClass) -> bytes:
     with request.site.store.reading() as connection:
         rows = [submission._asdict() for submission in deliveries(connection, now.about.id)]
     return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
 
 
 #: Makers of the tables, by file name.
-_TABLES: Mapping[str, Callable[[Request, ClassNow], bytes]] = {
+_TABLES: Mapping[str, Callable[[Request, CachedClass], bytes]] = {
     "marks.csv": _marks,
     "summary.csv": _summary,
     "rejected.csv": _rejected,
@@ -341,7 +341,7 @@ def feedback(request: Request) -> Response:
     )
 
 
-def _book_of_student(now: ClassNow, student: str) -> Any:
+def _book_of_student(now: CachedClass, student: str) -> Any:
     """Return the current gradebook, set to write the feedback of one student alone."""
     from copy import copy
 

@@ -12,7 +12,7 @@ from coursework.gradebook.waiting import written
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.renderer import renderer_of
-from coursework.site.desk.class_cache import ClassNow, assignment_of, class_now, class_page_of
+from coursework.site.desk.class_cache import CachedClass, assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import question_card, sign_of
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.statistics.captions import Names
@@ -24,7 +24,7 @@ _EXAMPLES = 8  #: students named with an answer
 _ANSWERS = 60  #: answers listed
 
 
-def statistics_of(now: ClassNow) -> Statistics:
+def statistics_of(now: CachedClass) -> Statistics:
     """Return the current statistics of the class."""
     marks = marks_of_class(now.graded.values(), now.results, len(now.book.rejected))
     return measure(marks, sheet_order(now.course, now.issued.exercises))
@@ -107,7 +107,7 @@ def question(request: Request) -> Response:
     )  # fmt: skip
 
 
-def _answers(request: Request, now: ClassNow, exercise: str, part: str) -> list[DistinctAnswer]:
+def _answers(request: Request, now: CachedClass, exercise: str, part: str) -> list[DistinctAnswer]:
     by_text: dict[tuple[str, str], list[tuple[str, Mark]]] = {}
     for graded in now.graded.values():
         mark = graded.lines.get(part) if graded.exercise == exercise else None

@@ -18,9 +18,9 @@ from coursework.gradebook.accepted import points_of
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, Group, Waits, written
 from coursework.language.numbers import localise, significant
 from coursework.site.desk.class_cache import (
-    ClassNow,
-    Open,
+    CachedClass,
     RejectedRow,
+    WaitingGroup,
     assignment_of,
     by_whom,
     class_now,
@@ -73,7 +73,7 @@ class QueueItem:
     row: RejectedRow | None = None
 
 
-def items(now: ClassNow, filters: Filters) -> list[QueueItem]:
+def items(now: CachedClass, filters: Filters) -> list[QueueItem]:
     """Return the waiting cards that the filters select, in order."""
     cards = [
         QueueItem(
@@ -125,7 +125,7 @@ class QueueCard:
         return tuple((piece[1], piece[2]) for piece in matches if piece)
 
 
-def card_of(request: Request, now: ClassNow, item: QueueItem) -> QueueCard:
+def card_of(request: Request, now: CachedClass, item: QueueItem) -> QueueCard:
     """Return the card of a group, decided or not."""
     assert item.group is not None
     group = item.group
@@ -141,7 +141,7 @@ def card_of(request: Request, now: ClassNow, item: QueueItem) -> QueueCard:
     )  # fmt: skip
 
 
-def _alike(now: ClassNow, group: Group) -> list[Open]:
+def _alike(now: CachedClass, group: Group) -> list[WaitingGroup]:
     """Return the groups of other questions that wait because of the same unreadable text."""
     if group.why != "unreadable":
         return []
@@ -198,11 +198,11 @@ def watch(request: Request) -> Response:
     return request.render("_desk_told", told=message)
 
 
-def _around(now: ClassNow, filters: Filters) -> list[QueueItem]:
+def _around(now: CachedClass, filters: Filters) -> list[QueueItem]:
     return items(now, filters)
 
 
-def _after(before: Sequence[str], name: str, now: ClassNow, filters: Filters) -> str:
+def _after(before: Sequence[str], name: str, now: CachedClass, filters: Filters) -> str:
     """Return the card after another in the previous order; the same card if some of its answers still wait."""
     left = {candidate.id for candidate in items(now, filters)}
     if name in before:
@@ -211,7 +211,9 @@ def _after(before: Sequence[str], name: str, now: ClassNow, filters: Filters) ->
     return ""
 
 
-def card_response(request: Request, now: ClassNow, filters: Filters, at: str, message: str = "") -> Response:
+def card_response(
+    request: Request, now: CachedClass, filters: Filters, at: str, message: str = ""
+) -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
     waiting_items = items(now, filters)
     index = next((k for k, candidate in enumerate(waiting_items) if candidate.id == at), None)
@@ -245,7 +247,7 @@ def card_response(request: Request, now: ClassNow, filters: Filters, at: str, me
     return class_page_of(request, now, "site_desk_queue", "queue", **names)
 
 
-def _closed(now: ClassNow, name: str) -> QueueItem | None:
+def _closed(now: CachedClass, name: str) -> QueueItem | None:
     """Return a decided card, to be shown again."""
     group = next((candidate for candidate in now.groups if candidate.id == name), None)
     if group is None:
@@ -253,7 +255,7 @@ def _closed(now: ClassNow, name: str) -> QueueItem | None:
     return QueueItem(group.id, group.why, group.exercise, group.part, len(group.members), group)
 
 
-def _already_decided_message(request: Request, now: ClassNow, name: str) -> str:
+def _already_decided_message(request: Request, now: CachedClass, name: str) -> str:
     item = _closed(now, name)
     if item is None or item.group is None:
         return str(request.words["queue"]["anew"])
@@ -264,26 +266,26 @@ def _already_decided_message(request: Request, now: ClassNow, name: str) -> str:
     )
 
 
-def _counts(now: ClassNow) -> list[tuple[str, int]]:
+def _counts(now: CachedClass) -> list[tuple[str, int]]:
     """Return the number of waiting cards, by reason."""
     counts = Counter(entry.why for entry in now.open.values())
     counts[REJECTED] = sum(entry.waits for entry in now.named)
     return [(why, counts[why]) for why in (*WHY, REJECTED) if counts[why]]
 
 
-def _done(now: ClassNow) -> int:
+def _done(now: CachedClass) -> int:
     """Return the number of decided answers."""
     return sum(now.is_decided(answer) for group in now.groups for answer in group.members)
 
 
-def _can_undo(request: Request, now: ClassNow) -> bool:
+def _can_undo(request: Request, now: CachedClass) -> bool:
     if not now.stamp.decisions[0]:
         return False
     with request.site.store.reading() as connection:
         return bool(undoable(connection, now.about.id, by_whom(request)))
 
 
-def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, int]]:
+def _by_question(now: CachedClass, filters: Filters) -> list[tuple[str, str, str, int]]:
     """Return the questions with waiting cards: number, exercise, part, cards."""
     waiting_items = items(now, replace(filters, exercise="", part=""))
     counts = Counter(
@@ -297,7 +299,7 @@ def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, i
 # ------------------------------------------------------------------------ deciding
 
 
-def _decide(request: Request, now: ClassNow, group: Group, asked_for: str) -> str:
+def _decide(request: Request, now: CachedClass, group: Group, asked_for: str) -> str:
     """Store the decision on the answers that nobody else has decided on meanwhile; return the message."""
     kind, points = _requested_decision(asked_for, request, group)
     members = list(_chosen(request, now, group))
@@ -343,7 +345,7 @@ def _key(answer: Waits) -> tuple[str, str, str, str]:
     return answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part
 
 
-def _chosen(request: Request, now: ClassNow, group: Group) -> Sequence[Waits]:
+def _chosen(request: Request, now: CachedClass, group: Group) -> Sequence[Waits]:
     """Return the answers that a decision covers: all waiting ones with the same text, or the first alone; for
     a decided card, all of it."""
     waits = now.open[group.id].members if group.id in now.open else group.members
@@ -397,7 +399,7 @@ def _decided_meanwhile(later: Sequence[Made]) -> dict[tuple[str, str, str, str],
     return decisions
 
 
-def _undone(request: Request, now: ClassNow, filters: Filters) -> Response:
+def _undone(request: Request, now: CachedClass, filters: Filters) -> Response:
     """Withdraw the last decision and return its card."""
     texts = request.words["queue"]
     with request.site.store.begin() as connection:

@@ -9,7 +9,7 @@ from coursework.database.marking import mark_delivery
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.rows import Collected, Row
-from coursework.site.desk.class_cache import ClassNow, RejectedRow, assignment_of, by_whom, class_now
+from coursework.site.desk.class_cache import CachedClass, RejectedRow, assignment_of, by_whom, class_now
 from coursework.site.desk.files import files_page
 from coursework.site.desk.queue import Filters, card_response
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
@@ -33,7 +33,7 @@ def rejected(request: Request) -> Response:
     return files_page(request, [message])
 
 
-def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
+def _decided(request: Request, now: CachedClass, row: RejectedRow) -> str:
     """Apply the action of a form to a rejected row; return the message.
 
     Raises
@@ -93,7 +93,7 @@ def _decided(request: Request, now: ClassNow, row: RejectedRow) -> str:
     return str(texts["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
 
 
-def _answer(request: Request, now: ClassNow, row: RejectedRow) -> Row:
+def _answer(request: Request, now: CachedClass, row: RejectedRow) -> Row:
     """Return the answer that a person assigns to a rejected row."""
     texts, issued = request.words["files"], now.issued
     student = issued.student(request.form.text("student"))

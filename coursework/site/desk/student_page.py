@@ -24,7 +24,7 @@ from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise
 from coursework.making.students import folded
 from coursework.marking.mark import Mark
-from coursework.site.desk.class_cache import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import (
     QuestionCard,
     decided_words,
@@ -104,7 +104,7 @@ def student_page(request: Request) -> Response:
     )  # fmt: skip
 
 
-def _student(request: Request, now: ClassNow) -> str:
+def _student(request: Request, now: CachedClass) -> str:
     query = request.form.text("name") if request.is_post else request.query_params.get("name", "")
     if query in now.results:
         return query
@@ -114,14 +114,14 @@ def _student(request: Request, now: ClassNow) -> str:
     return student
 
 
-def _columns(now: ClassNow, student: str) -> list[tuple[str, str]]:
+def _columns(now: CachedClass, student: str) -> list[tuple[str, str]]:
     columns = own_columns(now.issued, student)
     titles = {folded(title): title for title in now.issued.columns.get(student, {})}
     return [(titles.get(key, key), value) for key, value in columns.items() if value]
 
 
 def _sheet(
-    request: Request, now: ClassNow, sheet_key: Any, happened: dict[tuple[str, str], list[Happened]]
+    request: Request, now: CachedClass, sheet_key: Any, happened: dict[tuple[str, str], list[Happened]]
 ) -> StudentSheet:
     machine, graded = now.machine[sheet_key], now.graded[sheet_key]
     lines = [
@@ -133,7 +133,7 @@ def _sheet(
 
 
 def _line(
-    request: Request, now: ClassNow, machine: Graded, graded: Graded, part: str, happened: list[Happened]
+    request: Request, now: CachedClass, machine: Graded, graded: Graded, part: str, happened: list[Happened]
 ) -> AnswerLine:
     events = [event for event in happened if event.seed in ("", str(machine.seed))]
     events = [event for event in events if event.sitting in (0, machine.sitting)]
@@ -177,7 +177,7 @@ def _practised(request: Request, name: str, variants: int, last: datetime | None
     return PracticeSummary(exercise.title(lang), variants, moment(last, request.lang) if last else "")
 
 
-def _decided(request: Request, now: ClassNow, student: str) -> str:
+def _decided(request: Request, now: CachedClass, student: str) -> str:
     """Decide on one answer, or withdraw the decision.
 
     Raises

@@ -8,7 +8,7 @@ from typing import Any
 
 from coursework.database.drafts import Box, Sent, drafts, save
 from coursework.database.people import hold
-from coursework.site.frame.requests import Form, HTTPException, Request, Response
+from coursework.site.frame.requests import FormData, HTTPException, Request, Response
 
 LONGEST = 4000  #: characters of one answer
 _TEXT, _OVER = "text.", "over."
@@ -88,7 +88,7 @@ def json_response(content: Mapping[str, Any], status: int = 200) -> Response:
     )
 
 
-def sent_boxes(form: Form, boxes: Collection[str]) -> dict[str, Sent]:
+def sent_boxes(form: FormData, boxes: Collection[str]) -> dict[str, Sent]:
     """Return the boxes that a page sends: ``text.NAME``, and ``over.NAME``, the version that the text
     replaces."""
     sent = {}

@@ -15,14 +15,14 @@ from starlette.formparsers import FormParser, MultiPartException, MultiPartParse
 from starlette.requests import Request
 
 from coursework.site.frame.budgets import KILOBYTE, MEGABYTE, Budget
-from coursework.site.frame.requests import Form, HTTPException, Upload
+from coursework.site.frame.requests import FormData, HTTPException, Upload
 
 _TYPED = 1024 * 1024  #: bytes of a form without files, and of one field in a form with files
 _SECONDS, _RATE = 30.0, 20_000  #: time limit of a form: a fixed part, and the lowest rate in bytes per second
 _PLAIN, _WITH_FILES = "application/x-www-form-urlencoded", "multipart/form-data"
 
 
-async def read_form(request: Request, budget: Budget) -> Form:
+async def read_form(request: Request, budget: Budget) -> FormData:
     """Return the content of a form; no more of it is read than its budget allows.
 
     Raises
@@ -32,7 +32,7 @@ async def read_form(request: Request, budget: Budget) -> Form:
     """
     size = _size(request)
     if not size:
-        return Form()
+        return FormData()
     kind = _kind(request)
     most = min(budget.largest, _TYPED) if kind == _PLAIN else budget.largest
     if size > most:
@@ -71,7 +71,7 @@ def _kind(request: Request) -> str:
     return message.get_content_type()
 
 
-async def _read(request: Request, kind: str, budget: Budget) -> Form:
+async def _read(request: Request, kind: str, budget: Budget) -> FormData:
     pieces, headers = request.stream(), request.headers
     parser: Any
     if kind == _PLAIN:
@@ -107,7 +107,7 @@ class _Parts(MultiPartParser):
         super().on_part_data(data, start, end)
 
 
-async def _form(items: Sequence[tuple[str, Any]], most: int) -> Form:
+async def _form(items: Sequence[tuple[str, Any]], most: int) -> FormData:
     texts: dict[str, list[str]] = {}
     files: dict[str, list[Upload]] = {}
     for name, value in items:
@@ -118,7 +118,7 @@ async def _form(items: Sequence[tuple[str, Any]], most: int) -> Form:
             texts.setdefault(clean(name), []).append(clean(str(value)))
     if len(items) > most:
         raise HTTPException("bad_request", 400)
-    return Form(texts, files)
+    return FormData(texts, files)
 
 
 def clean(text: str) -> str:

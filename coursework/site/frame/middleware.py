@@ -39,7 +39,7 @@ from coursework.site.frame.cookies import ANONYMOUS_SECONDS, Cookies, Session, c
 from coursework.site.frame.devices import DEVICE, DEVICE_SECONDS, Devices
 from coursework.site.frame.forms import clean, read_form
 from coursework.site.frame.permission_check import check_permission, note_export, person_of
-from coursework.site.frame.requests import Form, HTTPException, Person, Request, Response, Route
+from coursework.site.frame.requests import FormData, HTTPException, Person, Request, Response, Route
 from coursework.site.frame.responses import to_http_response
 from coursework.site.frame.security_log import FAILED, SIGNED_IN, SIGNED_OUT, event_of, happened, log_events
 from coursework.site.frame.settings import Entrance, Site
@@ -144,7 +144,7 @@ class Middleware:
         self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, run: Run
     ) -> HTTPResponse:
         """Return the response to a request whose turn it is; its body is read before it takes a thread."""
-        form, means = Form(), route.request_budget
+        form, means = FormData(), route.request_budget
         if http_request.method == "POST":
             try:
                 form = await read_form(http_request, means)
@@ -158,7 +158,7 @@ class Middleware:
             return await run(self._answered, http_request, route, current_user, form)
 
     async def _attempted(
-        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: Form, run: Run
+        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: FormData, run: Run
     ) -> HTTPResponse:
         """Respond to a form with a password, after the delay caused by earlier failures; no thread waits
         meanwhile."""
@@ -174,7 +174,7 @@ class Middleware:
             )
 
     def _attempt(
-        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: Form
+        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: FormData
     ) -> Attempt | HTTPResponse:
         try:
             self._check_csrf_token(http_request, current_user.session, form)
@@ -211,7 +211,7 @@ class Middleware:
         return current_user
 
     def _answered(
-        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: Form
+        self, http_request: HTTPRequest, route: Route, current_user: _CurrentUser, form: FormData
     ) -> HTTPResponse:
         request, begun = self._page_request(http_request, current_user, form), processor_time()
         try:
@@ -301,7 +301,7 @@ class Middleware:
         ]
         return next((lang for lang in preferences if lang in languages), languages[0])
 
-    def _page_request(self, http_request: HTTPRequest, current_user: _CurrentUser, form: Form) -> Request:
+    def _page_request(self, http_request: HTTPRequest, current_user: _CurrentUser, form: FormData) -> Request:
         return Request(
             self.site, current_user.person, current_user.lang, arrived(self.site.clock), clean(http_request.scope["path"]), dict(http_request.path_params),
             {clean(name): clean(text) for name, text in http_request.query_params.items()}, form, http_request.method == "POST",
@@ -346,7 +346,7 @@ class Middleware:
         if http_request.headers.get("sec-fetch-site", "none") not in ("same-origin", "none"):
             raise HTTPException("form", 403)
 
-    def _check_csrf_token(self, http_request: HTTPRequest, session: Session, form: Form) -> None:
+    def _check_csrf_token(self, http_request: HTTPRequest, session: Session, form: FormData) -> None:
         """Check the CSRF token of a form."""
         if not self.cookies.fits(session, http_request.headers.get("x-seal") or form.text("_seal")):
             raise HTTPException("form", 403)
@@ -399,7 +399,7 @@ class Middleware:
         self, http_request: HTTPRequest, current_user: _CurrentUser, why: HTTPException
     ) -> HTTPResponse:
         happened(http_request, event_of(why), current_user.person.id if current_user.person else 0)
-        request = self._page_request(http_request, current_user, Form())
+        request = self._page_request(http_request, current_user, FormData())
         if why.sentence == "sign_in" and not request.is_post and not request.is_fragment:
             return self._sent(http_request, current_user, Response(redirect=home.door_to(request)))
         http_response = self._sent(http_request, current_user, _refusal(request, why))

@@ -29,7 +29,7 @@ _OF_SHEETS = {
 }
 
 
-class Pages:
+class SitePages:
     """Renderer of the pages of one course."""
 
     def __init__(self, folder: Folder):
@@ -67,6 +67,6 @@ class Pages:
 
 
 @cache
-def _stamp(pages: Pages, name: str) -> str:
+def _stamp(pages: SitePages, name: str) -> str:
     static_file = pages.static(name)
     return sha256(static_file[1]).hexdigest()[:12] if static_file else ""

@@ -60,7 +60,7 @@ class Upload(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Form:
+class FormData:
     """Content of a form: texts and files by the names of its fields, each with all of its values."""
 
     texts: Mapping[str, Sequence[str]] = field(default_factory=dict)
@@ -81,7 +81,7 @@ class Request:
     path: str  #: as the browser sees it
     path_params: Mapping[str, Any] = field(default_factory=dict)
     query_params: Mapping[str, str] = field(default_factory=dict)
-    form: Form = field(default_factory=Form)
+    form: FormData = field(default_factory=FormData)
     is_post: bool = False
     csrf_token: str = ""  #: value of the form field ``_seal``
     is_fragment: bool = False  #: a script asks for a fragment of the page

@@ -21,7 +21,7 @@ from coursework.database.store import Store
 from coursework.site.frame.clock import SteadyClock
 from coursework.site.frame.limits import Limits
 from coursework.site.frame.lru_cache import LRUCache
-from coursework.site.frame.pages import Pages
+from coursework.site.frame.pages import SitePages
 from coursework.site.frame.pool import PracticePool
 from coursework.system.request_slots import RequestSlots
 
@@ -61,8 +61,8 @@ class Site:
             self._revision = course_taken(connection)
 
     @cached_property
-    def pages(self) -> Pages:
-        return Pages(self.course.folder)
+    def pages(self) -> SitePages:
+        return SitePages(self.course.folder)
 
     @cached_property
     def pool(self) -> PracticePool:

@@ -14,7 +14,7 @@ from coursework.language.words import words
 from coursework.lti.host import Visit
 from coursework.lti.storage import Waiting
 from coursework.site.desk import class_page
-from coursework.site.desk.class_cache import ClassNow
+from coursework.site.desk.class_cache import CachedClass
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import moment_text
 from coursework.site.lti.scores import assignment_state, marked_in, number_text
@@ -34,7 +34,7 @@ class LaunchClassRow(NamedTuple):
 
 
 def class_rows(
-    connection: Connection, site: Site, now: ClassNow, visit: Visit, here: set[str]
+    connection: Connection, site: Site, now: CachedClass, visit: Visit, here: set[str]
 ) -> list[LaunchClassRow]:
     """Return the students of the platform's course, in the order of the desk's table.
 
@@ -96,7 +96,7 @@ def _score_state(waiting: Waiting | None, subject: str, lang: str) -> str:
     return str(link_texts["waits_because"].format(waiting.said) if waiting.said else link_texts["on_its_way"])
 
 
-def rules_rows(visit: Visit, now: ClassNow, publication: Publication | None) -> list[tuple[str, str]]:
+def rules_rows(visit: Visit, now: CachedClass, publication: Publication | None) -> list[tuple[str, str]]:
     """Return the rules with which the assignment is published, each with its label."""
     link, site_texts = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
     if publication is None:

@@ -34,7 +34,7 @@ from coursework.lti.storage import Score, Storage
 from coursework.lti.wanted import Wanted
 from coursework.making.issued import Issued
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_cache import ClassNow, class_now
+from coursework.site.desk.class_cache import CachedClass, class_now
 from coursework.site.frame.settings import Site
 from coursework.site.papers.assignment_state import AssignmentState
 from coursework.site.papers.submission import pass_dates
@@ -61,7 +61,7 @@ class Marked(NamedTuple):
         return round(self.result.points * (1 - state.assignment.own.charged(late)), 9)
 
 
-def marked_in(now: ClassNow, student: str) -> Marked | None:
+def marked_in(now: CachedClass, student: str) -> Marked | None:
     """Return the marks of a student from the state of the class; None before the first submission."""
     sheets = [graded for graded in now.graded.values() if graded.student == student]
     return _marked(now.issued, now.results.get(student), sheets, now.decisions)
@@ -94,7 +94,7 @@ def _marked(
     return Marked(issued, result, counted, waits)
 
 
-def score_of(site: Site, launch: Launch, now: ClassNow | None = None) -> Score | None:
+def score_of(site: Site, launch: Launch, now: CachedClass | None = None) -> Score | None:
     """Return the score of a launch's person; None before the marks are released."""
     number, lang = assignment_number(site, launch), lang_of(site, launch)
     if number is None:
@@ -203,7 +203,7 @@ class ScoreWatch:
         rules = replace(publication, reached=None).as_json()
         return f"{stamped} {passed} {sorted(rules.items())} {len(more)}"
 
-    def _queue_score(self, launch: Launch, now: ClassNow) -> bool:
+    def _queue_score(self, launch: Launch, now: CachedClass) -> bool:
         score = score_of(self._site, launch, now)
         return score is not None and self._storage.put_score(launch, score)
 

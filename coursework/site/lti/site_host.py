@@ -33,8 +33,7 @@ from coursework.making.students import folded
 from coursework.messages import as_message
 from coursework.site.desk.class_cache import assignment_title, class_now
 from coursework.site.frame.arrivals import arrived
-from coursework.site.frame.requests import Form as SiteForm
-from coursework.site.frame.requests import HTTPException, Person
+from coursework.site.frame.requests import FormData, HTTPException, Person
 from coursework.site.frame.requests import Request as SiteRequest
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import exact_text, moment_text
@@ -146,7 +145,7 @@ class SiteHost:
             return self._class(visit, number)
         if visit.path:
             raise LtiRefused("page", 404, "a student")
-        site_request = self._site_request(visit, number, SiteForm())
+        site_request = self._site_request(visit, number, FormData())
         state, paper = state_and_paper(site_request)
         if state.done and not ("again" in visit.query and state.may_hand_in):
             return self._after_submission(visit, site_request, state, paper)
@@ -157,7 +156,7 @@ class SiteHost:
 
     # ------------------------------------------------------------------- a student
 
-    def _site_request(self, visit: Visit, number: int, form: SiteForm) -> SiteRequest:
+    def _site_request(self, visit: Visit, number: int, form: FormData) -> SiteRequest:
         """Return the site's request of the launch's person, after a paper has been assigned to them.
 
         Raises
@@ -293,7 +292,7 @@ class SiteHost:
         """Submit the answers of a form; a repeated form has no effect."""
         if visit.launch.role is not Role.STUDENT or visit.path:
             raise LtiRefused("page", 404, "nothing is handed in there")
-        site_request = self._site_request(visit, number, SiteForm(form))
+        site_request = self._site_request(visit, number, FormData(form))
         state, paper = state_and_paper(site_request)
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):

@@ -25,7 +25,7 @@ from coursework.rendering.html import environment_of
 from coursework.sheets.paper import FeedbackPaper, Heading, Paper
 from coursework.site.frame.drafts import LONGEST
 from coursework.site.frame.lru_cache import LRUCache
-from coursework.site.frame.requests import Form, HTTPException
+from coursework.site.frame.requests import FormData, HTTPException
 from coursework.site.papers.read_back import ReadBack, read_back
 
 _VARIANTS = 100  #: items of the cache of one paper
@@ -138,7 +138,7 @@ class StudentPaper:
         box = self.boxes[name]
         return read_back(box.variant, box.part, text)
 
-    def texts(self, form: Form) -> dict[str, str]:
+    def texts(self, form: FormData) -> dict[str, str]:
         """Return the answers in a form of the page, by box; ticks of one box are joined.
 
         Raises

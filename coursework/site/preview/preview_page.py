@@ -15,7 +15,7 @@ from starlette.routing import Route
 
 from coursework.course.folder import course_folder
 from coursework.language.words import languages, words
-from coursework.site.frame.pages import Pages
+from coursework.site.frame.pages import SitePages
 from coursework.site.preview.previewed import ViewRequest
 from coursework.site.preview.under_work import EditedExercise, View
 
@@ -84,7 +84,7 @@ class _Choice:
 class _PreviewPages:
     def __init__(self, work: EditedExercise, lang: str):
         self._work, self._lang = work, lang
-        self._pages = Pages(course_folder(None))
+        self._pages = SitePages(course_folder(None))
 
     def page(self, request: Request) -> Response:
         """Return the whole page; the script requests it again after each change, and updates the parts that

@@ -48,7 +48,7 @@ from coursework.making.issued import Issued
 from coursework.making.issued import issued_content as content_of
 from coursework.making.roster import Student
 from coursework.site.frame.budgets import DESK_FILE
-from coursework.site.frame.requests import Form, HTTPException, Request, Response, Route
+from coursework.site.frame.requests import FormData, HTTPException, Request, Response, Route
 from coursework.site.frame.times import exact_text, field_text, from_field, moment_text, zone_name
 from coursework.site.papers.assignment_state import AssignmentState, state_of
 from coursework.site.papers.opening import prepare_soon
@@ -276,7 +276,7 @@ def publish_assignment(request: Request) -> Response:
     return _redirect(listed)
 
 
-def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
+def publication_of(form: FormData) -> tuple[Publication, list[Fault]]:
     """Return the publication that a form states, and the fields without a valid date, number or choice."""
     faults: list[Fault] = []
 
@@ -343,7 +343,7 @@ def extend_assignment(request: Request) -> Response:
     texts = request.words["publishing"]["faults"]
     reason = request.form.text("reason").strip()[:500]
     stated, faults = publication_of(
-        Form({"closes": [request.form.text("closes")], "tries": [request.form.text("tries")]})
+        FormData({"closes": [request.form.text("closes")], "tries": [request.form.text("tries")]})
     )
     if holder is None:
         return _page(request, listed, listed.publication or Publication(), problem=texts["who"])
