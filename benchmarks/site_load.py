@@ -47,10 +47,10 @@ from coursework.database.publication import Publication, publish
 from coursework.database.sessions import begin_session
 from coursework.database.store import Store
 from coursework.making.assignment import AskedExercise, Assignment
-from coursework.making.dealing import deal
 from coursework.making.issued import issued_content
 from coursework.making.roster import Student as Enrolled
 from coursework.making.students import folded
+from coursework.making.variant_assignment import assign_variants
 from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.pool import PracticePool
 
@@ -265,7 +265,7 @@ def found_ahead():
 def dealt(students):
     """The homework of so many."""
     people = [Enrolled(f"Student {number}") for number in range(students)]
-    return issued_content(deal(open_course(), HOMEWORK, people, ["fr"]).issues, HOMEWORK)
+    return issued_content(assign_variants(open_course(), HOMEWORK, people, ["fr"]).issues, HOMEWORK)
 
 
 def set_up(store, count):

@@ -38,10 +38,10 @@ from coursework.database.publication import Publication, publish
 from coursework.database.sessions import begin_session
 from coursework.database.store import Store
 from coursework.making.assignment import AskedExercise, Assignment
-from coursework.making.dealing import deal
 from coursework.making.issued import issued_content
 from coursework.making.roster import Student as Enrolled
 from coursework.making.students import folded
+from coursework.making.variant_assignment import assign_variants
 from coursework.site.frame.cookies import cookie_name
 from coursework.site.papers.submission import AS_SAVED
 
@@ -153,7 +153,7 @@ def set_up(store, count):
     for name in ("first", "second"):
         paper = Assignment(name, EXERCISES)
         with store.begin() as connection:
-            content = issued_content(deal(course, paper, people, ["fr"]).issues, paper)
+            content = issued_content(assign_variants(course, paper, people, ["fr"]).issues, paper)
             numbers.append(put_issued(connection, content, name))
             publish(connection, numbers[-1], Publication(now - timedelta(hours=1), now + timedelta(hours=2)))
     with store.begin() as connection:

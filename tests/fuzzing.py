@@ -376,7 +376,7 @@ def _roster(path: Path) -> None:
     students = read_roster(path)
     assert students
     assert len({one.name for one in students}) == len(students)
-    assert all(one.name.strip() and one.who for one in students)
+    assert all(one.name.strip() and one.draw_key for one in students)
 
 
 def _accepted(path: Path) -> None:

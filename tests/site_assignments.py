@@ -9,9 +9,9 @@ from site_people import MAX, ZOE
 from coursework.database.assignments import put_issued
 from coursework.database.publication import Publication, publish
 from coursework.making.assignment import AskedExercise, Assignment, Scale
-from coursework.making.dealing import deal
 from coursework.making.issued import Issued, issued_content
 from coursework.making.roster import Student
+from coursework.making.variant_assignment import assign_variants
 from coursework.site.publication import assigning
 
 OPENS, CLOSES = datetime(2026, 11, 23, 8, tzinfo=UTC), datetime(2026, 11, 23, 12, tzinfo=UTC)
@@ -27,7 +27,9 @@ USUAL = Publication(opens=OPENS, closes=CLOSES, tries=2)
 
 def dealt(one, publication=USUAL, names=(ZOE, MAX), assignment=ASSIGNMENT, before=None, **more):
     """Deal an assignment to people of a class and publish it; gives its number."""
-    found = deal(one.site.course, assignment, [Student(name) for name in names], ["en"], before, **more)
+    found = assign_variants(
+        one.site.course, assignment, [Student(name) for name in names], ["en"], before, **more
+    )
     content = issued_content(found.issues, assignment)
     with one.site.store.begin() as connection:
         number = put_issued(connection, content, assignment.name)

@@ -39,7 +39,7 @@ from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starv
 from coursework.language.words import file_of, words
 from coursework.making.flaws import conditioning
 from coursework.making.issuing import distinct_variants
-from coursework.making.protection import worthy
+from coursework.making.protection import valid_variants
 from coursework.model import Part
 from coursework.motion.animation import Animation
 from coursework.quantities.graph import plain_scalar
@@ -144,7 +144,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     except Starved as fault:
         if not any(told in str(fault) for told in report.failures):
             report.fail(str(fault))
-        drawn = worthy(exercise, exercise.variants(range(count), lang, (ALL,)))
+        drawn = valid_variants(exercise, exercise.variants(range(count), lang, (ALL,)))
     report.variants = len(drawn)
     if not drawn:
         return

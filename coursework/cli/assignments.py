@@ -75,10 +75,10 @@ def build_assignment(
     """Issue an assignment and write its files."""
     from coursework.making import papers
     from coursework.making.assignment import read_assignment
-    from coursework.making.dealing import deal
     from coursework.making.issued import issued_content, secret_of
     from coursework.making.letters import unprinted_names
     from coursework.making.roster import Student, read_roster
+    from coursework.making.variant_assignment import assign_variants
     from coursework.rendering.renderer import renderer_of
     from coursework.system.tables import SPREADSHEETS, json_text
     from coursework.system.writing import write_tree
@@ -115,7 +115,7 @@ def build_assignment(
     else:
         students = [Student("") for _ in range(settings.of("variants", "count") or 1)]
     langs = settings.of("lang", "langs")
-    dealt = deal(
+    dealt = assign_variants(
         course, assignment, students, langs, before, make_up, secret_of(stood, str(out / "issued.json"))
     )
     if dealt.is_new:
@@ -189,7 +189,7 @@ def _issued_before(path: Path, *, anew: bool) -> Mapping[str, Any] | None:
     if not path.is_file():
         return None
     try:
-        return Issued.stood(path)
+        return Issued.read_previous(path)
     except BadInput:
         if anew:
             return None
@@ -197,9 +197,9 @@ def _issued_before(path: Path, *, anew: bool) -> Mapping[str, Any] | None:
 
 
 def _known(name: str, names: set[str]) -> str:
-    from coursework.making.students import called
+    from coursework.making.students import student_named
 
-    column = called(name, names)
+    column = student_named(name, names)
     if column is None:
         raise BadInput(f"no student {name!r} was issued a paper{nearest(name, names)}")
     return column

@@ -25,9 +25,9 @@ from coursework.database.publication import AT_ONCE, CLOSED, Publication, publis
 from coursework.database.store import Store
 from coursework.gradebook.rows import Collected, Row
 from coursework.making.assignment import Assignment, read_assignment
-from coursework.making.dealing import deal
 from coursework.making.issued import Issued, issued_content
 from coursework.making.roster import Student, read_roster
+from coursework.making.variant_assignment import assign_variants
 from coursework.system.folder_lock import only_writer
 
 FILE = "coursework.db"
@@ -87,7 +87,7 @@ def _issue(
     course: Course[Any], store: Store, assignment: Assignment, students: list[Student]
 ) -> tuple[int, dict[str, Any]]:
     spoken = [_in_language(course, student) for student in students]
-    dealt = deal(course, assignment, spoken, course.folder.languages[:1])
+    dealt = assign_variants(course, assignment, spoken, course.folder.languages[:1])
     content = issued_content(dealt.issues, assignment)
     with store.begin() as connection:
         return put_issued(connection, content, course=course.folder.root.name), content
@@ -128,5 +128,5 @@ def _sign_up(store: Store, students: list[Student]) -> None:
         teacher = put_person(connection, who=TEACHER, name=TEACHER, lang="", columns={})
         put_account(connection, teacher, login="teacher@example.org", role=ADMINISTRATOR)
         for k, student in enumerate(students, 1):
-            person = put_person(connection, student.who, student.name, student.lang, student.columns)
+            person = put_person(connection, student.draw_key, student.name, student.lang, student.columns)
             put_account(connection, person, login=f"student{k}@example.org", role=STUDENT)

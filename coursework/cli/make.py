@@ -304,7 +304,7 @@ def _goes_on(before: Path, issued: str) -> bool:
     students."""
     from coursework.making.issued import Issued
 
-    old, new = _by_place(Issued.stood(before)), _by_place(json.loads(issued))
+    old, new = _by_place(Issued.read_previous(before)), _by_place(json.loads(issued))
     return all(new.get(index) == record for index, record in old.items())
 
 

@@ -200,10 +200,10 @@ def _export_autograder(
 
 def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student]) -> bytes:
     """The ``issued.json`` that a build writes."""
-    from coursework.making.dealing import deal
     from coursework.making.issued import issued_content
     from coursework.making.issuing import issue
     from coursework.making.roster import Student
+    from coursework.making.variant_assignment import assign_variants
     from coursework.system.tables import json_text
 
     count = wanted.variants or 1
@@ -225,7 +225,7 @@ def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student])
             f"{wanted.exercises[0]} has no secret, so that its build has drawn papers of its own: name what was issued, "
             "--issued DIR/issued.json"
         )
-    dealt = deal(course, assignment, students or [Student("") for _ in range(count)], langs)
+    dealt = assign_variants(course, assignment, students or [Student("") for _ in range(count)], langs)
     tell(dealt.notes)
     return json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
 
@@ -252,7 +252,7 @@ def _secret_beside(wanted: _Wanted, out: Path, lang: str) -> Secret:
     from coursework.making.issued import Issued, secret_of
 
     path = out / "issued.json"
-    secret = secret_of(Issued.stood(path), str(path)) if path.is_file() else None
+    secret = secret_of(Issued.read_previous(path), str(path)) if path.is_file() else None
     if secret is None:
         tell([secret_made(Path(wanted.exercises[0]), path, lang)])
     return secret or Secret.new()
@@ -293,7 +293,7 @@ def _check_folder(out: Path, drawn: Drawn) -> None:
     path = out / "issued.json"
     if not path.is_file():
         return
-    before = {_place(item["record"]) for item in Issued.stood(path)["issued"]}
+    before = {_place(item["record"]) for item in Issued.read_previous(path)["issued"]}
     if not before <= {_place(issue.variant.record) for issue in drawn.issues}:
         raise BadInput(
             f"{path} holds other variants, exported before; choose another --out, or --overwrite to replace them "

@@ -190,7 +190,7 @@ def _people(connection: Connection, issued: Issued) -> dict[str, int]:
     """Return the persons of a roster by their names as issued."""
     students = {name: Student(name, columns=issued.columns.get(name, {})) for name in issued.students}
     ids = put_people(connection, list(students.values()))
-    return {name: ids[student.who] for name, student in students.items()}
+    return {name: ids[student.draw_key] for name, student in students.items()}
 
 
 def _put_dealt(

@@ -61,7 +61,7 @@ def put_people(connection: Connection, students: Sequence[Student]) -> dict[str,
     roster's identifier."""
     known = {row.who: row for row in connection.execute(select(person.c.who, person.c.id, person.c.columns))}
     now = datetime.now(UTC)
-    new = {one.who: one for one in students if one.who not in known}
+    new = {one.draw_key: one for one in students if one.draw_key not in known}
     rows = [
         {"who": who, "name": one.name, "lang": one.lang, "columns": dict(one.columns), "created": now}
         for who, one in new.items()
@@ -69,7 +69,7 @@ def put_people(connection: Connection, students: Sequence[Student]) -> dict[str,
     if rows:
         connection.execute(insert(person), rows)
     for one in students:
-        had = known.get(one.who)
+        had = known.get(one.draw_key)
         if had is not None and (columns := {**had.columns, **one.columns}) != had.columns:
             connection.execute(update(person).where(person.c.id == had.id).values(columns=columns))
     return {row.who: row.id for row in connection.execute(select(person.c.who, person.c.id))}

@@ -23,18 +23,18 @@ from coursework.gradebook.graded import Graded
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.class_page import class_rows, issued_json, settings_rows, taken_csv
-from coursework.lti.dealing_to_one import own_records, variants
 from coursework.lti.host import Form, Offer, Reply, Shelf, Visit
 from coursework.lti.pages import Form as Surrounding
 from coursework.lti.pages import Pages
 from coursework.lti.refusal import Refused
 from coursework.lti.roles import Role
 from coursework.lti.services import NotServed
+from coursework.lti.single_assignment import own_records, variants
 from coursework.lti.storage import Paper, Score, Storage, Try
 from coursework.lti.wanted import BEST, Wanted
 from coursework.making.assignment import AskedExercise, Assignment, read_assignment, text_in
-from coursework.making.dealing import keyed
 from coursework.making.papers import date_text
+from coursework.making.variant_assignment import keyed
 from coursework.marking.marking import mark
 from coursework.rendering.feedback import verdict_word
 from coursework.sheets.handout import handout

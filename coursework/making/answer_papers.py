@@ -1,4 +1,5 @@
-"""Papers with answer pages: what belongs on one, told from what was issued, and by which code it is known again."""
+"""Papers with answer pages: their exercises, from the record of issued variants, and the code that identifies
+them."""
 
 from __future__ import annotations
 
@@ -17,10 +18,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AnswerPaper:
-    """The answer pages of one student and sitting, or of one exercise that was handed out by itself."""
+    """Answer pages of one student and sitting, or of one exercise that was handed out alone."""
 
-    assignment: str  #: its name; empty for exercises by themselves
-    student: str  #: empty where it is nobody's
+    assignment: str  #: its name; empty for single exercises
+    student: str  #: empty for a paper without a name
     sitting: int
     records: tuple[Mapping[str, Any], ...]
     size: str  #: of the paper, a4 or letter
@@ -30,22 +31,24 @@ class AnswerPaper:
         return paper_code(self.assignment, self.student, self.sitting, self.records, self.size)
 
     def variants(self, course: Course[Any]) -> tuple[Variant, ...]:
-        """The exercises of the paper, in order.
+        """Return the exercises of the paper, in order.
 
         Raises
         ------
         BadInput
-            A record fits the course no more.
+            A record no longer fits the course.
         """
         return tuple(course[record["exercise"]].from_record(record) for record in self.records)
 
     def pages(self, course: Course[Any], lang: str = "en") -> tuple[AnswerPage, ...]:
-        """The pages as they were printed; ``lang`` is that of the units on them, and moves nothing."""
+        """Return the pages as printed; ``lang`` is the language of the units on them and does not change the
+        layout."""
         return answer_pages(self.variants(course), lang, self.size, self.code)
 
 
 def answer_papers(issued: Mapping[str, Any]) -> dict[str, AnswerPaper]:
-    """The papers of an ``issued.json`` by their codes, on every size of paper that they may have been printed on."""
+    """Return the papers of an ``issued.json`` by their codes, for every paper size that they may have been
+    printed on."""
     papers = (paper for size in SIZES for paper in _papers(issued, size))
     return {paper.code: paper for paper in papers}
 
@@ -54,26 +57,26 @@ def _papers(issued: Mapping[str, Any], size: str) -> Iterator[AnswerPaper]:
     assignment = issued.get("assignment")
     if assignment is None:
         for item in issued["issued"]:
-            yield AnswerPaper("", *_whose(item), (item["record"],), size)
+            yield AnswerPaper("", *_owner_of(item), (item["record"],), size)
         return
     together: dict[tuple[str, int, int], list[Mapping[str, Any]]] = {}
     for number, item in enumerate(issued["issued"]):
-        student, sitting = _whose(item)
-        # Papers of nobody stand one after the other, as many exercises each as the assignment has.
+        student, sitting = _owner_of(item)
+        # Papers without a name follow each other, each with the exercises of the assignment.
         nobody = -1 if student else number // max(1, len(assignment["exercises"]))
         together.setdefault((student, sitting, nobody), []).append(item["record"])
     for (student, sitting, _), records in together.items():
         yield AnswerPaper(str(assignment["name"]), student, sitting, tuple(records), size)
 
 
-def _whose(item: Mapping[str, Any]) -> tuple[str, int]:
+def _owner_of(item: Mapping[str, Any]) -> tuple[str, int]:
     return str(item.get("student", "")), int(item.get("sitting", 1))
 
 
 def printed_handouts(
     issues: Sequence[Issue], lang: str, size: str = "", assignment: str = ""
 ) -> tuple[Handout, ...]:
-    """The handouts of one paper as they are printed: to be answered on pages of their own, where these have a ``size``."""
+    """Return the handouts of one paper as printed; with a ``size``, they have separate answer pages."""
     variants = [issue.variant.in_language(lang) for issue in issues]
     handouts = tuple(variant.handout(issues[0].student) for variant in variants)
     if not size:
@@ -85,5 +88,5 @@ def printed_handouts(
 
 
 def printed_handout(issue: Issue, lang: str, size: str = "") -> Handout:
-    """The same of an exercise that is handed out by itself."""
+    """Return the printed handout of an exercise that is handed out alone."""
     return printed_handouts((issue,), lang, size)[0]

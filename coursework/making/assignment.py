@@ -1,7 +1,7 @@
-"""An assignment: what an instructor hands out and marks as one thing, stated in a TOML file.
+"""Assignment: the exercises that an instructor hands out and marks together, described in a TOML file.
 
-A key that there is not, a part that an exercise does not have, points that are no number, a date that is none: each is
-told with the file, its line and what would do.
+An unknown key, an unknown part, points that are no number, a date that is none: each error names the file,
+its line and the remedy.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ Texts = Mapping[str, str]  #: by language
 EACH = "each"  #: a variant a student
 MOST_VERSIONS = 26
 _LARGEST = 1_000_000  #: characters of an assignment's file
-_MOST_DOTS = 200  #: before an equals sign: a key of thousands of names takes minutes to be read
+_MOST_DOTS = 200  #: before an equals sign: the reader takes minutes for a key of thousands of names
 SITTINGS = ("best", "last")
 ANSWERS = ("shown", "never")
-#: Options of ``build`` that may stand in the file; the option wins.
+#: Options of ``build`` that the file may contain; the command line takes precedence.
 OPTIONS = (
     "roster",
     "columns",
@@ -43,12 +43,12 @@ OPTIONS = (
     "out",
     "decimal",
 )
-#: Keys that name files beside the assignment's own, and what goes with these.
+#: Keys that name files near the assignment's own, with their texts.
 FILES = ("logo", "logo_alt", "roster", "out")
 
 
 class Exercises(Protocol):
-    """The course that an assignment is of."""
+    """Course of an assignment."""
 
     @property
     def names(self) -> tuple[str, ...]: ...
@@ -58,19 +58,17 @@ class Exercises(Protocol):
 
 @dataclass(frozen=True)
 class AskedExercise:
-    """One exercise of an assignment."""
+    """Exercise of an assignment."""
 
     name: str
-    parts: tuple[str, ...] | None = None  #: ids; the usual ones unless told
-    points: float | Mapping[str, float] | None = (
-        None  #: by part, or for all to share; the exercise's own unless told
-    )
+    parts: tuple[str, ...] | None = None  #: ids; the usual ones by default
+    points: float | Mapping[str, float] | None = None  #: by part, or a total; the exercise's own by default
     seed: int | None = None  #: the same variant of the assignment for everybody
 
 
 @dataclass(frozen=True)
 class Scale:
-    """What a mark is out of, and its step."""
+    """Maximum of a mark, and its step."""
 
     of: float
     step: float
@@ -78,9 +76,9 @@ class Scale:
 
 @dataclass(frozen=True)
 class Assignment:
-    """A paper: its heading, its exercises, who gets what, how it is marked."""
+    """Assignment: its heading, its exercises, the distribution of variants, and the marking rules."""
 
-    name: str  #: the file's stem; draws depend on it and on the secret
+    name: str  #: the file's stem; the draws depend on it and on the secret
     exercises: tuple[AskedExercise, ...]
     title: Texts = field(default_factory=dict)
     course: Texts = field(default_factory=dict)
@@ -91,22 +89,22 @@ class Assignment:
     logo_alt: Texts = field(default_factory=dict)
     cover: bool = False
     mark: Scale | None = None
-    versions: int | None = None  #: so many are dealt out; None: one a student
+    versions: int | None = None  #: number of versions; None: a variant per student
     identity: tuple[str, ...] = ()
-    sort: str = ""  #: the column by which a booklet is sorted; none: as the roster
+    sort: str = ""  #: the column by which a booklet is sorted; empty: as the roster
     sittings: str = "best"
     answers: str = "shown"
     solutions_after: datetime.date | None = None  #: from this day on feedback has the worked solutions
     marking: Mapping[str, Any] = field(default_factory=dict)
     options: Mapping[str, Any] = field(default_factory=dict)
-    secret: Secret | None = None  #: keys all draws; none where the file has no line for it
+    secret: Secret | None = None  #: keys all draws; None if the file has no line for it
 
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(exercise.name for exercise in self.exercises)
 
     def stated(self) -> dict[str, Any]:
-        """What ``issued.json`` keeps of it, to mark against."""
+        """Return the fields that ``issued.json`` stores for marking."""
         return {
             "name": self.name,
             "title": dict(self.title),
@@ -123,7 +121,7 @@ class Assignment:
         }
 
     def picture(self, lang: str) -> Logo | None:
-        """The logo with its words.
+        """Return the logo with its alternative text.
 
         Raises
         ------
@@ -140,7 +138,7 @@ class Assignment:
 
 
 def text_in(texts: Texts, lang: str) -> str:
-    """A text in a language, else in the first that it has; nothing where there is none."""
+    """Return a text in a language, else in its first language; "" if there is none."""
     return texts.get(lang) or next(iter(texts.values()), "")
 
 
@@ -150,7 +148,7 @@ def read_assignment(path: Path, course: Exercises) -> Assignment:
     Raises
     ------
     BadInput
-        It cannot be read, or says what makes no sense: with the line, and the nearest right name.
+        The file cannot be read, or a key or value is wrong; the message has the line and the nearest name.
     """
     try:
         source = path.read_text("utf-8-sig")
@@ -158,32 +156,32 @@ def read_assignment(path: Path, course: Exercises) -> Assignment:
         raise BadInput(f"the assignment {path} cannot be read: {fault.strerror or fault}") from fault
     except UnicodeDecodeError as fault:
         raise BadInput(f"{path} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
-    return _Reader(path, source, course).assignment(table_of(source, str(path)))
+    return _AssignmentReader(path, source, course).assignment(table_of(source, str(path)))
 
 
-def table_of(source: str, called: str) -> dict[str, Any]:
-    """What the text of an assignment's file says.
+def table_of(source: str, source_name: str) -> dict[str, Any]:
+    """Return the table of the text of an assignment's file.
 
     Raises
     ------
     BadInput
-        It is no TOML, or one that nobody writes: too large, too deep, with a number of more than 64 bits.
+        The text is no TOML, or too large, nested too deep, or has a number of more than 64 bits.
     """
     if len(source) > _LARGEST:
-        raise BadInput(f"{called} has {len(source)} characters; an assignment has at most {_LARGEST}")
+        raise BadInput(f"{source_name} has {len(source)} characters; an assignment has at most {_LARGEST}")
     for number, line in enumerate(source.splitlines(), start=1):
         if line.partition("=")[0].count(".") > _MOST_DOTS:
             raise BadInput(
-                f"{called}, line {number}: more than {_MOST_DOTS} dots before what is said; a key has one or two"
+                f"{source_name}, line {number}: more than {_MOST_DOTS} dots before what is said; a key has one or two"
             )
     try:
         table = tomllib.loads(source)
     except RecursionError:
-        raise BadInput(f"{called}: brackets within brackets, too many to be read") from None
+        raise BadInput(f"{source_name}: brackets within brackets, too many to be read") from None
     except ValueError as fault:
-        raise BadInput(f"{called}: {fault}") from fault
+        raise BadInput(f"{source_name}: {fault}") from fault
     if _holds_huge(table):
-        raise BadInput(f"{called}: a whole number of more than 64 bits, which TOML has not")
+        raise BadInput(f"{source_name}: a whole number of more than 64 bits, which TOML has not")
     return table
 
 
@@ -193,30 +191,31 @@ def _holds_huge(value: Any) -> bool:
     return isinstance(value, int) and value.bit_length() > 64
 
 
-_MOST_QUOTED = 100  #: characters of what is refused
+_MOST_QUOTED = 100  #: characters of a refused value in a message
 
 
 def _short(value: Any) -> str:
-    """A value as it is quoted."""
-    told = repr(value)
-    return told if len(told) <= _MOST_QUOTED else f"{told[:_MOST_QUOTED]}…"
+    """Return a value as quoted in messages."""
+    text = repr(value)
+    return text if len(text) <= _MOST_QUOTED else f"{text[:_MOST_QUOTED]}…"
 
 
 def assignment_of(name: str, table: Mapping[str, Any], course: Exercises, source: str = "") -> Assignment:
-    """The assignment of a table that comes from elsewhere than a file on this machine: what it says of files is left out,
-    and no file is looked for. ``source`` is its text, where it has one, for the lines of what is refused.
+    """Return the assignment of a table that comes from outside; keys that name files are dropped.
+
+    ``source`` is the text of the table, if any, for the line numbers in messages.
 
     Raises
     ------
     BadInput
-        It says what makes no sense.
+        A key or a value is wrong.
     """
-    told = {key: value for key, value in table.items() if key not in FILES}
-    return _Reader(Path(f"{name}.toml"), source, course).assignment(told)
+    fields = {key: value for key, value in table.items() if key not in FILES}
+    return _AssignmentReader(Path(f"{name}.toml"), source, course).assignment(fields)
 
 
-class _Reader:
-    """Reads the tables of one file; what it refuses it tells with the line."""
+class _AssignmentReader:
+    """Reader of the table of one file; its errors name the line."""
 
     def __init__(self, path: Path, source: str, course: Exercises):
         self.path, self.lines, self.course = path, source.splitlines(), course
@@ -226,7 +225,7 @@ class _Reader:
         return BadInput(f"{self.path}{f', line {line}' if line else ''}: {why}")
 
     def _line(self, key: str, exercise: int) -> int:
-        """Where a key stands: at the top, or in a table of exercises; 0 where it is not found."""
+        """Return the line of a key, at the top level or in a table of exercises; 0 if it is not found."""
         table, count = "", -1
         for number, line in enumerate(self.lines, start=1):
             if heading := re.match(r"\s*\[\[?\s*([\w.]+)", line):
@@ -240,7 +239,7 @@ class _Reader:
         return 0
 
     def assignment(self, table: Mapping[str, Any]) -> Assignment:
-        known: dict[str, Callable[[Any], Any]] = {
+        readers: dict[str, Callable[[Any], Any]] = {
             "title": self._texts("title"),
             "course": self._texts("course"),
             "date": self._date("date"),
@@ -260,26 +259,26 @@ class _Reader:
             "exercises": self._exercises,
             "secret": self._secret,
         }
-        found: dict[str, Any] = {}
+        values: dict[str, Any] = {}
         options = {}
         for key, value in table.items():
             if key in OPTIONS:
                 options[key] = value
-            elif key in known:
-                found[key] = known[key](value)
+            elif key in readers:
+                values[key] = readers[key](value)
             else:
-                raise self.refused(key, f"no key {_short(key)}{nearest(key, [*known, *OPTIONS])}")
-        if "exercises" not in found:
+                raise self.refused(key, f"no key {_short(key)}{nearest(key, [*readers, *OPTIONS])}")
+        if "exercises" not in values:
             names = ", ".join(self.course.names[:4])
             raise BadInput(f"{self.path} names no exercise; write [[exercises]] and name = …: {names}, …")
-        if "solutions_after" in found and found.get("answers") == "never":
+        if "solutions_after" in values and values.get("answers") == "never":
             raise self.refused(
                 "solutions_after",
                 'answers = "never" keeps the solutions back for good; leave one of the two out',
             )
-        if "logo" in found and not found.get("logo_alt"):
+        if "logo" in values and not values.get("logo_alt"):
             raise self.refused("logo", 'a logo needs words for who cannot see it: logo_alt = "…"')
-        return Assignment(self.path.stem, options=options, **found)
+        return Assignment(self.path.stem, options=options, **values)
 
     # ------------------------------------------------------------------ values
 
@@ -307,12 +306,12 @@ class _Reader:
 
         return read
 
-    def _word(self, key: str, known: Sequence[str]) -> Callable[[Any], str]:
+    def _word(self, key: str, allowed: Sequence[str]) -> Callable[[Any], str]:
         def read(value: Any) -> str:
-            if value not in known:
+            if value not in allowed:
                 raise self.refused(
                     key,
-                    f"{key} is {' or '.join(known)}; found {reprlib.repr(value)}{nearest(str(value), known)}",
+                    f"{key} is {' or '.join(allowed)}; found {reprlib.repr(value)}{nearest(str(value), allowed)}",
                 )
             return str(value)
 
@@ -362,7 +361,9 @@ class _Reader:
         return value
 
     def _identity(self, value: Any) -> tuple[str, ...]:
-        if not isinstance(value, list) or not all(isinstance(one, str) and one.strip() for one in value):
+        if not isinstance(value, list) or not all(
+            isinstance(column, str) and column.strip() for column in value
+        ):
             raise self.refused(
                 "identity",
                 f'identity lists columns of the roster: ["number", "group"]; found {reprlib.repr(value)}',
@@ -394,22 +395,26 @@ class _Reader:
     # --------------------------------------------------------------- exercises
 
     def _exercises(self, value: Any) -> tuple[AskedExercise, ...]:
-        if not isinstance(value, list) or not value or not all(isinstance(one, Mapping) for one in value):
+        if (
+            not isinstance(value, list)
+            or not value
+            or not all(isinstance(exercise, Mapping) for exercise in value)
+        ):
             raise self.refused("exercises", "exercises are tables: [[exercises]], then name = …")
-        found = tuple(self._exercise(number, one) for number, one in enumerate(value))
-        names = [one.name for one in found]
+        exercises = tuple(self._exercise(number, exercise) for number, exercise in enumerate(value))
+        names = [exercise.name for exercise in exercises]
         for number, name in enumerate(names):
             if name in names[:number]:
                 raise self.refused(
                     "name", f"{name} stands twice; an assignment asks an exercise once", number
                 )
-        return found
+        return exercises
 
     def _exercise(self, number: int, table: Mapping[str, Any]) -> AskedExercise:
-        known = ("name", "parts", "points", "seed")
+        keys = ("name", "parts", "points", "seed")
         for key in table:
-            if key not in known:
-                raise self.refused(key, f"no key {_short(key)} in [[exercises]]{nearest(key, known)}", number)
+            if key not in keys:
+                raise self.refused(key, f"no key {_short(key)} in [[exercises]]{nearest(key, keys)}", number)
         name = table.get("name")
         if name not in self.course.names:
             near = nearest(str(name), self.course.names)
@@ -425,16 +430,18 @@ class _Reader:
     def _parts(self, number: int, name: str, value: Any) -> tuple[str, ...] | None:
         if value is None:
             return None
-        asked = [value] if isinstance(value, str) else value
-        if not isinstance(asked, list) or not asked or not all(isinstance(one, str) for one in asked):
+        parts = [value] if isinstance(value, str) else value
+        if not isinstance(parts, list) or not parts or not all(isinstance(part_id, str) for part_id in parts):
             raise self.refused(
                 "parts", f'parts is a list of ids: ["rA", "theta4"]; found {reprlib.repr(value)}', number
             )
         ids = [*(part.id for part in self.course[name].spec.parts), USUAL, ALL]
-        for one in asked:
-            if one not in ids:
-                raise self.refused("parts", f"{name} has no part {_short(one)}{nearest(one, ids)}", number)
-        return tuple(asked)
+        for part_id in parts:
+            if part_id not in ids:
+                raise self.refused(
+                    "parts", f"{name} has no part {_short(part_id)}{nearest(part_id, ids)}", number
+                )
+        return tuple(parts)
 
     def _points(self, number: int, name: str, value: Any) -> float | Mapping[str, float] | None:
         if value is None:

@@ -1,7 +1,7 @@
-"""All students' sheets in one PDF, to print at once, and a table of where each is.
+"""Booklets: the sheets of all students in one PDF to print, and a table of their pages.
 
-A booklet holds so many sheets, or papers, at most; a larger class has several, named with those they hold. The
-typesetter keeps a whole document in memory, and a document joined from parts would lose its tags.
+A booklet has a limited number of sheets or papers; a larger class gets several, named by the sheets they
+hold. The typesetter keeps a whole document in memory, and joining PDFs would lose the accessibility tags.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from coursework.sheets.sheet import AnswerSheet
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file
 from coursework.system.writing import File
 
-SHEETS = 50  #: or papers, in one booklet, at most
+SHEETS = 50  #: limit of sheets or papers in one booklet
 PAGE_COLUMNS = ("student", "exercise", "seed", "lang", "first page", "last page", "file")
 
 Pages = tuple[tuple[int, int], ...]  #: the first and the last of each sheet
@@ -30,20 +30,20 @@ _Sheet = TypeVar("_Sheet")
 
 @dataclass(frozen=True)
 class Booklet:
-    """One file of several sheets, and the solutions of these."""
+    """File of several sheets, and the file of their solutions."""
 
     name: str
     print_sheets: Callable[[], tuple[bytes, Pages]]
     print_solutions: Callable[[], bytes]
-    told: Sequence[Mapping[str, object]]  #: of each sheet, what the table says but for pages and file
+    cells: Sequence[Mapping[str, object]]  #: of each sheet, its row of the table without pages and file
 
     def rows(self, pages: Pages) -> Iterator[dict[str, object]]:
-        for told, (first, last) in zip(self.told, pages, strict=True):
-            yield {**told, "first page": first, "last page": last, "file": f"{self.name}.pdf"}
+        for row, (first, last) in zip(self.cells, pages, strict=True):
+            yield {**row, "first page": first, "last page": last, "file": f"{self.name}.pdf"}
 
 
 def parted(name: str, sheets: Sequence[_Sheet]) -> Iterator[tuple[str, Sequence[_Sheet]]]:
-    """The sheets of each booklet, and its name."""
+    """Yield each booklet's name and its sheets."""
     digits = len(str(len(sheets)))
     for start in range(0, len(sheets), SHEETS):
         part = sheets[start : start + SHEETS]
@@ -54,7 +54,7 @@ def parted(name: str, sheets: Sequence[_Sheet]) -> Iterator[tuple[str, Sequence[
 def bound(
     course: Course, booklets: Iterable[Booklet], columns: Sequence[str], spreadsheet: Spreadsheet
 ) -> Iterator[File]:
-    """The files of booklets, and after them the table of the students' pages.
+    """Yield the files of booklets, and after them the table of the students' pages.
 
     The files are to be made in this order, by one thread or several.
     """
@@ -71,14 +71,14 @@ def bound(
     yield File(Path("handouts") / "pages.csv", table)
 
 
-def _printed(booklet: Booklet, found: Future[Pages]) -> bytes:
+def _printed(booklet: Booklet, result: Future[Pages]) -> bytes:
     try:
-        made, pages = booklet.print_sheets()
+        pdf, pages = booklet.print_sheets()
     except BaseException as fault:
-        found.set_exception(fault)
+        result.set_exception(fault)
         raise
-    found.set_result(pages)
-    return made
+    result.set_result(pages)
+    return pdf
 
 
 # ------------------------------------------------------------- of single exercises
@@ -93,7 +93,7 @@ def files(
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     scan: bool = False,
 ) -> Iterator[File]:
-    """The booklets of a build, one an exercise and language, and the table of the students' pages."""
+    """Yield the booklets of a build, one per exercise and language, and the table of the students' pages."""
     groups: dict[tuple[str, str], list[Issue]] = {}
     for issue in issues:
         for lang in issue.langs:
@@ -112,7 +112,7 @@ def _of_sheets(
     def solution(issue: Issue) -> AnswerSheet:
         return issue.variant.in_language(lang).answer_sheet(issue.student, polygons=polygons)
 
-    told = [
+    cells = [
         {"student": i.student, "exercise": i.variant.exercise.name, "seed": i.variant.seed, "lang": lang}
         for i in issues
     ]
@@ -120,5 +120,5 @@ def _of_sheets(
         name,
         lambda: renderer.booklet([printed_handout(issue, lang, scan) for issue in issues]),
         lambda: renderer.booklet([solution(issue) for issue in issues])[0],
-        told,
+        cells,
     )

@@ -1,4 +1,4 @@
-"""The main job: issued variants become sheets, notebooks and pages, with the staff's half beside them."""
+"""Files of a build: sheets, notebooks and pages for students, and the staff's solutions and key."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def files(
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     scan: bool = False,
 ) -> Iterator[File]:
-    """Every file of a build, in order.
+    """Yield every file of a build, in order.
 
     ``practice`` makes the notebooks self-study notebooks, which check answers with the installed package. ``paper`` is
     ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
@@ -68,7 +68,8 @@ def tables(
     spreadsheet: Spreadsheet,
     secret: Secret | None = None,
 ) -> Iterator[File]:
-    """What was issued, the form for answers, and, for the staff, the key; with the secret that the file has not."""
+    """Yield the record of issued variants, the form for answers, and the key for the staff; ``secret`` is
+    stored if the assignment's file has none."""
     content = issued_content(issues, assignment, secret)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
@@ -77,7 +78,7 @@ def tables(
 
 
 def key_files(issues: Sequence[Issue], spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> Iterator[File]:
-    """The key, for the staff: as JSON and as a table."""
+    """Yield the answer key for the staff, as JSON and as a table."""
     key = key_content(issues)
     folder = Path("instructor")
     yield File(folder / "key.json", _text(lambda: json_text(key)))
@@ -124,14 +125,14 @@ def _tex(
     renderer: Renderer,
     path: Path,
     ending: str,
-    what: str,
+    figure_name: str,
     sheet: Callable[[], Handout | AnswerSheet],
     *,
     polygons: bool = False,
 ) -> Iterator[File]:
-    """A source and its drawings beside it."""
+    """Yield a LaTeX source and its drawings."""
     stem = tex_stem(path)
-    figure, pages = f"{stem}-{what}.pdf", f"{stem}-polygons.pdf"
+    figure, pages = f"{stem}-{figure_name}.pdf", f"{stem}-polygons.pdf"
     yield rendered(path, ending, partial(renderer.tex, figure=figure, polygons=pages), sheet)
     yield rendered(path.with_name(figure), "", renderer.figure_pdf, sheet)
     if polygons:
@@ -139,15 +140,15 @@ def _tex(
 
 
 def tex_stem(path: Path) -> str:
-    """What the drawings beside a source are called by: one dot in their names, as every LaTeX reads it."""
+    """Return the stem of the names of a source's drawings; LaTeX reads only one dot in a name."""
     return path.name.replace(".", "-")
 
 
 def rendered(path: Path, ending: str, render: Callable[[Any], Made], sheet: Callable[[], Any]) -> File:
-    """A file that a renderer makes of a sheet, wherever it is made."""
+    """Return a file that a renderer makes of a sheet, in any process."""
     return File(path.with_name(path.name + ending), partial(_rendered, render, sheet), anywhere=True)
 
 
 def _rendered(render: Callable[[Any], Made], sheet: Callable[[], Any]) -> bytes | None:
-    made = render(sheet())
-    return made.encode("utf-8") if isinstance(made, str) else made
+    content = render(sheet())
+    return content.encode("utf-8") if isinstance(content, str) else content

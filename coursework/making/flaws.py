@@ -1,9 +1,9 @@
-"""Which variants are worth issuing: those on which an honest student and a known mistake can be told apart.
+"""Flaws of variants: a variant is worth issuing if marking can distinguish right work from known mistakes.
 
-A variant is *ill-conditioned* where rounding alone may cost a student an answer, and *murky* where a known
-mistake moves an answer too little to be told from a right one and too much to be let pass. A seed draws the
-same variant for everybody; who issues variants passes such seeds over. Where a usual error would go *unseen*, a seed is
-passed over as well, as far as enough are left (:mod:`coursework.making.protection`).
+A variant is *ill-conditioned* if rounding alone may cost a student an answer, and *murky* if a known mistake
+moves an answer too little to be recognised and too much to be accepted. A seed draws the same variant for
+everybody; issuing skips such seeds. A seed on which a usual error would go *unseen* is skipped as well, as
+long as enough are left (:mod:`coursework.making.protection`).
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from coursework.solution import Judged
 V = TypeVar("V", bound=Variant)
 
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
-HIDDEN = 0.25  #: half-widths within which nothing can tell it
+HIDDEN = 0.25  #: half-widths within which a mistake cannot be recognised
 
 ILL, MURKY, UNSOLVED = "ill-conditioned", "murky", "unsolved"
 
 
 def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
-    """For each part that a mistake reaches: ``shown``, ``murky`` or ``hidden``.
+    """Yield each part that a mistake reaches, with ``shown``, ``murky`` or ``hidden``.
 
-    Not for parts that are judged together and whose quantities the mistake is not about: they follow from
-    what is wrong before them.
+    Parts that are judged jointly and whose quantities the mistake does not concern are left out: they follow
+    from the errors before them.
     """
     together = dict(_judged_wrong(key, mistake))
     for part, wrong in _reached(key, mistake):
@@ -44,7 +44,7 @@ def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
 
 
 def _reached(key: Key, mistake: str) -> Iterator[tuple[Part, Any]]:
-    """The parts that a mistake reaches, each with the value that it gives."""
+    """Yield the parts that a mistake reaches, each with the mistake's value."""
     values = key.wrong[mistake]
     for part in key.variant.parts:
         wrong = values.get(part.quantity)
@@ -60,7 +60,7 @@ def _seen(key: Key, part: Part, wrong: Any) -> str:
 
 
 def judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """The judges of the quantities that a mistake is about, each with the answers by part that it gives."""
+    """Yield the judges of the quantities that a mistake concerns, each with the mistake's answers by part."""
     values, about = key.wrong[mistake], key.solution.mistakes[mistake].targets
     parts = {part.id: part for part in key.variant.parts}
     for name, ids in judges_of(key.variant):
@@ -75,7 +75,7 @@ def _judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Judged]]:
 
 
 def conditioning(key: Key) -> float:
-    """The widest envelope of a variant's answers, in what a variant may have at most."""
+    """Return the widest envelope of a variant's answers, as a share of the allowed width."""
     shares = [
         key.envelope.get(part.quantity, 0.0) / limit
         for part in key.variant.parts
@@ -85,7 +85,7 @@ def conditioning(key: Key) -> float:
 
 
 def flaws(key: Key) -> Iterator[str]:
-    """Why a variant is not worth issuing: ``ill-conditioned: PART``, ``murky: MISTAKE on PART``."""
+    """Yield the flaws of a variant: ``ill-conditioned: PART``, ``murky: MISTAKE on PART``."""
     try:
         reference = key.reference
     except CourseworkError as fault:
@@ -98,15 +98,15 @@ def flaws(key: Key) -> Iterator[str]:
             yield f"{ILL}: {part.id}"
     for name, mistake in key.solution.mistakes.items():
         if not mistake.approximation:
-            # What is judged together is right or wrong, never murky.
+            # Jointly judged parts are right or wrong, never murky.
             for part, wrong in _reached(key, name):
                 if not part.judge and _seen(key, part, wrong) == "murky":
                     yield f"{MURKY}: {name} on {part.id}"
 
 
 def try_judges(key: Key) -> None:
-    """Lets every judge judge the right answers, some wrong ones, one missing, and the known mistakes: a broken one is
-    found before sheets are issued.
+    """Run every judge on the right answers, some wrong ones, one missing, and the known mistakes, to find a
+    broken judge before sheets are issued.
 
     Raises
     ------
@@ -125,13 +125,13 @@ def try_judges(key: Key) -> None:
         dict(_judged_wrong(key, mistake))
 
 
-def sound(variants: Sequence[V], refused: Counter[str] | None = None) -> list[V]:
-    """Those of the variants, which have their keys, that have no flaw."""
-    found = []
+def flawless(variants: Sequence[V], refused: Counter[str] | None = None) -> list[V]:
+    """Return the variants without a flaw; the variants have their keys."""
+    flawless = []
     for variant in variants:
         flaw = next(flaws(variant.key), None)
         if flaw is None:
-            found.append(variant)
+            flawless.append(variant)
         elif refused is not None:
             refused[flaw] += 1
-    return found
+    return flawless

@@ -1,4 +1,4 @@
-"""By what people and platforms tell a student: how the columns of names, numbers and e-mails are called."""
+"""Identification of students: the usual titles of columns of names, numbers and e-mails."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def plain(title: str) -> str:
     return " ".join(letters.split()).strip(" .:*")
 
 
-_IN_JSON: dict[str, str] = {}  #: a title as Moodle writes it in JSON, and as it is compared
+_IN_JSON: dict[str, str] = {}  #: title as in Moodle's JSON, mapped to the compared form
 
 
 def _titles(*names: str) -> tuple[str, ...]:
@@ -33,7 +33,7 @@ WHOLE = _titles(
     "student", "étudiant", "élève", "full name", "nom complet", "nom et prénom", "nom prénom", "nom et prénoms", "prénom nom",
     "prénom et nom", "nom, prénom", "student name", "nom de l'étudiant", "nom étudiant",
 )  # fmt: skip
-#: The name in use goes before the name at birth.
+#: The name in use takes precedence over the name at birth.
 SURNAME = _titles(
     "nom d'usage", "nom usuel", "nom marital", "nom", "name", "surname", "last name", "lastname", "family name",
     "nom de famille", "nom patronymique", "nom de naissance",
@@ -58,7 +58,7 @@ EMAIL = _titles(
     "adresse e-mail institutionnelle", "adresse email institutionnelle", "adresse électronique institutionnelle",
     "email universitaire", "mail universitaire", "adresse mail universitaire", "mail étudiant", "email étudiant",
 )  # fmt: skip
-#: What platforms add to a number and an e-mail.
+#: Further identifiers of platforms.
 LOGIN = _titles(
     "sis user id", "sis login id", "integration id", "username", "login", "nom d'utilisateur", "identifiant",
     "numéro d'identification",
@@ -80,18 +80,20 @@ _APART = (
     *LOGIN,
 )
 
-Ids = Sequence[tuple[str, str]]  #: what identifies somebody: titles, and what stands there
+Ids = Sequence[tuple[str, str]]  #: identifiers of a person: titles and values
 
 
-def is_called(title: str, known: Iterable[str]) -> bool:
-    """Whether a title is one of those known, as a table writes it or as Moodle writes it in JSON."""
-    known = tuple(known)
-    return plain(title) in known or _IN_JSON.get(title) in known
+def is_called(title: str, titles: Iterable[str]) -> bool:
+    """Return whether a title is one of those given, as a table writes it or as Moodle writes it in JSON."""
+    titles = tuple(titles)
+    return plain(title) in titles or _IN_JSON.get(title) in titles
 
 
-def printed_columns(titles: Iterable[Any], own: Mapping[str, str], lang: str) -> tuple[tuple[str, str], ...]:
+def printed_columns(
+    titles: Iterable[Any], values: Mapping[str, str], lang: str
+) -> tuple[tuple[str, str], ...]:
     """Return columns of a roster as a sheet prints them, from a student's line by folded titles; empty where it has none."""
-    return tuple((_printed_title(str(title), lang), own.get(folded(str(title)), "")) for title in titles)
+    return tuple((_printed_title(str(title), lang), values.get(folded(str(title)), "")) for title in titles)
 
 
 def _printed_title(title: str, lang: str) -> str:
@@ -108,28 +110,30 @@ def identifies(title: str) -> bool:
 
 
 def ids_of(columns: Mapping[str, str]) -> tuple[str, ...]:
-    """What tells a student among the columns of a line, as it is compared."""
+    """Return the identifiers of a student in a row, as they are compared."""
     return tuple(sorted({same_id(value) for title, value in columns.items() if value and identifies(title)}))
 
 
-def told_apart(columns: Mapping[str, str]) -> str:
-    """The number, else the e-mail or the login, that tells two people of one name apart; nothing where there is none."""
-    own = {plain(title): value.strip() for title, value in columns.items() if value.strip()}
-    return next((own[title] for title in _APART if title in own), "")
+def distinguishing_id(columns: Mapping[str, str]) -> str:
+    """Return the number, else the e-mail or the login, that distinguishes people of the same name; "" if
+    there is none."""
+    by_title = {plain(title): value.strip() for title, value in columns.items() if value.strip()}
+    return next((by_title[title] for title in _APART if title in by_title), "")
 
 
 def same_id(value: str) -> str:
-    """A number or an e-mail as it is compared."""
+    """Return a number or an e-mail as it is compared."""
     return folded(value)
 
 
 def words_of(name: str) -> tuple[str, ...]:
-    """The words of a name in whatever order: ``Doe, Ann`` is ``Ann Doe``."""
+    """Return the words of a name in a fixed order: ``Doe, Ann`` is ``Ann Doe``."""
     return tuple(sorted(folded(name).replace(",", " ").split()))
 
 
 def run_together(name: str) -> tuple[str, ...]:
-    """A name as file names run it together, from whichever of its words they begin: ``doeann``, ``anndoe``."""
+    """Return a name without spaces as in file names, starting with each of its words: ``doeann``,
+    ``anndoe``."""
     words = folded(name).replace(",", " ").split()
     turned = ("".join(words[k:] + words[:k]) for k in range(len(words)))
-    return tuple(dict.fromkeys(re.sub(r"[\W_]", "", one) for one in turned))
+    return tuple(dict.fromkeys(re.sub(r"[\W_]", "", spelling) for spelling in turned))

@@ -1,4 +1,4 @@
-"""What was issued: ``issued.json``, read back to mark against."""
+"""Record of issued variants, ``issued.json``, read back for marking."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ ISSUED_FORMAT = 1
 
 
 class Issued:
-    """What was issued: records by exercise and seed, and to whom when there was a roster.
+    """Record of issued variants: by exercise and seed, and by student if there was a roster.
 
-    A record may be of several students, as versions are, and a student may have an exercise in several sittings. Those of
-    a pool belong to nobody: a platform draws, and whoever is on the roster may have any.
+    Several students may share a record, as with versions, and a student may have an exercise in several
+    sittings. The records of a pool belong to nobody: a platform draws, and every student may get any of them.
     """
 
     def __init__(self, content: Mapping[str, Any], source: str):
@@ -43,18 +43,16 @@ class Issued:
         self.columns: dict[str, Mapping[str, str]] = _columns(content.get("students"), source)
         self.records: dict[tuple[str, int], Mapping[str, Any]] = {}
         self.owners: dict[tuple[str, int], tuple[str, ...]] = {}
-        self.versions: dict[
-            tuple[str, int], str
-        ] = {}  #: letters by exercise and seed, where versions were dealt
+        self.versions: dict[tuple[str, int], str] = {}  #: letters by exercise and seed, if there are versions
         self.seeds: dict[tuple[str, str], int] = {}  #: of the latest sitting
         self._sittings: dict[tuple[str, str], dict[int, int]] = {}  #: seeds by sitting
-        self._langs: dict[tuple[str, str, int], str] = {}  #: where another owner reads another language
+        self._langs: dict[tuple[str, str, int], str] = {}  #: of owners with another language
         alike: dict[tuple[str, str], Any] = {}
         for number, item in enumerate(records, start=1):
             try:
                 record, student, sitting = _record_of(item), item.get("student", ""), item.get("sitting", 1)
                 key = (record["exercise"], record["seed"])
-                # Records of an exercise ask the same; once is enough for all of them.
+                # Records of an exercise have the same parts; one copy is enough.
                 usual = alike.get((key[0], record["version"]))
                 if usual is None or usual != record["parts"]:
                     _check_parts(record["parts"])
@@ -71,22 +69,22 @@ class Issued:
             if student:
                 if first is not record and first.get("lang") != record.get("lang"):
                     self._langs[student, *key] = str(record.get("lang"))
-                self._own(student, key, sitting)
+                self._add_owner(student, key, sitting)
         self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
         listed = self.columns if self.is_pool and self.has_roster else ()
         self.students = tuple(dict.fromkeys((*(student for student, _ in self._sittings), *listed)))
-        self.has_sittings = any(max(own) > 1 for own in self._sittings.values())
+        self.has_sittings = any(max(seeds) > 1 for seeds in self._sittings.values())
         self._named = frozenset(self.students)
         self._known = {folded(s): s for s in self.students}
         self._people = _People(self.students, self.columns)
 
-    def _own(self, student: str, key: tuple[str, int], sitting: int) -> None:
+    def _add_owner(self, student: str, key: tuple[str, int], sitting: int) -> None:
         exercise, seed = key
         if student not in (owners := self.owners.get(key, ())):
             self.owners[key] = (*owners, student)
-        own = self._sittings.setdefault((student, exercise), {})
-        own[sitting] = seed
-        self.seeds[student, exercise] = own[max(own)]
+        seeds = self._sittings.setdefault((student, exercise), {})
+        seeds[sitting] = seed
+        self.seeds[student, exercise] = seeds[max(seeds)]
 
     @staticmethod
     def read(path: Path) -> Issued:
@@ -95,18 +93,18 @@ class Issued:
         Raises
         ------
         BadInput
-            The file is not there, or is not what ``build`` writes.
+            The file is missing, or was not written by ``build``.
         """
         return Issued(read_json(path), str(path))
 
     @staticmethod
-    def stood(path: Path) -> Mapping[str, Any]:
-        """What an earlier ``issued.json`` says, where others are to be issued.
+    def read_previous(path: Path) -> Mapping[str, Any]:
+        """Return the content of an earlier ``issued.json`` before more variants are issued.
 
         Raises
         ------
         BadInput
-            The file is not what ``build`` writes.
+            The file was not written by ``build``.
         """
         content: Mapping[str, Any] = read_json(path)
         try:
@@ -117,103 +115,111 @@ class Issued:
 
     @staticmethod
     def of(data: bytes, source: str) -> Issued:
-        """What the bytes of an ``issued.json`` say.
+        """Return the record of the bytes of an ``issued.json``.
 
         Raises
         ------
         BadInput
-            They are not what ``build`` writes.
+            They were not written by ``build``.
         """
         return Issued(json_of(data, source), source)
 
     def student(self, name: str, ids: Ids | None = None) -> str | None:
-        """The student's name as issued, or without a roster as it came first; None for a stranger to the roster.
+        """Return the student's name as issued, or, without a roster, as first seen; None for a name that is
+        not on the roster.
 
-        ``ids`` are what a platform tells of them: these go before the name, whose words are then in any order.
+        ``ids`` are the identifiers from a platform; they take precedence over the name, whose words may then
+        be in any order.
         """
-        if ids and (known := self._people.of_ids(ids)):
-            return known
+        if ids and (match := self._people.of_ids(ids)):
+            return match
         if name in self._named:
             return name
         if not self.has_roster:
-            return self._met(name, ids) if ids else self._known.setdefault(folded(name), name)
+            return self._newcomer(name, ids) if ids else self._known.setdefault(folded(name), name)
         return (
             self._known.get(folded(name))
             or self._people.without_accents(name)
-            or (None if ids is None else self._people.called(name))
+            or (None if ids is None else self._people.with_words(name))
         )
 
     def account(self, names: Sequence[str]) -> str | None:
-        """The student of the roster whom a platform calls so, by a number, an e-mail or what stands before its @, a login or
-        a name; None for a stranger."""
-        told = (
+        """Return the student of the roster for a platform's account: by number, e-mail or its part before @,
+        login or name; None if there is none."""
+        matches = (
             self._people.of_ids([("", n)])
             or self._known.get(folded(n))
             or self._people.without_accents(n)
-            or self._people.called(n)
+            or self._people.with_words(n)
             or self._people.of_mailbox(n)
             for n in names
             if n
         )
-        return next(filter(None, told), None) if self.has_roster else None
+        return next(filter(None, matches), None) if self.has_roster else None
 
-    def _met(self, name: str, ids: Ids) -> str:
-        """Somebody whom no roster names; two of one name are told apart by what identifies them."""
-        found = self._known.setdefault(folded(name), name)
-        if self.columns.setdefault(found, dict(ids)) != dict(ids):
-            found = f"{name} ({ids[0][1]})"
-            self.columns[found] = dict(ids)
-        self._people.add(found, dict(ids))
-        return found
+    def _newcomer(self, name: str, ids: Ids) -> str:
+        """Return the name of a student without a roster; people of the same name are distinguished by an
+        identifier."""
+        known_name = self._known.setdefault(folded(name), name)
+        if self.columns.setdefault(known_name, dict(ids)) != dict(ids):
+            known_name = f"{name} ({ids[0][1]})"
+            self.columns[known_name] = dict(ids)
+        self._people.add(known_name, dict(ids))
+        return known_name
 
     def issued_to(self, student: str, sitting: int | None = None) -> dict[str, int]:
-        """The seeds that a student of the roster was issued, by exercise: of a sitting, else the latest of each."""
+        """Return the seeds issued to a student of the roster, by exercise: of a sitting, else of the latest
+        one."""
         if sitting is None:
             return {e: self.seeds[student, e] for e in self.exercises if (student, e) in self.seeds}
-        own = {e: self._sittings.get((student, e), {}) for e in self.exercises}
-        return {e: seeds[sitting] for e, seeds in own.items() if sitting in seeds}
+        by_exercise = {e: self._sittings.get((student, e), {}) for e in self.exercises}
+        return {e: seeds[sitting] for e, seeds in by_exercise.items() if sitting in seeds}
 
     def seeds_of(self, student: str, exercise: str) -> tuple[int, ...]:
-        """The seeds of an exercise that a student of the roster was issued, sitting by sitting."""
-        own = self._sittings.get((student, exercise), {})
-        return tuple(own[sitting] for sitting in sorted(own))
+        """Return the seeds of an exercise issued to a student of the roster, sitting by sitting."""
+        seeds = self._sittings.get((student, exercise), {})
+        return tuple(seeds[sitting] for sitting in sorted(seeds))
 
     def sitting_of(self, student: str, exercise: str, seed: int) -> int:
-        """In which sitting a student has a variant: the latest, where several have the same one; 1 without a roster."""
-        own = self._sittings.get((student, exercise), {})
-        return max((sitting for sitting, one in own.items() if one == seed), default=1)
+        """Return the sitting in which a student has a variant: the latest if there are several; 1 without a
+        roster."""
+        seeds = self._sittings.get((student, exercise), {})
+        return max((sitting for sitting, issued_seed in seeds.items() if issued_seed == seed), default=1)
 
     def of_student(self, student: str) -> Issued:
-        """What bears on the sheets of one student alone: what they were issued, and a record of each other exercise."""
+        """Return the part of the record for one student: the issued variants, and one record of each other
+        exercise."""
         keys = [(e, seed) for e in self.exercises for seed in self.seeds_of(student, e)]
         mine = dict.fromkeys(e for e, _ in keys)
-        kept = (*keys, *(key for e, key in self._first.items() if e not in mine))
-        own = copy(self)
-        own.records = {key: self.records[key] for key in kept}
-        own.owners = dict.fromkeys(keys, (student,))
-        own.versions = {key: self.versions[key] for key in keys if key in self.versions}
-        own.seeds = {(student, e): self.seeds[student, e] for e in mine}
-        own._sittings = {(student, e): self._sittings[student, e] for e in mine}
-        own._langs = {place: lang for key in keys if (lang := self._langs.get(place := (student, *key)))}
-        own.columns = {student: self.columns[student]} if student in self.columns else {}
-        own.students, own._named = (student,), frozenset({student})
-        own._known, own._people = {folded(student): student}, _People((student,), own.columns)
-        return own
+        record_keys = (*keys, *(key for e, key in self._first.items() if e not in mine))
+        part = copy(self)
+        part.records = {key: self.records[key] for key in record_keys}
+        part.owners = dict.fromkeys(keys, (student,))
+        part.versions = {key: self.versions[key] for key in keys if key in self.versions}
+        part.seeds = {(student, e): self.seeds[student, e] for e in mine}
+        part._sittings = {(student, e): self._sittings[student, e] for e in mine}
+        part._langs = {
+            owner_key: lang for key in keys if (lang := self._langs.get(owner_key := (student, *key)))
+        }
+        part.columns = {student: self.columns[student]} if student in self.columns else {}
+        part.students, part._named = (student,), frozenset({student})
+        part._known, part._people = {folded(student): student}, _People((student,), part.columns)
+        return part
 
     @cached_property
     def _first(self) -> dict[str, tuple[str, int]]:
-        """A variant of each exercise."""
+        """Return a variant of each exercise."""
         return {exercise: (exercise, seed) for exercise, seed in reversed(self.records)}
 
     def record_of(self, student: str, exercise: str, seed: int) -> Mapping[str, Any]:
-        """The record of a variant, in the student's language."""
+        """Return the record of a variant, in the student's language."""
         record = self.records[exercise, seed]
         lang = self._langs.get((student, exercise, seed))
         return record if lang is None else {**record, "lang": lang}
 
 
 class _People:
-    """Students by what platforms tell of them; what two of them have in common tells nobody."""
+    """Students by their identifiers on platforms; an identifier that two students share identifies nobody."""
 
     def __init__(self, students: Iterable[str], columns: Mapping[str, Mapping[str, str]]):
         self._by_id: dict[str, str | None] = {}
@@ -229,43 +235,43 @@ class _People:
                 _enter(self._together, name, student)
 
     def add(self, student: str, columns: Mapping[str, str]) -> None:
-        for one in ids_of(columns):
-            _enter(self._by_id, one, student)
-            if "@" in one:
-                _enter(self._by_mailbox, one.partition("@")[0], student)
+        for identifier in ids_of(columns):
+            _enter(self._by_id, identifier, student)
+            if "@" in identifier:
+                _enter(self._by_mailbox, identifier.partition("@")[0], student)
 
     def of_ids(self, ids: Ids) -> str | None:
         return next(filter(None, (self._by_id.get(same_id(value)) for _, value in ids if value)), None)
 
     def of_mailbox(self, name: str) -> str | None:
-        """The student whose e-mail begins so, before its @."""
+        """Return the student whose e-mail has this part before the @."""
         return self._by_mailbox.get(same_id(name))
 
     def without_accents(self, name: str) -> str | None:
         """Return the only student whose name differs in accents alone."""
         return self._unaccented.get(unaccented(name))
 
-    def called(self, name: str) -> str | None:
-        """The student of a name whose words are in another order, or run together."""
+    def with_words(self, name: str) -> str | None:
+        """Return the student whose name has these words in another order or without spaces."""
         return self._by_words.get(words_of(name)) or self._together.get(folded(name))
 
 
-def _enter(found: dict[Any, str | None], key: Any, student: str) -> None:
-    found[key] = student if found.get(key, student) == student else None
+def _enter(students: dict[Any, str | None], key: Any, student: str) -> None:
+    students[key] = student if students.get(key, student) == student else None
 
 
 class _Unfit(ValueError):
-    """What is no issued record."""
+    """Error of content that is no issued record."""
 
 
-#: What stands in an item and in its record, and what it is; of an item nothing need be there.
+#: Fields of an item and of its record, with their types; those of an item are optional.
 _ITEM = {"student": str, "sitting": int, "version": str}
 _RECORD = {"exercise": str, "seed": int, "version": int, "parts": list, "given": dict, "lang": str}
-_CALLED = {str: "a text", int: "a whole number, 0 or more", list: "a list", dict: "an object"}
+_KIND_NAMES = {str: "a text", int: "a whole number, 0 or more", list: "a list", dict: "an object"}
 
 
 def _record_of(item: Any) -> dict[str, Any]:
-    """The record of an item, both of the shape that a build gives them.
+    """Return the record of an item, after checking both.
 
     Raises
     ------
@@ -286,12 +292,12 @@ def _record_of(item: Any) -> dict[str, Any]:
 
 def _check_kind(name: str, value: Any, kind: type) -> None:
     if type(value) is not kind or (isinstance(value, int) and value < 0):
-        found = "nothing" if value is None else repr(value)[:40]
-        raise _Unfit(f"{name} is {_CALLED[kind]}; found {found}")
+        text = "nothing" if value is None else repr(value)[:40]
+        raise _Unfit(f"{name} is {_KIND_NAMES[kind]}; found {text}")
 
 
 def _check_parts(parts: Sequence[Any]) -> None:
-    """Parts have ids, points, and, of choices, their order."""
+    """Raise if parts lack ids or points, or if choices are no texts."""
     met = set()
     for part in parts:
         if not isinstance(part, dict):
@@ -314,7 +320,7 @@ def _is_later(written: Any) -> bool:
 
 
 def _stated(content: Any, source: str) -> Mapping[str, Any] | None:
-    """What the file says of its assignment; None for a build of exercises alone."""
+    """Return the assignment's fields; None for a build of single exercises."""
     if content is None:
         return None
     fits = isinstance(content, Mapping) and isinstance(content.get("exercises"), list)
@@ -331,15 +337,15 @@ def _is_size(value: Any) -> bool:
 
 
 def _columns(content: Any, source: str) -> dict[str, Mapping[str, str]]:
-    """The columns of the roster, by student."""
+    """Return the columns of the roster, by student."""
     if content is None:
         return {}
-    if not isinstance(content, Mapping) or not all(isinstance(own, Mapping) for own in content.values()):
+    if not isinstance(content, Mapping) or not all(isinstance(row, Mapping) for row in content.values()):
         raise BadInput(f"{source}: its students are no columns by name; 'coursework build' writes them")
-    return {str(s): {str(c): str(v) for c, v in own.items()} for s, own in content.items()}
+    return {str(s): {str(c): str(v) for c, v in row.items()} for s, row in content.items()}
 
 
-SECRET = "secret"  #: under which an instructor's ``issued.json`` holds that of its assignment
+SECRET = "secret"  #: key of the assignment's secret in an instructor's ``issued.json``
 
 
 def secret_of(content: Mapping[str, Any] | None, source: str = "what was issued") -> Secret | None:
@@ -358,14 +364,15 @@ def secret_of(content: Mapping[str, Any] | None, source: str = "what was issued"
 
 
 def without_secret(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what an ``issued.json`` says to whoever only marks."""
+    """Return an ``issued.json`` without the secret, for marking."""
     return {key: value for key, value in content.items() if key != SECRET}
 
 
 def issued_content(
     issues: Sequence[Issue], assignment: Assignment | None = None, secret: Secret | None = None
 ) -> dict[str, Any]:
-    """What ``issued.json`` says: who got which record. No answers. With a ``secret``, it is the instructor's alone."""
+    """Return the content of ``issued.json``: the record of each student, without answers. With a ``secret``,
+    the file is for the instructor only."""
     columns = {i.student: dict(i.columns) for i in issues if i.student and i.columns}
     return {
         "format": ISSUED_FORMAT,
@@ -378,14 +385,15 @@ def issued_content(
 
 
 def _item(issue: Issue) -> dict[str, Any]:
-    """One record, and whose it is."""
+    """Return one record with its student."""
     sitting = {} if issue.sitting == 1 else {"sitting": issue.sitting}
     version = {"version": issue.version} if issue.version else {}
     return {"student": issue.student, **sitting, **version, "record": issue.variant.record}
 
 
 def plain_value(value: Any) -> Any:
-    """A quantity as JSON holds it: an array as lists, a complex number as the text ``3+4j``, which is an answer too."""
+    """Return a quantity as JSON: an array as lists, a complex number as the text ``3+4j``, which is also a
+    valid answer."""
     if isinstance(value, (complex, np.complexfloating)):
         return str(complex(value)).strip("()")
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
@@ -395,10 +403,10 @@ def _as_it_is(value: Any, margin: float | None = None) -> Any:
     return value
 
 
-def record_with_answers(variant: Issuable, told: Callable[..., Any] = _as_it_is) -> dict[str, Any]:
-    """The record and, by part, the reference answer with its unit and accepted half-width.
+def record_with_answers(variant: Issuable, rounded: Callable[..., Any] = _as_it_is) -> dict[str, Any]:
+    """Return the record and, by part, the reference answer with its unit and accepted half-width.
 
-    ``told`` gives a number as it is to be told, of a reference and its half-width; full precision unless told.
+    ``rounded`` maps a number and its half-width to the number to write; full precision by default.
 
     Raises
     ------
@@ -411,25 +419,25 @@ def record_with_answers(variant: Issuable, told: Callable[..., Any] = _as_it_is)
         value = None if part.sort.is_open else key.reference[part.quantity]
         width = key.half_width(part) if part.has_margin else None
         answers[part.id] = {
-            "value": plain_value(told(value, width)),
+            "value": plain_value(rounded(value, width)),
             "unit": part.unit,
-            "tolerance": plain_value(told(width)),
+            "tolerance": plain_value(rounded(width)),
         }
     return {**variant.record, "answers": answers}
 
 
-#: Of a number in the key, significant ones: counted from the largest component of its answer, or from its margin where
-#: that is larger. Those behind them differ from one processor to another.
+#: Significant digits of a number in the key, counted from the largest component of its answer, or from its margin if
+#: that is larger. Further digits differ between processors.
 KEY_DIGITS = 10
 
 
 def key_content(issues: Iterable[Issue]) -> list[dict[str, Any]]:
-    """What ``key.json`` says: the issued records with their answers, to :data:`KEY_DIGITS`."""
+    """Return the content of ``key.json``: the issued records with their answers, to :data:`KEY_DIGITS`."""
     return [{"student": i.student, **record_with_answers(i.variant, _in_key)} for i in issues]
 
 
 def _in_key(value: Any, margin: float | None = None) -> Any:
-    """A number of an answer, or an array of them, to the digits of the key; anything else as it is."""
+    """Return a number or an array rounded to the digits of the key; other values as they are."""
     if not isinstance(value, (float, complex, np.inexact, np.ndarray)):
         return value
     array = np.asarray(value)
@@ -440,29 +448,29 @@ def _in_key(value: Any, margin: float | None = None) -> Any:
     if not size:
         return value
     decimals = KEY_DIGITS - 1 - math.floor(math.log10(size))
-    kept = np.array([round(number, decimals) + 0.0 for number in numbers.tolist()]).view(array.dtype)
-    return kept[0].item() if array.ndim == 0 else kept.reshape(array.shape)
+    rounded = np.array([round(number, decimals) + 0.0 for number in numbers.tolist()]).view(array.dtype)
+    return rounded[0].item() if array.ndim == 0 else rounded.reshape(array.shape)
 
 
 def key_rows(key: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
-    """The lines of ``key.csv``."""
+    """Yield the rows of ``key.csv``."""
     for record in key:
         for part, answer in record["answers"].items():
             value = answer["value"]
-            shown = "; ".join(f"{v!r}" for v in value) if isinstance(value, list) else value
+            text = "; ".join(f"{v!r}" for v in value) if isinstance(value, list) else value
             yield {
                 "student": record["student"],
                 "exercise": record["exercise"],
                 "seed": record["seed"],
                 "part": part,
-                "value": "" if shown is None else shown,
+                "value": "" if text is None else text,
                 "unit": answer["unit"],
                 "tolerance": "" if answer["tolerance"] is None else answer["tolerance"],
             }
 
 
 def form_rows(issues: Iterable[Issue]) -> Iterator[dict[str, Any]]:
-    """The lines of ``answers.csv``: an empty form to fill."""
+    """Yield the rows of ``answers.csv``, an empty form."""
     for issued in issues:
         for part in issued.variant.parts:
             yield {

@@ -1,4 +1,4 @@
-"""The sheets of what was issued, once more."""
+"""Repetition of the sheets of an earlier build."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from coursework.making.students import file_stems
 
 
 def issued_again(course: Course, issued: Issued, langs: Sequence[str] = ()) -> list[Issue]:
-    """What was issued, to be written once more: no variant is drawn. In the language of each record unless told.
+    """Return the issued variants to write them again, without drawing; in the language of each record by
+    default.
 
     Raises
     ------
     BadInput
-        It is what an assignment dealt, a record is of a later version, or an exercise has no text in a language.
+        The record is of an assignment or a pool, has a later version, or an exercise has no text in a language.
     UnknownName
         The course lacks an exercise.
     """
@@ -32,8 +33,10 @@ def issued_again(course: Course, issued: Issued, langs: Sequence[str] = ()) -> l
         exercise, seed = key
         for student in issued.owners.get(key, ("",)):
             variant = course[exercise].from_record(issued.record_of(student, exercise, seed))
-            own = tuple(langs) or (variant.lang,)
-            check_languages(course[exercise], own)
+            student_langs = tuple(langs) or (variant.lang,)
+            check_languages(course[exercise], student_langs)
             stem, columns = stems.get(student, f"{seed:05d}"), issued.columns.get(student, {})
-            issues.append(Issue(student, variant.in_language(own[0]), own, stem, columns=columns))
+            issues.append(
+                Issue(student, variant.in_language(student_langs[0]), student_langs, stem, columns=columns)
+            )
     return issues

@@ -1,4 +1,4 @@
-"""Who gets which variant: distinct draws, what was issued, and the key to it."""
+"""Issuing of variants: distinct draws for students, and the exercises' answer keys."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from coursework.course.variant import Variant
 from coursework.errors import BadInput, NoSolution, Starved, counted, unknown
 from coursework.kinds.kind import Asking
 from coursework.making.flaws import try_judges
-from coursework.making.protection import worthy
+from coursework.making.protection import valid_variants
 from coursework.making.roster import Student
 from coursework.making.students import file_stems
 from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
@@ -36,30 +36,39 @@ def distinct_variants(
     parts: Sequence[str] | None = None,
     fits: Callable[[V], bool] | None = None,
 ) -> list[V]:
-    """``count`` variants of different given values that are worth issuing, from the first seed on.
+    """Return ``count`` variants of different given values that are worth issuing, from the first seed on.
 
-    ``parts`` are the ids of those to ask; a variant that asks none of them is passed over, and so is one that
-    does not fit, where ``fits`` is told.
+    Equal variants are skipped, and so are those that mark badly (:mod:`coursework.making.flaws`).
 
-    Equal ones are passed over, and so are those that mark badly (:mod:`coursework.making.flaws`); ``refused`` counts
-    these by their flaw.
+    Parameters
+    ----------
+    exercise, lang
+        The exercise, and the language of the variants.
+    first_seed, count
+        The first seed to try, and the number of variants.
+    refused
+        Counter of skipped variants by their flaw, filled in.
+    parts
+        Ids of the parts to ask; a variant that asks none of them is skipped.
+    fits
+        Further condition on a variant.
 
     Raises
     ------
     NoSolution
-        The course folder is a students' copy, which cannot tell those that mark badly.
+        The course folder is a students' copy, which cannot find the variants that mark badly.
     Starved
-        Fewer exist, or so few that they are not found; says how many, and what refuses most.
+        Too few variants exist or were found; the message gives the number and the most frequent flaws.
     """
     _check_can_tell(exercise)
-    found: dict[tuple, V] = {}
+    by_values: dict[tuple, V] = {}
     refused = Counter() if refused is None else refused
     seed = first_seed
     limit = first_seed + 100 * count + 1000
-    while len(found) < count and seed < limit:
-        # As many as are missing, should as many of these be good as of those before.
-        good = (len(found) + 1) / (seed - first_seed + 1)
-        batch = range(seed, min(limit, seed + max(16, math.ceil((count - len(found)) / good))))
+    while len(by_values) < count and seed < limit:
+        # Enough for the missing ones at the share of good variants so far.
+        good = (len(by_values) + 1) / (seed - first_seed + 1)
+        batch = range(seed, min(limit, seed + max(16, math.ceil((count - len(by_values)) / good))))
         drawn = exercise.variants(batch, lang, parts)
         asking = _that_ask(drawn, fits)
         if len(asking) < len(drawn):
@@ -67,25 +76,26 @@ def distinct_variants(
                 asking
             )
             drawn = asking
-        for variant in worthy(exercise, drawn, refused):
-            found.setdefault(tuple(variant.given.values()), variant)
-            if len(found) == count:
+        for variant in valid_variants(exercise, drawn, refused):
+            by_values.setdefault(tuple(variant.given.values()), variant)
+            if len(by_values) == count:
                 break
         seed = batch.stop
-    if len(found) < count:
+    if len(by_values) < count:
         exist = draws.population(exercise.drawing)
-        told = f"{len(found)} found" if exist is None or refused else f"only {exist} exist"
+        reason = f"{len(by_values)} found" if exist is None or refused else f"only {exist} exist"
         flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
-        told += f"; passed over as {flaws}" if flaws else ""
+        reason += f"; passed over as {flaws}" if flaws else ""
         raise Starved(
-            f"{exercise.name}: {counted(count, 'different variant')} asked, {told}; "
+            f"{exercise.name}: {counted(count, 'different variant')} asked, {reason}; "
             "ask for fewer, widen a range or make a step finer"
         )
-    return list(found.values())
+    return list(by_values.values())
 
 
 def _check_can_tell(exercise: CourseExercise[Any]) -> None:
-    """A students' copy would issue what the full course passes over, and so others than it does."""
+    """Raise for a students' copy: it would issue variants that the full course skips, and so different
+    ones."""
     if not exercise.folder.has_solutions:
         raise NoSolution(
             f"{exercise.name}: {exercise.folder.label} has no solutions/, as a students' copy, and cannot tell which "
@@ -95,19 +105,19 @@ def _check_can_tell(exercise: CourseExercise[Any]) -> None:
 
 
 def _that_ask(variants: Sequence[V], fits: Callable[[V], bool] | None) -> list[V]:
-    """Those that ask something, and fit."""
+    """Return the variants that ask a part and fit."""
     return [v for v in variants if v.parts and (fits is None or fits(v))]
 
 
-SEEDS = 1_000_000  #: seeds that are drawn by student have six digits at most
-_ROUNDS = 1000  #: draws for one student before variants are said to be used up
-_ALIKE = 60  #: the same where all that they draw has been dealt already
-_TOGETHER = 256  #: draws that are tried together
+SEEDS = 1_000_000  #: seeds drawn by student have at most six digits
+_ROUNDS = 1000  #: draws for one student before variants count as used up
+_ALIKE = 60  #: the same if all their draws are in use already
+_TOGETHER = 256  #: draws that are computed together
 
 
-def seed_for(stream: str, exercise: str, who: str, round_: int, secret: Secret | None = None) -> int:
-    """The seed that somebody draws in a round, the same for ever; with the secret of an assignment, the code."""
-    key = f"coursework/assignment/{stream}/{exercise}/{who}/{round_}"
+def seed_for(stream: str, exercise: str, person: str, round_: int, secret: Secret | None = None) -> int:
+    """Return the seed of a person in a round, always the same; with the secret of an assignment, a code."""
+    key = f"coursework/assignment/{stream}/{exercise}/{person}/{round_}"
     bits = hashlib.shake_128(key.encode()).digest(8) if secret is None else secret.digest("code", key)[:8]
     return int.from_bytes(bits, "little") % SEEDS
 
@@ -118,64 +128,79 @@ def drawn_by(
     people: Sequence[str],
     lang: str,
     parts: Sequence[str] | None = None,
-    taken: set[tuple[Any, ...]] | None = None,
+    used_values: set[tuple[Any, ...]] | None = None,
     fits: Callable[[V], bool] | None = None,
     secret: Secret | None = None,
-    known: Mapping[int, tuple[Any, ...]] | None = None,
+    issued_values: Mapping[int, tuple[Any, ...]] | None = None,
 ) -> tuple[dict[str, V], list[str]]:
-    """A variant for each of some people that hangs on them and not on their order, and who shares theirs with another.
+    """Return a variant for each person, independent of their order, and the people who share theirs.
 
-    All are different, and none has the given values that are ``taken``, while variants last; each ``fits``,
-    where that is told. With the ``secret`` of an assignment nobody draws them without it. ``known`` are the given
-    values of what was issued by seed, perhaps without the secret: none of these seeds stands for other values.
+    Parameters
+    ----------
+    stream
+        Name that separates the draws of different assignments.
+    people
+        Keys of the people.
+    used_values
+        Given values that no variant may have; those of the result are added. All variants differ while variants last.
+    fits
+        Further condition on a variant.
+    secret
+        Secret of an assignment, without which nobody can repeat the draws.
+    issued_values
+        Given values of earlier variants by seed: none of these seeds is used for other values.
 
     Raises
     ------
     NoSolution
         As :func:`distinct_variants`.
     Starved
-        No variant that is worth issuing was found for somebody.
+        No variant worth issuing was found for somebody.
     """
     _check_can_tell(exercise)
-    taken = set() if taken is None else taken
-    known = {} if known is None else known
-    found: dict[str, V] = {}
-    spare: dict[str, V] = {}  # worth issuing, though somebody has the same
+    used_values = set() if used_values is None else used_values
+    issued_values = {} if issued_values is None else issued_values
+    variants: dict[str, V] = {}
+    spare: dict[str, V] = {}  # valid, but in use by another student
     refused: Counter[str] = Counter()
     waiting = list(people)
     round_, together = 0, 1
     while waiting and round_ < (_ALIKE if spare.keys() >= set(waiting) else _ROUNDS):
         rounds = range(round_, min(round_ + together, _ROUNDS))
-        seeds = {(r, who): seed_for(stream, exercise.name, who, r, secret) for r in rounds for who in waiting}
+        seeds = {
+            (r, person): seed_for(stream, exercise.name, person, r, secret)
+            for r in rounds
+            for person in waiting
+        }
         drawn = _that_ask(exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts, secret), fits)
-        drawn = [v for v in drawn if known.get(v.seed, given := tuple(v.given.values())) == given]
-        by_seed = {v.seed: v for v in worthy(exercise, drawn, refused)}
+        drawn = [v for v in drawn if issued_values.get(v.seed, given := tuple(v.given.values())) == given]
+        by_seed = {v.seed: v for v in valid_variants(exercise, drawn, refused)}
         for r in rounds:
-            # Who is first where two draw the same hangs on the draw, not on the roster.
-            for who in sorted(waiting, key=lambda who: (seeds[r, who], who)):
-                variant = by_seed.get(seeds[r, who])
-                if variant is not None and (given := tuple(variant.given.values())) not in taken:
-                    taken.add(given)
-                    found[who] = variant
+            # If two draw the same, the draw decides who gets it, not the roster.
+            for person in sorted(waiting, key=lambda person: (seeds[r, person], person)):
+                variant = by_seed.get(seeds[r, person])
+                if variant is not None and (given := tuple(variant.given.values())) not in used_values:
+                    used_values.add(given)
+                    variants[person] = variant
                 elif variant is not None:
-                    spare.setdefault(who, variant)
-            waiting = [who for who in waiting if who not in found]
+                    spare.setdefault(person, variant)
+            waiting = [person for person in waiting if person not in variants]
         round_ = rounds.stop
         together = max(1, min(2 * together, _TOGETHER // max(1, len(waiting))))
-    shared = [who for who in waiting if who in spare]
-    found |= {who: spare[who] for who in shared}
-    if len(found) < len(people):
+    shared = [person for person in waiting if person in spare]
+    variants |= {person: spare[person] for person in shared}
+    if len(variants) < len(people):
         flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
         raise Starved(
             f"{exercise.name}: no variant that is worth issuing was found for "
-            f"{counted(len(people) - len(found), 'student')}{f'; passed over as {flaws}' if flaws else ''}; "
+            f"{counted(len(people) - len(variants), 'student')}{f'; passed over as {flaws}' if flaws else ''}; "
             "widen a range or make a step finer"
         )
-    return found, shared
+    return variants, shared
 
 
 class Issuable(Asked, Asking, Protocol):
-    """A variant that can say what its sheets show."""
+    """Variant that provides the content of its sheets."""
 
     @property
     def key(self) -> Key: ...
@@ -197,15 +222,15 @@ class Issuable(Asked, Asking, Protocol):
 
 @dataclass(frozen=True)
 class Issue:
-    """One variant for one student, in the languages it is printed in."""
+    """Variant of one student, in the languages of its sheets."""
 
     student: str
     variant: Issuable
     langs: tuple[str, ...]
-    stem: str  #: what its files are called
-    sitting: int = 1  #: 2 for who makes up
-    version: str = ""  #: A to D, where versions are dealt out
-    columns: Mapping[str, str] = field(default_factory=dict)  #: of the student's line in the roster
+    stem: str  #: stem of the names of its files
+    sitting: int = 1  #: 2 for a make-up
+    version: str = ""  #: A to D, if there are versions
+    columns: Mapping[str, str] = field(default_factory=dict)  #: of the student's row in the roster
 
 
 def issue(
@@ -218,10 +243,10 @@ def issue(
     roster: Sequence[Student] = (),
     parts: Sequence[str] | None = None,
 ) -> list[Issue]:
-    """One variant of each exercise for each student, which hangs on the student and not on a place in the roster; or
-    ``count`` variants from the first seed on when there is no roster.
+    """Return one variant of each exercise for each student, by the student and not by the position in the
+    roster; without a roster, ``count`` variants from the first seed on.
 
-    ``parts`` are ids of parts to ask instead of the usual ones: of each exercise those that it has.
+    ``parts`` are ids of parts to ask instead of the usual ones; each exercise asks those that it has.
 
     Raises
     ------
@@ -237,56 +262,66 @@ def issue(
     issues = []
     students = list(roster) or [Student("")] * count
     stems = file_stems(s.name for s in students)
-    asked = chosen_parts(course, names, parts)
+    asked_parts = chosen_parts(course, names, parts)
     for name in names:
         exercise = course[name]
         check_languages(exercise, langs)
         check_languages(exercise, *whose_languages(students))
         variants: list[Any]
         if roster:
-            people = [student.who for student in roster]
-            drawn, _ = drawn_by(str(first_seed), exercise, people, langs[0], asked[name])
-            variants = [drawn[who] for who in people]
+            people = [student.draw_key for student in roster]
+            drawn, _ = drawn_by(str(first_seed), exercise, people, langs[0], asked_parts[name])
+            variants = [drawn[person] for person in people]
         else:
-            variants = distinct_variants(exercise, first_seed, len(students), langs[0], parts=asked[name])
+            variants = distinct_variants(
+                exercise, first_seed, len(students), langs[0], parts=asked_parts[name]
+            )
         if variants:
             try_judges(variants[0].key)
         for student, stem, variant in zip(students, stems, variants, strict=True):
-            own = (student.lang,) if student.lang else tuple(langs)
+            student_langs = (student.lang,) if student.lang else tuple(langs)
             stem = stem or f"{variant.seed:05d}"
             issues.append(
-                Issue(student.name, variant.in_language(own[0]), own, stem, columns=student.columns)
+                Issue(
+                    student.name,
+                    variant.in_language(student_langs[0]),
+                    student_langs,
+                    stem,
+                    columns=student.columns,
+                )
             )
     return issues
 
 
 def whose_languages(students: Sequence[Student]) -> tuple[dict[str, str], str]:
-    """Return the first student of each language that lines of a roster say, and words that tell whose line it is."""
+    """Return the first student of each language in a roster, and the words of a message that name the
+    student's row."""
     first = {student.lang: student.name for student in reversed(students) if student.lang}
     return first, ", which the line of {name} in the roster asks for"
 
 
 def check_languages(
-    exercise: CourseExercise[Any], langs: Collection[str] | Mapping[str, str], whose: str = ""
+    exercise: CourseExercise[Any], langs: Collection[str] | Mapping[str, str], source: str = ""
 ) -> None:
-    """Stop at a language that an exercise has no text in; ``whose`` tells whose ``langs[lang]`` it is.
+    """Raise at a language in which an exercise has no text; ``source`` is the message's text on the origin of
+    ``langs[lang]``.
 
     Raises
     ------
     BadInput
-        Says which it has.
+        The message names the languages of the exercise.
     """
     for lang in langs:
         if lang not in exercise.languages:
             have = ", ".join(exercise.languages) or "none"
-            asked = whose.format(name=langs[lang]) if isinstance(langs, Mapping) else ""
-            raise BadInput(f"{exercise.name} has no text in {lang!r}{asked}; it has {have}")
+            origin = source.format(name=langs[lang]) if isinstance(langs, Mapping) else ""
+            raise BadInput(f"{exercise.name} has no text in {lang!r}{origin}; it has {have}")
 
 
 def chosen_parts(
     course: Course, names: Sequence[str], parts: Sequence[str] | None
 ) -> Mapping[str, tuple[str, ...] | None]:
-    """For each exercise, those of the parts that it has; None for the usual ones.
+    """Return for each exercise those of the parts that it has; None for the usual ones.
 
     Raises
     ------
@@ -297,13 +332,13 @@ def chosen_parts(
     """
     if parts is None:
         return dict.fromkeys(names)
-    own = {name: {USUAL, ALL, *(p.id for p in course[name].spec.parts)} for name in names}
+    ids_of = {name: {USUAL, ALL, *(p.id for p in course[name].spec.parts)} for name in names}
     for part in parts:
-        if not any(part in ids for ids in own.values()):
-            known = dict.fromkeys(p.id for name in names for p in course[name].spec.parts)
-            raise unknown("part", part, [*known, USUAL, ALL], ", ".join(names))
-    found = {name: tuple(p for p in parts if p in own[name]) for name in names}
-    for name, some in found.items():
+        if not any(part in ids for ids in ids_of.values()):
+            part_ids = dict.fromkeys(p.id for name in names for p in course[name].spec.parts)
+            raise unknown("part", part, [*part_ids, USUAL, ALL], ", ".join(names))
+    chosen = {name: tuple(p for p in parts if p in ids_of[name]) for name in names}
+    for name, some in chosen.items():
         if not some:
             raise BadInput(f"{name} has none of the parts {', '.join(parts)}; build it by itself")
-    return found
+    return chosen

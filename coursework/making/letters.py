@@ -1,4 +1,4 @@
-"""Names of students as they are printed: whose have letters that no font at hand draws."""
+"""Letters in students' names that no font of the PDF has."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from coursework.errors import counted
 from coursework.rendering.renderer import Renderer
 
-_NAMED = 5  #: students whom the note names
+_NAMED = 5  #: names in the note
 
 
 def unprinted_names(renderer: Renderer, names: Iterable[str]) -> list[str]:
-    """What is to be told of names that a PDF prints with squares; nothing where there is none."""
+    """Return notes on names that a PDF prints with squares; empty if there is none."""
     lacking = {name: "".join(letters) for name in names if (letters := renderer.undrawn(name))}
     if not lacking:
         return []

@@ -1,4 +1,4 @@
-"""Lists of people as platforms export them: which lines are nobody's, and which columns are marks."""
+"""Student lists exported by platforms: their rows without a student, and their columns of marks."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import NamedTuple
 from coursework.errors import counted
 from coursework.making.identity import EMAIL, FIRST_NAME, is_called, plain
 
-RosterLine = tuple[int, list[str]]  #: a line's number and its cells
+RosterLine = tuple[int, list[str]]  #: number and cells of a row
 
 
 class Unused(NamedTuple):
-    """What of a platform's list is no student."""
+    """Content of a platform's list other than students."""
 
     columns: frozenset[int] = frozenset()
     notes: tuple[str, ...] = ()
@@ -21,11 +21,11 @@ class Unused(NamedTuple):
 
 
 def without_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> tuple[list[RosterLine], Unused]:
-    """The lines of students of a platform's list, and what else it holds; all lines of any other list."""
+    """Return the rows of students of a platform's list, and its other content; all rows of any other list."""
     titles = [plain(title) for title in header]
     for is_this, marks in _LISTS:
         if is_this(titles):
-            kept = [line for line in rows if not _is_nobody(header, line[1])]
+            students = [line for line in rows if not _is_nobody(header, line[1])]
             gone = [" ".join(line[1][0].split()) for line in rows if _is_nobody(header, line[1])]
             columns = frozenset(marks(header, rows))
             notes = []
@@ -39,12 +39,12 @@ def without_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> tuple[li
                 notes.append(
                     f"{counted(len(columns), 'column')} of marks not carried: {named}{', …' if len(columns) > 2 else ''}"
                 )
-            return kept, Unused(columns, tuple(notes), is_this in (_is_canvas, _is_sakai))
+            return students, Unused(columns, tuple(notes), is_this in (_is_canvas, _is_sakai))
     return list(rows), Unused()
 
 
 def first_name_first(name: str) -> str:
-    """``Doe, Ann`` as it is read."""
+    """Return ``Doe, Ann`` as ``Ann Doe``."""
     surname, comma, first = name.partition(",")
     return f"{first.strip()} {surname.strip()}" if comma and first.strip() else name
 
@@ -54,7 +54,8 @@ def _is_canvas(titles: Sequence[str]) -> bool:
 
 
 def _is_moodle(titles: Sequence[str]) -> bool:
-    """Of participants, of a gradebook, of a report of a quiz: first name and e-mail are apart."""
+    """Return whether the titles are those of participants, a gradebook or a quiz report: first name and
+    e-mail are separate."""
     return any(t in FIRST_NAME for t in titles) and any(t in EMAIL for t in titles)
 
 
@@ -72,7 +73,7 @@ TEST_STUDENT = ("student, test", "test student")
 
 
 def _is_nobody(header: Sequence[str], cells: Sequence[str]) -> bool:
-    """A line of maxima, an average, the student that Canvas invents."""
+    """Return whether a row has no student: maxima, an average, or the test student of Canvas."""
     filled = [cell.strip().casefold() for cell in cells if cell.strip()]
     if not filled or filled[0] in _POINTS or filled[0] in TEST_STUDENT:
         return True
@@ -96,7 +97,8 @@ _SHOWN = re.compile(r".*\S\s*\((?P<how>[^()]+)\)\s*")
 
 
 def _moodle_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> list[int]:
-    """The columns of a gradebook, ``Quiz: Week 3 (Real)``, the last of which is when it was downloaded."""
+    """Return the columns of marks of a gradebook, ``Quiz: Week 3 (Real)``, and the last one, the time of the
+    download."""
     last = len(header) - 1
     times = [cells[last].strip() for _, cells in rows if len(cells) > last]
     if not times or not all(re.fullmatch("[0-9]{9,11}", time) for time in times):

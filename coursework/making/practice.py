@@ -1,4 +1,4 @@
-"""What to try after an exercise: another variant, and the lesson that teaches it."""
+"""Practice after an exercise: another variant, and the lesson that teaches it."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from coursework.making.issuing import distinct_variants
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Lesson, Practice, Question
 
-_TRIES = 40  #: variants that are looked at for one that was not issued
+_TRIES = 40  #: variants to try for one that was not issued
 
 Given = Mapping[str, Any]
 
 
 class PracticeOf:
-    """Finds what to try next for the students of one build, each exercise's variant once.
+    """Practice for the students of one build; each exercise's variant is searched once.
 
-    A variant that nobody was issued is offered, or where all were issued one that the student was not; which one
-    hangs on what was issued alone. A course that states ``practice = false`` in ``[feedback]`` offers none.
+    The variant is one that nobody was issued, or, if all were issued, one that the student was not; it
+    depends on the issued variants alone. A course with ``practice = false`` in ``[feedback]`` offers none.
     """
 
     def __init__(self, course: Course, issued: Issued) -> None:
@@ -37,40 +37,41 @@ class PracticeOf:
         self._questions: dict[tuple[str, int, str], tuple[Question, ...]] = {}
 
     def after(self, exercise: str, student: str, lang: str) -> Practice:
-        """What ``student`` may try after an exercise, told in a language."""
-        own = self._course[exercise]
-        root = own.folder.root
-        seed = self._seed(own, student) if self._offers else None
+        """Return the practice of ``student`` after an exercise, in a language."""
+        course_exercise = self._course[exercise]
+        root = course_exercise.folder.root
+        seed = self._seed(course_exercise, student) if self._offers else None
         return Practice(
             exercise,
-            own.version,
+            course_exercise.version,
             "" if root == builtin_root().resolve() else root.name,
             seed,
-            self._taught(own, lang),
+            self._taught(course_exercise, lang),
             () if seed is None else self._asked(exercise, seed, lang),
         )
 
     def of_student(self, issued: Issued) -> PracticeOf:
-        """The same for one student, of whose part of what was issued alone it holds: little to send elsewhere."""
-        own = copy(self)
+        """Return the practice of one student, with that student's part of the record alone: little data to
+        send to another process."""
+        practice = copy(self)
         for exercise in issued.exercises if self._offers else ():
-            with suppress(CourseworkError):  # told where it is asked for
+            with suppress(CourseworkError):  # reported when the practice is requested
                 self._of_nobody(self._course[exercise])
-        own._issued, own._fresh = issued, self._fresh
-        return own
+        practice._issued, practice._fresh = issued, self._fresh
+        return practice
 
     def _taught(self, exercise: CourseExercise, lang: str) -> tuple[Lesson, ...]:
-        place = exercise.name, lang
-        if place not in self._lessons:
-            self._lessons[place] = taught_by(exercise.folder, exercise.name, lang)
-        return self._lessons[place]
+        key = exercise.name, lang
+        if key not in self._lessons:
+            self._lessons[key] = taught_by(exercise.folder, exercise.name, lang)
+        return self._lessons[key]
 
     def _asked(self, exercise: str, seed: int, lang: str) -> tuple[Question, ...]:
-        """The questions of a variant, which may ask other parts than the student's own."""
-        place = exercise, seed, lang
-        if place not in self._questions:
-            self._questions[place] = handout(self._course[exercise].variant(seed, lang)).questions
-        return self._questions[place]
+        """Return the questions of a variant, which may ask other parts than the student's own."""
+        key = exercise, seed, lang
+        if key not in self._questions:
+            self._questions[key] = handout(self._course[exercise].variant(seed, lang)).questions
+        return self._questions[key]
 
     def _seed(self, exercise: CourseExercise, student: str) -> int | None:
         name = exercise.name
@@ -88,7 +89,8 @@ class PracticeOf:
 
 
 def unissued_seed(exercise: CourseExercise, records: Mapping[int, Mapping[str, Any]]) -> int | None:
-    """The first seed worth issuing, from 1 on, whose variant is none of the records; None where none is found."""
+    """Return the first seed worth issuing, from 1 on, whose variant is not in the records; None if none is
+    found."""
     given = [record.get("given") for record in records.values()]
     lang, seed = exercise.languages[0], _first_free(1, records)
     try:
@@ -102,8 +104,8 @@ def unissued_seed(exercise: CourseExercise, records: Mapping[int, Mapping[str, A
     return None
 
 
-def _first_free(seed: int, taken: Collection[int]) -> int:
-    while seed in taken:
+def _first_free(seed: int, used: Collection[int]) -> int:
+    while seed in used:
         seed += 1
     return seed
 
@@ -112,12 +114,13 @@ _SETTINGS = ("practice",)
 
 
 def offers_practice(course: Course) -> bool:
-    """Whether feedback offers another variant: unless ``[feedback]`` in ``course.toml`` says ``practice = false``.
+    """Return whether feedback offers another variant: yes, unless ``[feedback]`` in ``course.toml`` has
+    ``practice = false``.
 
     Raises
     ------
     BadCourse
-        ``[feedback]`` says what makes no sense.
+        A key or value of ``[feedback]`` is wrong.
     """
     stated = course.folder.settings.get("feedback", {})
     source = "exercises/course.toml: [feedback]"

@@ -1,8 +1,10 @@
-"""Which usual errors a variant must show, so that who makes one is not taken for right.
+"""Demands on variants: the usual errors that must show in the answers, so that a wrong method is not marked
+right.
 
-A term that hardly matters on some variants may be left out there unseen. Such variants are passed over, as far
-as enough are left: the errors that weigh most are demanded first, and what would leave too few is let go. What is
-demanded is found once an exercise from its first variants, so that a seed is worth issuing to everybody or to nobody.
+A term that hardly matters on some variants may be forgotten there without effect. Such variants are skipped
+as long as enough are left: the weightiest errors are demanded first, and demands that would leave too few
+variants are dropped. The demands of an exercise are computed once from its first variants, so that a seed is
+valid for everybody or for nobody.
 """
 
 from __future__ import annotations
@@ -21,21 +23,21 @@ from coursework.course.key_batch import given_columns, keys_of
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.kinds.nearness import gaps
-from coursework.making.flaws import SHOWN, sound
+from coursework.making.flaws import SHOWN, flawless
 from coursework.model import Part
 from coursework.quantities.usual_errors import WEIGHTY
 
 V = TypeVar("V", bound=Variant)
 
 UNSEEN = "unseen"
-SAMPLE = 96  #: variants from which it is found what may be demanded
-#: Share of the variants to be left by what is demanded: of weighty errors, of others.
+SAMPLE = 96  #: variants in the sample that decides the demands
+#: Share of the variants that must be left by the demands: of weighty errors, of others.
 LEFT = {True: 0.125, False: 0.25}
-_SAME = 1e-9  #: of a value: what two ways to compute it may differ by
+_SAME = 1e-9  #: relative difference allowed between two computations of a value
 
 
 class Demand(NamedTuple):
-    """An error that is to show: in the answer to one part, or in some answer."""
+    """Error that must show: in the answer to one part, or in some answer."""
 
     error: UsualError
     part: str = ""
@@ -43,14 +45,15 @@ class Demand(NamedTuple):
 
 @dataclass(frozen=True)
 class Protection:
-    """What is demanded of the variants of an exercise, and what nothing protects, with its share of the sample."""
+    """Demands on the variants of an exercise, and the unprotected errors with their share of the sample."""
 
     demanded: frozenset[Demand]
     unprotected: dict[Demand, float]
 
 
 def seen(exercise: CourseExercise, variants: Sequence[Variant]) -> dict[Demand, np.ndarray]:
-    """By demand, on which variants it is met: shape ``(n,)``. Met, too, where the error changes nothing at all.
+    """Return, by demand, the variants that meet it, shape ``(n,)``; also those on which the error changes
+    nothing.
 
     The variants have their keys, all of the same parts as the first.
     """
@@ -62,11 +65,11 @@ def seen(exercise: CourseExercise, variants: Sequence[Variant]) -> dict[Demand, 
     idle: dict[Demand, np.ndarray] = {}
     for part in parts:
         errors, values = table.of(part.quantity)
-        found, same = _gaps(part, variants, values)
-        for error, gap, is_same in zip(errors, found, same, strict=True):
+        half_widths, same = _gaps(part, variants, values)
+        for error, gap, is_same in zip(errors, half_widths, same, strict=True):
             is_here = error.source == part.quantity
             if error.source in quantities and not is_here and error.kind not in TAKEN:
-                continue  # it shows where it is made
+                continue  # it shows in its own part
             demand = Demand(error, part.id if error.kind in TAKEN else "")
             farthest[demand] = np.maximum(farthest.get(demand, 0.0), gap)
             idle[demand] = idle.get(demand, True) & is_same
@@ -74,7 +77,8 @@ def seen(exercise: CourseExercise, variants: Sequence[Variant]) -> dict[Demand, 
 
 
 def _gaps(part: Part, variants: Sequence[Variant], values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How far wrong values are from the reference, in half-widths, and which are the same: shapes ``(errors, n)``."""
+    """Return the distances of wrong values from the reference, in half-widths, and the equal values: shapes
+    ``(errors, n)``."""
     reference = np.array([float(v.key.reference[part.quantity]) for v in variants])
     width = np.array([v.key.half_width(part) for v in variants])
     with np.errstate(all="ignore"):
@@ -86,7 +90,7 @@ def _gaps(part: Part, variants: Sequence[Variant], values: np.ndarray) -> tuple[
 
 @lru_cache(maxsize=256)
 def protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Protection:
-    """What is demanded where some parts are asked, the usual ones unless told."""
+    """Return the demands for the parts asked, the usual ones by default."""
     drawn: list[Variant] = []
     for start in range(0, 10 * SAMPLE, SAMPLE):
         some = [
@@ -95,18 +99,18 @@ def protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Prote
             if v.parts
         ]
         keys_of(exercise, some)
-        drawn += sound(some)
+        drawn += flawless(some)
         if len(drawn) >= SAMPLE:
             break
     if not drawn:
         return Protection(frozenset(), {})
-    # Those that ask what most of them ask.
+    # The variants with the most frequent parts.
     drawn = [drawn[i] for i in max(_by_parts(drawn), key=len)[:SAMPLE]]
     met = {d: shows for d, shows in seen(exercise, drawn).items() if not shows.all()}
     left = np.ones(len(drawn), dtype=bool)
     demanded: set[Demand] = set()
-    asked = {part.quantity for part in drawn[0].parts}
-    for demand in sorted(met, key=lambda d: _order(d, met[d], asked)):
+    asked_quantities = {part.quantity for part in drawn[0].parts}
+    for demand in sorted(met, key=lambda d: _order(d, met[d], asked_quantities)):
         less = left & met[demand]
         if np.count_nonzero(less) >= LEFT[demand.error.kind in WEIGHTY] * len(drawn):
             left = less
@@ -117,12 +121,13 @@ def protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Prote
     return Protection(frozenset(demanded), unprotected)
 
 
-def _order(demand: Demand, met: np.ndarray, asked: Collection[str]) -> tuple[Any, ...]:
-    """What is demanded first: what weighs most, in what is asked itself, and then what most variants show."""
+def _order(demand: Demand, met: np.ndarray, asked_quantities: Collection[str]) -> tuple[Any, ...]:
+    """Return the sort key of demands: weighty errors first, then those of the asked quantities, then those
+    that most variants show."""
     error = demand.error
     return (
         error.kind not in WEIGHTY,
-        error.source not in asked,
+        error.source not in asked_quantities,
         -int(np.count_nonzero(met)),
         error,
         demand.part,
@@ -130,12 +135,12 @@ def _order(demand: Demand, met: np.ndarray, asked: Collection[str]) -> tuple[Any
 
 
 def protected(exercise: CourseExercise, variants: Sequence[V]) -> list[tuple[V, Demand | None]]:
-    """The variants, each with the first demand that it does not meet, if any."""
+    """Return the variants, each with the first demand that it does not meet, if any."""
     if not variants:
         return []
     chosen = variants[0].chosen
-    asked = None if chosen is None else tuple(p.id for p in chosen)
-    demanded = protection(exercise, asked).demanded
+    part_ids = None if chosen is None else tuple(p.id for p in chosen)
+    demanded = protection(exercise, part_ids).demanded
     unmet: dict[int, Demand] = {}
     for places in _by_parts(variants) if demanded else ():
         for demand, shows in _seen(exercise, [variants[i] for i in places]):
@@ -149,27 +154,27 @@ def _seen(exercise: CourseExercise, variants: Sequence[Variant]) -> Iterator[tup
     try:
         yield from seen(exercise, variants).items()
     except CourseworkError:
-        return  # its quantities say what is wrong where they are asked
+        return  # its quantities report the error when they are asked
 
 
 def _by_parts(variants: Sequence[Variant]) -> list[list[int]]:
-    """The places of the variants that ask the same parts, together."""
+    """Return the indices of the variants, grouped by the parts they ask."""
     places: dict[tuple[str, ...], list[int]] = {}
     for i, variant in enumerate(variants):
         places.setdefault(variant.part_ids, []).append(i)
     return list(places.values())
 
 
-def worthy(
+def valid_variants(
     exercise: CourseExercise[V], variants: Sequence[V], refused: Counter[str] | None = None
 ) -> list[V]:
-    """Those of the variants that are worth issuing; ``refused`` counts the others by their first flaw."""
+    """Return the variants that are worth issuing; ``refused`` counts the others by their first flaw."""
     keys_of(exercise, variants)
     refused = Counter() if refused is None else refused
-    found = []
-    for variant, unmet in protected(exercise, sound(variants, refused)):
+    valid = []
+    for variant, unmet in protected(exercise, flawless(variants, refused)):
         if unmet is None:
-            found.append(variant)
+            valid.append(variant)
         else:
             refused[f"{UNSEEN}: {unmet.error.kind} in {unmet.error.source}"] += 1
-    return found
+    return valid

@@ -1,4 +1,4 @@
-"""The roster: a CSV of students, as an instructor writes it or a school exports it."""
+"""Roster: a CSV of students, written by an instructor or exported by a school."""
 
 from __future__ import annotations
 
@@ -10,60 +10,61 @@ from pathlib import Path
 
 from coursework.errors import BadInput, counted
 from coursework.language.words import languages
-from coursework.making.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE, plain, told_apart
+from coursework.making.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE, distinguishing_id, plain
 from coursework.making.platform_rosters import RosterLine, first_name_first, without_marks
 from coursework.making.students import folded
 from coursework.system.limits import MOST_COLUMNS, MOST_TABLE_BYTES, beyond, check_size
 from coursework.system.tables import as_written, decode, delimiter_of, duplicate_column, record
 
 _LANG = ("lang", "language", "langue")
-_ABOVE = 10  #: lines in which the heading is looked for
-#: Columns that can be named by hand, and their titles.
+_ABOVE = 10  #: rows in which the heading is searched
+#: Columns that a caller can name, and their titles.
 COLUMNS = {"name": SURNAME, "first": FIRST_NAME, "number": NUMBER, "email": EMAIL, "lang": _LANG}
 
 
 @dataclass(frozen=True)
 class Student:
-    """A line of the roster; ``lang`` is empty where it does not say."""
+    """Row of the roster; ``lang`` is empty if the row has none."""
 
     name: str
     lang: str = ""
     columns: Mapping[str, str] = field(default_factory=dict)  #: every other column, by its title as written
 
     @property
-    def who(self) -> str:
-        """What draws hang on: the number or e-mail where the roster has one, else the name."""
-        found = {plain(title): value for title, value in self.columns.items() if value}
-        own = next((found[title] for title in (*NUMBER, *EMAIL) if title in found), "")
-        return own.strip().casefold() or folded(self.name)
+    def draw_key(self) -> str:
+        """Return the key of the student's draws: the number or e-mail if the roster has one, else the
+        name."""
+        by_title = {plain(title): value for title, value in self.columns.items() if value}
+        identifier = next((by_title[title] for title in (*NUMBER, *EMAIL) if title in by_title), "")
+        return identifier.strip().casefold() or folded(self.name)
 
 
 def read_roster(
-    path: Path, tell: Callable[[str], None] = lambda note: None, columns: Mapping[str, str] | None = None
+    path: Path, warn: Callable[[str], None] = lambda note: None, columns: Mapping[str, str] | None = None
 ) -> list[Student]:
     """Return the students of a CSV.
 
     The file has a column ``student``, or surname and first name, and, if wanted, ``lang``; the lists that Moodle, Canvas and
-    French registrars' offices export are read as they come. A title above the heading is passed over. Numbers or e-mails tell
-    two people of one name apart.
+    French registrars' offices export are read unchanged. Rows above the heading are skipped. Numbers or e-mails distinguish
+    people of the same name.
 
     Parameters
     ----------
     path
         The CSV.
-    tell
-        Called with what should be known and is no error: a column that is not used, a line that is nobody's, an odd encoding.
+    warn
+        Called with notes: an unused column, a row without a student, an unusual encoding.
     columns
-        Column of each of ``name``, ``first``, ``number``, ``email`` and ``lang``, by its place from 1 on or by its title, where
-        the titles do not say it themselves.
+        Column of each of ``name``, ``first``, ``number``, ``email`` and ``lang``, by its number from 1 on or by its title, if
+        the titles are not the usual ones.
 
     Raises
     ------
     BadInput
         The file cannot be read, has a row without a name or with too many cells, names no student, or one twice.
     """
-    lines = _rows(path, tell) or [(1, [])]
-    header, rows = _heading(path, lines, columns, tell)
+    lines = _rows(path, warn) or [(1, [])]
+    header, rows = _heading(path, lines, columns, warn)
     if len(header) > MOST_COLUMNS:
         raise BadInput(f"the roster {path}: {beyond('a table', len(header), MOST_COLUMNS, 'columns')}")
     if columns:
@@ -72,85 +73,89 @@ def read_roster(
     named = _name_columns(titles)
     if not named:
         raise BadInput(f"the roster {path}: no column says who a student is; {_which(header)}")
-    if twice := duplicate_column(titles, (*(titles[own[0]] for own in named), *_LANG, *NUMBER, *EMAIL)):
-        raise BadInput(f"the roster {path}: {twice}")
+    if duplicate := duplicate_column(
+        titles, (*(titles[group[0]] for group in named), *_LANG, *NUMBER, *EMAIL)
+    ):
+        raise BadInput(f"the roster {path}: {duplicate}")
     lang_column = next((titles.index(c) for c in _LANG if c in titles), None)
     rows, unused = without_marks(header, rows)
     for note in unused.notes:
-        tell(f"the roster {path}: {note}")
-    taken = {*(column for own in named for column in own), *unused.columns, lang_column}
-    others = [k for k, title in enumerate(header) if k not in taken and title.strip()]
-    found = []
+        warn(f"the roster {path}: {note}")
+    used = {*(column for group in named for column in group), *unused.columns, lang_column}
+    others = [k for k, title in enumerate(header) if k not in used and title.strip()]
+    numbered = []
     for number, cells in rows:
-        place = f"the roster {path}, line {number}"
+        location = f"the roster {path}, line {number}"
         if any(cell.strip() for cell in cells[len(titles) :]):
             raise BadInput(
-                f"{place}: {counted(len(cells), 'cell')} where the header has {len(titles)}; "
+                f"{location}: {counted(len(cells), 'cell')} where the header has {len(titles)}; "
                 "put a name that holds a comma or a semicolon between quotation marks, or give the column a title"
             )
         cells += [""] * (len(titles) - len(cells))
-        name = " ".join(" ".join(_first_filled(cells, own) for own in named).split())
+        name = " ".join(" ".join(_first_filled(cells, group) for group in named).split())
         name = first_name_first(name) if unused.turned else name
         lang = cells[lang_column].strip().lower() if lang_column is not None else ""
         if not name:
-            raise BadInput(f"{place}: no name; write it, or take the line away")
+            raise BadInput(f"{location}: no name; write it, or take the line away")
         if lang and lang not in languages():
-            raise BadInput(f"{place}: no language {lang!r}; there is {', '.join(languages())}")
-        found.append((number, Student(name, lang, {header[c].strip(): cells[c].strip() for c in others})))
-    if not found:
+            raise BadInput(f"{location}: no language {lang!r}; there is {', '.join(languages())}")
+        numbered.append((number, Student(name, lang, {header[c].strip(): cells[c].strip() for c in others})))
+    if not numbered:
         raise BadInput(f"the roster {path} names no student")
-    _tell_lost(path, [header[c].strip() for c in others], tell)
+    _tell_lost(path, [header[c].strip() for c in others], warn)
     untitled = [
         column
         for column, title in enumerate(titles)
         if not title and any(column < len(cells) and cells[column].strip() for _, cells in rows)
     ]
     if untitled:
-        tell(
+        warn(
             f"the roster {path} has a column without a title, which is not used; give it one to carry it through"
         )
-    return _apart(path, found)
+    return _apart(path, numbered)
 
 
 def _heading(
-    path: Path, lines: list[RosterLine], columns: Mapping[str, str] | None, tell: Callable[[str], None]
+    path: Path, lines: list[RosterLine], columns: Mapping[str, str] | None, warn: Callable[[str], None]
 ) -> tuple[list[str], list[RosterLine]]:
-    """Return the heading and the lines below it: the first line that titles columns of names, else the first line of all."""
-    known = {plain(title) for title in (columns or {}).values() if not title.isdecimal()}
-    for place, (_, cells) in enumerate(lines[:_ABOVE]):
+    """Return the heading and the rows below it: the first row with titles of name columns, else the first row
+    of all."""
+    wanted = {plain(title) for title in (columns or {}).values() if not title.isdecimal()}
+    for index, (_, cells) in enumerate(lines[:_ABOVE]):
         titles = [plain(cell) for cell in cells]
-        if _name_columns(titles) or (known and known <= {*titles}):
-            if place:
-                above = " ".join(cell.strip() for _, own in lines[:place] for cell in own if cell.strip())
-                tell(
+        if _name_columns(titles) or (wanted and wanted <= {*titles}):
+            if index:
+                above = " ".join(cell.strip() for _, row in lines[:index] for cell in row if cell.strip())
+                warn(
                     f"the roster {path}: passed over above the heading: {above[:60]}{'…' if len(above) > 60 else ''}"
                 )
-            return cells, lines[place + 1 :]
+            return cells, lines[index + 1 :]
     if columns:
-        tell(f"the roster {path}: line {lines[0][0]} is taken for the heading: {', '.join(lines[0][1])[:60]}")
+        warn(f"the roster {path}: line {lines[0][0]} is taken for the heading: {', '.join(lines[0][1])[:60]}")
     return lines[0][1], lines[1:]
 
 
 def _retitled(path: Path, header: Sequence[str], columns: Mapping[str, str]) -> list[str]:
-    """Return the heading with the titles of columns that the caller names, and without those that they replace."""
+    """Return the heading with the titles of the columns that the caller names, and without the titles they
+    replace."""
     titles, places = [plain(title) for title in header], {}
-    for what, which in columns.items():
-        place = int(which) - 1 if which.isdecimal() else -1
+    for field_name, which in columns.items():
+        index = int(which) - 1 if which.isdecimal() else -1
         if not which.isdecimal() and plain(which) in titles:
-            place = titles.index(plain(which))
-        if not 0 <= place < len(header):
-            raise BadInput(f"the roster {path} has no column {which!r} for {what}; {_which(header)}")
-        places[place] = what
-    instead = {title for what in columns for title in COLUMNS[what]}
+            index = titles.index(plain(which))
+        if not 0 <= index < len(header):
+            raise BadInput(f"the roster {path} has no column {which!r} for {field_name}; {_which(header)}")
+        places[index] = field_name
+    instead = {title for field_name in columns for title in COLUMNS[field_name]}
     if "name" in columns:
         instead |= {*WHOLE, *FIRST_NAME}
-    kept = [f"({title})" if plain(title) in instead else title for title in header]
-    return [COLUMNS[places[k]][0] if k in places else title for k, title in enumerate(kept)]
+    remaining = [f"({title})" if plain(title) in instead else title for title in header]
+    return [COLUMNS[places[k]][0] if k in places else title for k, title in enumerate(remaining)]
 
 
 def _which(header: Sequence[str]) -> str:
-    found = ", ".join(f"{k} {cell.strip()}" for k, cell in enumerate(header, 1) if cell.strip()) or "nothing"
-    return f"found {found}. Give the name a title such as student, or nom and prénom, or say which column is what: --columns name=1,first=2"
+    titles = ", ".join(f"{k} {cell.strip()}" for k, cell in enumerate(header, 1) if cell.strip()) or "nothing"
+    return f"found {titles}. Give the name a title such as student, or nom and prénom, or say which column is what: --columns name=1,first=2"
 
 
 def _first_filled(cells: Sequence[str], columns: Sequence[int]) -> str:
@@ -158,27 +163,27 @@ def _first_filled(cells: Sequence[str], columns: Sequence[int]) -> str:
 
 
 def roster_and_notes(path: Path) -> tuple[list[Student], list[str]]:
-    """Return what :func:`read_roster` gives, and what it tells."""
-    told: list[str] = []
-    return read_roster(path, told.append), told
+    """Return the students of :func:`read_roster`, and its notes."""
+    notes: list[str] = []
+    return read_roster(path, notes.append), notes
 
 
-def _tell_lost(path: Path, titles: Sequence[str], tell: Callable[[str], None]) -> None:
-    """Tell of columns that have one title, of which the last alone is kept."""
+def _tell_lost(path: Path, titles: Sequence[str], warn: Callable[[str], None]) -> None:
+    """Warn of columns of the same title, of which only the last is used."""
     for title, often in Counter(titles).items():
         if often > 1:
-            tell(
+            warn(
                 f"the roster {path} has {often} columns {title}; the last is kept: give each a title of its own"
             )
 
 
 def _apart(path: Path, lines: Sequence[tuple[int, Student]]) -> list[Student]:
-    """The students, whose names are all different: those of one name have their number or e-mail behind it."""
+    """Return the students with distinct names: those of the same name get their number or e-mail appended."""
     often = Counter(folded(student.name) for _, student in lines)
     students: list[Student] = []
     seen: dict[str, int] = {}
     for number, student in lines:
-        if often[folded(student.name)] > 1 and (by := told_apart(student.columns)):
+        if often[folded(student.name)] > 1 and (by := distinguishing_id(student.columns)):
             student = replace(student, name=f"{student.name} ({by})")
         if folded(student.name) in seen:
             raise BadInput(
@@ -191,18 +196,19 @@ def _apart(path: Path, lines: Sequence[tuple[int, Student]]) -> list[Student]:
 
 
 def _name_columns(titles: list[str]) -> list[list[int]]:
-    """Return the column of whole names; or those of surnames and of first names, in the file's order, the preferred first."""
+    """Return the column of full names; or those of surnames and of first names, in the file's order, the
+    preferred ones first."""
     for column, title in enumerate(titles):
         if title in WHOLE:
             return [[column]]
     surnames, first_names = (
-        [titles.index(c) for c in known if c in titles] for known in (SURNAME, FIRST_NAME)
+        [titles.index(c) for c in titles_of if c in titles] for titles_of in (SURNAME, FIRST_NAME)
     )
     return sorted(filter(None, (surnames, first_names))) if surnames else []
 
 
-def _rows(path: Path, tell: Callable[[str], None]) -> list[tuple[int, list[str]]]:
-    """The lines that are not blank, each with its number."""
+def _rows(path: Path, warn: Callable[[str], None]) -> list[tuple[int, list[str]]]:
+    """Return the rows that are not blank, each with its line number."""
     try:
         check_size(f"the roster {path}", path.stat().st_size, MOST_TABLE_BYTES)
         data = path.read_bytes()
@@ -212,7 +218,7 @@ def _rows(path: Path, tell: Callable[[str], None]) -> list[tuple[int, list[str]]
     if "\0" in text:
         raise BadInput(f"the roster {path} is no CSV; save it as “CSV UTF-8”")
     if warning:
-        tell(f"the roster {path}: {warning}")
+        warn(f"the roster {path}: {warning}")
     return list(_records(re.split(r"\r\n|\n|\r", text)))
 
 
@@ -220,8 +226,8 @@ def _records(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
     first = next((line for line in lines if line.strip()), "")
     delimiter, width, start = delimiter_of(first), 0, 0
     while start < len(lines):
-        cells, taken = record(lines, start, delimiter, width)
+        cells, line_count = record(lines, start, delimiter, width)
         if any(cell.strip() for cell in cells):
             yield start + 1, list(map(as_written, cells))
             width = width or len(cells)
-        start += taken
+        start += line_count

@@ -1,4 +1,4 @@
-"""Names of students as they are compared; they are shown as they were written."""
+"""Comparison of students' names; messages show them as written."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _ALIKE = str.maketrans({**dict.fromkeys(_APOSTROPHES, "'"), **dict.fromkeys(_DAS
 
 @lru_cache(maxsize=65_536)
 def folded(name: str) -> str:
-    """A name whatever its case, spaces, apostrophes and dashes, and however its accents are encoded."""
+    """Return a name without differences of case, spaces, apostrophes, dashes and encoding of accents."""
     plain = unicodedata.normalize("NFKC", name.translate(_ALIKE))
-    seen = "".join(c for c in plain if unicodedata.category(c) != "Cf")  # what has no width is not seen
+    seen = "".join(c for c in plain if unicodedata.category(c) != "Cf")  # characters without width
     return unicodedata.normalize("NFKC", " ".join(seen.split()).casefold())
 
 
 _MARKS = dict.fromkeys(range(0x300, 0x370))
-#: Letters that are no letter with an accent to Unicode, as they are written without them.
+#: Letters that Unicode does not decompose into a letter and an accent, in plain letters.
 _SPELLED = str.maketrans(
     {
         "œ": "oe",
@@ -46,23 +46,25 @@ def unaccented(name: str) -> str:
     return unicodedata.normalize("NFD", folded(name)).translate(_MARKS).translate(_SPELLED)
 
 
-def called(name: str, students: Iterable[str]) -> str | None:
-    """Return the student of a name, else the only one whose name differs in accents alone; None for a stranger."""
+def student_named(name: str, students: Iterable[str]) -> str | None:
+    """Return the student of this name, else the only one whose name differs in accents alone; None if there
+    is none."""
     students = list(students)
     for compared in (folded, unaccented):
-        found = {one for one in students if compared(one) == compared(name)}
-        if found:
-            return found.pop() if len(found) == 1 else None
+        matches = {student for student in students if compared(student) == compared(name)}
+        if matches:
+            return matches.pop() if len(matches) == 1 else None
     return None
 
 
 def namesakes(name: str, students: Iterable[str]) -> list[str]:
-    """The students whom more than this name tells apart: ``Marie Martin (2290)`` for ``martin marie``."""
+    """Return the students whose name alone does not distinguish them: ``Marie Martin (2290)`` for ``martin
+    marie``."""
     words = sorted(unaccented(name).split())
     return [
-        one
-        for one in students
-        if " (" in one and sorted(unaccented(one.rpartition(" (")[0]).split()) == words
+        student
+        for student in students
+        if " (" in student and sorted(unaccented(student.rpartition(" (")[0]).split()) == words
     ]
 
 
@@ -70,9 +72,9 @@ _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for 
 
 
 def file_stems(names: Iterable[str]) -> list[str]:
-    """File names from students' names: ASCII, short, all different, stable; empty where there is no name.
+    """Return file names of students' names: ASCII, short, distinct, stable; "" for an empty name.
 
-    A name without a letter that ASCII has is told by a number of its own, whoever stands before it.
+    A name without ASCII letters gets a number that depends on the name alone.
     """
     used: set[str] = set()
     stems = []

@@ -15,9 +15,9 @@ from coursework.course.variant import Variant
 from coursework.errors import BadInput
 from coursework.language.words import words
 from coursework.making.assignment import AskedExercise, Assignment, text_in
-from coursework.making.dealing import keyed, worth
 from coursework.making.flaws import try_judges
 from coursework.making.issuing import Issue, chosen_parts, distinct_variants, drawn_by
+from coursework.making.variant_assignment import keyed, with_points
 from coursework.markup.markdown import plain_line
 from coursework.platforms.items import Pool, section
 from coursework.rendering.renderer import renderer_of
@@ -75,7 +75,7 @@ class Drawn:
                 )
                 found = [drawn[place] for place in places]
         try_judges(found[0].key)
-        return [worth(variant, asked) for variant in found]
+        return [with_points(variant, asked) for variant in found]
 
     @property
     def issues(self) -> tuple[Issue, ...]:

@@ -25,8 +25,8 @@ import pytest
 import coursework
 from coursework.lti.storage import Storage
 from coursework.making.assignment import Assignment
-from coursework.making.dealing import keyed
 from coursework.making.roster import read_roster
+from coursework.making.variant_assignment import keyed
 
 MOODLE, CHROMIUM = os.environ.get("COURSEWORK_MOODLE", ""), os.environ.get("COURSEWORK_CHROMIUM", "")
 PICTURES, ADMIN = os.environ.get("COURSEWORK_PICTURES", ""), os.environ.get("COURSEWORK_MOODLE_ADMIN", "")

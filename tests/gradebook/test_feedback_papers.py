@@ -29,7 +29,7 @@ from coursework.making import practice as practice_module
 from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
 from coursework.making.practice import PracticeOf, unissued_seed
-from coursework.making.protection import worthy
+from coursework.making.protection import valid_variants
 from coursework.marking.marking import mark
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.sheet import Lesson
@@ -188,7 +188,7 @@ def test_the_variant_to_try_is_worth_issuing_and_was_issued_to_nobody(name):
     assert found not in issued
     variant = exercise.variant(found)
     assert variant.record["given"] not in [record["given"] for record in issued.values()]
-    assert worthy(exercise, [variant], Counter()) == [variant]
+    assert valid_variants(exercise, [variant], Counter()) == [variant]
     assert unissued_seed(exercise, issued) == found
 
 

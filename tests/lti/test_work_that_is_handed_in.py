@@ -32,8 +32,8 @@ from coursework.lti.sending import wait_after
 from coursework.lti.services import Services
 from coursework.lti.storage import Score
 from coursework.making.assignment import Assignment
-from coursework.making.dealing import keyed
 from coursework.making.roster import read_roster
+from coursework.making.variant_assignment import keyed
 
 SAID = words("en")["lti"]
 NAME = "slotted_mechanism"

@@ -13,10 +13,10 @@ import pytest
 import coursework
 from coursework.errors import BadInput
 from coursework.making.assignment import read_assignment
-from coursework.making.dealing import deal, shared_out
 from coursework.making.issued import issued_content
 from coursework.making.papers import date_text, files, papers
 from coursework.making.roster import Student, read_roster
+from coursework.making.variant_assignment import assign_variants, distributed_points
 
 COURSE = coursework.open_course()
 TEXT = """\
@@ -63,7 +63,7 @@ def midterm(tmp_path):
 
 
 def dealt(assignment, students, before=None, make_up=(), langs=("fr",)):
-    return deal(COURSE, assignment, students, langs, before, make_up)
+    return assign_variants(COURSE, assignment, students, langs, before, make_up)
 
 
 def by_student(found):
@@ -220,7 +220,7 @@ def test_points_of_an_assignment_reach_the_record_and_the_marks(midterm):
 @pytest.mark.parametrize("name", ["grashof", "slider_extras", "four_bar_positions"])
 def test_points_that_are_shared_out_sum_to_the_total(total, name):
     parts = COURSE[name].variant(1).parts
-    found = shared_out(total, parts)
+    found = distributed_points(total, parts)
     assert sum(found.values()) == pytest.approx(total, abs=1e-12)
     assert min(found.values()) > 0
     ordered = sorted(parts, key=lambda p: p.points)
@@ -251,7 +251,9 @@ def test_a_booklet_is_sorted_by_the_column_that_the_file_names_and_else_as_the_r
 
     def order(text):
         assignment = read_assignment(stated(tmp_path, text), COURSE)
-        made = papers(assignment, deal(COURSE, assignment, students, ("fr",), None).issues, polygons=False)
+        made = papers(
+            assignment, assign_variants(COURSE, assignment, students, ("fr",), None).issues, polygons=False
+        )
         return [one.first.student for one in sorted(made, key=lambda one: one.sorted_by)]
 
     assert order(TEXT) == list(NAMES)

@@ -4,7 +4,7 @@ from tables import each_row
 
 from coursework.errors import closest
 from coursework.making.identity import printed_columns
-from coursework.making.students import called, file_stems, namesakes
+from coursework.making.students import file_stems, namesakes, student_named
 
 CLASS = ("Faure Loïc", "Faure Noémie", "Łukasz Nowak", "Cœur Anaïs", "Ruiz Ana", "Ruíz Ana")
 
@@ -25,7 +25,7 @@ CLASS = ("Faure Loïc", "Faure Noémie", "Łukasz Nowak", "Cœur Anaïs", "Ruiz 
     ],
 )
 def test_a_name_is_found_whatever_its_case_and_accents_unless_two_have_it(typed, meant):
-    assert called(typed, CLASS) == meant
+    assert student_named(typed, CLASS) == meant
 
 
 @each_row(

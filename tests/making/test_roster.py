@@ -86,7 +86,7 @@ def recorded(name):
 def test_moodles_list_of_participants_is_a_roster():
     students, notes = recorded("moodle_participants.csv")
     assert [s.name for s in students] == ["Ann Doe", "Émile D’Été", "Bob Ray"]
-    assert [s.who for s in students] == ["ann@example.org", "emile@example.org", "bob@example.org"]
+    assert [s.draw_key for s in students] == ["ann@example.org", "emile@example.org", "bob@example.org"]
     assert notes == []
 
 
@@ -147,7 +147,11 @@ def test_an_average_of_moodles_is_no_student_and_a_surname_alone_is_one(tmp_path
 
 def test_two_of_one_name_are_told_apart_by_what_identifies_them_or_refused(tmp_path):
     students, _ = read(tmp_path, "student,number\nAnn Doe,7\nann  doe,8\nBo,9\n")
-    assert [(s.name, s.who) for s in students] == [("Ann Doe (7)", "7"), ("ann doe (8)", "8"), ("Bo", "9")]
+    assert [(s.name, s.draw_key) for s in students] == [
+        ("Ann Doe (7)", "7"),
+        ("ann doe (8)", "8"),
+        ("Bo", "9"),
+    ]
     with pytest.raises(BadInput, match="stands on line 2 already; tell them apart, by a number"):
         read(tmp_path, "student,group\nAnn Doe,A\nAnn Doe,B\n")
     with pytest.raises(BadInput, match=r"line 3: Ann Doe \(7\) stands on line 2 already"):
@@ -177,7 +181,7 @@ OFFICES = {
 def test_lists_of_french_registrars_are_read_as_they_come(tmp_path, content):
     students, notes = read(tmp_path, content)
     assert [s.name for s in students] == ["Lefèvre Loïc", "Martin Zoé"]
-    assert [s.who for s in students] == ["22301", "22302"]
+    assert [s.draw_key for s in students] == ["22301", "22302"]
     assert [note for note in notes if "above the heading" not in note] == []
 
 
@@ -196,7 +200,7 @@ def test_columns_that_no_title_explains_can_be_named_by_place_or_title(tmp_path)
         {"name": "truc", "first": "Chose", "number": "1"},
     ):
         students = read_roster(path, columns=columns)
-        assert [(s.name, s.who) for s in students] == [("Roux Zoé", "12"), ("Roy Abel", "13")]
+        assert [(s.name, s.draw_key) for s in students] == [("Roux Zoé", "12"), ("Roy Abel", "13")]
     with pytest.raises(BadInput, match="has no column '4' for first; found 1 Machin, 2 Truc, 3 Chose"):
         read_roster(path, columns={"name": "1", "first": "4"})
 

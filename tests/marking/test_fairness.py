@@ -19,7 +19,7 @@ from coursework.course.marking_rules import Rules
 from coursework.errors import BadCourse, Starved
 from coursework.making.flaws import HIDDEN, SHOWN, flaws, visibility
 from coursework.making.issuing import distinct_variants
-from coursework.making.protection import worthy
+from coursework.making.protection import valid_variants
 from coursework.model import Part
 from coursework.quantities.rounding import envelope, half_step, rounded, student_who_rounds
 
@@ -150,7 +150,7 @@ def test_unworthy_seeds_are_passed_over_and_counted():
     assert all(flaw.startswith(("murky", "ill-conditioned", "unseen")) for flaw in refused)
     # The same seeds draw what they always draw, and are the same in the students' order.
     assert [exercise.variant(s).given for s in seeds] == [v.given for v in drawn]
-    assert seeds == [v.seed for v in worthy(exercise, exercise.variants(range(max(seeds) + 1)))]
+    assert seeds == [v.seed for v in valid_variants(exercise, exercise.variants(range(max(seeds) + 1)))]
 
 
 def test_a_course_of_murky_variants_starves_with_the_reason(small_course):

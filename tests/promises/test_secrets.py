@@ -17,9 +17,9 @@ from coursework.cli import run
 from coursework.course import draws
 from coursework.course.secrecy import Secret
 from coursework.making.assignment import read_assignment
-from coursework.making.dealing import deal
 from coursework.making.issued import issued_content
 from coursework.making.roster import Student
+from coursework.making.variant_assignment import assign_variants
 
 COURSE = coursework.open_course()
 CLASS = [Student(f"Student {n}", columns={"number": str(4000 + n), "group": "AB"[n % 2]}) for n in range(4)]
@@ -75,7 +75,7 @@ def solved_afterwards(issued):
 def dealt(path, before=None, make_up=(), students=CLASS):
     """What an instructor, or the student at home, deals of a file; once and again into one folder."""
     assignment = read_assignment(path, COURSE)
-    found = deal(COURSE, assignment, students, ("en",), before, make_up)
+    found = assign_variants(COURSE, assignment, students, ("en",), before, make_up)
     kept = [found.secret] if hasattr(found, "secret") else []
     return json.loads(json.dumps(issued_content(found.issues, assignment, *kept)))
 

@@ -12,7 +12,7 @@ import coursework
 from coursework.course.answer_keys import answer_keys
 from coursework.errors import BadInput, CourseworkError, UnknownName
 from coursework.language.words import words
-from coursework.making.protection import worthy
+from coursework.making.protection import valid_variants
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy import predictions
 from coursework.selfstudy.progress import Progress
@@ -108,7 +108,7 @@ def test_fresh_variants_are_worth_issuing_all_different_and_the_same_for_ever(he
     fresh = [session.fresh(k).variant for k in range(1, 6)]
     assert [v.seed for v in fresh] == [session.fresh(1).fresh(k).variant.seed for k in range(1, 6)]
     assert len({tuple(v.given.values()) for v in (session.variant, *fresh)}) == 6
-    assert len(worthy(session.variant.exercise, fresh)) == 5
+    assert len(valid_variants(session.variant.exercise, fresh)) == 5
     for number in (0, -1, True, "2"):
         with pytest.raises(BadInput, match="from 1 on"):
             session.fresh(number)

@@ -66,12 +66,12 @@ def test_a_file_and_a_roster_are_dealt_and_published(class_of_three, staff):
 
 
 def test_what_an_uploaded_file_names_is_never_looked_for(class_of_three, staff, monkeypatch):
-    from coursework.making.assignment import _Reader
+    from coursework.making.assignment import _AssignmentReader
 
     def looked(self, value):
         raise AssertionError(value)
 
-    monkeypatch.setattr(_Reader, "_logo", looked)
+    monkeypatch.setattr(_AssignmentReader, "_logo", looked)
     number = dealt_by(class_of_three, staff, handed_out(class_of_three, staff, file=TOML, roster=ROSTER))
     for path in ("", "/preview"):
         assert staff.get(f"/desk/assignments/{number}{path}").status_code == 200

@@ -14,10 +14,10 @@ from coursework.database.identities import fitting, has_password, person_known, 
 from coursework.database.people import person_by_who, put_person
 from coursework.database.tables import assignment
 from coursework.making.assignment import Assignment, assignment_of
-from coursework.making.dealing import deal
 from coursework.making.issued import issued_content as content_of
 from coursework.making.roster import Student
 from coursework.making.students import folded
+from coursework.making.variant_assignment import assign_variants
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
 from coursework.site.lti import connecting
@@ -72,7 +72,7 @@ def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -
         number, how = matches[0].id, "roster"
     else:
         student = _new(connection, launch)
-        number, how = put_person(connection, student.who, launch.name, lang, student.columns), "new"
+        number, how = put_person(connection, student.draw_key, launch.name, lang, student.columns), "new"
     tie(connection, number, launch.issuer, launch.person)
     about = {"person": number, "platform": platform_name(launch), "how": how}
     note(connection, site.clock(), platform_name(launch), "came from a platform", **about)
@@ -89,7 +89,7 @@ def _new(connection: Connection, launch: Launch) -> Student:
     ]
     for columns in candidates:
         student = Student(launch.name, columns=columns)
-        if all(columns.values()) and person_by_who(connection, student.who) is None:
+        if all(columns.values()) and person_by_who(connection, student.draw_key) is None:
             return student
     raise HTTPException("own", 404)
 
@@ -117,7 +117,9 @@ def assign_paper(site: Site, number: int, person: Any, launch: Launch, lang: str
         student = _student(
             person, launch, _spoken(site, definition, lang), {folded(other.name) for other in everybody}
         )
-        assigned = deal(site.course, definition, [*everybody, student], [site.languages[0]], before)
+        assigned = assign_variants(
+            site.course, definition, [*everybody, student], [site.languages[0]], before
+        )
         with site.store.begin() as connection:
             connection.execute(
                 select(assignment.c.id).where(assignment.c.id == number).with_for_update(key_share=True)
@@ -141,4 +143,4 @@ def _student(person: Any, launch: Launch, lang: str, names: set[str]) -> Student
     if folded(name) in names:
         name = f"{name} ({launch.number or launch.email or launch.person})"
     student = Student(name, lang, {title: str(text) for title, text in person.columns.items()})
-    return student if student.who == person.who else Student(name, lang, {"number": person.who})
+    return student if student.draw_key == person.who else Student(name, lang, {"number": person.who})

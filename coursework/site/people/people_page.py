@@ -164,10 +164,10 @@ def _add_student(request: Request, connection: Connection, student: Student) -> 
     HTTPException
         It names a member of staff, whom the current user may not change.
     """
-    existing = person_by_who(connection, student.who)
+    existing = person_by_who(connection, student.draw_key)
     if existing is not None and (existing.role or STUDENT) in STAFF:
         request.require(Permission.PEOPLE_ROLES)
-    return put_person(connection, student.who, student.name, student.lang, student.columns)
+    return put_person(connection, student.draw_key, student.name, student.lang, student.columns)
 
 
 def _of_roster(request: Request, upload: Upload) -> list[Student]:

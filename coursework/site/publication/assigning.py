@@ -22,9 +22,9 @@ from coursework.database.settings import put_value, value_of
 from coursework.database.tables import assignment
 from coursework.errors import CourseworkError
 from coursework.making.assignment import assignment_of
-from coursework.making.dealing import deal
 from coursework.making.issued import SECRET, issued_content
 from coursework.making.roster import Student
+from coursework.making.variant_assignment import assign_variants
 from coursework.site.frame.settings import Site
 from coursework.site.papers.opening import prepare_soon
 from coursework.system.processes import processes, workers
@@ -136,7 +136,9 @@ def _assigned_in_process(site: Site, wanted: AssignmentRequest) -> _Outcome:
 def _assigned(root: str, wanted: AssignmentRequest) -> _Outcome:
     course = opened(root, Variant)
     definition = assignment_of(wanted.name, wanted.table, course)
-    assigned = deal(course, definition, wanted.students, [wanted.lang], wanted.before, wanted.make_up)
+    assigned = assign_variants(
+        course, definition, wanted.students, [wanted.lang], wanted.before, wanted.make_up
+    )
     return _Outcome(
         issued_content(assigned.issues, definition, definition.secret or assigned.secret), assigned.notes
     )

@@ -188,7 +188,7 @@ def students_with_accounts(request: Request) -> list[Student]:
 def _student(person: Any, *, apart: bool) -> Student:
     name = f"{person.name} ({person.who})" if apart else person.name
     plain = Student(name, person.lang, dict(person.columns or {}))
-    if plain.who == person.who:
+    if plain.draw_key == person.who:
         return plain
     column = "email" if "@" in person.who else "number"
     return Student(name, person.lang, {column: person.who, **plain.columns})

@@ -43,10 +43,10 @@ from coursework.making.assignment import (
     assignment_of,
     text_in,
 )
-from coursework.making.dealing import deal
 from coursework.making.issued import Issued
 from coursework.making.issued import issued_content as content_of
 from coursework.making.roster import Student
+from coursework.making.variant_assignment import assign_variants
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.requests import FormData, HTTPException, Request, Response, Route
 from coursework.site.frame.times import exact_text, field_text, from_field, moment_text, zone_name
@@ -400,8 +400,8 @@ def _deal_more(request: Request, students: Sequence[Student], names: Sequence[st
             problem=request.words["publishing"]["no_file"],
         )
     issued = assigning.holders(content)
-    known_students = {student.who for student in issued}
-    everybody = [*issued, *(student for student in students if student.who not in known_students)]
+    known_students = {student.draw_key for student in issued}
+    everybody = [*issued, *(student for student in students if student.draw_key not in known_students)]
     wanted = AssignmentRequest(
         listed.name, listed.definition, everybody, request.site.languages[0], content, tuple(names)
     )
@@ -419,7 +419,7 @@ def preview(request: Request) -> Response:
         listed = assignment_here(request, connection)
         issued = issued_of(connection, listed.id)
     definition = _definition(request, listed, issued)
-    assigned = deal(
+    assigned = assign_variants(
         request.site.course,
         definition,
         [Student(request.words["publishing"]["nobody"])],

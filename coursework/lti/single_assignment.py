@@ -10,8 +10,8 @@ from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
 from coursework.lti.launch import Launch
 from coursework.making.assignment import Assignment
-from coursework.making.dealing import keyed, worth
 from coursework.making.issuing import drawn_by
+from coursework.making.variant_assignment import keyed, with_points
 
 Record = Mapping[str, Any]
 
@@ -47,9 +47,11 @@ def own_records(
             stood = [records[number] for records in issued if len(records) > number]
             known = {int(record["seed"]): _given(record) for record in stood}
             taken = set() if shared else set(known.values())
-            drawn, _ = drawn_by(stream, exercise, [who], spoken, asked.parts, taken, secret=key, known=known)
+            drawn, _ = drawn_by(
+                stream, exercise, [who], spoken, asked.parts, taken, secret=key, issued_values=known
+            )
             variant = drawn[who]
-        found.append(worth(variant, asked).record)
+        found.append(with_points(variant, asked).record)
     return found
 
 
