@@ -36,7 +36,7 @@ class DeskClass(Class):
             "issued": [{"student": name, "record": self.variant.record} for name in STUDENTS],
         }  # fmt: skip
         with self.site.store.begin() as connection:
-            self.ids[OTHER] = put_person(connection, who=OTHER, name=OTHER, lang="", columns={})
+            self.ids[OTHER] = put_person(connection, identifier=OTHER, name=OTHER, lang="", columns={})
             put_account(connection, self.ids[OTHER], login="emmy@example.org", role="instructor")
             self.number = put_issued(connection, content)
         if written:

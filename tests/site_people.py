@@ -53,7 +53,9 @@ class Class:
         self.ids = {}
         with self.site.store.begin() as connection:
             for name, role in ((ZOE, "student"), (MAX, "student"), (TEACHER, "administrator")):
-                self.ids[name] = put_person(connection, who=folded(name), name=name, lang="", columns={})
+                self.ids[name] = put_person(
+                    connection, identifier=folded(name), name=name, lang="", columns={}
+                )
                 put_account(
                     connection, self.ids[name], login=f"{name.split()[0].lower()}@example.org", role=role
                 )

@@ -125,7 +125,7 @@ def _rows(course: Course[Any], issued: Issued, student: str, k: int, received_at
 def _sign_up(store: Store, students: list[Student]) -> None:
     """Everybody of the class, and who teaches it."""
     with store.begin() as connection:
-        teacher = put_person(connection, who=TEACHER, name=TEACHER, lang="", columns={})
+        teacher = put_person(connection, identifier=TEACHER, name=TEACHER, lang="", columns={})
         put_account(connection, teacher, login="teacher@example.org", role=ADMINISTRATOR)
         for k, student in enumerate(students, 1):
             person = put_person(connection, student.draw_key, student.name, student.lang, student.columns)

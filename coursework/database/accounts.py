@@ -36,8 +36,8 @@ def account_of(connection: Connection, number: int) -> Any | None:
 def account_invited(connection: Connection, invitation: str, at: datetime) -> Any | None:
     """Return the account of an invitation, given its digest; None if the invitation was used, replaced or has
     expired."""
-    found = connection.execute(_found().where(account.c.invitation == invitation)).first()
-    return None if found is None or found.invited_until is None or found.invited_until < at else found
+    row = connection.execute(_found().where(account.c.invitation == invitation)).first()
+    return None if row is None or row.invited_until is None or row.invited_until < at else row
 
 
 def accounts(connection: Connection) -> dict[int, Any]:
@@ -56,15 +56,15 @@ def invite(
     BadInput
         Another person has this login.
     """
-    told = {"invitation": invitation, "invited_until": until}
+    invitation_values = {"invitation": invitation, "invited_until": until}
     mine = account_of(connection, number)
     if mine is not None:
-        connection.execute(update(account).where(account.c.id == mine.id).values(told))
+        connection.execute(update(account).where(account.c.id == mine.id).values(invitation_values))
         return
     if connection.execute(select(account.c.id).where(account.c.login == login)).first() is not None:
         raise BadInput(f"the login {login} is somebody else's")
     row = {"person_id": number, "login": login, "role": role, "created": at}
-    connection.execute(insert(account).values({**row, **told}))
+    connection.execute(insert(account).values({**row, **invitation_values}))
 
 
 def take_up(connection: Connection, invitation: str, secret: str, at: datetime) -> int | None:
@@ -110,17 +110,17 @@ def is_last_administrator(connection: Connection, number: int) -> bool:
 
 def has_administrator(connection: Connection, at: datetime) -> bool:
     """Return whether somebody can come in to administer, or is invited to."""
-    asked = select(account.c.id).where(
+    invited = select(account.c.id).where(
         account.c.role == ADMINISTRATOR, account.c.closed.is_(None), account.c.invited_until > at
     )
-    return bool(_administrators(connection)) or connection.execute(asked).first() is not None
+    return bool(_administrators(connection)) or connection.execute(invited).first() is not None
 
 
 def _administrators(connection: Connection) -> set[int]:
     """Return the administrators who can come in now; until the transaction ends nobody else changes one."""
-    found = (
+    query = (
         select(account.c.person_id)
         .where(account.c.role == ADMINISTRATOR, account.c.closed.is_(None), account.c.secret != "")
         .with_for_update()
     )
-    return set(connection.execute(found).scalars())
+    return set(connection.execute(query).scalars())

@@ -59,19 +59,19 @@ def outstanding(connection: Connection, assignment_id: int | None = None) -> dic
     ).group_by(outdated.c.assignment_id, outdated.c.kind)
     if assignment_id is not None:
         noted = noted.where(outdated.c.assignment_id == assignment_id)
-    found: dict[int, int] = {}
+    counts: dict[int, int] = {}
     for number, kind, count in connection.execute(noted).all():
         if kind == EVERYBODY:
             count = _how_many(connection, number)
         elif kind == ROWS:
             count = 1 if not _has_files(connection, number) else _how_many(connection, number)
-        found[number] = max(found.get(number, 0), count)
-    return found
+        counts[number] = max(counts.get(number, 0), count)
+    return counts
 
 
 def _how_many(connection: Connection, number: int) -> int:
-    own = select(func.count(variant.c.id)).where(variant.c.assignment_id == number)
-    return int(connection.execute(own).scalar() or 0) or 1
+    query = select(func.count(variant.c.id)).where(variant.c.assignment_id == number)
+    return int(connection.execute(query).scalar() or 0) or 1
 
 
 def refresh(course: Course, store: Store, assignment_id: int, most: int | None = None) -> bool:
@@ -85,10 +85,10 @@ def refresh(course: Course, store: Store, assignment_id: int, most: int | None =
     """
     done = 0
     while most is None or done < most:
-        found = _step(course, store, assignment_id)
-        if found is None:
+        count = _step(course, store, assignment_id)
+        if count is None:
             return True
-        done += found
+        done += count
     with store.reading() as connection:
         return not connection.execute(
             select(outdated.c.id).where(outdated.c.assignment_id == assignment_id).limit(1)
@@ -104,12 +104,12 @@ def _step(course: Course, store: Store, number: int) -> int | None:
         about = next(iter(listed(connection, number)), None)
         if about is None:
             return None
-        made = _computed(connection, course, about, notes)
+        computed = _computed(connection, course, about, notes)
     with store.begin() as connection:
         row = select(assignment.c.id).where(assignment.c.id == number)
         connection.execute(row.with_for_update(key_share=True))
         if _taken(connection, notes.ids):
-            made.write(connection)
+            computed.write(connection)
     return len(notes.students) or 1
 
 
@@ -123,14 +123,18 @@ class _Notes(NamedTuple):
 
 def _notes(connection: Connection, number: int) -> _Notes | None:
     """Return the notes that come next: those of everybody first, then the rows, then some students."""
-    own = outdated.c.assignment_id == number
+    of_assignment = outdated.c.assignment_id == number
     for kind in (EVERYBODY, ROWS):
-        ids = connection.execute(select(outdated.c.id).where(own, outdated.c.kind == kind)).scalars().all()
+        ids = (
+            connection.execute(select(outdated.c.id).where(of_assignment, outdated.c.kind == kind))
+            .scalars()
+            .all()
+        )
         if ids:
             return _Notes(kind, ids, frozenset())
     first = (
         select(outdated.c.student)
-        .where(own, outdated.c.kind == STUDENT)
+        .where(of_assignment, outdated.c.kind == STUDENT)
         .group_by(outdated.c.student)
         .order_by(func.min(outdated.c.id))
         .limit(CHUNK)
@@ -138,7 +142,9 @@ def _notes(connection: Connection, number: int) -> _Notes | None:
     names = connection.execute(first).scalars().all()
     if not names:
         return None
-    theirs = select(outdated.c.id).where(own, outdated.c.kind == STUDENT, outdated.c.student.in_(names))
+    theirs = select(outdated.c.id).where(
+        of_assignment, outdated.c.kind == STUDENT, outdated.c.student.in_(names)
+    )
     return _Notes(STUDENT, connection.execute(theirs).scalars().all(), frozenset(names))
 
 
@@ -185,14 +191,14 @@ def _insert(connection: Connection, table: Any, rows: Sequence[Mapping[str, Any]
 
 
 def _computed(connection: Connection, course: Course, about: About, notes: _Notes) -> _Computed:
-    made = _Computed(about)
+    computed = _Computed(about)
     if notes.kind == EVERYBODY:
-        made.outdate = _everybody(connection, about)
+        computed.outdate = _everybody(connection, about)
     elif notes.kind == ROWS:
-        _unplaced(connection, course, about, made)
+        _unplaced(connection, course, about, computed)
     else:
-        _students(connection, course, about, notes.students, made)
-    return made
+        _students(connection, course, about, notes.students, computed)
+    return computed
 
 
 # ----------------------------------------------------------------------- students
@@ -203,10 +209,10 @@ def _everybody(connection: Connection, about: About) -> list[str]:
     number = about.id
     issued = select(dealt.c.student).join(variant).where(variant.c.assignment_id == number)
     marked = select(marking.c.student).where(marking.c.assignment_id == number)
-    known = select(student_total.c.student).where(student_total.c.assignment_id == number)
-    told = select(unplaced.c.student).where(unplaced.c.assignment_id == number)
-    names = dict.fromkeys(connection.execute(issued.union(marked, known, told)).scalars())
-    return [one for one in (*names, *(about.columns if _is_pool(connection, number) else ())) if one]
+    computed = select(student_total.c.student).where(student_total.c.assignment_id == number)
+    unplaced_names = select(unplaced.c.student).where(unplaced.c.assignment_id == number)
+    names = dict.fromkeys(connection.execute(issued.union(marked, computed, unplaced_names)).scalars())
+    return [name for name in (*names, *(about.columns if _is_pool(connection, number) else ())) if name]
 
 
 def _is_pool(connection: Connection, number: int) -> bool:
@@ -214,45 +220,50 @@ def _is_pool(connection: Connection, number: int) -> bool:
 
 
 def _students(
-    connection: Connection, course: Course, about: About, noted: Collection[str], made: _Computed
+    connection: Connection, course: Course, about: About, noted: Collection[str], computed: _Computed
 ) -> None:
     """Compute some students; names are resolved to those as issued."""
     students = _as_issued(connection, about, noted)
-    made.away = frozenset(students) | frozenset(noted)
+    computed.away = frozenset(students) | frozenset(noted)
     facts = facts_of(connection, about.id)
     if facts.as_json() != _facts_before(connection, about.id):
-        made.facts = facts
-        made.outdate = [one for one in _everybody(connection, about) if one not in made.away]
+        computed.facts = facts
+        computed.outdate = [name for name in _everybody(connection, about) if name not in computed.away]
     if not students:
         return
-    own = select(unplaced).where(unplaced.c.assignment_id == about.id, unplaced.c.student.in_(students))
+    query = select(unplaced).where(unplaced.c.assignment_id == about.id, unplaced.c.student.in_(students))
     lost = [
-        Rejected(row.source, row.reason, row.said) for row in connection.execute(own.order_by(unplaced.c.id))
+        Rejected(row.source, row.reason, row.said)
+        for row in connection.execute(query.order_by(unplaced.c.id))
     ]
     now = read_students(connection, course, about, students, lost, facts)
     places = _places(connection, about, now)
     cells = _cells(now)
-    made.totals = [_total(now, student, places[student], cells.get(student, {})) for student in now.results]
-    made.answers = list(_answers(now, cells))
+    computed.totals = [
+        _total(now, student, places[student], cells.get(student, {})) for student in now.results
+    ]
+    computed.answers = list(_answers(now, cells))
 
 
 def _as_issued(connection: Connection, about: About, noted: Collection[str]) -> frozenset[str]:
     """Return the students whom names name, however these are spelled."""
     issued = select(dealt.c.student).join(variant).where(variant.c.assignment_id == about.id)
     marked = select(marking.c.student).where(marking.c.assignment_id == about.id)
-    told = select(unplaced.c.student).where(unplaced.c.assignment_id == about.id, unplaced.c.student != "")
+    unplaced_names = select(unplaced.c.student).where(
+        unplaced.c.assignment_id == about.id, unplaced.c.student != ""
+    )
 
     def among(*more: Any) -> set[str]:
-        asked = issued.where(*(dealt.c.student.in_(own) for own in more)).union(
-            marked.where(*(marking.c.student.in_(own) for own in more)),
-            told.where(*(unplaced.c.student.in_(own) for own in more)),
+        query = issued.where(*(dealt.c.student.in_(names) for names in more)).union(
+            marked.where(*(marking.c.student.in_(names) for names in more)),
+            unplaced_names.where(*(unplaced.c.student.in_(names) for names in more)),
         )
-        return {one for one in connection.execute(asked).scalars() if one}
+        return {name for name in connection.execute(query).scalars() if name}
 
-    found = among(list(noted)) | {one for one in noted if one in about.columns}
-    if strangers := {folded(one) for one in noted if one not in found}:
-        found |= {one for one in among() if folded(one) in strangers}
-    return frozenset(found)
+    students = among(list(noted)) | {name for name in noted if name in about.columns}
+    if strangers := {folded(name) for name in noted if name not in students}:
+        students |= {name for name in among() if folded(name) in strangers}
+    return frozenset(students)
 
 
 def _places(connection: Connection, about: About, now: ClassNow) -> dict[str, int]:
@@ -264,16 +275,18 @@ def _places(connection: Connection, about: About, now: ClassNow) -> dict[str, in
         .where(variant.c.assignment_id == about.id, dealt.c.student.in_(names))
         .group_by(dealt.c.student)
     )
-    found: dict[str, int] = {row[0]: row[1] for row in connection.execute(order)}
-    listed_at = {name: place for place, name in enumerate(about.columns)} if now.issued.is_pool else {}
-    came: dict[str, int] = {}
-    for place, first in now.firsts.items():
-        came[place[0]] = min(came.get(place[0], first), first)
+    positions: dict[str, int] = {row[0]: row[1] for row in connection.execute(order)}
+    listed_at = {name: position for position, name in enumerate(about.columns)} if now.issued.is_pool else {}
+    first_markings: dict[str, int] = {}
+    for sheet, first in now.firsts.items():
+        first_markings[sheet[0]] = min(first_markings.get(sheet[0], first), first)
     for name in names:
-        if name not in found:
+        if name not in positions:
             at = listed_at.get(name)
-            found[name] = _STRANGERS + came.get(name, _STRANGERS) if at is None else _STRANGERS // 2 + at
-    return found
+            positions[name] = (
+                _STRANGERS + first_markings.get(name, _STRANGERS) if at is None else _STRANGERS // 2 + at
+            )
+    return positions
 
 
 _Cells = dict[tuple[str, str], Graded]
@@ -281,70 +294,70 @@ _Cells = dict[tuple[str, str], Graded]
 
 def _cells(now: ClassNow) -> dict[str, _Cells]:
     """Return which sheet fills each question of a student's line in the class table."""
-    found: dict[str, _Cells] = {}
-    for one in now.graded.values():
-        if one.sitting == now.results[one.student].sitting:
-            own = found.setdefault(one.student, {})
-            own.update({(one.exercise, part): one for part in one.lines})
-    return found
+    cells: dict[str, _Cells] = {}
+    for sheet in now.graded.values():
+        if sheet.sitting == now.results[sheet.student].sitting:
+            student_cells = cells.setdefault(sheet.student, {})
+            student_cells.update({(sheet.exercise, part): sheet for part in sheet.lines})
+    return cells
 
 
-def _total(now: ClassNow, student: str, place: int, cells: _Cells) -> dict[str, Any]:
-    result, came = now.results[student], now.came.get(student)
-    told = own_columns(now.issued, student)
+def _total(now: ClassNow, student: str, position: int, cells: _Cells) -> dict[str, Any]:
+    result, submitted = now.results[student], now.came.get(student)
+    columns = own_columns(now.issued, student)
     titles = (now.issued.assignment or {}).get("identity") or ()
-    identity = " ".join(filter(None, (told.get(folded(str(title)), "") for title in titles)))
+    identity = " ".join(filter(None, (columns.get(folded(str(title)), "") for title in titles)))
     sittings = [n for s, n in now.book.students if s == student] if cells else []
     return {
         "assignment_id": now.about.id,
         "student": student,
         "search": folded(f"{student} {identity}"),
         "identity": identity,
-        "place": place,
+        "place": position,
         "sitting": result.sitting,
         "points": result.points,
         "out_of": result.out_of,
         "charged": result.late,
         "mark": mark_of(now.issued, result.counts, result.out_of),
-        "tries": came.tries if came else max(sittings, default=0),
-        "late": came.late if came else 0,
+        "tries": submitted.tries if submitted else max(sittings, default=0),
+        "late": submitted.late if submitted else 0,
         "waits": sum(sheet.lines[part].verdict in _WAIT for (_, part), sheet in cells.items()),
-        "handed_in": bool(cells) or came is not None,
-        "answered": any(one.student == student for one in now.machine.values()),
+        "handed_in": bool(cells) or submitted is not None,
+        "answered": any(graded.student == student for graded in now.machine.values()),
         "verdicts": {name: count for name, count in result.verdicts.items() if count},
         "by_exercise": dict(result.by_exercise),
     }
 
 
 def _answers(now: ClassNow, cells: Mapping[str, _Cells]) -> Iterator[dict[str, Any]]:
-    for place, machine in now.machine.items():
-        stands = now.graded[place]
-        measure = now.measures.get((*place[:3], machine.sitting), NOTHING)
-        counts = stands.sitting == now.results[stands.student].sitting
-        matters = counts or stands.sitting == now.last_sitting[stands.student]
-        listed_parts = {*stands.answered, *stands.unanswered}
+    for sheet, machine in now.machine.items():
+        graded = now.graded[sheet]
+        measure = now.measures.get((*sheet[:3], machine.sitting), NOTHING)
+        counts = graded.sitting == now.results[graded.student].sitting
+        matters = counts or graded.sitting == now.last_sitting[graded.student]
+        listed_parts = {*graded.answered, *graded.unanswered}
         for at, (part, before) in enumerate(machine.lines.items()):
-            line = stands.lines[part]
-            shown = matters and before.verdict != "missing"
-            key = key_of(machine, before, measure, now.drawn) if shown else None
+            line = graded.lines[part]
+            is_shown = matters and before.verdict != "missing"
+            key = key_of(machine, before, measure, now.drawn) if is_shown else None
             yield {
                 "assignment_id": now.about.id,
-                "marking": now.numbers[place],
-                "first": now.firsts[place],
+                "marking": now.numbers[sheet],
+                "first": now.firsts[sheet],
                 "place": at,
-                "student": stands.student,
-                "exercise": stands.exercise,
-                "seed": str(stands.seed),
-                "sitting": stands.sitting,
+                "student": graded.student,
+                "exercise": graded.exercise,
+                "seed": str(graded.seed),
+                "sitting": graded.sitting,
                 "part": part,
                 "verdict": line.verdict,
                 "points": line.points,
                 "out_of": line.out_of,
                 "by_hand": is_by_hand(before, line),
                 "counts": counts,
-                "is_cell": cells.get(stands.student, {}).get((stands.exercise, part)) is stands,
+                "is_cell": cells.get(graded.student, {}).get((graded.exercise, part)) is graded,
                 "is_listed": part in listed_parts,
-                "is_shown": shown,
+                "is_shown": is_shown,
                 "wrote": name_of([written(line)]),
                 "why": None if key is None else key[0],
                 "card": None if key is None else name_of(key),
@@ -370,31 +383,34 @@ def facts_of(connection: Connection, number: int) -> Facts:
         return Facts()
     sheet = (marking.c.student, marking.c.exercise, marking.c.seed, marking.c.attempt)
     last = select(func.max(marking.c.id)).where(marking.c.assignment_id == number).group_by(*sheet)
-    stands = marking.c.id.in_(last), marking.c.state != "", marking.c.fault == ""
-    exercises, whole, asked = dict[str, None](), set[str](), dict[str, set[str]]()
-    kinds = select(marking.c.exercise, marking.c.apart, func.min(marking.c.id)).where(*stands)
+    is_current = marking.c.id.in_(last), marking.c.state != "", marking.c.fault == ""
+    exercises, complete, parts_by_exercise = dict[str, None](), set[str](), dict[str, set[str]]()
+    kinds = select(marking.c.exercise, marking.c.apart, func.min(marking.c.id)).where(*is_current)
     for name, is_apart, _ in sorted(
-        connection.execute(kinds.group_by(marking.c.exercise, marking.c.apart)), key=lambda found: found[2]
+        connection.execute(kinds.group_by(marking.c.exercise, marking.c.apart)),
+        key=lambda kind_row: kind_row[2],
     ):
         exercises[name] = None
         if not is_apart:
-            whole.add(name)
+            complete.add(name)
     parts = (
         select(marking.c.exercise, mark.c.part)
         .join(mark)
-        .where(*stands, marking.c.apart.is_(True))
+        .where(*is_current, marking.c.apart.is_(True))
         .distinct()
     )
     for name, part in connection.execute(parts):
-        asked.setdefault(name, set()).add(part)
+        parts_by_exercise.setdefault(name, set()).add(part)
     return Facts(
-        tuple(sorted(exercises)), frozenset(whole), {name: frozenset(own) for name, own in asked.items()}
+        tuple(sorted(exercises)),
+        frozenset(complete),
+        {name: frozenset(exercise_parts) for name, exercise_parts in parts_by_exercise.items()},
     )
 
 
 def _facts_before(connection: Connection, number: int) -> dict[str, Any]:
-    found = select(assignment_total.c.facts).where(assignment_total.c.assignment_id == number)
-    return connection.execute(found).scalar() or Facts().as_json()
+    query = select(assignment_total.c.facts).where(assignment_total.c.assignment_id == number)
+    return connection.execute(query).scalar() or Facts().as_json()
 
 
 # --------------------------------------------------------------------------- rows
@@ -406,15 +422,15 @@ def _has_files(connection: Connection, number: int) -> bool:
     files = select(delivery.c.id).where(delivery.c.assignment_id == number, delivery.c.person_id.is_(None))
     faults = select(marking.c.id).where(marking.c.assignment_id == number, marking.c.fault != "")
     refused = select(rejected.c.id).join(delivery).where(delivery.c.assignment_id == number)
-    return any(connection.execute(one.limit(1)).first() is not None for one in (files, faults, refused))
+    return any(connection.execute(query.limit(1)).first() is not None for query in (files, faults, refused))
 
 
-def _unplaced(connection: Connection, course: Course, about: About, made: _Computed) -> None:
+def _unplaced(connection: Connection, course: Course, about: About, computed: _Computed) -> None:
     """Compute the rows that have no place; whose they are is noted where that changed."""
-    made.unplaced = []
+    computed.unplaced = []
     if _has_files(connection, about.id):
         now = read_rows(connection, course, about)
-        made.unplaced = [
+        computed.unplaced = [
             {
                 "assignment_id": about.id,
                 "row": name,
@@ -426,10 +442,10 @@ def _unplaced(connection: Connection, course: Course, about: About, made: _Compu
             }
             for name, row, student, near in now
         ]
-    own = select(unplaced.c.row, unplaced.c.student).where(unplaced.c.assignment_id == about.id)
-    before = {(row.row, row.student) for row in connection.execute(own)}
-    after = {(row["row"], row["student"]) for row in made.unplaced}
-    made.outdate = {student for _, student in before ^ after if student}
+    query = select(unplaced.c.row, unplaced.c.student).where(unplaced.c.assignment_id == about.id)
+    before = {(row.row, row.student) for row in connection.execute(query)}
+    after = {(row["row"], row["student"]) for row in computed.unplaced}
+    computed.outdate = {student for _, student in before ^ after if student}
 
 
 # -------------------------------------------------------------------------- counts
@@ -437,14 +453,14 @@ def _unplaced(connection: Connection, course: Course, about: About, made: _Compu
 
 def write_total(connection: Connection, number: int, facts: Facts | None = None) -> None:
     """Write what an assignment comes to, from the aggregates of its students and answers."""
-    own = student_total.c.assignment_id == number
+    of_assignment = student_total.c.assignment_id == number
     counted = select(
         func.count(),
         func.coalesce(func.sum(case((student_total.c.handed_in, 1), else_=0)), 0),
         func.coalesce(func.sum(case((student_total.c.answered, 1), else_=0)), 0),
-    ).where(own)
+    ).where(of_assignment)
     students, handed_in, answered = connection.execute(counted).one()
-    told = {
+    values = {
         "students": students,
         "handed_in": handed_in,
         "answered": answered,
@@ -453,8 +469,8 @@ def write_total(connection: Connection, number: int, facts: Facts | None = None)
     }
     key = {"assignment_id": number}
     usual = {"facts": Facts().as_json(), "version": 0}
-    insert_unless_there(connection, assignment_total, {**usual, **told, **key}, ("assignment_id",))
-    more = {**told, "version": assignment_total.c.version + 1}
+    insert_unless_there(connection, assignment_total, {**usual, **values, **key}, ("assignment_id",))
+    more = {**values, "version": assignment_total.c.version + 1}
     connection.execute(
         update(assignment_total).where(assignment_total.c.assignment_id == number).values(more)
     )

@@ -24,16 +24,16 @@ GROUP = ("group", "groupe", "td", "groupe de td", "section")  #: titles of the r
 
 def areas_of(connection: Connection, number: int) -> tuple[Area, ...]:
     """Return the assignments and groups in which a person assists."""
-    found = select(area).where(area.c.person_id == number).order_by(area.c.id)
-    return tuple(Area(row.assignment_id, row.class_group) for row in connection.execute(found))
+    query = select(area).where(area.c.person_id == number).order_by(area.c.id)
+    return tuple(Area(row.assignment_id, row.class_group) for row in connection.execute(query))
 
 
 def put_areas(connection: Connection, number: int, areas: Iterable[Area]) -> None:
     """Let a person assist in these areas, and in no others."""
     connection.execute(delete(area).where(area.c.person_id == number))
     rows = [
-        {"person_id": number, "assignment_id": one.assignment, "class_group": one.group}
-        for one in dict.fromkeys(areas)
+        {"person_id": number, "assignment_id": assigned.assignment, "class_group": assigned.group}
+        for assigned in dict.fromkeys(areas)
     ]
     if rows:
         connection.execute(insert(area), rows)
@@ -41,18 +41,18 @@ def put_areas(connection: Connection, number: int, areas: Iterable[Area]) -> Non
 
 def group_of(columns: Mapping[str, Any] | None) -> str:
     """Return the group that a line of a roster names, as it is written; empty where it names none."""
-    told = (
+    groups = (
         str(value).strip() for title, value in (columns or {}).items() if value and is_called(title, GROUP)
     )
-    return next(told, "")
+    return next(groups, "")
 
 
 def groups_known(connection: Connection) -> dict[str, str]:
     """Return every group of the rosters as it is written, by its key."""
-    found = [group_of(row.columns) for row in connection.execute(select(person.c.columns))]
+    groups = [group_of(row.columns) for row in connection.execute(select(person.c.columns))]
     for row in connection.execute(select(assignment.c.columns)):
-        found += [group_of(columns) for columns in (row.columns or {}).values()]
-    return {group_key(one): one for one in sorted(found, reverse=True) if one}
+        groups += [group_of(columns) for columns in (row.columns or {}).values()]
+    return {group_key(group): group for group in sorted(groups, reverse=True) if group}
 
 
 def groups_of(connection: Connection, number: int) -> dict[str, str]:
@@ -63,10 +63,10 @@ def groups_of(connection: Connection, number: int) -> dict[str, str]:
         .select_from(dealt.join(variant).outerjoin(person))
         .where(variant.c.assignment_id == number)
     )
-    found = {row.student: group_of(row.columns) for row in connection.execute(given)}
-    for student, told in columns.items():
-        found[student] = group_of(told) or found.get(student, "")
-    return {student: group_key(one) for student, one in found.items()}
+    groups = {row.student: group_of(row.columns) for row in connection.execute(given)}
+    for student, student_columns in columns.items():
+        groups[student] = group_of(student_columns) or groups.get(student, "")
+    return {student: group_key(group) for student, group in groups.items()}
 
 
 def students_within(connection: Connection, holder: Holder, number: int) -> frozenset[str] | None:
@@ -92,7 +92,7 @@ def students_in(connection: Connection, number: int, groups: Collection[str]) ->
     """Return the students of an assignment who are in one of some groups."""
     if not groups:
         return frozenset()
-    return frozenset(one for one, group in groups_of(connection, number).items() if group in groups)
+    return frozenset(student for student, group in groups_of(connection, number).items() if group in groups)
 
 
 def held_by(connection: Connection, number: int, role: str) -> tuple[Area, ...]:

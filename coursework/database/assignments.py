@@ -39,19 +39,17 @@ def assignment_called(connection: Connection, name: str = "") -> int:
     BadInput
         There is none of this name, or which one is meant is not told.
     """
-    known = names(connection)
-    if name in known:
-        return known[name]
+    ids = names(connection)
+    if name in ids:
+        return ids[name]
     if name:
-        raise BadInput(f"no assignment {name!r} in the database{nearest(name, known)}")
-    if len(known) != 1:
-        found = (
-            f"there are {', '.join(known)}: --assignment NAME"
-            if known
-            else "there is none: --issued issued.json"
+        raise BadInput(f"no assignment {name!r} in the database{nearest(name, ids)}")
+    if len(ids) != 1:
+        choices = (
+            f"there are {', '.join(ids)}: --assignment NAME" if ids else "there is none: --issued issued.json"
         )
-        raise BadInput(f"which assignment? {found}")
-    return next(iter(known.values()))
+        raise BadInput(f"which assignment? {choices}")
+    return next(iter(ids.values()))
 
 
 def name_of(content: Mapping[str, Any], otherwise: str = "") -> str:
@@ -78,25 +76,29 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
     issued = Issued(content, "what was issued")
     if not name:
         raise BadInput("what was issued has no name, since it is of no assignment: --name NAME")
-    told: dict[str, Any] = {
+    values: dict[str, Any] = {
         "stated": content.get("assignment"),
         "has_roster": issued.has_roster,
         "is_pool": issued.is_pool,
-        "columns": {s: dict(own) for s, own in issued.columns.items()},
+        "columns": {s: dict(roster_columns) for s, roster_columns in issued.columns.items()},
         **({} if (secret := secret_of(content)) is None else {"secret": secret.text}),
     }
     was = _told_before(connection, name)
-    number, before = _assignment(connection, name, course, told)
-    items = [_item(item, place) for place, item in enumerate(content["issued"])]
+    number, before = _assignment(connection, name, course, values)
+    items = [_item(item, position) for position, item in enumerate(content["issued"])]
     variants = _put_variants(connection, number, name, items)
     people = _people(connection, issued) if issued.has_roster and not issued.is_pool else {}
     changed = _put_dealt(connection, name, before, items, variants, people)
-    if was is None or any(was[key] != told[key] for key in ("stated", "is_pool")) or "" in changed:
+    if was is None or any(was[key] != values[key] for key in ("stated", "is_pool")) or "" in changed:
         outdate_all(connection, number)
     else:
-        own = told["columns"]
-        changed += [student for student in own if own[student] != was["columns"].get(student, own[student])]
-        changed += [student for student in own if student not in was["columns"]]
+        roster_columns = values["columns"]
+        changed += [
+            student
+            for student in roster_columns
+            if roster_columns[student] != was["columns"].get(student, roster_columns[student])
+        ]
+        changed += [student for student in roster_columns if student not in was["columns"]]
         outdate(connection, number, changed)
         if changed:
             outdate_rows(connection, number)
@@ -111,25 +113,25 @@ def _told_before(connection: Connection, name: str) -> dict[str, Any] | None:
 
 
 def _assignment(
-    connection: Connection, name: str, course: str, told: Mapping[str, Any]
+    connection: Connection, name: str, course: str, values: Mapping[str, Any]
 ) -> tuple[int, dict[_Place, Any]]:
     """Return the assignment's id and its issued variants; add or update the assignment."""
-    known = connection.execute(
+    known_row = connection.execute(
         select(assignment).where(assignment.c.name == name).with_for_update(key_share=True)
     ).first()
-    if known is None:
-        row = {"name": name, "course": course, "created": datetime.now(UTC), **told}
-        made = connection.execute(insert(assignment).values(row).returning(assignment.c.id))
-        return int(made.scalar_one()), {}
-    told = {**told, "columns": {**known.columns, **told["columns"]}}
-    if any(getattr(known, key) != value for key, value in told.items()):
-        connection.execute(update(assignment).where(assignment.c.id == known.id).values(told))
-    if known.has_roster != told["has_roster"] and not told["is_pool"]:
+    if known_row is None:
+        row = {"name": name, "course": course, "created": datetime.now(UTC), **values}
+        added = connection.execute(insert(assignment).values(row).returning(assignment.c.id))
+        return int(added.scalar_one()), {}
+    values = {**values, "columns": {**known_row.columns, **values["columns"]}}
+    if any(getattr(known_row, key) != value for key, value in values.items()):
+        connection.execute(update(assignment).where(assignment.c.id == known_row.id).values(values))
+    if known_row.has_roster != values["has_roster"] and not values["is_pool"]:
         raise BadInput(
-            f"{name} was issued {'without' if told['has_roster'] else 'by'} a roster: choose another --name"
+            f"{name} was issued {'without' if values['has_roster'] else 'by'} a roster: choose another --name"
         )
-    rows = [row._asdict() for row in connection.execute(_dealt(known.id))]
-    return known.id, dict(zip(_places(rows), rows, strict=True))
+    rows = [row._asdict() for row in connection.execute(_dealt(known_row.id))]
+    return known_row.id, dict(zip(_places(rows), rows, strict=True))
 
 
 def _places(items: Sequence[Mapping[str, Any]]) -> list[_Place]:
@@ -137,16 +139,16 @@ def _places(items: Sequence[Mapping[str, Any]]) -> list[_Place]:
     met: Counter[tuple[Any, ...]] = Counter()
     places = []
     for item in items:
-        place = item["student"], item["sitting"], item["exercise"], item["seed"]
-        places.append((*place, met[place]))
-        met[place] += 1
+        key = item["student"], item["sitting"], item["exercise"], item["seed"]
+        places.append((*key, met[key]))
+        met[key] += 1
     return places
 
 
-def _item(item: Mapping[str, Any], place: int) -> dict[str, Any]:
+def _item(item: Mapping[str, Any], position: int) -> dict[str, Any]:
     record = item["record"]
     return {
-        "place": place,
+        "place": position,
         "student": str(item.get("student", "")),
         "sitting": int(item.get("sitting", 1)),
         "letter": str(item.get("version") or ""),
@@ -161,14 +163,14 @@ def _put_variants(
     connection: Connection, number: int, name: str, items: Sequence[Mapping[str, Any]]
 ) -> dict[tuple[str, str], int]:
     """Return the variants' ids by exercise and seed; add the new ones."""
-    found = select(variant).where(variant.c.assignment_id == number)
-    known = {(row.exercise, row.seed): row for row in connection.execute(found)}
+    query = select(variant).where(variant.c.assignment_id == number)
+    variants = {(row.exercise, row.seed): row for row in connection.execute(query)}
     new: dict[tuple[str, str], Mapping[str, Any]] = {}
     for item in items:
         key = item["exercise"], item["seed"]
-        if key not in known:
+        if key not in variants:
             new.setdefault(key, item)
-        elif _in_no_language(known[key].record) != _in_no_language(item["record"]):
+        elif _in_no_language(variants[key].record) != _in_no_language(item["record"]):
             raise BadInput(
                 f"{name}: {key[0]} {key[1]} was issued with other data before, and what is issued stays issued: choose another --name"
             )
@@ -178,7 +180,7 @@ def _put_variants(
             for item in new.values()
         ]
         connection.execute(insert(variant), rows)
-    rows_now = connection.execute(found.with_only_columns(variant.c.id, variant.c.exercise, variant.c.seed))
+    rows_now = connection.execute(query.with_only_columns(variant.c.id, variant.c.exercise, variant.c.seed))
     return {(row.exercise, row.seed): row.id for row in rows_now}
 
 
@@ -202,30 +204,32 @@ def _put_dealt(
     people: Mapping[str, int],
 ) -> list[str]:
     """Add what is new; what is known keeps its row, and takes its new place. Return the students of which anything changed."""
-    given = {place[:3]: place[3] for place in before if place[0]}
+    given = {place_key[:3]: place_key[3] for place_key in before if place_key[0]}
     placed: dict[_Place, int] = {}
     new = []
-    for place, item in zip(_places(items), items, strict=True):
-        had = given.get(place[:3], item["seed"])
+    for place_key, item in zip(_places(items), items, strict=True):
+        had = given.get(place_key[:3], item["seed"])
         if had != item["seed"]:
             raise BadInput(
-                f"{name}: {place[0]} was issued {place[2]} {had}, and what is issued stays issued; {item['seed']} is another: "
+                f"{name}: {place_key[0]} was issued {place_key[2]} {had}, and what is issued stays issued; {item['seed']} is another: "
                 "choose another --name"
             )
-        if place in before:
-            placed[place] = item["place"]
+        if place_key in before:
+            placed[place_key] = item["place"]
             continue
-        own = {key: item[key] for key in ("place", "student", "sitting", "lang")}
-        new.append({**own, "variant_id": variants[place[2:4]], "person_id": people.get(item["student"])})
+        values = {key: item[key] for key in ("place", "student", "sitting", "lang")}
+        new.append(
+            {**values, "variant_id": variants[place_key[2:4]], "person_id": people.get(item["student"])}
+        )
     changed = [str(row["student"]) for row in new]
-    kept = len(items)
+    next_position = len(items)
     moved = []
-    for place, row in before.items():
-        if place not in placed:
-            placed[place], kept = kept, kept + 1
-        if row["place"] != placed[place]:
-            moved.append({"row": row["id"], "now": placed[place]})
-            changed.append(str(place[0]))
+    for place_key, row in before.items():
+        if place_key not in placed:
+            placed[place_key], next_position = next_position, next_position + 1
+        if row["place"] != placed[place_key]:
+            moved.append({"row": row["id"], "now": placed[place_key]})
+            changed.append(str(place_key[0]))
     if moved:
         connection.execute(
             update(dealt).where(dealt.c.id == bindparam("row")).values(place=bindparam("now")), moved
@@ -273,11 +277,11 @@ def issued_content(
         items = _items_of(connection, number, person_id)
         if items and not about.is_pool:
             theirs = {item["student"] for item in items}
-            columns = {name: own for name, own in columns.items() if name in theirs}
+            columns = {name: student_columns for name, student_columns in columns.items() if name in theirs}
     elif student is not None:
         items = _items(connection, number, dealt.c.student == student)
     elif students and about.has_roster and not about.is_pool:
-        columns = {name: own for name, own in columns.items() if name in students}
+        columns = {name: student_columns for name, student_columns in columns.items() if name in students}
         items = _items(connection, number, dealt.c.student.in_(list(students)))
     return {
         "format": ISSUED_FORMAT,
@@ -298,30 +302,30 @@ def sheet_content(
     ``stated`` is its statement of the assignment, which the caller has already.
     """
     items = _items_of(connection, number, person_id)
-    told = {"assignment": stated} if stated else {}
-    return {"format": ISSUED_FORMAT, "roster": True, **told, "issued": items}
+    statement = {"assignment": stated} if stated else {}
+    return {"format": ISSUED_FORMAT, "roster": True, **statement, "issued": items}
 
 
 @cache
 def _items_query() -> Select[Any]:
     """Return the query of :func:`_items_of`, cached."""
-    found = _dealt(bindparam("number")).where(dealt.c.person_id == bindparam("person"))
-    return found.add_columns(variant.c.record)
+    query = _dealt(bindparam("number")).where(dealt.c.person_id == bindparam("person"))
+    return query.add_columns(variant.c.record)
 
 
 def _items_of(connection: Connection, number: int, person_id: int) -> list[dict[str, Any]]:
-    told = {"number": number, "person": person_id}
-    return [_issued_item(row, row.record) for row in connection.execute(_items_query(), told)]
+    parameters = {"number": number, "person": person_id}
+    return [_issued_item(row, row.record) for row in connection.execute(_items_query(), parameters)]
 
 
-def _items(connection: Connection, number: int, *whose: ColumnElement[bool]) -> list[dict[str, Any]]:
-    given = _dealt(number).where(*whose)
-    if whose:  # few rows: one query
+def _items(connection: Connection, number: int, *conditions: ColumnElement[bool]) -> list[dict[str, Any]]:
+    given = _dealt(number).where(*conditions)
+    if conditions:  # few rows: one query
         return [
             _issued_item(row, row.record) for row in connection.execute(given.add_columns(variant.c.record))
         ]
-    found = select(variant.c.id, variant.c.record).where(variant.c.assignment_id == number)
-    records = {row.id: row.record for row in connection.execute(found)}
+    query = select(variant.c.id, variant.c.record).where(variant.c.assignment_id == number)
+    records = {row.id: row.record for row in connection.execute(query)}
     return [_issued_item(row, records[row.variant_id]) for row in connection.execute(given)]
 
 

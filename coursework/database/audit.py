@@ -24,16 +24,16 @@ class Actor(NamedTuple):
 
 def note(connection: Connection, at: datetime, by: str | Actor, what: str, **about: Any) -> None:
     """Write down that somebody did something; ``person`` in ``about`` is the id of the person of whom it tells."""
-    who = by if isinstance(by, Actor) else Actor(by)
+    actor = by if isinstance(by, Actor) else Actor(by)
     subject = about.get("person")
     row = {
         "at": at,
-        "by": who.name,
+        "by": actor.name,
         "what": what,
         "about": about,
-        "actor": who.person or None,
+        "actor": actor.person or None,
         "subject": subject if isinstance(subject, int) else None,
-        "address": who.address[:64] or None,
+        "address": actor.address[:64] or None,
     }
     connection.execute(insert(audit).values(row))
 
@@ -62,16 +62,16 @@ def noted(
     subject
         Id of the person of whom it tells; None for whomever.
     """
-    found = select(audit).order_by(audit.c.id.desc()).limit(count)
+    query = select(audit).order_by(audit.c.id.desc()).limit(count)
     if before:
-        found = found.where(audit.c.id < before)
+        query = query.where(audit.c.id < before)
     if by:
-        found = found.where(audit.c.by.icontains(by, autoescape=True))
+        query = query.where(audit.c.by.icontains(by, autoescape=True))
     if what:
-        found = found.where(audit.c.what.in_(what))
+        query = query.where(audit.c.what.in_(what))
     if subject is not None:
-        found = found.where(audit.c.subject == subject)
-    return list(connection.execute(found))
+        query = query.where(audit.c.subject == subject)
+    return list(connection.execute(query))
 
 
 def kinds(connection: Connection) -> list[str]:

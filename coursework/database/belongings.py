@@ -75,131 +75,139 @@ def whose(connection: Connection, number: int) -> Whose | None:
     )
     students = {(row.assignment_id, folded(row.student)) for row in connection.execute(issued)}
     names = list(connection.execute(select(person.c.name)).scalars())
-    if mine.name and sum(folded(one) == folded(mine.name) for one in names) == 1:
+    if mine.name and sum(folded(name) == folded(mine.name) for name in names) == 1:
         free = select(assignment.c.id).where(assignment.c.has_roster.is_(False))
-        students |= {(one, folded(mine.name)) for one in connection.execute(free).scalars()}
+        students |= {
+            (assignment_id, folded(mine.name)) for assignment_id in connection.execute(free).scalars()
+        }
     return Whose(number, mine.name, frozenset(students), _words(connection, mine, issued))
 
 
 def _words(connection: Connection, mine: Any, issued: Any) -> frozenset[str]:
     logins = connection.execute(select(account.c.login).where(account.c.person_id == mine.id)).scalars()
     subjects = connection.execute(select(identity.c.subject).where(identity.c.person_id == mine.id)).scalars()
-    told = [mine.name, *logins, *subjects]
+    words = [mine.name, *logins, *subjects]
     if not (
         mine.who.isalpha() and mine.who == folded(mine.name)
     ):  # else it is the name, written as any other word
-        told.append(mine.who)
-    told += [str(value) for title, value in (mine.columns or {}).items() if identifies(title)]
-    told += [row.student for row in connection.execute(issued)]
-    return frozenset(one.strip() for one in told if one and one.strip())
+        words.append(mine.who)
+    words += [str(value) for title, value in (mine.columns or {}).items() if identifies(title)]
+    words += [row.student for row in connection.execute(issued)]
+    return frozenset(word.strip() for word in words if word and word.strip())
 
 
-def conditions(connection: Connection, who: Whose) -> dict[str, tuple[Table, ColumnElement[bool]]]:
+def conditions(connection: Connection, known_as: Whose) -> dict[str, tuple[Table, ColumnElement[bool]]]:
     """Return the condition that selects the person's rows of each table, in an order in which they can be
     deleted."""
-    deliveries = select(delivery.c.id).where(delivery.c.person_id == who.person)
-    markings = ids_of(connection, marking, who)
-    own_answers = or_(answer.c.delivery_id.in_(deliveries), answer.c.id.in_(_answers(connection, who)))
+    deliveries = select(delivery.c.id).where(delivery.c.person_id == known_as.person)
+    markings = ids_of(connection, marking, known_as)
+    own_answers = or_(answer.c.delivery_id.in_(deliveries), answer.c.id.in_(_answers(connection, known_as)))
     return {
         "mark": (mark, mark.c.marking_id.in_(markings)),
         "marking": (marking, marking.c.id.in_(markings)),
-        "decision": (decision, decision.c.id.in_(ids_of(connection, decision, who))),
+        "decision": (decision, decision.c.id.in_(ids_of(connection, decision, known_as))),
         "answer": (answer, own_answers),
-        "rejected": (rejected, rejected.c.id.in_(_rejected(connection, who))),
-        "delivery": (delivery, delivery.c.person_id == who.person),
-        "scanned": (scanned, scanned.c.id.in_(ids_of(connection, scanned, who))),
-        "typed": (typed, typed.c.id.in_(ids_of(connection, typed, who))),
-        "dealt": (dealt, or_(dealt.c.person_id == who.person, dealt.c.id.in_(_dealt(connection, who)))),
-        "extension": (extension, extension.c.person_id == who.person),
-        "draft": (draft, draft.c.person_id == who.person),
-        "prepared": (prepared, prepared.c.person_id == who.person),
-        "progress": (progress, progress.c.person_id == who.person),
-        "identity": (identity, identity.c.person_id == who.person),
-        "session": (session, session.c.person_id == who.person),
-        "area": (area, area.c.person_id == who.person),
-        "account": (account, account.c.person_id == who.person),
-        "person": (person, person.c.id == who.person),
+        "rejected": (rejected, rejected.c.id.in_(_rejected(connection, known_as))),
+        "delivery": (delivery, delivery.c.person_id == known_as.person),
+        "scanned": (scanned, scanned.c.id.in_(ids_of(connection, scanned, known_as))),
+        "typed": (typed, typed.c.id.in_(ids_of(connection, typed, known_as))),
+        "dealt": (dealt, or_(dealt.c.person_id == known_as.person, dealt.c.id.in_(_dealt(connection, known_as)))),
+        "extension": (extension, extension.c.person_id == known_as.person),
+        "draft": (draft, draft.c.person_id == known_as.person),
+        "prepared": (prepared, prepared.c.person_id == known_as.person),
+        "progress": (progress, progress.c.person_id == known_as.person),
+        "identity": (identity, identity.c.person_id == known_as.person),
+        "session": (session, session.c.person_id == known_as.person),
+        "area": (area, area.c.person_id == known_as.person),
+        "account": (account, account.c.person_id == known_as.person),
+        "person": (person, person.c.id == known_as.person),
     }  # fmt: skip
 
 
-def ids_of(connection: Connection, table: Table, who: Whose) -> list[int]:
+def ids_of(connection: Connection, table: Table, known_as: Whose) -> list[int]:
     """Return the ids of the person's rows in a table with the columns assignment and student."""
-    numbers = {number for number, _ in who.students}
-    found = select(table.c.id, table.c.assignment_id, table.c.student).where(
+    numbers = {number for number, _ in known_as.students}
+    query = select(table.c.id, table.c.assignment_id, table.c.student).where(
         table.c.assignment_id.in_(numbers)
     )
-    return [row.id for row in connection.execute(found) if who.answers_to(row.assignment_id, row.student)]
+    return [
+        row.id for row in connection.execute(query) if known_as.answers_to(row.assignment_id, row.student)
+    ]
 
 
-def _dealt(connection: Connection, who: Whose) -> list[int]:
+def _dealt(connection: Connection, known_as: Whose) -> list[int]:
     """Return the ids of the variants issued under the person's name without a roster."""
-    found = (
+    query = (
         select(dealt.c.id, dealt.c.student, variant.c.assignment_id)
         .join(variant)
         .where(dealt.c.person_id.is_(None), dealt.c.student != "")
     )
-    return [row.id for row in connection.execute(found) if who.answers_to(row.assignment_id, row.student)]
+    return [
+        row.id for row in connection.execute(query) if known_as.answers_to(row.assignment_id, row.student)
+    ]
 
 
-def _answers(connection: Connection, who: Whose) -> list[int]:
-    numbers = {number for number, _ in who.students}
-    found = (
+def _answers(connection: Connection, known_as: Whose) -> list[int]:
+    numbers = {number for number, _ in known_as.students}
+    query = (
         select(answer.c.id, delivery.c.assignment_id, answer.c.student)
         .join(delivery)
         .where(delivery.c.assignment_id.in_(numbers))
     )
-    return [row.id for row in connection.execute(found) if who.answers_to(row.assignment_id, row.student)]
+    return [
+        row.id for row in connection.execute(query) if known_as.answers_to(row.assignment_id, row.student)
+    ]
 
 
-def _rejected(connection: Connection, who: Whose) -> list[int]:
+def _rejected(connection: Connection, known_as: Whose) -> list[int]:
     """Return the ids of rejected rows that name this person."""
-    own = {folded(word) for word in who.words}
-    found = []
+    names = {folded(word) for word in known_as.words}
+    ids = []
     for row in connection.execute(select(rejected.c.id, rejected.c.row)):
-        told = row.row.values() if isinstance(row.row, Mapping) else ()
-        if any(isinstance(one, str) and folded(one) in own for one in told):
-            found.append(row.id)
-    return found
+        cells = row.row.values() if isinstance(row.row, Mapping) else ()
+        if any(isinstance(cell, str) and folded(cell) in names for cell in cells):
+            ids.append(row.id)
+    return ids
 
 
-def belongings(connection: Connection, who: Whose) -> dict[str, list[dict[str, Any]]]:
+def belongings(connection: Connection, known_as: Whose) -> dict[str, list[dict[str, Any]]]:
     """Return all stored data of a person: the rows of each table, and the audit entries about the person."""
-    found = {}
-    for name, (table, mine) in reversed(conditions(connection, who).items()):
-        columns = [one for one in table.c if one.name not in _HIDDEN.get(name, ())]
+    data = {}
+    for name, (table, mine) in reversed(conditions(connection, known_as).items()):
+        columns = [column for column in table.c if column.name not in _HIDDEN.get(name, ())]
         chosen = select(*columns).where(mine).order_by(*table.primary_key)
-        found[name] = [dict(row._mapping) for row in connection.execute(chosen)]
-    found["dealt"] = _papers(connection, who)
+        data[name] = [dict(row._mapping) for row in connection.execute(chosen)]
+    data["dealt"] = _papers(connection, known_as)
     noted = connection.execute(select(audit).order_by(audit.c.id))
-    found["audit"] = [_of_audit(row, who) for row in noted if _tells_of(row, who)]
-    return found
+    data["audit"] = [_of_audit(row, known_as) for row in noted if _tells_of(row, known_as)]
+    return data
 
 
-def _of_audit(row: Any, who: Whose) -> dict[str, Any]:
+def _of_audit(row: Any, known_as: Whose) -> dict[str, Any]:
     """Return a line of the audit; from where it was done, only where the person did it."""
-    told = dict(row._mapping)
-    return told if row.actor == who.person else {**told, "address": None}
+    entry = dict(row._mapping)
+    return entry if row.actor == known_as.person else {**entry, "address": None}
 
 
-def _tells_of(row: Any, who: Whose) -> bool:
+def _tells_of(row: Any, known_as: Whose) -> bool:
     about = row.about if isinstance(row.about, Mapping) else {}
     people = about.get("people")
     return (
-        (who.name != "" and row.by == who.name)
-        or about.get("person") == who.person
-        or (isinstance(people, list) and who.person in people)
+        (known_as.name != "" and row.by == known_as.name)
+        or about.get("person") == known_as.person
+        or (isinstance(people, list) and known_as.person in people)
     )
 
 
-def _papers(connection: Connection, who: Whose) -> list[dict[str, Any]]:
+def _papers(connection: Connection, known_as: Whose) -> list[dict[str, Any]]:
     """Return the variants issued to the person, with their given values."""
-    found = (
+    query = (
         select(
             assignment.c.id.label("assignment_id"), assignment.c.name.label("assignment"), dealt.c.student, dealt.c.sitting,
             dealt.c.lang, variant.c.exercise, variant.c.seed, variant.c.record,
         )
         .select_from(dealt.join(variant).join(assignment))
-        .where(conditions(connection, who)["dealt"][1])
+        .where(conditions(connection, known_as)["dealt"][1])
         .order_by(dealt.c.id)
     )  # fmt: skip
-    return [dict(row._mapping) for row in connection.execute(found)]
+    return [dict(row._mapping) for row in connection.execute(query)]

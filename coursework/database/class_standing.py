@@ -109,7 +109,7 @@ class ClassNow:
     @cached_property
     def graded(self) -> dict[SheetPlace, Graded]:
         """As they stand: what people decided counts."""
-        return {place: self.decisions.apply(one) for place, one in self.machine.items()}
+        return {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
 
     @cached_property
     def book(self) -> Gradebook:
@@ -122,12 +122,12 @@ class ClassNow:
         if self.facts is not None:
             self.facts.tell(book)
         if self.is_part:
-            for one in self.graded.values():
-                book.add(one)
+            for graded in self.graded.values():
+                book.add(graded)
             return book
         both: dict[SheetPlace, Graded | str] = {**self.graded, **self.faults}
-        for one in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
-            book.add(one)
+        for graded in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
+            book.add(graded)
         return book
 
     @cached_property
@@ -137,24 +137,25 @@ class ClassNow:
 
     @cached_property
     def last_sitting(self) -> dict[str, int]:
-        found: dict[str, int] = {}
-        for one in self.machine.values():
-            found[one.student] = max(found.get(one.student, 0), one.sitting)
-        return found
+        last: dict[str, int] = {}
+        for graded in self.machine.values():
+            last[graded.student] = max(last.get(graded.student, 0), graded.sitting)
+        return last
 
     @cached_property
     def one_sitting(self) -> bool:
         """True if no student has several attempts."""
         sittings: dict[str, int] = {}
         return all(
-            sittings.setdefault(one.student, one.sitting) == one.sitting for one in self.machine.values()
+            sittings.setdefault(graded.student, graded.sitting) == graded.sitting
+            for graded in self.machine.values()
         )
 
-    def matters(self, one: Graded) -> bool:
+    def matters(self, graded: Graded) -> bool:
         """Return True if a sheet belongs to the attempt that counts, or to the last one."""
         if self.one_sitting:
             return True
-        return one.sitting in (self.results[one.student].sitting, self.last_sitting[one.student])
+        return graded.sitting in (self.results[graded.student].sitting, self.last_sitting[graded.student])
 
     # ----------------------------------------------------------------- questions
 
@@ -171,8 +172,8 @@ class ClassNow:
         )
 
     def _in_order(self, name: str, parts: Mapping[str, None]) -> list[str]:
-        known = [p.id for p in self.course[name].spec.parts] if name in self.course else []
-        return sorted(parts, key=lambda part: known.index(part) if part in known else len(known))
+        order = [p.id for p in self.course[name].spec.parts] if name in self.course else []
+        return sorted(parts, key=lambda part: order.index(part) if part in order else len(order))
 
     @cached_property
     def drawn(self) -> frozenset[tuple[str, str]]:
@@ -188,8 +189,8 @@ class ClassNow:
     def number(self, exercise: str, part: str) -> str:
         """Return the number of a question on the papers, such as ``2.3``."""
         names = list(dict.fromkeys(name for name, _ in self.questions))
-        own = [p for name, p in self.questions if name == exercise]
-        return f"{names.index(exercise) + 1}.{own.index(part) + 1}"
+        exercise_parts = [p for name, p in self.questions if name == exercise]
+        return f"{names.index(exercise) + 1}.{exercise_parts.index(part) + 1}"
 
     # ------------------------------------------------------------------- waiting
 
@@ -204,38 +205,38 @@ class ClassNow:
 
     @cached_property
     def _groups_that_matter(self) -> list[Group]:
-        return self._grouped(one for one in self.machine.values() if self.matters(one))
+        return self._grouped(graded for graded in self.machine.values() if self.matters(graded))
 
-    def _grouped(self, shown: Iterable[Graded]) -> list[Group]:
-        return groups(shown, self.measures, self.questions, self.drawn)
+    def _grouped(self, sheets: Iterable[Graded]) -> list[Group]:
+        return groups(sheets, self.measures, self.questions, self.drawn)
 
     @cached_property
     def measures(self) -> dict[tuple[str, str, int, int], Measure]:
         """Measures by which sheets are compared, by student, exercise, seed and attempt."""
         return {
-            (*place[:3], self.machine[place].sitting): self.measured[number]
-            for place, number in self.numbers.items()
+            (*sheet[:3], self.machine[sheet].sitting): self.measured[number]
+            for sheet, number in self.numbers.items()
             if number in self.measured
         }
 
     @cached_property
     def open(self) -> dict[str, Open]:
         """Groups that wait for a person, by id, in order; including those that are looked at only on request."""
-        found = {}
+        open_groups = {}
         for group in self.groups:
-            members = tuple(one for one in group.members if not self.is_decided(one))
+            members = tuple(answer for answer in group.members if not self.is_decided(answer))
             if members:
-                found[group.id] = Open(group, members)
-        return found
+                open_groups[group.id] = Open(group, members)
+        return open_groups
 
-    def is_decided(self, one: Waits) -> bool:
-        return self.decisions.standing(one.sheet, one.mark) is not None
+    def is_decided(self, answer: Waits) -> bool:
+        return self.decisions.standing(answer.sheet, answer.mark) is not None
 
     @property
     def waiting(self) -> int:
         """Number of answers and rows that wait for a person."""
-        asked = sum(len(one.members) for one in self.open.values() if one.why not in SHOWN_ON_REQUEST)
-        return asked + sum(one.waits for one in self.named)
+        answers = sum(len(group.members) for group in self.open.values() if group.why not in SHOWN_ON_REQUEST)
+        return answers + sum(row.waits for row in self.named)
 
     @cached_property
     def unplaced(self) -> tuple[tuple[str, Rejected, str, str], ...]:
@@ -247,32 +248,32 @@ class ClassNow:
     @cached_property
     def rejected(self) -> tuple[RejectedRow, ...]:
         """Every row that could not be placed, with what became of it."""
-        return tuple(RejectedRow(*one, self.placings.get(one[0])) for one in self.unplaced)
+        return tuple(RejectedRow(*unplaced, self.placings.get(unplaced[0])) for unplaced in self.unplaced)
 
     @property
     def of_nobody(self) -> int:
         """Number of waiting rows, on the page of files, that name no student of the class."""
-        return sum(one.waits for one in self.rejected) - sum(one.waits for one in self.named)
+        return sum(row.waits for row in self.rejected) - sum(row.waits for row in self.named)
 
     @property
     def named(self) -> tuple[RejectedRow, ...]:
         """Those of a student of the class."""
-        return tuple(one for one in self.rejected if one.student and one.student in self.issued.students)
+        return tuple(row for row in self.rejected if row.student and row.student in self.issued.students)
 
 
 def named_by(issued: Issued, row: Rejected) -> tuple[str, str]:
     """Return whom a rejected row names, as issued, and whose name is like that of a stranger."""
-    told = row.row.get("student", "")
-    student = issued.student(told) if told else None
-    is_one = told and student is None and len(namesakes(told, issued.students)) < 2
-    near = closest(told[:60], issued.students) if is_one else None
+    name = row.row.get("student", "")
+    student = issued.student(name) if name else None
+    is_one = name and student is None and len(namesakes(name, issued.students)) < 2
+    near = closest(name[:60], issued.students) if is_one else None
     return student or "", near or ""
 
 
 def row_id(row: Rejected) -> str:
     """Return the digest that identifies a rejected row."""
-    told = "\0".join((row.source, *(f"{k}={v}" for k, v in sorted(row.row.items()))))
-    return sha256(told.encode("utf-8", "backslashreplace")).hexdigest()[:32]
+    text = "\0".join((row.source, *(f"{k}={v}" for k, v in sorted(row.row.items()))))
+    return sha256(text.encode("utf-8", "backslashreplace")).hexdigest()[:32]
 
 
 # ------------------------------------------------------------------------ reading
@@ -307,7 +308,7 @@ def read_students(
         The course cannot mark what was issued.
     """
     issued = issued_of(connection, about.id, students=students)
-    issued.students = tuple(one for one in issued.students if one in students)
+    issued.students = tuple(student for student in issued.students if student in students)
     return _read(connection, course, about, issued, Sheets(rejected=list(rejected)), students, facts)
 
 
@@ -323,7 +324,7 @@ def read_rows(
     """
     issued = issued_of(connection, about.id)
     sheets = placed(course, issued, rows_of(connection, about.id))
-    faults = {place: one.fault for place, one in stood(connection, about.id).items() if one.fault}
+    faults = {sheet: last.fault for sheet, last in stood(connection, about.id).items() if last.fault}
     list(rejecting(sheets, ((p, why) for p, why in faults.items() if p in sheets.sheets)))
     return tuple((row_id(row), row, *named_by(issued, row)) for row in sheets.rejected)
 
@@ -338,12 +339,12 @@ def _read(
     facts: Facts | None = None,
 ) -> ClassNow:
     last = stood(connection, about.id, students)
-    found = dict(machine_marks(issued, last.values(), lines_of(connection, last.values())))
-    machine = {place: one for place, one in found.items() if not isinstance(one, str)}
-    numbers = {place: last[place].id for place in machine}
+    marks = dict(machine_marks(issued, last.values(), lines_of(connection, last.values())))
+    machine = {sheet: result for sheet, result in marks.items() if not isinstance(result, str)}
+    numbers = {sheet: last[sheet].id for sheet in machine}
     measured = dict(zip(numbers.values(), measures(course, issued, list(machine.values())), strict=True))
-    faults = {place: one for place, one in found.items() if isinstance(one, str)}
-    firsts = {place: last[place].first for place in machine}
+    faults = {sheet: result for sheet, result in marks.items() if isinstance(result, str)}
+    firsts = {sheet: last[sheet].first for sheet in machine}
     return ClassNow(
         course, about, issued, stamp(connection, about.id), machine, numbers, firsts, measured, sheets,
         faults if students is None else {}, Decisions.read(connection, about.id, students),

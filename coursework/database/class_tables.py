@@ -81,10 +81,10 @@ class Outline(NamedTuple):
 
 def outline_stamp(connection: Connection, number: int) -> tuple[int, int]:
     """Return what tells whether the outline of an assignment may be another: variants are only added, or erased."""
-    found = select(func.count(), func.coalesce(func.max(variant.c.id), 0)).where(
+    query = select(func.count(), func.coalesce(func.max(variant.c.id), 0)).where(
         variant.c.assignment_id == number
     )
-    count, last = connection.execute(found).one()
+    count, last = connection.execute(query).one()
     return int(count), int(last)
 
 
@@ -96,11 +96,11 @@ def outline(connection: Connection, number: int) -> Outline:
         .where(variant.c.assignment_id == number)
         .group_by(variant.c.exercise, text)
     ).subquery()
-    found = select(variant.c.exercise, variant.c.record["parts"].label("parts")).join(
+    query = select(variant.c.exercise, variant.c.record["parts"].label("parts")).join(
         first, first.c.id == variant.c.id
     )
     worth: dict[Question, float] = {}
-    for row in connection.execute(found.order_by(variant.c.id)):
+    for row in connection.execute(query.order_by(variant.c.id)):
         worth.update({(row.exercise, str(part["id"])): float(part["points"]) for part in row.parts})
     return Outline(worth)
 
@@ -131,22 +131,22 @@ class StudentsPage(NamedTuple):
 
 
 def students_page(
-    connection: Connection, number: int, asked: Asked, scope: Scope = ALL, question: Question | None = None
+    connection: Connection, number: int, request: Asked, scope: Scope = ALL, question: Question | None = None
 ) -> StudentsPage:
     """Return a page of the class table; ``question`` is that of the order, where it is one."""
-    own = and_(student_total.c.assignment_id == number, scope.of_students(student_total.c.student))
-    shown = and_(own, _finds(student_total.c.search, asked.find))
-    if asked.since:
-        shown = and_(shown, student_total.c.id > asked.since)
-    count = select(func.count()).select_from(student_total).where(shown).scalar_subquery()
-    last = select(func.max(student_total.c.id)).where(own).scalar_subquery()
-    found, latest = connection.execute(select(count, last)).one()
-    pages = max(1, -(-int(found) // PAGE))
-    first = (min(max(asked.page, 1), pages) - 1) * PAGE
-    ordered = _in_order(select(student_total).where(shown), number, asked.sort, question)
+    of_class = and_(student_total.c.assignment_id == number, scope.of_students(student_total.c.student))
+    is_found = and_(of_class, _finds(student_total.c.search, request.find))
+    if request.since:
+        is_found = and_(is_found, student_total.c.id > request.since)
+    count = select(func.count()).select_from(student_total).where(is_found).scalar_subquery()
+    last = select(func.max(student_total.c.id)).where(of_class).scalar_subquery()
+    found_count, latest = connection.execute(select(count, last)).one()
+    pages = max(1, -(-int(found_count) // PAGE))
+    first = (min(max(request.page, 1), pages) - 1) * PAGE
+    ordered = _in_order(select(student_total).where(is_found), number, request.sort, question)
     rows = connection.execute(ordered.offset(first).limit(PAGE)).all()
     return StudentsPage(
-        rows, cells_of(connection, number, [row.student for row in rows]), int(found), int(latest or 0)
+        rows, cells_of(connection, number, [row.student for row in rows]), int(found_count), int(latest or 0)
     )
 
 
@@ -155,8 +155,8 @@ def _finds(column: ColumnElement[str], sought: str) -> ColumnElement[bool]:
     return column.contains(plain, autoescape=True) if plain else true()
 
 
-def _in_order(found: Select[Any], number: int, sort: str, question: Question | None) -> Select[Any]:
-    place = student_total.c.place, student_total.c.student
+def _in_order(query: Select[Any], number: int, sort: str, question: Question | None) -> Select[Any]:
+    class_order = student_total.c.place, student_total.c.student
     if question is not None:
         cell = and_(
             answer_now.c.assignment_id == number,
@@ -165,8 +165,8 @@ def _in_order(found: Select[Any], number: int, sort: str, question: Question | N
             answer_now.c.part == question[1],
             answer_now.c.is_cell.is_(True),
         )
-        joined = found.outerjoin(answer_now, cell)
-        return joined.order_by(answer_now.c.id.is_(None), answer_now.c.points, *place)
+        joined = query.outerjoin(answer_now, cell)
+        return joined.order_by(answer_now.c.id.is_(None), answer_now.c.points, *class_order)
     by: dict[str, list[ColumnElement[Any]]] = {
         "name": [student_total.c.search.asc()],
         "total": [student_total.c.points.desc()],
@@ -174,30 +174,30 @@ def _in_order(found: Select[Any], number: int, sort: str, question: Question | N
         "late": [student_total.c.late.desc()],
         "tries": [student_total.c.tries.desc()],
     }
-    return found.order_by(*by.get(sort, []), *place)
+    return query.order_by(*by.get(sort, []), *class_order)
 
 
 def cells_of(
     connection: Connection, number: int, students: Collection[str]
 ) -> dict[str, dict[Question, Any]]:
     """Return the answers of students that stand in the class table."""
-    own = answer_now.c.assignment_id == number, answer_now.c.student.in_(list(students))
+    of_students = answer_now.c.assignment_id == number, answer_now.c.student.in_(list(students))
     columns = [
         answer_now.c[name]
         for name in ("student", "exercise", "part", "verdict", "points", "out_of", "by_hand")
     ]
-    found: dict[str, dict[Question, Any]] = {}
-    for row in connection.execute(select(*columns).where(*own, answer_now.c.is_cell.is_(True))):
-        found.setdefault(row.student, {})[row.exercise, row.part] = row
-    return found
+    cells: dict[str, dict[Question, Any]] = {}
+    for row in connection.execute(select(*columns).where(*of_students, answer_now.c.is_cell.is_(True))):
+        cells.setdefault(row.student, {})[row.exercise, row.part] = row
+    return cells
 
 
 def means(connection: Connection, number: int, scope: Scope = ALL) -> dict[Question, tuple[float, int]]:
     """Return the sum of the points of each question, and of how many students who handed in."""
-    own = answer_now.c.assignment_id == number, answer_now.c.is_cell.is_(True)
+    is_cell = answer_now.c.assignment_id == number, answer_now.c.is_cell.is_(True)
     columns = answer_now.c.exercise, answer_now.c.part, func.sum(answer_now.c.points), func.count()
-    found = select(*columns).where(*own, scope.of_students(answer_now.c.student))
-    rows = connection.execute(found.group_by(answer_now.c.exercise, answer_now.c.part))
+    query = select(*columns).where(*is_cell, scope.of_students(answer_now.c.student))
+    rows = connection.execute(query.group_by(answer_now.c.exercise, answer_now.c.part))
     return {(row[0], row[1]): (float(row[2]), int(row[3])) for row in rows}
 
 
@@ -215,20 +215,20 @@ class Totals(NamedTuple):
 
 def totals(connection: Connection, number: int | None = None, scope: Scope = ALL) -> dict[int, Totals]:
     """Return the totals of assignments, or of one."""
-    found = select(assignment_total).where(scope.of_assignments(assignment_total.c.assignment_id))
+    query = select(assignment_total).where(scope.of_assignments(assignment_total.c.assignment_id))
     if number is not None:
-        found = found.where(assignment_total.c.assignment_id == number)
+        query = query.where(assignment_total.c.assignment_id == number)
     rows = _rows_waiting(connection, number)
     return {
-        one.assignment_id: Totals(
-            one.students,
-            one.handed_in,
-            one.answered,
-            one.waiting,
-            *rows.get(one.assignment_id, (0, 0)),
-            one.version,
+        row.assignment_id: Totals(
+            row.students,
+            row.handed_in,
+            row.answered,
+            row.waiting,
+            *rows.get(row.assignment_id, (0, 0)),
+            row.version,
         )
-        for one in connection.execute(found)
+        for row in connection.execute(query)
     }
 
 
@@ -246,15 +246,15 @@ def _waits() -> ColumnElement[bool]:
 def _rows_waiting(connection: Connection, number: int | None) -> dict[int, tuple[int, int]]:
     """Return how many rows wait, of students of the class and of nobody, by assignment."""
     named = case((_is_named(), 1), else_=0)
-    found = (
+    query = (
         select(unplaced.c.assignment_id, func.sum(named), func.count())
         .join(assignment, assignment.c.id == unplaced.c.assignment_id)
         .where(_waits())
         .group_by(unplaced.c.assignment_id)
     )
     if number is not None:
-        found = found.where(unplaced.c.assignment_id == number)
-    return {row[0]: (int(row[1]), int(row[2]) - int(row[1])) for row in connection.execute(found)}
+        query = query.where(unplaced.c.assignment_id == number)
+    return {row[0]: (int(row[1]), int(row[2]) - int(row[1])) for row in connection.execute(query)}
 
 
 # -------------------------------------------------------------------------- cards
@@ -265,10 +265,10 @@ def _cards(number: int, order: Sequence[Question] = (), scope: Scope = ALL) -> C
     most wrote first."""
     at = answer_now.c
     question = at.exercise, at.part
-    own = and_(at.assignment_id == number, scope.of_students(at.student))
+    of_students = and_(at.assignment_id == number, scope.of_students(at.student))
     answered = (
         select(*question, func.count(at.student.distinct()).label("students"))
-        .where(own, at.is_shown.is_(True))
+        .where(of_students, at.is_shown.is_(True))
         .group_by(*question)
         .subquery()
     )
@@ -283,18 +283,18 @@ def _cards(number: int, order: Sequence[Question] = (), scope: Scope = ALL) -> C
             students.label("students"),
             func.min(at.first).label("first"),
         )
-        .where(own, at.card.is_not(None))
+        .where(of_students, at.card.is_not(None))
         .group_by(at.card, at.why, *question)
         .having(or_(at.why != "often", students >= OFTEN))
         .subquery()
     )
     same = and_(answered.c.exercise == grouped.c.exercise, answered.c.part == grouped.c.part)
     places = [
-        (and_(grouped.c.exercise == exercise, grouped.c.part == part), place)
-        for place, (exercise, part) in enumerate(order)
+        (and_(grouped.c.exercise == exercise, grouped.c.part == part), position)
+        for position, (exercise, part) in enumerate(order)
     ]
     rank = case(*places, else_=len(order)) if places else literal(0)
-    whys = [(grouped.c.why == name, place) for place, name in enumerate(WHY)]
+    whys = [(grouped.c.why == name, position) for position, name in enumerate(WHY)]
     why = case(*whys, else_=len(WHY))
     number_of = func.row_number().over(
         order_by=(rank, why, grouped.c.members.desc(), grouped.c.first, grouped.c.card)
@@ -311,8 +311,8 @@ def _cards(number: int, order: Sequence[Question] = (), scope: Scope = ALL) -> C
 def answers_waiting(connection: Connection, number: int, scope: Scope = ALL) -> int:
     """Return how many answers wait for a person, without those that are looked at on request alone."""
     cards = _cards(number, (), scope)
-    asked = select(func.coalesce(func.sum(cards.c.open), 0)).where(cards.c.why.not_in(SHOWN_ON_REQUEST))
-    return int(connection.execute(asked).scalar_one())
+    query = select(func.coalesce(func.sum(cards.c.open), 0)).where(cards.c.why.not_in(SHOWN_ON_REQUEST))
+    return int(connection.execute(query).scalar_one())
 
 
 class Filter(NamedTuple):
@@ -323,12 +323,12 @@ class Filter(NamedTuple):
     part: str = ""
 
     def of(self, cards: CTE) -> ColumnElement[bool]:
-        told = [cards.c.open > 0]
-        told.append(cards.c.why == self.why if self.why else cards.c.why.not_in(SHOWN_ON_REQUEST))
+        conditions = [cards.c.open > 0]
+        conditions.append(cards.c.why == self.why if self.why else cards.c.why.not_in(SHOWN_ON_REQUEST))
         if self.exercise:
-            told.append(cards.c.exercise == self.exercise)
-            told += [cards.c.part == self.part] if self.part else []
-        return and_(*told)
+            conditions.append(cards.c.exercise == self.exercise)
+            conditions += [cards.c.part == self.part] if self.part else []
+        return and_(*conditions)
 
 
 class CardRow(NamedTuple):
@@ -354,50 +354,50 @@ class Queue:
         at = self._cards.c
         return select(at.card, at.why, at.exercise, at.part, at.members, at.open, at.number)
 
-    def _rows(self, found: Select[Any]) -> list[CardRow]:
-        return [CardRow(*row) for row in self._connection.execute(found)]
+    def _rows(self, query: Select[Any]) -> list[CardRow]:
+        return [CardRow(*row) for row in self._connection.execute(query)]
 
     def card(self, name: str) -> CardRow | None:
         """Return a card by its name, decided or not."""
         return next(iter(self._rows(self._select().where(self._cards.c.card == name))), None)
 
-    def count(self, shown: Filter) -> int:
-        found = select(func.count()).select_from(self._cards).where(shown.of(self._cards))
-        return int(self._connection.execute(found).scalar_one())
+    def count(self, selection: Filter) -> int:
+        query = select(func.count()).select_from(self._cards).where(selection.of(self._cards))
+        return int(self._connection.execute(query).scalar_one())
 
-    def before(self, shown: Filter, number: int) -> int:
+    def before(self, selection: Filter, number: int) -> int:
         """Return how many cards are shown before a place among all."""
-        found = select(func.count()).select_from(self._cards)
-        told = shown.of(self._cards), self._cards.c.number < number
-        return int(self._connection.execute(found.where(*told)).scalar_one())
+        query = select(func.count()).select_from(self._cards)
+        conditions = selection.of(self._cards), self._cards.c.number < number
+        return int(self._connection.execute(query.where(*conditions)).scalar_one())
 
-    def page(self, shown: Filter, first: int, count: int = PAGE) -> list[CardRow]:
+    def page(self, selection: Filter, first: int, count: int = PAGE) -> list[CardRow]:
         """Return cards that are shown, from one of them on."""
-        found = self._select().where(shown.of(self._cards)).order_by(self._cards.c.number)
-        return self._rows(found.offset(first).limit(min(count, PAGE)))
+        query = self._select().where(selection.of(self._cards)).order_by(self._cards.c.number)
+        return self._rows(query.offset(first).limit(min(count, PAGE)))
 
-    def after(self, shown: Filter, number: int) -> CardRow | None:
+    def after(self, selection: Filter, number: int) -> CardRow | None:
         """Return the first card that is shown from a place among all on; after the last comes the first."""
         at = self._cards.c.number
-        found = self._select().where(shown.of(self._cards)).order_by(at < number, at)
-        return next(iter(self._rows(found.limit(1))), None)
+        query = self._select().where(selection.of(self._cards)).order_by(at < number, at)
+        return next(iter(self._rows(query.limit(1))), None)
 
     def by_why(self) -> dict[str, int]:
         """Return how many cards wait, by why."""
-        found = select(self._cards.c.why, func.count()).where(self._cards.c.open > 0)
-        return {row[0]: int(row[1]) for row in self._connection.execute(found.group_by(self._cards.c.why))}
+        query = select(self._cards.c.why, func.count()).where(self._cards.c.open > 0)
+        return {row[0]: int(row[1]) for row in self._connection.execute(query.group_by(self._cards.c.why))}
 
-    def by_question(self, shown: Filter) -> dict[Question, int]:
+    def by_question(self, selection: Filter) -> dict[Question, int]:
         """Return how many cards wait, by question."""
         question = self._cards.c.exercise, self._cards.c.part
-        everywhere = shown._replace(exercise="", part="").of(self._cards)
-        found = select(*question, func.count()).where(everywhere).group_by(*question)
-        return {(row[0], row[1]): int(row[2]) for row in self._connection.execute(found)}
+        everywhere = selection._replace(exercise="", part="").of(self._cards)
+        query = select(*question, func.count()).where(everywhere).group_by(*question)
+        return {(row[0], row[1]): int(row[2]) for row in self._connection.execute(query)}
 
     def done(self) -> int:
         """Return how many answers of the cards were decided."""
-        found = select(func.coalesce(func.sum(self._cards.c.members - self._cards.c.open), 0))
-        return int(self._connection.execute(found).scalar_one())
+        query = select(func.coalesce(func.sum(self._cards.c.members - self._cards.c.open), 0))
+        return int(self._connection.execute(query).scalar_one())
 
     def alike(self, card: CardRow) -> list[str]:
         """Return the other cards on which the same cannot be read."""
@@ -419,14 +419,14 @@ class Queue:
 
     def _members(self, names: Collection[str], *columns: Any, open_only: bool) -> Select[Any]:
         at = answer_now.c
-        own = [
+        conditions = [
             at.assignment_id == self._number,
             at.card.in_(list(names)),
             self._scope.of_students(at.student),
             *([at.decided.is_(False)] if open_only else []),
         ]
         joined = answer_now.join(mark, and_(mark.c.marking_id == at.marking, mark.c.part == at.part))
-        return select(*columns).select_from(joined).where(*own).order_by(at.first, at.place)
+        return select(*columns).select_from(joined).where(*conditions).order_by(at.first, at.place)
 
     def members(self, names: Collection[str], *, open_only: bool, limit: int | None = None) -> list[Any]:
         """Return answers of cards in the order of arrival: id, student, exercise, seed, attempt, part,
@@ -441,14 +441,14 @@ class Queue:
         """Return the first answers of a card that were decided."""
         at = answer_now.c
         columns = at.id, at.student, at.exercise, at.seed, at.sitting, at.part, at.decided, mark.c.answer
-        found = self._members([name], *columns, open_only=False).where(at.decided.is_(True))
-        return list(self._connection.execute(found.limit(limit)))
+        query = self._members([name], *columns, open_only=False).where(at.decided.is_(True))
+        return list(self._connection.execute(query.limit(limit)))
 
     def spellings(self, name: str, limit: int) -> list[str]:
         """Return the first ways in which the same was written."""
         at = answer_now.c
-        found = self._members([name], mark.c.answer, open_only=False).order_by(None)
-        first = found.group_by(mark.c.answer).order_by(func.min(at.first)).limit(limit)
+        query = self._members([name], mark.c.answer, open_only=False).order_by(None)
+        first = query.group_by(mark.c.answer).order_by(func.min(at.first)).limit(limit)
         return list(self._connection.execute(first).scalars())
 
 
@@ -479,17 +479,26 @@ def rows_page(
     student: str | None = None, exercise: str = "", part: str = "", scope: Scope = ALL, count: int = PAGE,
 ) -> tuple[list[RowHere], int]:  # fmt: skip
     """Return rows that could not be placed, from one of them on, and how many there are."""
-    told = [unplaced.c.assignment_id == number]
+    conditions = [unplaced.c.assignment_id == number]
     if scope.students is not None:
-        told.append(scope.of_students(unplaced.c.student))
-    told += [_is_named()] if named else []
-    told += [_waits()] if waiting else []
-    told += [unplaced.c.row == row] if row else []
-    told += [unplaced.c.student == student] if student is not None else []
-    told += [unplaced.c.said["exercise"].as_string() == exercise] if exercise else []
-    told += [unplaced.c.said["part"].as_string() == part] if part else []
+        conditions.append(scope.of_students(unplaced.c.student))
+    conditions += [_is_named()] if named else []
+    conditions += [_waits()] if waiting else []
+    conditions += [unplaced.c.row == row] if row else []
+    conditions += [unplaced.c.student == student] if student is not None else []
+    conditions += [unplaced.c.said["exercise"].as_string() == exercise] if exercise else []
+    conditions += [unplaced.c.said["part"].as_string() == part] if part else []
     base = unplaced.join(assignment, assignment.c.id == unplaced.c.assignment_id)
     columns = [unplaced.c[name] for name in RowHere._fields]
-    found = select(*columns).select_from(base).where(*told).order_by(unplaced.c.id).offset(first).limit(count)
-    many = select(func.count()).select_from(base).where(*told)
-    return [RowHere(*one) for one in connection.execute(found)], int(connection.execute(many).scalar_one())
+    query = (
+        select(*columns)
+        .select_from(base)
+        .where(*conditions)
+        .order_by(unplaced.c.id)
+        .offset(first)
+        .limit(count)
+    )
+    many = select(func.count()).select_from(base).where(*conditions)
+    return [RowHere(*unplaced_row) for unplaced_row in connection.execute(query)], int(
+        connection.execute(many).scalar_one()
+    )

@@ -72,39 +72,40 @@ def decide(
     places = list(places)
     if kind != WITHDRAWN:
         _check(connection, assignment_id, places, points)
-    made = datetime.now(UTC)
-    told = {
+    decided_at = datetime.now(UTC)
+    values = {
         "assignment_id": assignment_id,
         "kind": kind,
         "points": points,
         "reason": reason,
         "by": by,
-        "made": made,
+        "made": decided_at,
     }
     if places:
         connection.execute(
-            insert(decision), [{**place._asdict(), "seed": str(place.seed), **told} for place in places]
+            insert(decision),
+            [{**decided._asdict(), "seed": str(decided.seed), **values} for decided in places],
         )
-        outdate(connection, assignment_id, (place.student for place in places))
+        outdate(connection, assignment_id, (decided.student for decided in places))
 
 
 def _check(connection: Connection, assignment_id: int, places: Sequence[Place], points: float | None) -> None:
     """Refuse what there is not, and more points than there are."""
-    exercises = {place.exercise for place in places}
-    found = select(variant.c.exercise, variant.c.record["parts"].label("parts")).where(
+    exercises = {answer.exercise for answer in places}
+    query = select(variant.c.exercise, variant.c.record["parts"].label("parts")).where(
         variant.c.assignment_id == assignment_id, variant.c.exercise.in_(exercises)
     )
     worth: dict[str, dict[str, float]] = {}
-    for row in connection.execute(found):
+    for row in connection.execute(query):
         worth.setdefault(row.exercise, {}).update({str(p["id"]): float(p["points"]) for p in row.parts})
-    for place in places:
-        parts = worth.get(place.exercise)
+    for answer in places:
+        parts = worth.get(answer.exercise)
         if parts is None:
-            raise UnknownName(f"no exercise {place.exercise!r} was issued")
-        if place.part not in parts:
-            raise UnknownName(f"{place.exercise} has no part {place.part!r}{nearest(place.part, parts)}")
+            raise UnknownName(f"no exercise {answer.exercise!r} was issued")
+        if answer.part not in parts:
+            raise UnknownName(f"{answer.exercise} has no part {answer.part!r}{nearest(answer.part, parts)}")
         if points is not None:
-            check_points(points, place.part, parts[place.part], f"{place.student}, {place.exercise}")
+            check_points(points, answer.part, parts[answer.part], f"{answer.student}, {answer.exercise}")
 
 
 # --------------------------------------------------------------------- standing
@@ -115,27 +116,27 @@ class Decisions:
 
     def __init__(self, rows: Iterable[tuple[str, str, str, Decision]] = ()):
         self._of: dict[tuple[str, str, str], list[Decision]] = {}
-        for student, exercise, part, one in rows:
-            self._of.setdefault((folded(student), exercise, part), []).append(one)
+        for student, exercise, part, decided in rows:
+            self._of.setdefault((folded(student), exercise, part), []).append(decided)
 
     @staticmethod
     def read(
         connection: Connection, assignment_id: int, student: str | Collection[str] | None = None
     ) -> Decisions:
         """Return the decisions on an assignment in their order; of one student or of several, if given."""
-        found = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
+        query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
         if student is not None:
             names = [student] if isinstance(student, str) else list(student)
             # A file may spell a name in another way: what is spelled as nobody's is compared by hand.
-            known = select(student_total.c.id).where(
+            is_student = select(student_total.c.id).where(
                 student_total.c.assignment_id == assignment_id, student_total.c.student == decision.c.student
             )
-            found = found.where(or_(decision.c.student.in_(names), ~known.exists()))
-        own = None if student is None else frozenset(map(folded, names))
+            query = query.where(or_(decision.c.student.in_(names), ~is_student.exists()))
+        folded_names = None if student is None else frozenset(map(folded, names))
         return Decisions(
             (row.student, row.exercise, row.part, _decision(row))
-            for row in connection.execute(found)
-            if own is None or folded(row.student) in own
+            for row in connection.execute(query)
+            if folded_names is None or folded(row.student) in folded_names
         )
 
     def on(self, student: str, exercise: str, part: str) -> Sequence[Decision]:
@@ -148,19 +149,19 @@ class Decisions:
 
     def given(self, graded: Graded, line: Mark) -> Decision | None:
         """Return the decision that gives points for an answer, even if the answer was also accepted."""
-        return next((one for one in self.counting(graded[:3], line) if one.kind == GIVEN), None)
+        return next((decided for decided in self.counting(graded[:3], line) if decided.kind == GIVEN), None)
 
     def counting(self, sheet: tuple[str, str, int], line: Mark) -> Iterator[Decision]:
         """Yield the decisions on exactly this answer of a sheet, the last first, as far as the last
         withdrawal."""
         student, exercise, seed = sheet
-        for one in reversed(self.on(student, exercise, line.part)):
-            if one.seed not in ("", str(seed)):
+        for decided in reversed(self.on(student, exercise, line.part)):
+            if decided.seed not in ("", str(seed)):
                 continue
-            if one.kind == WITHDRAWN:
+            if decided.kind == WITHDRAWN:
                 return
-            if one.answer is None or same_answer(one.answer, line.answer):
-                yield one
+            if decided.answer is None or same_answer(decided.answer, line.answer):
+                yield decided
 
     def apply(self, graded: Graded, lang: str = "") -> Graded:
         """Return the sheet with the marks that a person decided."""
@@ -168,19 +169,21 @@ class Decisions:
             return graded
         lines, unanswered = dict(graded.lines), list(graded.unanswered)
         for part, line in graded.lines.items():
-            if (one := self.standing(graded, line)) is not None:
-                lines[part] = _decided(line, one, lang or str(graded.record.get("lang", "fr")))
+            if (decided := self.standing(graded, line)) is not None:
+                lines[part] = _decided(line, decided, lang or str(graded.record.get("lang", "fr")))
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
 
-def _decided(line: Mark, one: Decision, lang: str) -> Mark:
-    if one.kind == GIVEN:
-        return given_mark(line, one.points or 0.0, one.reason, lang, one.by)
-    if one.kind == KEPT:
-        return line._replace(told=(*line.told, Told(one.reason, one.reason))) if one.reason else line
-    return accepted_mark(line, one.points, one.reason, lang, one.by)
+def _decided(line: Mark, decided: Decision, lang: str) -> Mark:
+    if decided.kind == GIVEN:
+        return given_mark(line, decided.points or 0.0, decided.reason, lang, decided.by)
+    if decided.kind == KEPT:
+        return (
+            line._replace(told=(*line.told, Told(decided.reason, decided.reason))) if decided.reason else line
+        )
+    return accepted_mark(line, decided.points, decided.reason, lang, decided.by)
 
 
 def _decision(row: Any) -> Decision:
@@ -213,32 +216,35 @@ def history(
     """Return the events in the history of answers, in chronological order, each with its student, exercise
     and part; of the given student, exercise or part alone."""
 
-    def asked(found: Select[Any], own: Any) -> Select[Any]:
-        for name, told in (("exercise", exercise), ("part", part)):
-            found = found.where(own[name] == told) if told else found
-        return found
+    def asked(all_events: Select[Any], folded_name: Any) -> Select[Any]:
+        for name, value in (("exercise", exercise), ("part", part)):
+            all_events = all_events.where(folded_name[name] == value) if value else all_events
+        return all_events
 
     marks = select(marking, mark).join(mark).where(marking.c.assignment_id == assignment_id)
     marks = asked(marks, {"exercise": marking.c.exercise, "part": mark.c.part}).order_by(
         marking.c.id, mark.c.place
     )
     decided = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
-    found = [
+    all_events = [
         (row.student, row.exercise, row.part, _marked(row))
         for row in connection.execute(marks)
         if row.verdict
     ]
-    found += [
+    all_events += [
         (row.student, row.exercise, row.part, _happened(row))
         for row in connection.execute(asked(decided, decision.c))
     ]
-    own = None if student is None else folded(student)
-    return sorted((one for one in found if own in (None, folded(one[0]))), key=lambda one: one[3].at)
+    folded_name = None if student is None else folded(student)
+    return sorted(
+        (event for event in all_events if folded_name in (None, folded(event[0]))),
+        key=lambda event: event[3].at,
+    )
 
 
 def _marked(row: Any) -> Happened:
-    told = row.seed, row.sitting, row.answer, row.verdict, row.points
-    return Happened(row.made, "", MARKED, *told, row.feedback)
+    answer_columns = row.seed, row.sitting, row.answer, row.verdict, row.points
+    return Happened(row.made, "", MARKED, *answer_columns, row.feedback)
 
 
 def _happened(row: Any) -> Happened:

@@ -81,23 +81,23 @@ def deliver(
     if person_id is None and not in_place:
         came_rows = _after_tries(connection, assignment_id, came_rows)
     receipt = _receipt(assignment_id, digest)
-    told = {"source": source, "number": number, "receipt": receipt, "late": late, "came": came}
-    row = {"assignment_id": assignment_id, "person_id": person_id, "digest": digest, **told}
-    made = insert_unless_there(connection, delivery, row, ("assignment_id", "digest"))
-    if made is None:
-        known = delivery_alike(connection, assignment_id, digest)
+    values = {"source": source, "number": number, "receipt": receipt, "late": late, "came": came}
+    row = {"assignment_id": assignment_id, "person_id": person_id, "digest": digest, **values}
+    number_added = insert_unless_there(connection, delivery, row, ("assignment_id", "digest"))
+    if number_added is None:
+        earlier = delivery_alike(connection, assignment_id, digest)
         if replaces:
-            _replace(connection, assignment_id, known.id, source, came)
+            _replace(connection, assignment_id, earlier.id, source, came)
             outdate_rows(connection, assignment_id)
-        return known
-    _put_rows(connection, made, came_rows)
+        return earlier
+    _put_rows(connection, number_added, came_rows)
     if replaces:
-        _replace(connection, assignment_id, made, source, came)
+        _replace(connection, assignment_id, number_added, source, came)
     if person_id is None:
         outdate_rows(connection, assignment_id)
     else:
         outdate(connection, assignment_id, [row.student for row in came_rows if isinstance(row, Row)])
-    return Delivery(made, True, source, number, receipt, late, came)
+    return Delivery(number_added, True, source, number, receipt, late, came)
 
 
 def _after_tries(
@@ -106,8 +106,8 @@ def _after_tries(
     """Return the rows of a file; those of students who submitted on the site get a later attempt number, so
     that two submissions are never merged."""
     on_site = delivery.c.assignment_id == assignment_id, delivery.c.number > 0
-    found = select(answer.c.student, func.max(delivery.c.number)).join(delivery).where(*on_site)
-    tries = {row[0]: row[1] for row in connection.execute(found.group_by(answer.c.student))}
+    query = select(answer.c.student, func.max(delivery.c.number)).join(delivery).where(*on_site)
+    tries = {row[0]: row[1] for row in connection.execute(query.group_by(answer.c.student))}
     if not tries:
         return rows
     issued = issued_of(connection, assignment_id)
@@ -138,10 +138,10 @@ def _replace(connection: Connection, assignment_id: int, number: int, source: st
 def next_number(connection: Connection, assignment_id: int, person_id: int, student: str) -> int:
     """Return the number of a person's next attempt: one more than the greatest so far, on the site or
     elsewhere."""
-    told = {"assignment": assignment_id, "person": person_id, "student": student}
+    parameters = {"assignment": assignment_id, "person": person_id, "student": student}
     return 1 + max(
         sitting if is_known else max(1, (origin or {}).get("sitting", 1))
-        for is_known, sitting, origin in connection.execute(_sittings_query(), told)
+        for is_known, sitting, origin in connection.execute(_sittings_query(), parameters)
     )
 
 
@@ -168,10 +168,10 @@ def _sittings_query() -> CompoundSelect[Any]:
 
 def delivery_alike(connection: Connection, assignment_id: int, digest: str) -> Delivery:
     """Return the submission with the given digest."""
-    found = connection.execute(
+    row = connection.execute(
         select(delivery).where(delivery.c.assignment_id == assignment_id, delivery.c.digest == digest)
     ).one()
-    return _delivery(found, is_new=False)
+    return _delivery(row, is_new=False)
 
 
 def _delivery(row: Any, *, is_new: bool) -> Delivery:
@@ -179,20 +179,20 @@ def _delivery(row: Any, *, is_new: bool) -> Delivery:
 
 
 def _put_rows(connection: Connection, number: int, rows: Sequence[Row | Rejected | Seen]) -> None:
-    found: dict[Any, list[dict[str, Any]]] = {answer: [], rejected: [], seen: []}
+    by_table: dict[Any, list[dict[str, Any]]] = {answer: [], rejected: [], seen: []}
     origins: dict[Collected, dict[str, Any]] = {}
-    for place, row in enumerate(rows):
-        key = {"delivery_id": number, "place": place}
+    for position, row in enumerate(rows):
+        key = {"delivery_id": number, "place": position}
         if isinstance(row, Row):
-            own = {**row._asdict(), "answer": _as_json(row.answer)}
+            columns = {**row._asdict(), "answer": _as_json(row.answer)}
             if row.origin is not None:
-                own["origin"] = origins.setdefault(row.origin, _origin_as_json(row.origin))
-            found[answer].append({**key, **own})
+                columns["origin"] = origins.setdefault(row.origin, _origin_as_json(row.origin))
+            by_table[answer].append({**key, **columns})
         elif isinstance(row, Rejected):
-            found[rejected].append({**key, "source": row.source, "reason": row.reason, "row": row.row})
+            by_table[rejected].append({**key, "source": row.source, "reason": row.reason, "row": row.row})
         else:
-            found[seen].append({**key, **row._asdict()})
-    for table, lines in found.items():
+            by_table[seen].append({**key, **row._asdict()})
+    for table, lines in by_table.items():
         for start in range(0, len(lines), _CHUNK):
             connection.execute(insert(table), lines[start : start + _CHUNK])
 
@@ -202,28 +202,28 @@ def _put_rows(connection: Connection, number: int, rows: Sequence[Row | Rejected
 
 def deliveries(connection: Connection, assignment_id: int, person_id: int | None = None) -> list[Delivery]:
     """Return the submissions for an assignment, in order; of one person alone, if given."""
-    told = (
+    parameters = (
         {"assignment": assignment_id}
         if person_id is None
         else {"assignment": assignment_id, "person": person_id}
     )
-    found = connection.execute(_deliveries_query(person_id is not None), told)
-    return [_delivery(row, is_new=False) for row in found]
+    rows = connection.execute(_deliveries_query(person_id is not None), parameters)
+    return [_delivery(row, is_new=False) for row in rows]
 
 
 @cache
 def _deliveries_query(is_of_one: bool) -> Select[Any]:
     """Return the query of :func:`deliveries`, cached since many requests execute it."""
-    found = select(delivery).where(delivery.c.assignment_id == bindparam("assignment"))
+    query = select(delivery).where(delivery.c.assignment_id == bindparam("assignment"))
     if is_of_one:
-        found = found.where(delivery.c.person_id == bindparam("person"))
-    return found.order_by(delivery.c.id)
+        query = query.where(delivery.c.person_id == bindparam("person"))
+    return query.order_by(delivery.c.id)
 
 
 def answers_of(connection: Connection, delivery_id: int) -> list[list[str]]:
     """Return exercise, seed, part and answer of each question of a submission, in order."""
-    found = connection.execute(_answers_query(), {"delivery": delivery_id})
-    return [[*row[:3], str(_as_came(row.answer) or "")] for row in found]
+    rows = connection.execute(_answers_query(), {"delivery": delivery_id})
+    return [[*row[:3], str(_as_came(row.answer) or "")] for row in rows]
 
 
 @cache
@@ -248,10 +248,10 @@ def tries_used(connection: Connection, assignment_id: int, person_id: int, done:
     """
     if not done:
         return 0
-    told = {"assignment": assignment_id, "person": person_id}
-    issued = [tuple(row) for row in connection.execute(_papers_query(), told)]
+    parameters = {"assignment": assignment_id, "person": person_id}
+    issued = [tuple(row) for row in connection.execute(_papers_query(), parameters)]
     last = max((sitting for sitting, *_ in issued), default=1)
-    tries = [one.id for one in done if one.number > 0]
+    tries = [submitted.id for submitted in done if submitted.number > 0]
     if last == 1:
         return len(tries)
     sheets = [(exercise, seed) for sitting, exercise, seed in issued if sitting == last]
@@ -272,24 +272,24 @@ def rows_of(
 
     def of(table: Any) -> Select[Any]:
         columns = [c for c in table.c if c.name not in ("id", "delivery_id", "place")]
-        found = select(table.c.delivery_id, table.c.place, *columns)
+        query = select(table.c.delivery_id, table.c.place, *columns)
         if delivery_id is not None:
-            return found.where(table.c.delivery_id == delivery_id).order_by(table.c.place)
-        found = found.join(delivery).where(
+            return query.where(table.c.delivery_id == delivery_id).order_by(table.c.place)
+        query = query.join(delivery).where(
             delivery.c.assignment_id == assignment_id, delivery.c.replaced.is_(None)
         )
-        return found.order_by(table.c.delivery_id, table.c.place)
+        return query.order_by(table.c.delivery_id, table.c.place)
 
     met: dict[str, Collected] = {}
     refused: list[_Placed] = [
         (tuple(row[:2]), Rejected(*row[2:])) for row in connection.execute(of(rejected))
     ]
-    told: list[_Placed] = [(tuple(row[:2]), Seen(*row[2:])) for row in connection.execute(of(seen))]
+    seen_rows: list[_Placed] = [(tuple(row[:2]), Seen(*row[2:])) for row in connection.execute(of(seen))]
     answers: Iterator[_Placed] = (
         (tuple(row[:2]), _as_row(row, met)) for row in connection.execute(of(answer))
     )
     first: dict[Any, int] = {}
-    for (number, _), row in merge(answers, refused, told, key=itemgetter(0)):
+    for (number, _), row in merge(answers, refused, seen_rows, key=itemgetter(0)):
         content = _content(row)
         if content is None or first.setdefault(content, number) == number:
             yield row
@@ -305,9 +305,9 @@ def _content(row: Row | Rejected | Seen) -> tuple[Any, ...] | None:
 
 
 def _as_row(row: Sequence[Any], met: dict[str, Collected]) -> Row:
-    student, exercise, seed, part, told, source, warning, lang, origin = row[2:]
+    student, exercise, seed, part, value, source, warning, lang, origin = row[2:]
     return Row(
-        student, exercise, seed, part, _as_came(told), source, warning, lang, _origin_as_came(origin, met)
+        student, exercise, seed, part, _as_came(value), source, warning, lang, _origin_as_came(origin, met)
     )
 
 
@@ -322,15 +322,15 @@ def _as_json(value: Any) -> Any:
     since some databases change it."""
     if value is None or isinstance(value, (str, bool)):
         return value
-    kind = next((name for name, made in _NUMBERS.items() if type(value) is made), None)
+    kind = next((name for name, number_type in _NUMBERS.items() if type(value) is number_type), None)
     return str(value) if kind is None else {kind: str(value)}
 
 
 def _as_came(value: Any) -> Any:
     if not isinstance(value, Mapping):
         return value
-    ((kind, told),) = value.items()
-    return _NUMBERS[kind](told)
+    ((kind, digits),) = value.items()
+    return _NUMBERS[kind](digits)
 
 
 def _origin_as_json(origin: Collected) -> dict[str, Any]:
@@ -339,13 +339,13 @@ def _origin_as_json(origin: Collected) -> dict[str, Any]:
     return {name: value for name, value in origin._asdict().items() if value != usual[name]}
 
 
-def _origin_as_came(told: Mapping[str, Any] | None, met: dict[str, Collected]) -> Collected | None:
-    if told is None:
+def _origin_as_came(stored: Mapping[str, Any] | None, met: dict[str, Collected]) -> Collected | None:
+    if stored is None:
         return None
-    key = repr(told)
+    key = repr(stored)
     if key not in met:
-        ids = tuple((str(title), str(value)) for title, value in told.get("ids", ()))
-        met[key] = Collected(**{**told, "ids": ids, "by": tuple(told.get("by", ()))})
+        ids = tuple((str(title), str(value)) for title, value in stored.get("ids", ()))
+        met[key] = Collected(**{**stored, "ids": ids, "by": tuple(stored.get("by", ()))})
     return met[key]
 
 
@@ -354,16 +354,16 @@ def _origin_as_came(told: Mapping[str, Any] | None, met: dict[str, Collected]) -
 
 def _digest(rows: Sequence[Row | Rejected | Seen], person_id: int | None) -> str:
     """Of what rows say, wherever they stood; of what says nobody's name, where as well."""
-    found = sha256(b"" if person_id is None else str(person_id).encode())
+    digest = sha256(b"" if person_id is None else str(person_id).encode())
     for row in rows:
-        found.update(repr(_said(row)).encode("utf-8", "backslashreplace"))
-    return found.hexdigest()
+        digest.update(repr(_said(row)).encode("utf-8", "backslashreplace"))
+    return digest.hexdigest()
 
 
 def _said(row: Row | Rejected | Seen) -> tuple[Any, ...]:
     if isinstance(row, Row):
-        told = (*row[:5], row.lang, row.origin)
-        return told if row.student else (*told, _name(row.source))
+        content = (*row[:5], row.lang, row.origin)
+        return content if row.student else (*content, _name(row.source))
     if isinstance(row, Rejected):
         return row.reason, row.row, _name(row.source)
     return row.what, row.is_tree

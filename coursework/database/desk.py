@@ -46,30 +46,30 @@ class Stamp(NamedTuple):
     @staticmethod
     def read(text: str) -> Stamp | None:
         """Return the stamp that a text states; None if it states none."""
-        found = re.fullmatch(r"\.".join(["([0-9]{1,15})-([0-9]{1,15})"] * 6), text, re.ASCII)
-        if found is None:
+        match = re.fullmatch(r"\.".join(["([0-9]{1,15})-([0-9]{1,15})"] * 6), text, re.ASCII)
+        if match is None:
             return None
-        numbers = [int(digits) for digits in found.groups()]
+        numbers = [int(digits) for digits in match.groups()]
         return Stamp(*((numbers[k], numbers[k + 1]) for k in range(0, 12, 2)))
 
 
 def stamp(connection: Connection, assignment_id: int) -> Stamp:
     """Return the stamp of an assignment, from a few small queries."""
-    found = []
+    counts = []
     for table in (marking, decision, delivery, placing):
-        asked = select(func.count(), func.max(table.c.id)).where(table.c.assignment_id == assignment_id)
-        count, last = connection.execute(asked).one()
-        found.append((int(count), int(last or 0)))
+        query = select(func.count(), func.max(table.c.id)).where(table.c.assignment_id == assignment_id)
+        count, last = connection.execute(query).one()
+        counts.append((int(count), int(last or 0)))
     given = select(func.count(), func.max(dealt.c.id)).select_from(dealt.join(variant))
     count, last = connection.execute(given.where(variant.c.assignment_id == assignment_id)).one()
-    found.append((int(count), int(last or 0)))
+    counts.append((int(count), int(last or 0)))
     rules = select(assignment.c.published, assignment.c.stated).where(assignment.c.id == assignment_id)
-    told = [list(row) for row in connection.execute(rules)]
+    rule_rows = [list(row) for row in connection.execute(rules)]
     more = select(func.max(extension.c.id)).where(extension.c.assignment_id == assignment_id)
-    found.append(
-        (crc32(json.dumps(told, sort_keys=True).encode()), int(connection.execute(more).scalar() or 0))
+    counts.append(
+        (crc32(json.dumps(rule_rows, sort_keys=True).encode()), int(connection.execute(more).scalar() or 0))
     )
-    return Stamp(*found)
+    return Stamp(*counts)
 
 
 class About(NamedTuple):
@@ -87,22 +87,29 @@ class About(NamedTuple):
 
 def listed(connection: Connection, assignment_id: int | None = None) -> list[About]:
     """Return the assignments, the latest first; one alone if given."""
-    found = (
+    query = (
         select(assignment, func.count(delivery.c.id), func.max(delivery.c.id))
         .select_from(assignment.outerjoin(delivery))
         .group_by(assignment.c.id)
         .order_by(assignment.c.id.desc())
     )
     if assignment_id is not None:
-        found = found.where(assignment.c.id == assignment_id)
-    rows = connection.execute(found).all()
+        query = query.where(assignment.c.id == assignment_id)
+    rows = connection.execute(query).all()
     last = select(delivery.c.id, delivery.c.came).where(
         delivery.c.id.in_([row[-1] for row in rows if row[-1]])
     )
-    came = {row.id: row.came for row in connection.execute(last)}
+    received_at = {row.id: row.came for row in connection.execute(last)}
     return [
         About(
-            row.id, row.name, row.stated, row.published, row.columns, row.created, row[-2], came.get(row[-1])
+            row.id,
+            row.name,
+            row.stated,
+            row.published,
+            row.columns,
+            row.created,
+            row[-2],
+            received_at.get(row[-1]),
         )
         for row in rows
     ]
@@ -127,14 +134,14 @@ class Made(NamedTuple):
     made: datetime
 
 
-def _made(found: Select[Any], connection: Connection) -> list[Made]:
-    return [Made(*(getattr(row, name) for name in Made._fields)) for row in connection.execute(found)]
+def _made(query: Select[Any], connection: Connection) -> list[Made]:
+    return [Made(*(getattr(row, name) for name in Made._fields)) for row in connection.execute(query)]
 
 
 def decided_since(connection: Connection, assignment_id: int, after: int) -> list[Made]:
     """Return the decisions with an id above a number, in their order."""
-    found = select(decision).where(decision.c.assignment_id == assignment_id, decision.c.id > after)
-    return _made(found.order_by(decision.c.id), connection)
+    query = select(decision).where(decision.c.assignment_id == assignment_id, decision.c.id > after)
+    return _made(query.order_by(decision.c.id), connection)
 
 
 def decisions_of(connection: Connection, assignment_id: int) -> list[Made]:
@@ -144,23 +151,23 @@ def decisions_of(connection: Connection, assignment_id: int) -> list[Made]:
 
 def undoable(connection: Connection, assignment_id: int, by: str) -> list[Made]:
     """Return the latest batch of decisions of a person that can be undone: no later decision replaces them."""
-    found = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id.desc())
+    query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id.desc())
     met: set[tuple[str, ...]] = set()
     batch: list[Made] = []
-    for row in connection.execute(found):
-        one = Made(*(getattr(row, name) for name in Made._fields))
-        place = one.student, one.exercise, one.seed, one.part
-        if batch and (one.made != batch[0].made or one.by != by):
+    for row in connection.execute(query):
+        decided = Made(*(getattr(row, name) for name in Made._fields))
+        key = decided.student, decided.exercise, decided.seed, decided.part
+        if batch and (decided.made != batch[0].made or decided.by != by):
             break
-        if place not in met and one.by == by and one.kind != WITHDRAWN:
-            batch.append(one)
-        met.add(place)
+        if key not in met and decided.by == by and decided.kind != WITHDRAWN:
+            batch.append(decided)
+        met.add(key)
     return batch[::-1]
 
 
-def place_of(one: Made) -> Place:
+def place_of(decided: Made) -> Place:
     """Return the key of the answer that a decision is about."""
-    return Place(one.student, one.exercise, one.seed, one.part, one.answer)
+    return Place(decided.student, decided.exercise, decided.seed, decided.part, decided.answer)
 
 
 # ---------------------------------------------------------------------- rejected
@@ -178,20 +185,24 @@ class Placed(NamedTuple):
 
 def placings(connection: Connection, assignment_id: int) -> dict[str, Placed]:
     """Return the placings of rejected rows by digest; the last of each row counts."""
-    found = select(placing).where(placing.c.assignment_id == assignment_id).order_by(placing.c.id)
-    rows = connection.execute(found)
+    query = select(placing).where(placing.c.assignment_id == assignment_id).order_by(placing.c.id)
+    rows = connection.execute(query)
     return {row.row: Placed(row.row, row.delivery_id, row.reason, row.by, row.made) for row in rows}
 
 
-def put_placing(connection: Connection, assignment_id: int, one: Placed) -> None:
+def put_placing(connection: Connection, assignment_id: int, placed: Placed) -> None:
     """Keep what became of a rejected row."""
-    connection.execute(insert(placing).values(assignment_id=assignment_id, **one._asdict()))
+    connection.execute(insert(placing).values(assignment_id=assignment_id, **placed._asdict()))
 
 
 def drop_placing(connection: Connection, assignment_id: int, row: str) -> None:
     """Let a row that was put aside wait again."""
-    put = (placing.c.assignment_id == assignment_id, placing.c.row == row, placing.c.delivery_id.is_(None))
-    connection.execute(delete(placing).where(*put))
+    is_put_aside = (
+        placing.c.assignment_id == assignment_id,
+        placing.c.row == row,
+        placing.c.delivery_id.is_(None),
+    )
+    connection.execute(delete(placing).where(*is_put_aside))
 
 
 # -------------------------------------------------------------------------- came
@@ -209,18 +220,18 @@ def came_of(
     connection: Connection, assignment_id: int, students: Collection[str] | None = None
 ) -> dict[str, Came]:
     """Return the submissions on the site, by the student's name as issued; of some students alone, if given."""
-    called = {person: name for name, person in people_of(connection, assignment_id, students).items()}
-    found = (
+    names = {person: name for name, person in people_of(connection, assignment_id, students).items()}
+    query = (
         select(delivery.c.person_id, delivery.c.came, delivery.c.late)
         .where(delivery.c.assignment_id == assignment_id, delivery.c.person_id.is_not(None))
         .order_by(delivery.c.id)
     )
     if students is not None:
-        found = found.where(delivery.c.person_id.in_(list(called)))
+        query = query.where(delivery.c.person_id.in_(list(names)))
     met: dict[str, Came] = {}
-    for person, came, late in connection.execute(found):
-        if (name := called.get(person)) is not None:
-            met[name] = Came(met[name].tries + 1 if name in met else 1, came, late)
+    for person, received_at, late in connection.execute(query):
+        if (name := names.get(person)) is not None:
+            met[name] = Came(met[name].tries + 1 if name in met else 1, received_at, late)
     return met
 
 
@@ -232,25 +243,25 @@ def unmarked(connection: Connection, assignment_id: int, before: datetime) -> li
         marking.c.attempt == delivery.c.number,
         marking.c.student.in_(theirs),
     )
-    found = select(delivery.c.id).where(
+    query = select(delivery.c.id).where(
         delivery.c.assignment_id == assignment_id,
         delivery.c.number > 0,
         delivery.c.came < before,
         ~marked.exists(),
     )
-    return list(connection.execute(found.order_by(delivery.c.id)).scalars())
+    return list(connection.execute(query.order_by(delivery.c.id)).scalars())
 
 
 def students_since(connection: Connection, assignment_id: int, before: Stamp) -> set[str]:
     """Return the students with a sheet marked or decided on since a stamp. Some rows before the last of the
     stamp count too: with concurrent writers, ids do not become visible in order."""
-    found: set[str] = set()
+    students: set[str] = set()
     for table, (_, last) in ((marking, before.markings), (decision, before.decisions)):
-        asked = select(table.c.student).where(
+        query = select(table.c.student).where(
             table.c.assignment_id == assignment_id, table.c.id > last - _BESIDE
         )
-        found.update(connection.execute(asked.distinct()).scalars())
-    return found
+        students.update(connection.execute(query.distinct()).scalars())
+    return students
 
 
 def people_of(
@@ -258,15 +269,15 @@ def people_of(
 ) -> dict[str, int]:
     """Return the person's id of each student of an assignment, by the name as issued; of some students alone,
     if given."""
-    found = (
+    query = (
         select(dealt.c.student, dealt.c.person_id)
         .join(variant)
         .where(variant.c.assignment_id == assignment_id, dealt.c.person_id.is_not(None))
         .distinct()
     )
     if students is not None:
-        found = found.where(dealt.c.student.in_(list(students)))
-    return {row.student: row.person_id for row in connection.execute(found)}
+        query = query.where(dealt.c.student.in_(list(students)))
+    return {row.student: row.person_id for row in connection.execute(query)}
 
 
 class Try(NamedTuple):
@@ -283,12 +294,12 @@ def tries_of(connection: Connection, assignment_id: int, student: str) -> list[T
     """Return the submissions of a student, in order: those on the site, and files that name the student as
     issued."""
     named = select(answer.c.delivery_id).where(answer.c.student == student)
-    found = (
+    query = (
         select(delivery)
         .where(delivery.c.assignment_id == assignment_id, delivery.c.id.in_(named))
         .order_by(delivery.c.id)
     )
-    return [Try(row.source, row.number, row.receipt, row.late, row.came) for row in connection.execute(found)]
+    return [Try(row.source, row.number, row.receipt, row.late, row.came) for row in connection.execute(query)]
 
 
 def practised(
@@ -297,17 +308,17 @@ def practised(
     """Return the number of variants of each exercise that a person practised alone, and the time of the last;
     never an answer."""
     named = progress.c.entry["exercise"].as_string()
-    found = select(
+    query = select(
         named.label("exercise"),
         progress.c.entry["seed"].as_string().label("seed"),
         progress.c.entry["at"].as_string().label("at"),
     ).where(progress.c.person_id == person, named.in_(list(exercises)))
     seeds: dict[str, set[str]] = {}
     last: dict[str, str] = {}
-    for row in connection.execute(found):
+    for row in connection.execute(query):
         seeds.setdefault(row.exercise, set()).add(str(row.seed))
         last[row.exercise] = max(last.get(row.exercise, ""), row.at or "")
-    return {name: (len(own), _moment(last[name])) for name, own in seeds.items()}
+    return {name: (len(exercise_seeds), _moment(last[name])) for name, exercise_seeds in seeds.items()}
 
 
 def _moment(text: str) -> datetime | None:

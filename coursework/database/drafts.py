@@ -45,21 +45,21 @@ def save(
 
     The same text once more is no change, so that what is sent twice is kept once.
     """
-    kept, others = drafts(connection, person, sheet), {}
-    for box, one in sent.items():
-        now = kept.get(box, Box("", 0))
-        if now.text == one.text:
+    stored, others = drafts(connection, person, sheet), {}
+    for box, draft_sent in sent.items():
+        now = stored.get(box, Box("", 0))
+        if now.text == draft_sent.text:
             continue
-        if one.over < now.version or not _is_written(connection, (person, sheet, box), one.text, now, at):
+        if draft_sent.over < now.version or not _is_written(
+            connection, (person, sheet, box), draft_sent.text, now, at
+        ):
             others[box] = drafts(connection, person, sheet)[box]
     return others
 
 
-def _is_written(
-    connection: Connection, place: tuple[int, str, str], text: str, now: Box, at: datetime
-) -> bool:
+def _is_written(connection: Connection, key: tuple[int, str, str], text: str, now: Box, at: datetime) -> bool:
     """Replace the draft of a box; return False if another page was faster."""
-    person, sheet, box = place
+    person, sheet, box = key
     written = {"text": text, "version": now.version + 1, "changed": at}
     if now.version:
         same = (draft.c.person_id == person, draft.c.sheet == sheet, draft.c.box == box)

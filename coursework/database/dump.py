@@ -71,17 +71,17 @@ def _dumped() -> list[Table]:
 def _write(connection: Connection, table: Table, path: Path) -> int:
     folder, part = path.parent, path.with_name(path.name + ".part")
     folder.mkdir(parents=True, exist_ok=True)
-    found = connection.execution_options(yield_per=_CHUNK).execute(select(table).order_by(*table.primary_key))
+    rows = connection.execution_options(yield_per=_CHUNK).execute(select(table).order_by(*table.primary_key))
     count = 0
     try:
         with removed_on_failure(part), open(part, "w", encoding="utf-8", newline="", opener=_private) as file:
             writer = csv.writer(file)
             writer.writerow(column.name for column in table.c)
-            shown = [json_of if isinstance(column.type, JSON) else _as_text for column in table.c]
-            for row in found:
+            to_text = [json_of if isinstance(column.type, JSON) else _as_text for column in table.c]
+            for row in rows:
                 writer.writerow(
                     _NOTHING if value is None else inert(show(value))
-                    for show, value in zip(shown, row, strict=True)
+                    for show, value in zip(to_text, row, strict=True)
                 )
                 count += 1
             file.close()
@@ -141,8 +141,8 @@ def _told(folder: Path) -> Iterator[None]:
     try:
         yield
     except (DBAPIError, OverflowError, UnicodeEncodeError) as fault:
-        said = " ".join(str(getattr(fault, "orig", fault)).split())[:120]
-        raise BadInput(f"{folder} is damaged, and nothing of it is kept: {said}") from fault
+        reason = " ".join(str(getattr(fault, "orig", fault)).split())[:120]
+        raise BadInput(f"{folder} is damaged, and nothing of it is kept: {reason}") from fault
 
 
 def _check_readable(connection: Connection) -> None:
@@ -159,9 +159,9 @@ def _check_readable(connection: Connection) -> None:
             for _ in rows_of(connection, number):
                 pass
         except (KeyError, TypeError, ValueError, AttributeError) as fault:
-            what = fault if isinstance(fault, BadInput) else f"{type(fault).__name__} {str(fault)[:60]}"
+            reason = fault if isinstance(fault, BadInput) else f"{type(fault).__name__} {str(fault)[:60]}"
             raise BadInput(
-                f"what the dump has of {name} cannot be read: {what}; nothing of it is kept"
+                f"what the dump has of {name} cannot be read: {reason}; nothing of it is kept"
             ) from fault
 
 
@@ -231,9 +231,9 @@ def _row(
     if len(cells) != len(names):
         raise BadInput(f"{path}, line {line}: {len(cells)} cells where the header has {len(names)}")
     row = {}
-    for name, made, cell in zip(names, makers, cells, strict=True):
+    for name, make, cell in zip(names, makers, cells, strict=True):
         try:
-            row[name] = None if cell == _NOTHING else made(cell)
+            row[name] = None if cell == _NOTHING else make(cell)
         except (ValueError, RecursionError) as fault:
             raise BadInput(
                 f"{path}, line {line}: {name} is not what it is in a dump: {cell[:40]!r}"
@@ -243,9 +243,9 @@ def _row(
 
 def _maker(column: Column[Any]) -> Callable[[str], Any]:
     """Return the function that makes a value from its cell."""
-    for kind, made in _MAKERS:
+    for kind, make in _MAKERS:
         if isinstance(column.type, kind):
-            return made
+            return make
     return lambda cell: cell.removeprefix("\\") if cell.startswith("\\") else cell
 
 

@@ -68,33 +68,33 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
 
     The audit's line on it is for who calls to write.
     """
-    who = whose(connection, number)
-    if who is None:
+    known_as = whose(connection, number)
+    if known_as is None:
         return {}
     gone = {}
-    _derived_away(connection, who)
-    for name, (table, theirs) in conditions(connection, who).items():
+    _derived_away(connection, known_as)
+    for name, (table, theirs) in conditions(connection, known_as).items():
         gone[name] = connection.execute(delete(table).where(theirs)).rowcount
     theirs = audit.c.actor == number
     connection.execute(update(audit).where(theirs).values(actor=None, address=None))
-    _strike(connection, who)
+    _strike(connection, known_as)
     return gone
 
 
-def _derived_away(connection: Connection, who: Whose) -> None:
+def _derived_away(connection: Connection, known_as: Whose) -> None:
     """Take away the aggregates of a person, and all rows without a place, which may name them; the latter are computed anew."""
     connection.execute(delete(unplaced))
     for table in (answer_now, student_total, outdated):
-        theirs = ids_of(connection, table, who)
+        theirs = ids_of(connection, table, known_as)
         for start in range(0, len(theirs), _CHUNK):
             connection.execute(delete(table).where(table.c.id.in_(theirs[start : start + _CHUNK])))
     for number in connection.execute(select(assignment.c.id)).scalars().all():
         outdate_rows(connection, number)
 
 
-def _strike(connection: Connection, who: Whose) -> None:
+def _strike(connection: Connection, known_as: Whose) -> None:
     """Strike names out of what others wrote."""
-    words = {word for word in who.words if len(word) >= _SHORTEST}
+    words = {word for word in known_as.words if len(word) >= _SHORTEST}
     in_heads = {word for word in words if not word.isalpha()}
     for table, names in TELLING:
         for row in connection.execute(select(table.c.id, *(table.c[name] for name in names))).all():
@@ -114,10 +114,10 @@ def _struck(value: Any, words: Collection[str], *, keys: bool = False) -> Any:
     if isinstance(value, str):
         return _without(value, words)
     if isinstance(value, list):
-        return [_struck(one, words) for one in value]
+        return [_struck(item, words) for item in value]
     if isinstance(value, Mapping):
-        kept = {key: one for key, one in value.items() if not keys or _without(key, words) != STRUCK}
-        return {key: _struck(one, words) for key, one in kept.items()}
+        remaining = {key: item for key, item in value.items() if not keys or _without(key, words) != STRUCK}
+        return {key: _struck(item, words) for key, item in remaining.items()}
     return value
 
 

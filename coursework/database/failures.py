@@ -15,10 +15,10 @@ FORGOTTEN = timedelta(minutes=15)  #: a count is forgotten so long after the las
 
 def failures_of(connection: Connection, keys: Collection[str], at: datetime) -> dict[str, int]:
     """Return how often each key failed; keys without a failure that still counts are left out."""
-    found = select(failure.c.key, failure.c["count"].label("times")).where(
+    query = select(failure.c.key, failure.c["count"].label("times")).where(
         failure.c.key.in_(keys), failure.c.last > at - FORGOTTEN
     )
-    return {row.key: int(row.times) for row in connection.execute(found)}
+    return {row.key: int(row.times) for row in connection.execute(query)}
 
 
 def add_failure(connection: Connection, keys: Collection[str], at: datetime) -> None:

@@ -44,7 +44,7 @@ class GradedNow:
 
     @property
     def new(self) -> int:
-        return sum(one.is_new for one in self.deliveries)
+        return sum(submission.is_new for submission in self.deliveries)
 
 
 def grade_new(
@@ -75,14 +75,14 @@ def grade_new(
     with store.begin() as connection:
         issued = issued_of(connection, assignment_id)
         shows_solutions(issued, form)
-        came = _deliver(connection, assignment_id, submissions, replaces=replaces)
+        submitted = _deliver(connection, assignment_id, submissions, replaces=replaces)
         if not stood(connection, assignment_id):
             sheets = placed(course, issued, rows_of(connection, assignment_id))
             if not sheets.sheets:
                 raise BadInput(nothing_in(submissions, sheets.rejected))
         decided = take_in(connection, assignment_id, by_person, by_hand)
     work = marked_now(course, store, assignment_id)
-    return GradedNow(came, decided, work.told(), work)
+    return GradedNow(submitted, decided, work.told(), work)
 
 
 TO_MARK_FILE = "to_mark.csv"
@@ -99,13 +99,15 @@ def _deliver(
     connection: Connection, assignment_id: int, submissions: Sequence[Path], *, replaces: bool
 ) -> list[Delivery]:
     """Each file, as far as it is new."""
-    came = datetime.now(UTC)
-    found = []
-    for one in find(submissions):
-        rows = [one] if isinstance(one, Rejected) else list(read_file(one, submissions))
-        source = one.source if isinstance(one, Rejected) else path_text(one)
-        found.append(deliver(connection, assignment_id, rows, source=source, came=came, replaces=replaces))
-    return found
+    received_at = datetime.now(UTC)
+    submitted = []
+    for file in find(submissions):
+        rows = [file] if isinstance(file, Rejected) else list(read_file(file, submissions))
+        source = file.source if isinstance(file, Rejected) else path_text(file)
+        submitted.append(
+            deliver(connection, assignment_id, rows, source=source, came=received_at, replaces=replaces)
+        )
+    return submitted
 
 
 def write_standing(

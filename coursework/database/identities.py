@@ -15,8 +15,8 @@ from coursework.making.identity import EMAIL, NUMBER, is_called, same_id
 
 def person_known(connection: Connection, issuer: str, subject: str) -> Any | None:
     """Return the person with a platform's identifier; None if no person is linked to it."""
-    told = identity.c.issuer == issuer, identity.c.subject == subject
-    number = connection.execute(select(identity.c.person_id).where(*told)).scalar()
+    conditions = identity.c.issuer == issuer, identity.c.subject == subject
+    number = connection.execute(select(identity.c.person_id).where(*conditions)).scalar()
     return None if number is None else person_by_id(connection, number)
 
 
@@ -28,26 +28,28 @@ def tie(connection: Connection, number: int, issuer: str, subject: str) -> bool:
 
 def known_as(connection: Connection, number: int) -> list[tuple[str, str]]:
     """Return the identities of a person on platforms: issuer and identifier."""
-    told = select(identity.c.issuer, identity.c.subject).where(identity.c.person_id == number)
-    return [(row.issuer, row.subject) for row in connection.execute(told)]
+    query = select(identity.c.issuer, identity.c.subject).where(identity.c.person_id == number)
+    return [(row.issuer, row.subject) for row in connection.execute(query)]
 
 
 def fitting(connection: Connection, issuer: str, email: str, number: str) -> list[Any]:
     """Return the people with the e-mail or the number of a launch who are not linked to the platform yet.
     Staff are excluded: a platform's statement of an address grants no role."""
-    known = set(connection.execute(select(identity.c.person_id).where(identity.c.issuer == issuer)).scalars())
+    linked = set(
+        connection.execute(select(identity.c.person_id).where(identity.c.issuer == issuer)).scalars()
+    )
     rows = {row.id: row for row in people(connection)}
     staff = {row.id for row in people(connection) if row.role in STAFF}
     return [
         row
         for row in rows.values()
-        if row.id not in known | staff and _fits(row, same_id(email), same_id(number))
+        if row.id not in linked | staff and _fits(row, same_id(email), same_id(number))
     ]
 
 
 def _fits(row: Any, email: str, number: str) -> bool:
-    told = {one for one in (email, number) if one}
-    if same_id(row.who) in told or (email and same_id(row.login or "") == email):
+    identifiers = {identifier for identifier in (email, number) if identifier}
+    if same_id(row.who) in identifiers or (email and same_id(row.login or "") == email):
         return True
     pairs = [(title, same_id(value)) for title, value in row.columns.items() if value]
     return any(
@@ -64,8 +66,8 @@ def has_password(connection: Connection, number: int) -> bool:
 
 def ties_of(connection: Connection, number: int) -> list[Any]:
     """Return how platforms know a person: ``id``, ``issuer`` and ``subject`` of each."""
-    told = select(identity.c.id, identity.c.issuer, identity.c.subject)
-    return list(connection.execute(told.where(identity.c.person_id == number).order_by(identity.c.id)))
+    query = select(identity.c.id, identity.c.issuer, identity.c.subject)
+    return list(connection.execute(query.where(identity.c.person_id == number).order_by(identity.c.id)))
 
 
 def separate(connection: Connection, number: int, tie_id: int) -> tuple[str, str] | None:
@@ -78,6 +80,6 @@ def separate(connection: Connection, number: int, tie_id: int) -> tuple[str, str
 
 def take_over(connection: Connection, number: int, name: str, lang: str) -> None:
     """Replace a person's name and language by those that a platform states."""
-    told = {key: value for key, value in (("name", name), ("lang", lang)) if value}
-    if told:
-        connection.execute(update(person).where(person.c.id == number).values(told))
+    values = {key: value for key, value in (("name", name), ("lang", lang)) if value}
+    if values:
+        connection.execute(update(person).where(person.c.id == number).values(values))

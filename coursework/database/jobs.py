@@ -67,8 +67,8 @@ def put_job(
 def waiting(connection: Connection) -> tuple[int, datetime | None, datetime | None]:
     """Return the number of submissions that wait for their marks, and the times at which the first and the
     last were added."""
-    found = select(func.count(), func.min(job.c.id), func.max(job.c.id)).where(job.c.fault == "", _HANDED_IN)
-    count, first, last = connection.execute(found).one()
+    query = select(func.count(), func.min(job.c.id), func.max(job.c.id)).where(job.c.fault == "", _HANDED_IN)
+    count, first, last = connection.execute(query).one()
     ends = {
         row.id: row.made
         for row in connection.execute(select(job.c.id, job.c.made).where(job.c.id.in_((first, last))))
@@ -89,8 +89,8 @@ def take_job(connection: Connection, worker: str, at: datetime) -> Job | None:
     while True:
         is_free = or_(job.c.until.is_(None), job.c.until < at, job.c.worker == worker)
         in_order = _HANDED_IN.desc(), job.c.tries, job.c.id
-        found = select(*_COLUMNS).where(job.c.fault == "", is_free).order_by(*in_order).limit(1)
-        row = connection.execute(found.with_for_update(skip_locked=True)).first()
+        query = select(*_COLUMNS).where(job.c.fault == "", is_free).order_by(*in_order).limit(1)
+        row = connection.execute(query.with_for_update(skip_locked=True)).first()
         if row is None:
             return None
         if row.tries >= MOST_TRIES:
@@ -111,12 +111,12 @@ def drop_jobs(connection: Connection, delivery: int) -> None:
     connection.execute(delete(job).where(job.c.delivery_id == delivery))
 
 
-def put_back(connection: Connection, one: Job, fault: str) -> bool:
+def put_back(connection: Connection, failed: Job, fault: str) -> bool:
     """Let a job that failed be tried again, or give it up after :data:`MOST_TRIES`; True where it is given up."""
-    if one.tries >= MOST_TRIES:
-        give_up(connection, one.id, fault)
+    if failed.tries >= MOST_TRIES:
+        give_up(connection, failed.id, fault)
         return True
-    connection.execute(update(job).where(job.c.id == one.id).values(worker="", until=None))
+    connection.execute(update(job).where(job.c.id == failed.id).values(worker="", until=None))
     return False
 
 
@@ -134,13 +134,13 @@ def job_of(connection: Connection, delivery: int) -> Job | None:
     return None if row is None else Job(*row)
 
 
-def before(connection: Connection, one: Job) -> int:
+def before(connection: Connection, later: Job) -> int:
     """Return the number of jobs ahead of one."""
-    found = select(func.count()).where(job.c.fault == "", job.c.id < one.id, _HANDED_IN)
-    return int(connection.execute(found).scalar_one())
+    query = select(func.count()).where(job.c.fault == "", job.c.id < later.id, _HANDED_IN)
+    return int(connection.execute(query).scalar_one())
 
 
 def given_up(connection: Connection, assignment: int) -> list[Job]:
     """Return the jobs of an assignment that failed too often."""
-    found = select(*_COLUMNS).where(job.c.assignment_id == assignment, job.c.fault != "").order_by(job.c.id)
-    return [Job(*row) for row in connection.execute(found)]
+    query = select(*_COLUMNS).where(job.c.assignment_id == assignment, job.c.fault != "").order_by(job.c.id)
+    return [Job(*row) for row in connection.execute(query)]

@@ -68,33 +68,33 @@ class Work:
 
     def _read(self, connection: Connection, delivery_id: int | None) -> None:
         course, assignment_id = self.course, self.assignment_id
-        whose = None if delivery_id is None else _person_of(connection, delivery_id)
-        self.issued: Issued = issued_of(connection, assignment_id, whose)
+        person_id = None if delivery_id is None else _person_of(connection, delivery_id)
+        self.issued: Issued = issued_of(connection, assignment_id, person_id)
         for exercise in self.issued.exercises:
             exercise_state(course, exercise)  # before it is loaded
-        only = delivery_id if whose is not None else None
+        only = delivery_id if person_id is not None else None
         rows = list(rows_of(connection, assignment_id, only))
         self.sheets: Sheets = placed(course, self.issued, rows)
         self.places: Collection[SheetPlace] = self.sheets.sheets
-        if delivery_id is not None and whose is None:
-            own = placed(
+        if delivery_id is not None and person_id is None:
+            own_sheets = placed(
                 course, issued_of(connection, assignment_id), rows_of(connection, assignment_id, delivery_id)
             )
-            self.places = [place for place in self.sheets.sheets if place in own.sheets]
-        students = {place[0] for place in self.places}
+            self.places = [sheet for sheet in self.sheets.sheets if sheet in own_sheets.sheets]
+        students = {sheet[0] for sheet in self.places}
         student = self._student = students.pop() if len(students) == 1 and delivery_id is not None else None
         self.stood: dict[SheetPlace, Stood] = stood(connection, assignment_id, student)
         self.decisions = Decisions.read(connection, assignment_id, student)
         self.is_whole = delivery_id is None
         rules = rules_of(course, self.issued)
-        self.states = {place: self._state(place, rules) for place in self.places}
+        self.states = {sheet: self._state(sheet, rules) for sheet in self.places}
 
-    def _state(self, place: SheetPlace, rules: Any) -> str:
+    def _state(self, sheet: SheetPlace, rules: Any) -> str:
         sheets = self.sheets
-        record = record_of(self.issued, sheets, place)
-        answers = {part: row.answer for part, row in sheets.sheets[place].items()}
+        record = record_of(self.issued, sheets, sheet)
+        answers = {part: row.answer for part, row in sheets.sheets[sheet].items()}
         return sheet_state(
-            self.course, rules, record, answers, place in sheets.apart, sheets.submitted.get(place, "")
+            self.course, rules, record, answers, sheet in sheets.apart, sheets.submitted.get(sheet, "")
         )
 
     @property
@@ -107,7 +107,7 @@ class Work:
         """The sheets that nothing answers to any more."""
         if not self.is_whole:
             return []
-        return [one for place, one in self.stood.items() if one.state and place not in self.sheets.sheets]
+        return [last for sheet, last in self.stood.items() if last.state and sheet not in self.sheets.sheets]
 
     def mark(self) -> None:
         """Mark what changed."""
@@ -118,16 +118,16 @@ class Work:
         """Every sheet with its marks as they are now."""
         places = self.sheets.sheets
         before = self._before(self.stood[p] for p in places if p not in self.now and p in self.stood)
-        for place in self.sheets.sheets:
-            if place in self.now or place in before:
-                yield place, self.now[place] if place in self.now else before[place]
+        for sheet in self.sheets.sheets:
+            if sheet in self.now or sheet in before:
+                yield sheet, self.now[sheet] if sheet in self.now else before[sheet]
 
     def changes(self) -> Iterator[Change]:
         """Yield the changed marks of sheets that were marked before, with the decisions applied on both
         sides."""
-        marked = [self.stood[place] for place in self.now if place in self.stood]
-        for place, was in self._before([*marked, *self.gone]).items():
-            yield from _changes(self._rows(was), self._rows(self.now.get(place, "")))
+        marked = [self.stood[sheet] for sheet in self.now if sheet in self.stood]
+        for sheet, was in self._before([*marked, *self.gone]).items():
+            yield from _changes(self._rows(was), self._rows(self.now.get(sheet, "")))
 
     def _before(self, sheets: Iterable[Stood]) -> dict[SheetPlace, Graded | str]:
         """Return the sheets as they were marked before."""
@@ -143,26 +143,26 @@ class Work:
         return {row["part"]: row for row in marks_rows(self.decisions.apply(result))}
 
     def told(self) -> MarkedNow:
-        new = sum(place not in self.stood for place in self.now)
+        new = sum(sheet not in self.stood for sheet in self.now)
         return MarkedNow(len(self.places), len(self.now), new, tuple(self.changes()))
 
     def write(self, connection: Connection) -> None:
         """Keep what was marked, but of sheets that somebody else marked meanwhile."""
         now = stood(connection, self.assignment_id, self._student)
-        met = {place: one.id for place, one in now.items()}
+        met = {sheet: last.id for sheet, last in now.items()}
         free = [p for p in self.now if met.get(p) == (self.stood[p].id if p in self.stood else None)]
-        gone = [one for one in self.gone if met.get(one.place) == one.id]
-        made = datetime.now(UTC)
-        rows = [_marking(self, place, made) for place in free]
+        gone = [last for last in self.gone if met.get(last.place) == last.id]
+        marked_at = datetime.now(UTC)
+        rows = [_marking(self, sheet, marked_at) for sheet in free]
         rows += [
             {
-                **_place(self.assignment_id, one.place),
-                "sitting": one.sitting,
+                **_place(self.assignment_id, last.place),
+                "sitting": last.sitting,
                 "state": "",
-                "made": made,
+                "made": marked_at,
                 **_NOTHING,
             }
-            for one in gone
+            for last in gone
         ]
         for start in range(0, len(rows), _CHUNK):
             adding = insert(marking).returning(marking.c.id, sort_by_parameter_order=True)
@@ -170,18 +170,18 @@ class Work:
             places = free[start : start + _CHUNK]
             lines = [
                 line
-                for number, place in zip(ids, places, strict=False)
-                for line in _marks(number, self.now[place])
+                for number, sheet in zip(ids, places, strict=False)
+                for line in _marks(number, self.now[sheet])
             ]
             for first in range(0, len(lines), _CHUNK):
                 connection.execute(insert(mark), lines[first : first + _CHUNK])
         outdate(connection, self.assignment_id, [row["student"] for row in rows])
-        if any(isinstance(self.now[place], str) or self.stood_at_fault(place) for place in free) or gone:
+        if any(isinstance(self.now[sheet], str) or self.stood_at_fault(sheet) for sheet in free) or gone:
             outdate_rows(connection, self.assignment_id)
 
-    def stood_at_fault(self, place: SheetPlace) -> bool:
+    def stood_at_fault(self, sheet: SheetPlace) -> bool:
         """Tell whether a sheet could not be marked before."""
-        return place in self.stood and bool(self.stood[place].fault)
+        return sheet in self.stood and bool(self.stood[sheet].fault)
 
 
 # ---------------------------------------------------------------------- marking
@@ -209,8 +209,8 @@ def mark_delivery(course: Course, store: Store, delivery_id: int) -> MarkedNow:
         The course cannot mark what was issued.
     """
     with store.reading() as connection:
-        found = select(delivery.c.assignment_id).where(delivery.c.id == delivery_id)
-        assignment_id = connection.execute(found).scalar()
+        query = select(delivery.c.assignment_id).where(delivery.c.id == delivery_id)
+        assignment_id = connection.execute(query).scalar()
     if assignment_id is None:
         raise BadInput(f"no delivery number {delivery_id} in the database")
     return marked_now(course, store, assignment_id, delivery_id).told()
@@ -242,8 +242,8 @@ def _person_of(connection: Connection, delivery_id: int) -> int | None:
 
 def _only(sheets: Sheets, places: Iterable[SheetPlace]) -> Sheets:
     """Some of the sheets, by themselves."""
-    own = {place: sheets.sheets[place] for place in places}
-    return Sheets(own, langs=sheets.langs, submitted=sheets.submitted, apart=sheets.apart)
+    selected = {sheet: sheets.sheets[sheet] for sheet in places}
+    return Sheets(selected, langs=sheets.langs, submitted=sheets.submitted, apart=sheets.apart)
 
 
 # ---------------------------------------------------------------------- changes
@@ -254,10 +254,10 @@ def _changes(
 ) -> Iterator[Change]:
     for part in dict.fromkeys((*before, *now)):
         row = now.get(part) or before[part]
-        was, is_now = (_verdict(own.get(part)) for own in (before, now))
+        was, is_now = (_verdict(rows.get(part)) for rows in (before, now))
         if was != is_now:
-            place = row["student"], row["exercise"], row["seed"], row["sitting"], part, row["answer"]
-            yield Change(*place, was[0], is_now[0], was[1], is_now[1])
+            key = row["student"], row["exercise"], row["seed"], row["sitting"], part, row["answer"]
+            yield Change(*key, was[0], is_now[0], was[1], is_now[1])
 
 
 def _verdict(row: Mapping[str, Any] | None) -> tuple[str, str]:
@@ -269,35 +269,35 @@ def _verdict(row: Mapping[str, Any] | None) -> tuple[str, str]:
 _NOTHING = {"lang": "", "apart": False, "submitted": "", "fault": ""}
 
 
-def _place(assignment_id: int, place: SheetPlace) -> dict[str, Any]:
-    student, exercise, seed, attempt = place
+def _place(assignment_id: int, sheet: SheetPlace) -> dict[str, Any]:
+    student, exercise, seed, attempt = sheet
     named = {"student": student, "exercise": exercise, "seed": str(seed), "attempt": attempt}
     return {"assignment_id": assignment_id, **named}
 
 
-def _marking(work: Work, place: SheetPlace, made: datetime) -> dict[str, Any]:
-    result = work.now[place]
-    own = {
-        "sitting": place[3] or work.issued.sitting_of(*place[:3]),
-        "lang": str(record_of(work.issued, work.sheets, place).get("lang", "")),
-        "apart": place in work.sheets.apart,
-        "submitted": work.sheets.submitted.get(place, ""),
+def _marking(work: Work, sheet: SheetPlace, marked_at: datetime) -> dict[str, Any]:
+    result = work.now[sheet]
+    columns = {
+        "sitting": sheet[3] or work.issued.sitting_of(*sheet[:3]),
+        "lang": str(record_of(work.issued, work.sheets, sheet).get("lang", "")),
+        "apart": sheet in work.sheets.apart,
+        "submitted": work.sheets.submitted.get(sheet, ""),
         "fault": result if isinstance(result, str) else "",
     }
-    return {**_place(work.assignment_id, place), "state": work.states[place], "made": made, **own}
+    return {**_place(work.assignment_id, sheet), "state": work.states[sheet], "made": marked_at, **columns}
 
 
 def _marks(number: int, result: Graded | str) -> Iterator[dict[str, Any]]:
     if isinstance(result, str):
         return
-    came: dict[str, int] = {part: place for place, part in enumerate(result.answered)}
-    for place, line in enumerate(result.lines.values()):
-        own: Sequence[Any] = line.sent(printed=True)
+    order: dict[str, int] = {part: position for position, part in enumerate(result.answered)}
+    for position, line in enumerate(result.lines.values()):
+        columns: Sequence[Any] = line.sent(printed=True)
         yield {
             "marking_id": number,
-            "place": place,
-            "came": came.get(line.part),
-            **dict(zip(_SENT, own, strict=True)),
+            "place": position,
+            "came": order.get(line.part),
+            **dict(zip(_SENT, columns, strict=True)),
             "matches": list(line.matches),
         }
 

@@ -14,7 +14,8 @@ STUDENT, EVERYBODY, ROWS = "student", "everybody", "rows"
 def outdate(connection: Connection, assignment_id: int, students: Iterable[str]) -> None:
     """Note that the marks, decisions or hand-ins of some students changed."""
     noted = [
-        {"assignment_id": assignment_id, "kind": STUDENT, "student": one} for one in dict.fromkeys(students)
+        {"assignment_id": assignment_id, "kind": STUDENT, "student": student}
+        for student in dict.fromkeys(students)
     ]
     if noted:
         connection.execute(insert(outdated), noted)

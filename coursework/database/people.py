@@ -21,8 +21,8 @@ def found_people() -> Select[Any]:
 
 def people(connection: Connection) -> list[Any]:
     """Everybody, by name, whatever its accents: Bäcker stands before Blanc."""
-    found = connection.execute(found_people().order_by(person.c.id))
-    return sorted(found, key=lambda one: (sort_key(one.name), one.name))
+    rows = connection.execute(found_people().order_by(person.c.id))
+    return sorted(rows, key=lambda row: (sort_key(row.name), row.name))
 
 
 def person_by_id(connection: Connection, number: int) -> Any | None:
@@ -30,9 +30,9 @@ def person_by_id(connection: Connection, number: int) -> Any | None:
     return connection.execute(found_people().where(person.c.id == number)).first()
 
 
-def person_by_who(connection: Connection, who: str) -> Any | None:
+def person_by_who(connection: Connection, identifier: str) -> Any | None:
     """Return the person with a roster's identifier."""
-    return connection.execute(found_people().where(person.c.who == who)).first()
+    return connection.execute(found_people().where(person.c.who == identifier)).first()
 
 
 def hold(connection: Connection, number: int) -> None:
@@ -41,36 +41,52 @@ def hold(connection: Connection, number: int) -> None:
         connection.execute(select(person.c.id).where(person.c.id == number).with_for_update(key_share=True))
 
 
-def put_person(connection: Connection, who: str, name: str, lang: str, columns: Mapping[str, str]) -> int:
+def put_person(
+    connection: Connection, identifier: str, name: str, lang: str, columns: Mapping[str, str]
+) -> int:
     """Add or update the person of a roster; return the id. A name, a language and columns replace those
     before, unless they are empty."""
-    known = person_by_who(connection, who)
-    told = {
+    row_before = person_by_who(connection, identifier)
+    values = {
         key: value for key, value in (("name", name), ("lang", lang), ("columns", dict(columns))) if value
     }
-    if known is None:
-        row = {"who": who, "name": name, "lang": lang, "columns": dict(columns), "created": datetime.now(UTC)}
+    if row_before is None:
+        row = {
+            "who": identifier,
+            "name": name,
+            "lang": lang,
+            "columns": dict(columns),
+            "created": datetime.now(UTC),
+        }
         return int(connection.execute(insert(person).values(row).returning(person.c.id)).scalar_one())
-    if any(getattr(known, key) != value for key, value in told.items()):
-        connection.execute(update(person).where(person.c.id == known.id).values(told))
-    return int(known.id)
+    if any(getattr(row_before, key) != value for key, value in values.items()):
+        connection.execute(update(person).where(person.c.id == row_before.id).values(values))
+    return int(row_before.id)
 
 
 def put_people(connection: Connection, students: Sequence[Student]) -> dict[str, int]:
     """Add the new people of a roster, and new columns of the known ones; return the ids of all people by the
     roster's identifier."""
-    known = {row.who: row for row in connection.execute(select(person.c.who, person.c.id, person.c.columns))}
+    people_before = {
+        row.who: row for row in connection.execute(select(person.c.who, person.c.id, person.c.columns))
+    }
     now = datetime.now(UTC)
-    new = {one.draw_key: one for one in students if one.draw_key not in known}
+    new = {student.draw_key: student for student in students if student.draw_key not in people_before}
     rows = [
-        {"who": who, "name": one.name, "lang": one.lang, "columns": dict(one.columns), "created": now}
-        for who, one in new.items()
+        {
+            "who": identifier,
+            "name": student.name,
+            "lang": student.lang,
+            "columns": dict(student.columns),
+            "created": now,
+        }
+        for identifier, student in new.items()
     ]
     if rows:
         connection.execute(insert(person), rows)
-    for one in students:
-        had = known.get(one.draw_key)
-        if had is not None and (columns := {**had.columns, **one.columns}) != had.columns:
+    for student in students:
+        had = people_before.get(student.draw_key)
+        if had is not None and (columns := {**had.columns, **student.columns}) != had.columns:
             connection.execute(update(person).where(person.c.id == had.id).values(columns=columns))
     return {row.who: row.id for row in connection.execute(select(person.c.who, person.c.id))}
 

@@ -121,10 +121,10 @@ def may(
         return False
     if holder is None or role != ASSISTANT or permission in _STUDENT:
         return True
-    asked = None if group is None else group_key(group)
+    key = None if group is None else group_key(group)
     return any(
         area.assignment in (None, assignment or area.assignment)
-        and (asked is None or area.group in (None, asked))
+        and (key is None or area.group in (None, key))
         for area in holder.areas
     )
 
@@ -133,8 +133,8 @@ def groups_within(holder: Holder, assignment: int) -> frozenset[str] | None:
     """Return the groups of an assignment to which somebody is limited; None for the whole class."""
     if holder.role != ASSISTANT:
         return None
-    found = {area.group for area in holder.areas if area.assignment in (None, assignment)}
-    return None if None in found else frozenset(one for one in found if one is not None)
+    groups = {area.group for area in holder.areas if area.assignment in (None, assignment)}
+    return None if None in groups else frozenset(group for group in groups if group is not None)
 
 
 def is_of_staff(permission: Permission) -> bool:

@@ -34,14 +34,14 @@ def pools(connection: Connection, versions: Mapping[str, int]) -> dict[str, Pool
 
 
 def _of_text(text: str) -> Pooled:
-    found = json.loads(text)
-    return Pooled(tuple(found["seeds"]), bool(found["all"]))
+    pool = json.loads(text)
+    return Pooled(tuple(pool["seeds"]), bool(pool["all"]))
 
 
-def put_pooled(connection: Connection, exercise: str, version: int, found: Pooled) -> None:
+def put_pooled(connection: Connection, exercise: str, version: int, seeds: Pooled) -> None:
     """Keep what was found, in the place of what was before."""
     name = _name(exercise, version)
-    text = json.dumps({"seeds": list(found.seeds), "all": found.are_all})
+    text = json.dumps({"seeds": list(seeds.seeds), "all": seeds.are_all})
     connection.execute(delete(setting).where(setting.c.name == name))
     connection.execute(insert(setting).values(name=name, value=text))
 

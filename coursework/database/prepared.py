@@ -22,18 +22,18 @@ class Pieces(NamedTuple):
 
 def prepared_state(connection: Connection, number: int, person_id: int, lang: str) -> str:
     """Return the state of a cached page; empty if there is none."""
-    found = select(prepared.c.state).where(*_key(number, person_id, lang))
-    return str(connection.execute(found).scalar() or "")
+    query = select(prepared.c.state).where(*_key(number, person_id, lang))
+    return str(connection.execute(query).scalar() or "")
 
 
 def prepared_pieces(
     connection: Connection, number: int, person_id: int, lang: str, state: str
 ) -> Pieces | None:
     """Return a page as it was made in this very state; None where there is none such."""
-    found = select(prepared.c.head, prepared.c.body).where(
+    query = select(prepared.c.head, prepared.c.body).where(
         *_key(number, person_id, lang), prepared.c.state == state
     )
-    row = connection.execute(found).first()
+    row = connection.execute(query).first()
     return None if row is None else Pieces(row.head, row.body)
 
 

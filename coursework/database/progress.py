@@ -52,21 +52,21 @@ class PersonProgress:
         BadInput
             The database takes nothing.
         """
-        new = {_digest(one): dict(one) for one in entries}
+        new = {_digest(entry): dict(entry) for entry in entries}
         if not new:
             return
         with self._store.begin() as connection:
             stand = select(table.c.digest).where(table.c.person_id == self._person, table.c.digest.in_(new))
-            known = set(connection.execute(stand).scalars())
+            stored = set(connection.execute(stand).scalars())
             rows = [
-                {"person_id": self._person, "entry": one, "digest": digest}
-                for digest, one in new.items()
-                if digest not in known
+                {"person_id": self._person, "entry": entry, "digest": digest}
+                for digest, entry in new.items()
+                if digest not in stored
             ]
             if rows:
                 connection.execute(insert(table), rows)
         self.progress |= Progress(new.values())
 
 
-def _digest(one: Entry) -> str:
-    return sha256(json.dumps(one, ensure_ascii=False, sort_keys=True, default=str).encode()).hexdigest()
+def _digest(entry: Entry) -> str:
+    return sha256(json.dumps(entry, ensure_ascii=False, sort_keys=True, default=str).encode()).hexdigest()

@@ -25,9 +25,9 @@ def promote_first(connection: Connection) -> None:
     who is only invited.
     """
     instructors = sa.select(_ACCOUNT).where(_ACCOUNT.c.role == "instructor", _ACCOUNT.c.closed.is_(None))
-    found = connection.execute(instructors.order_by(_ACCOUNT.c.id)).all()
-    chosen = [row.id for row in found if row.login == _OWNER]
-    others = sorted((row for row in found if row.login != _OWNER), key=lambda row: (not row.secret, row.id))
+    rows = connection.execute(instructors.order_by(_ACCOUNT.c.id)).all()
+    chosen = [row.id for row in rows if row.login == _OWNER]
+    others = sorted((row for row in rows if row.login != _OWNER), key=lambda row: (not row.secret, row.id))
     there_is_one = (
         sa.select(_ACCOUNT.c.id)
         .where(_ACCOUNT.c.role == "administrator", _ACCOUNT.c.closed.is_(None), _ACCOUNT.c.login != _OWNER)

@@ -85,20 +85,20 @@ class Publication:
     # ------------------------------------------------------------------ as JSON
 
     @staticmethod
-    def of(told: Mapping[str, Any]) -> Publication:
+    def of(stored: Mapping[str, Any]) -> Publication:
         """Return the publication stored in a row; an unknown key, from a later version, is ignored."""
-        known = {field.name for field in fields(Publication)}
-        own = {key: value for key, value in told.items() if key in known}
-        moments = {key: datetime.fromisoformat(own[key]) for key in _MOMENTS if own.get(key)}
-        return Publication(**{**own, **moments})
+        names = {field.name for field in fields(Publication)}
+        values = {key: value for key, value in stored.items() if key in names}
+        moments = {key: datetime.fromisoformat(values[key]) for key in _MOMENTS if values.get(key)}
+        return Publication(**{**values, **moments})
 
     def as_json(self) -> dict[str, Any]:
         usual = Publication()
-        own = {field.name: getattr(self, field.name) for field in fields(self)}
-        shown = {
-            key: value.isoformat() if isinstance(value, datetime) else value for key, value in own.items()
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        json_values = {
+            key: value.isoformat() if isinstance(value, datetime) else value for key, value in values.items()
         }
-        return {key: value for key, value in shown.items() if own[key] != getattr(usual, key)}
+        return {key: value for key, value in json_values.items() if values[key] != getattr(usual, key)}
 
     # --------------------------------------------------------------- what it says
 
@@ -116,12 +116,12 @@ class Publication:
             yield Fault("late_until", "late_never_ends")
         if self.late == CHARGE and not 0 < self.late_percent <= 100:
             yield Fault("late_percent", "late_percent")
-        for what in ("feedback", "answers"):
-            when, on = getattr(self, what), getattr(self, f"{what}_on")
+        for released in ("feedback", "answers"):
+            when, on = getattr(self, released), getattr(self, f"{released}_on")
             if when == DATE and on is None:
-                yield Fault(f"{what}_on", "no_date")
+                yield Fault(f"{released}_on", "no_date")
             if when == CLOSED and self.closes is None:
-                yield Fault(what, "never_closes")
+                yield Fault(released, "never_closes")
         if self.takes_saved and self.closes is None:
             yield Fault("takes_saved", "never_closes")
 
@@ -169,11 +169,11 @@ class Publication:
         """The last moment at which anything is taken; none where that never comes."""
         return self.closes if self.late == REFUSE or self.closes is None else self.late_until
 
-    def late_seconds(self, came: datetime) -> int:
+    def late_seconds(self, received_at: datetime) -> int:
         """Return the seconds by which a submission was late, rounded up; 0 in time."""
-        if self.closes is None or came <= self.closes:
+        if self.closes is None or received_at <= self.closes:
             return 0
-        return math.ceil((came - self.closes) / timedelta(seconds=1))
+        return math.ceil((received_at - self.closes) / timedelta(seconds=1))
 
     def charged(self, late: int) -> float:
         """Return the share of the points, 0 to 1, deducted from a submission that was late by the given
@@ -192,14 +192,16 @@ class Publication:
 
     def dates(self, extensions: Sequence[Extension] = ()) -> list[datetime]:
         """Return all its dates, in order."""
-        own = [getattr(self, name) for name in _MOMENTS if name != "reached"]
-        return sorted(one for one in (*own, *(more.closes for more in extensions)) if one is not None)
+        own_dates = [getattr(self, name) for name in _MOMENTS if name != "reached"]
+        return sorted(
+            date for date in (*own_dates, *(more.closes for more in extensions)) if date is not None
+        )
 
 
 def last_end(publication: Publication, extensions: Sequence[Extension]) -> datetime | None:
     """Return the time after which nobody can submit any more; None if there is none."""
     ends = [publication.ends, *(publication.extended(more).ends for more in extensions)]
-    return None if None in ends else max(one for one in ends if one is not None)
+    return None if None in ends else max(end for end in ends if end is not None)
 
 
 # --------------------------------------------------------------------- database
@@ -207,26 +209,26 @@ def last_end(publication: Publication, extensions: Sequence[Extension]) -> datet
 
 def published(connection: Connection, number: int) -> Publication | None:
     """Return the publication of an assignment; None if the assignment is not published or does not exist."""
-    told = connection.execute(select(assignment.c.published).where(assignment.c.id == number)).scalar()
-    return None if told is None else Publication.of(told)
+    stored = connection.execute(select(assignment.c.published).where(assignment.c.id == number)).scalar()
+    return None if stored is None else Publication.of(stored)
 
 
 def publish(connection: Connection, number: int, publication: Publication | None) -> None:
     """Publish an assignment, or, with None, take that back; what was handed in stays."""
-    told = None if publication is None else publication.as_json()
+    stored = None if publication is None else publication.as_json()
     if _charging(published(connection, number)) != _charging(publication):
         outdate_all(connection, number)
-    connection.execute(update(assignment).where(assignment.c.id == number).values(published=told))
+    connection.execute(update(assignment).where(assignment.c.id == number).values(published=stored))
 
 
 def is_over(connection: Connection, number: int, clock: datetime) -> bool:
     """Return True if nobody can submit any more, or if nobody can yet because the assignment is not
     published."""
-    said = published(connection, number)
-    if said is None:
+    current = published(connection, number)
+    if current is None:
         return True
-    ends = last_end(said, list(extensions(connection, number).values()))
-    return ends is not None and ends < said.now(clock)
+    ends = last_end(current, list(extensions(connection, number).values()))
+    return ends is not None and ends < current.now(clock)
 
 
 def _charging(publication: Publication | None) -> tuple[object, ...]:
@@ -249,15 +251,17 @@ def charges(
     names = select(dealt.c.person_id, dealt.c.student).join(variant).where(variant.c.assignment_id == number)
     if students is not None:
         names = names.where(dealt.c.student.in_(list(students)))
-    called = {row.person_id: row.student for row in connection.execute(names)}
+    student_names = {row.person_id: row.student for row in connection.execute(names)}
     if students is not None:
-        late = late.where(delivery.c.person_id.in_(list(called)))
-    found = {}
+        late = late.where(delivery.c.person_id.in_(list(student_names)))
+    shares = {}
     for row in connection.execute(late):
-        own = publication.extended(theirs.get(row.person_id))
-        if row.person_id in called and (share := own.charged(min(row.late, own.late_seconds(row.came)))):
-            found[called[row.person_id], row.number] = share
-    return found
+        extended = publication.extended(theirs.get(row.person_id))
+        if row.person_id in student_names and (
+            share := extended.charged(min(row.late, extended.late_seconds(row.came)))
+        ):
+            shares[student_names[row.person_id], row.number] = share
+    return shares
 
 
 def extend(connection: Connection, number: int, person: int, more: Extension) -> None:
@@ -269,10 +273,10 @@ def extend(connection: Connection, number: int, person: int, more: Extension) ->
 
 def extensions(connection: Connection, number: int) -> dict[int, Extension]:
     """Return the current extension of each person."""
-    found = select(extension).where(extension.c.assignment_id == number).order_by(extension.c.id)
+    query = select(extension).where(extension.c.assignment_id == number).order_by(extension.c.id)
     return {
         row.person_id: Extension(row.closes, row.tries, row.reason, row.by, row.made)
-        for row in connection.execute(found)
+        for row in connection.execute(query)
     }
 
 
@@ -283,14 +287,14 @@ def reach(connection: Connection, number: int, clock: datetime) -> bool:
     ).scalar()
     if about is None:
         return False
-    own = Publication.of(about)
-    passed = [one for one in own.dates(list(extensions(connection, number).values())) if one < clock]
-    if not passed or (own.reached is not None and passed[-1] < own.reached):
+    current = Publication.of(about)
+    passed = [date for date in current.dates(list(extensions(connection, number).values())) if date < clock]
+    if not passed or (current.reached is not None and passed[-1] < current.reached):
         return False
     just_after = passed[-1] + timedelta(microseconds=1)
-    if own.reached is not None and just_after <= own.reached:
+    if current.reached is not None and just_after <= current.reached:
         return False
-    publish(connection, number, replace(own, reached=just_after))
+    publish(connection, number, replace(current, reached=just_after))
     return True
 
 
@@ -314,7 +318,7 @@ class Place(NamedTuple):
 
 def places(connection: Connection, person: int, number: int | None = None) -> list[Place]:
     """Return the assignments issued to a person, the latest first; one alone, if its number is given."""
-    told = {"person": person} if number is None else {"person": person, "number": number}
+    parameters = {"person": person} if number is None else {"person": person, "number": number}
     return [
         Place(
             row.id, row.name, row.stated or {}, row.student,
@@ -322,7 +326,7 @@ def places(connection: Connection, person: int, number: int | None = None) -> li
             None if row.made is None else Extension(row.ext_closes, row.ext_tries, row.reason, row.by, row.made),
             row.asked or {},
         )
-        for row in connection.execute(_places_query(number is not None), told)
+        for row in connection.execute(_places_query(number is not None), parameters)
     ]  # fmt: skip
 
 
@@ -331,30 +335,30 @@ def _places_query(is_of_one: bool) -> Select[Any]:
     """Return the query of :func:`places`, cached since many requests execute it, with the person's last extension."""
     theirs = select(variant.c.assignment_id, dealt.c.student).join(variant)
     mine = theirs.where(dealt.c.person_id == bindparam("person")).distinct().subquery()
-    one = assignment.c
+    columns = assignment.c
     more, last = extension.c, func.max(extension.c.id)
-    own = more.assignment_id == one.id, more.person_id == bindparam("person")
-    given = select(last).where(*own).correlate(assignment).scalar_subquery()
-    found = select(one.id, one.name, one.stated, one.published, one.asked, mine.c.student)
-    found = found.add_columns(
+    of_person = more.assignment_id == columns.id, more.person_id == bindparam("person")
+    given = select(last).where(*of_person).correlate(assignment).scalar_subquery()
+    query = select(columns.id, columns.name, columns.stated, columns.published, columns.asked, mine.c.student)
+    query = query.add_columns(
         more.closes.label("ext_closes"), more.tries.label("ext_tries"), more.reason, more.by, more.made
     )
-    found = found.select_from(
-        assignment.join(mine, mine.c.assignment_id == one.id).outerjoin(extension, more.id == given)
+    query = query.select_from(
+        assignment.join(mine, mine.c.assignment_id == columns.id).outerjoin(extension, more.id == given)
     )
-    found = found.order_by(one.id.desc())
-    return found.where(one.id == bindparam("number")) if is_of_one else found
+    query = query.order_by(columns.id.desc())
+    return query.where(columns.id == bindparam("number")) if is_of_one else query
 
 
 def say_sittings(connection: Connection, number: int, counts: str) -> None:
     """Say which of several hand-ins counts, ``best`` or ``last``, where marks are put together."""
     row = connection.execute(select(assignment).where(assignment.c.id == number)).one()
-    told = {
+    values = {
         key: {**value, "sittings": counts}
         for key, value in (("stated", row.stated), ("asked", row.asked))
         if value is not None
     }
-    if told:
-        connection.execute(update(assignment).where(assignment.c.id == number).values(told))
+    if values:
+        connection.execute(update(assignment).where(assignment.c.id == number).values(values))
         if counts != (row.stated or {}).get("sittings"):
             outdate_all(connection, number)

@@ -50,16 +50,16 @@ def put_scanned(connection: Connection, assignment_id: int, page: Page, picture:
 def pages_scanned(connection: Connection, assignment_id: int) -> list[Page]:
     """Return the scanned pages, in the order of their files."""
     columns = [scanned.c[name] for name in Page._fields]
-    found = select(*columns).where(scanned.c.assignment_id == assignment_id)
-    in_order = found.order_by(scanned.c.file, scanned.c.page)
+    query = select(*columns).where(scanned.c.assignment_id == assignment_id)
+    in_order = query.order_by(scanned.c.file, scanned.c.page)
     return [Page(*row) for row in connection.execute(in_order)]
 
 
 def picture_scanned(connection: Connection, assignment_id: int, page: str) -> bytes | None:
     """Return the picture of a page; None if there is none."""
     of_page = scanned.c.assignment_id == assignment_id, scanned.c.page == page
-    found = connection.execute(select(scanned.c.picture).where(*of_page)).scalar()
-    return base64.b64decode(found) if found else None
+    encoded = connection.execute(select(scanned.c.picture).where(*of_page)).scalar()
+    return base64.b64decode(encoded) if encoded else None
 
 
 def name_scanned(connection: Connection, assignment_id: int, page: str, student: str) -> None:
@@ -70,9 +70,9 @@ def name_scanned(connection: Connection, assignment_id: int, page: str, student:
 
 def put_typed(connection: Connection, assignment_id: int, rows: Iterable[TypedRow]) -> None:
     """Keep what was typed."""
-    found = [{**row._asdict(), "assignment_id": assignment_id} for row in rows]
-    if found:
-        connection.execute(insert(typed), found)
+    values = [{**row._asdict(), "assignment_id": assignment_id} for row in rows]
+    if values:
+        connection.execute(insert(typed), values)
 
 
 def typed_rows(connection: Connection, assignment_id: int) -> list[TypedRow]:
@@ -82,9 +82,9 @@ def typed_rows(connection: Connection, assignment_id: int) -> list[TypedRow]:
     in_order = select(*columns).where(typed.c.assignment_id == assignment_id).order_by(typed.c.id)
     last: dict[tuple[str, ...], TypedRow] = {}
     for row in map(TypedRow._make, connection.execute(in_order)):
-        place = tuple(row[:5])
-        last.pop(place, None)
-        last[place] = row
+        key = tuple(row[:5])
+        last.pop(key, None)
+        last[key] = row
     return [row for row in last.values() if row.answer is not None]
 
 
@@ -92,5 +92,5 @@ def scans_stamp(connection: Connection, assignment_id: int) -> tuple[int, int]:
     """Return the ids of the last page and the last typed text of an assignment; they change when something is
     new."""
     last = [select(func.max(t.c.id)).where(t.c.assignment_id == assignment_id) for t in (scanned, typed)]
-    pages, texts = (connection.execute(one).scalar() or 0 for one in last)
+    pages, texts = (connection.execute(query).scalar() or 0 for query in last)
     return pages, texts

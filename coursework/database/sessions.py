@@ -41,8 +41,8 @@ def begin_session(connection: Connection, number: int, browser: str, at: datetim
     token = secrets.token_urlsafe(32)
     row = {"person_id": number, "digest": digest_of(token), "browser": browser[:80]}
     connection.execute(insert(session).values(**row, created=at, seen=at, until=at + IDLE))
-    own = select(session.c.id).where(session.c.person_id == number)
-    too_many = own.order_by(session.c.seen.desc(), session.c.id.desc()).offset(MOST)
+    query = select(session.c.id).where(session.c.person_id == number)
+    too_many = query.order_by(session.c.seen.desc(), session.c.id.desc()).offset(MOST)
     old = list(connection.execute(too_many).scalars())
     if old:
         connection.execute(delete(session).where(session.c.id.in_(old)))
@@ -65,12 +65,12 @@ def session_of(connection: Connection, token: str, at: datetime) -> Any | None:
 def _session_query() -> Select[Any]:
     """Return the query of :func:`session_of`, cached: every request executes it, and composing it takes as
     long as its execution."""
-    own = [session.c[name].label(f"session_{name}") for name in ("id", "created", "seen")]
+    columns = [session.c[name].label(f"session_{name}") for name in ("id", "created", "seen")]
     former = account.alias()
     is_closed = exists().where(former.c.person_id == person.c.id, former.c.closed.is_not(None))
     return (
         found_people()
-        .add_columns(*own, taken_query().scalar_subquery().label("taken"))
+        .add_columns(*columns, taken_query().scalar_subquery().label("taken"))
         .join(session, session.c.person_id == person.c.id)
         .where(session.c.digest == bindparam("digest"), session.c.until > bindparam("at"))
         .where(or_(account.c.id.is_not(None), ~is_closed))
@@ -85,8 +85,8 @@ def touch_session(connection: Connection, number: int, created: datetime, at: da
 
 def sessions_of(connection: Connection, number: int, at: datetime) -> list[Any]:
     """Return the sessions of a person that have not expired, the last used first."""
-    found = select(session.c.id, session.c.browser, session.c.created, session.c.seen)
-    mine = found.where(session.c.person_id == number, session.c.until > at)
+    query = select(session.c.id, session.c.browser, session.c.created, session.c.seen)
+    mine = query.where(session.c.person_id == number, session.c.until > at)
     return list(connection.execute(mine.order_by(session.c.seen.desc(), session.c.id.desc())))
 
 

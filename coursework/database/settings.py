@@ -23,12 +23,12 @@ def secret(connection: Connection) -> bytes:
     BadInput
         What is kept is no key.
     """
-    found = connection.execute(select(setting.c.value).where(setting.c.name == _KEY)).scalar()
-    if found is None:
-        found = secrets.token_hex(32)
-        connection.execute(insert(setting).values(name=_KEY, value=found))
+    stored = connection.execute(select(setting.c.value).where(setting.c.name == _KEY)).scalar()
+    if stored is None:
+        stored = secrets.token_hex(32)
+        connection.execute(insert(setting).values(name=_KEY, value=stored))
     try:
-        return bytes.fromhex(found)
+        return bytes.fromhex(stored)
     except ValueError:
         raise BadInput(
             "the key that signs cookies is damaged in the database: restore a backup, or delete the row 'secret' of the table "
@@ -43,8 +43,8 @@ def renew_secret(connection: Connection) -> None:
 
 def value_of(connection: Connection, name: str) -> Any:
     """Return the value stored under a name; None if there is none."""
-    found = connection.execute(select(setting.c.value).where(setting.c.name == name)).scalar()
-    return None if found is None else json.loads(found)
+    stored = connection.execute(select(setting.c.value).where(setting.c.name == name)).scalar()
+    return None if stored is None else json.loads(stored)
 
 
 def put_value(connection: Connection, name: str, value: Any) -> None:

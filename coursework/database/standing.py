@@ -53,22 +53,22 @@ def stood(connection: Connection, assignment_id: int, student: Whom = None) -> d
     """Return the last marking of each sheet, in the order of the first marking of each; including sheets
     without any current answer."""
     last = _last(assignment_id, student).subquery()
-    found = select(marking, last.c.first).join(last, marking.c.id == last.c.last).order_by(last.c.first)
-    rows = connection.execute(found)
-    return {one.place: one for one in (_stood(row)._replace(first=row.first) for row in rows)}
+    query = select(marking, last.c.first).join(last, marking.c.id == last.c.last).order_by(last.c.first)
+    rows = connection.execute(query)
+    return {sheet.place: sheet for sheet in (_stood(row)._replace(first=row.first) for row in rows)}
 
 
 def _last(assignment_id: int, student: Whom) -> Select[Any]:
     first, last = func.min(marking.c.id).label("first"), func.max(marking.c.id).label("last")
-    found = select(first, last).where(marking.c.assignment_id == assignment_id).group_by(*_SHEET)
+    query = select(first, last).where(marking.c.assignment_id == assignment_id).group_by(*_SHEET)
     if student is None:
-        return found
-    return found.where(marking.c.student.in_([student] if isinstance(student, str) else list(student)))
+        return query
+    return query.where(marking.c.student.in_([student] if isinstance(student, str) else list(student)))
 
 
 def _stood(row: Any) -> Stood:
-    place = row.student, row.exercise, int(row.seed), row.attempt
-    return Stood(row.id, place, row.sitting, row.state, row.lang, row.apart, row.submitted, row.fault)
+    key = row.student, row.exercise, int(row.seed), row.attempt
+    return Stood(row.id, key, row.sitting, row.state, row.lang, row.apart, row.submitted, row.fault)
 
 
 class _Lines(NamedTuple):
@@ -80,20 +80,20 @@ class _Lines(NamedTuple):
 
 def lines_of(connection: Connection, sheets: Iterable[Stood]) -> dict[int, _Lines]:
     """Return the marks of sheets, by the marking's id."""
-    ids = [one.id for one in sheets]
+    ids = [sheet.id for sheet in sheets]
     marks: dict[int, dict[str, Mark]] = {}
-    came: dict[int, list[tuple[int, str]]] = {}
+    order: dict[int, list[tuple[int, str]]] = {}
     for start in range(0, len(ids), _CHUNK):
         some = mark.c.marking_id.in_(ids[start : start + _CHUNK])
-        found = select(mark.c.marking_id, mark.c.came, *_LINE).where(some)
-        for number, place, *sent in connection.execute(found.order_by(mark.c.marking_id, mark.c.place)):
+        query = select(mark.c.marking_id, mark.c.came, *_LINE).where(some)
+        for number, position, *sent in connection.execute(query.order_by(mark.c.marking_id, mark.c.place)):
             line = _line(sent)
             marks.setdefault(number, {})[line.part] = line
-            if place is not None:
-                came.setdefault(number, []).append((place, line.part))
+            if position is not None:
+                order.setdefault(number, []).append((position, line.part))
     return {
-        number: _Lines(own, tuple(part for _, part in sorted(came.get(number, ()))))
-        for number, own in marks.items()
+        number: _Lines(sheet_marks, tuple(part for _, part in sorted(order.get(number, ()))))
+        for number, sheet_marks in marks.items()
     }
 
 
@@ -107,21 +107,21 @@ def machine_marks(
 ) -> Iterator[tuple[SheetPlace, Graded | str]]:
     """Yield each sheet as marked by the machine, or the reason for which it cannot be marked; skip sheets
     without any current answer."""
-    for one in sheets:
-        if one.fault:
-            yield one.place, one.fault
-        elif one.state:
-            yield one.place, _graded(issued, one, lines[one.id])
+    for sheet in sheets:
+        if sheet.fault:
+            yield sheet.place, sheet.fault
+        elif sheet.state:
+            yield sheet.place, _graded(issued, sheet, lines[sheet.id])
 
 
-def _graded(issued: Issued, one: Stood, lines: _Lines) -> Graded:
-    record = issued.record_of(*one.place[:3])
-    if one.apart:
+def _graded(issued: Issued, sheet: Stood, lines: _Lines) -> Graded:
+    record = issued.record_of(*sheet.place[:3])
+    if sheet.apart:
         record = {**record, "parts": [p for p in record["parts"] if p["id"] in lines.marks]}
-    if one.lang != str(record.get("lang", "")):
-        record = {**record, "lang": one.lang}
-    graded = Graded(*one.place[:3], lines.marks, lines.came, record, sitting=one.sitting)
-    return graded._replace(submitted=one.submitted, apart=one.apart)
+    if sheet.lang != str(record.get("lang", "")):
+        record = {**record, "lang": sheet.lang}
+    graded = Graded(*sheet.place[:3], lines.marks, lines.came, record, sitting=sheet.sitting)
+    return graded._replace(submitted=sheet.submitted, apart=sheet.apart)
 
 
 def graded(connection: Connection, assignment_id: int, student: str | None = None) -> list[Graded]:
@@ -133,7 +133,7 @@ def graded(connection: Connection, assignment_id: int, student: str | None = Non
     decisions = Decisions.read(connection, assignment_id, student)
     issued = issued_of(connection, assignment_id, student=student)
     results = machine_marks(issued, sheets.values(), lines)
-    return [decisions.apply(one) for _, one in results if not isinstance(one, str)]
+    return [decisions.apply(result) for _, result in results if not isinstance(result, str)]
 
 
 def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gradebook:
@@ -147,13 +147,13 @@ def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gra
     issued = issued_of(connection, assignment_id)
     sheets = placed(course, issued, rows_of(connection, assignment_id))
     standing = stood(connection, assignment_id)
-    known = [standing[place] for place in sheets.sheets if place in standing]
-    results = machine_marks(issued, known, lines_of(connection, known))
+    marked = [standing[key] for key in sheets.sheets if key in standing]
+    results = machine_marks(issued, marked, lines_of(connection, marked))
     decisions = Decisions.read(connection, assignment_id)
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
-    for one in map(decisions.apply, rejecting(sheets, results)):
-        book.add(one)
-        book.waiting += sum(line.verdict == TO_MARK for line in one.lines.values())
+    for sheet in map(decisions.apply, rejecting(sheets, results)):
+        book.add(sheet)
+        book.waiting += sum(line.verdict == TO_MARK for line in sheet.lines.values())
     book.seen, book.charged = told_seen(sheets.seen), charges(connection, assignment_id)
     return book
 
@@ -185,7 +185,7 @@ def waiting(
     """Return the answers that wait for a person, question by question; on request, including those that are
     ``decided``."""
     last = _last(assignment_id, None).subquery()
-    found = (
+    query = (
         select(marking, *_LINE)
         .join(mark)
         .join(last, marking.c.id == last.c.last)
@@ -193,14 +193,15 @@ def waiting(
     )
     decisions = Decisions.read(connection, assignment_id)
     waits = []
-    for row in connection.execute(found.where(mark.c.verdict.in_(verdicts))):
+    for row in connection.execute(query.where(mark.c.verdict.in_(verdicts))):
         sheet, line = _stood(row), _line(row[len(marking.c) :])
         waits.append(_waits(sheet, line, next(decisions.counting(sheet.place[:3], line), None)))
     return sorted(
-        (one for one in waits if decided or one.decision is None), key=lambda one: (one.exercise, one.part)
+        (answer for answer in waits if decided or answer.decision is None),
+        key=lambda answer: (answer.exercise, answer.part),
     )
 
 
 def _waits(sheet: Stood, line: Mark, decision: Decision | None) -> Waits:
-    place = *sheet.place[:3], sheet.sitting, line.part, line.answer
-    return Waits(*place, line.verdict, line.points, line.out_of, line.says, line.lang, decision)
+    columns = *sheet.place[:3], sheet.sitting, line.part, line.answer
+    return Waits(*columns, line.verdict, line.points, line.out_of, line.says, line.lang, decision)

@@ -30,26 +30,30 @@ def exercise_state(course: Course, exercise: str) -> str:
 
     Asked before the exercise is loaded, it is never of a later state than what marks.
     """
-    own = _known.setdefault(course, {})
-    if exercise not in own:
+    states = _known.setdefault(course, {})
+    if exercise not in states:
         root = course.folder.root
-        own[exercise] = _of_files(root, sources(course.folder, exercise)) if exercise in course else ""
-    return own[exercise]
+        states[exercise] = _of_files(root, sources(course.folder, exercise)) if exercise in course else ""
+    return states[exercise]
 
 
 @cache
 def engine_state() -> str:
     """Digest of the package's own files that a mark comes from."""
-    found = [_PACKAGE / name for name in ENGINE]
-    files = (p for place in found for p in ([place] if place.is_file() else place.rglob("*")))
+    paths = [_PACKAGE / name for name in ENGINE]
+    files = (p for path in paths for p in ([path] if path.is_file() else path.rglob("*")))
     return _of_files(_PACKAGE, (p for p in files if p.suffix in (".py", ".toml")))
 
 
-def page_state(course: Course, exercises: Iterable[str], *told: Any) -> str:
+def page_state(course: Course, exercises: Iterable[str], *given: Any) -> str:
     """Return the digest of everything on which the page of a paper depends: the given values, its exercises,
     the templates and the whole package."""
-    how = package_state(), _templates_state(course), *(exercise_state(course, one) for one in exercises)
-    return sha256("\0".join((*how, json.dumps(told, sort_keys=True))).encode()).hexdigest()
+    how = (
+        package_state(),
+        _templates_state(course),
+        *(exercise_state(course, exercise) for exercise in exercises),
+    )
+    return sha256("\0".join((*how, json.dumps(given, sort_keys=True))).encode()).hexdigest()
 
 
 @cache
@@ -60,25 +64,27 @@ def package_state() -> str:
 
 def _templates_state(course: Course) -> str:
     """Digest of a course's templates and settings, as they were when the open course was first asked."""
-    own = _known.setdefault(course, {})
-    if _TEMPLATES not in own:
+    states = _known.setdefault(course, {})
+    if _TEMPLATES not in states:
         folder = course.folder
         settings = folder.root / "exercises" / "course.toml"
-        found = [_of_files(folder.root, [settings] if settings.is_file() else [])]
-        found += [
-            _of_files(place, place.rglob("*.j2")) for place in folder.template_folders if place.is_dir()
+        digests = [_of_files(folder.root, [settings] if settings.is_file() else [])]
+        digests += [
+            _of_files(directory, directory.rglob("*.j2"))
+            for directory in folder.template_folders
+            if directory.is_dir()
         ]
-        own[_TEMPLATES] = "\0".join(found)
-    return own[_TEMPLATES]
+        states[_TEMPLATES] = "\0".join(digests)
+    return states[_TEMPLATES]
 
 
 def _of_files(root: Path, files: Iterable[Path]) -> str:
-    found = sha256()
+    digest = sha256()
     for path in sorted(files):
         content = path.read_bytes()
-        found.update(f"{path.relative_to(root).as_posix()}\0{len(content)}\0".encode())
-        found.update(content)
-    return found.hexdigest()
+        digest.update(f"{path.relative_to(root).as_posix()}\0{len(content)}\0".encode())
+        digest.update(content)
+    return digest.hexdigest()
 
 
 def sheet_state(
@@ -87,5 +93,5 @@ def sheet_state(
     """Digest of all that the marks of a sheet hang on."""
     exercise = str(record["exercise"])
     how = engine_state(), exercise_state(course, exercise), repr(rules or course.folder.rules)
-    told = json.dumps([record, list(answers.items()), *more], default=repr)
-    return sha256("\0".join((*how, told)).encode()).hexdigest()
+    state = json.dumps([record, list(answers.items()), *more], default=repr)
+    return sha256("\0".join((*how, state)).encode()).hexdigest()

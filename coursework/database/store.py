@@ -136,8 +136,8 @@ class Store:
         try:
             with self.engine.begin() as connection:
                 _one_at_a_time(connection)
-                stands = MigrationContext.configure(connection).get_current_revision()
-                if stands == scripts.get_current_head():
+                revision = MigrationContext.configure(connection).get_current_revision()
+                if revision == scripts.get_current_head():
                     return
                 config = Config()
                 config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
@@ -179,18 +179,18 @@ def _is_whole(text: str) -> bool:
         return False
 
 
-def _url(told: str) -> str:
-    return told if "://" in told else f"sqlite:///{told}"
+def _url(address: str) -> str:
+    return address if "://" in address else f"sqlite:///{address}"
 
 
 def file_of(url: str) -> Path | None:
     """Return the file of an SQLite database; None for another database."""
     try:
-        told = make_url(_url(url))
+        parsed = make_url(_url(url))
     except ArgumentError:
         return None
-    in_file = told.get_backend_name() == "sqlite" and told.database not in (None, "", ":memory:")
-    return Path(str(told.database)) if in_file else None
+    in_file = parsed.get_backend_name() == "sqlite" and parsed.database not in (None, "", ":memory:")
+    return Path(str(parsed.database)) if in_file else None
 
 
 def _make_private(url: str) -> None:
@@ -258,5 +258,5 @@ def _is_ours(fault: DatabaseError | NoConnection) -> bool:
 
 
 def _cause(fault: DBAPIError | NoConnection) -> str:
-    told = " ".join(str(fault.orig if isinstance(fault, DBAPIError) else fault).split())
-    return told + _RESTORE if type(fault) is DatabaseError else told
+    reason = " ".join(str(fault.orig if isinstance(fault, DBAPIError) else fault).split())
+    return reason + _RESTORE if type(fault) is DatabaseError else reason

@@ -31,11 +31,11 @@ def summaries(connection: Connection) -> list[Summary]:
 
 
 def _summary(connection: Connection, name: str, number: int) -> Summary:
-    def count(found: Select[Any]) -> int:
-        return int(connection.execute(found).scalar() or 0)
+    def count(counted: Select[Any]) -> int:
+        return int(connection.execute(counted).scalar() or 0)
 
     issued = variant.c.assignment_id == number
-    whose = select(func.count(distinct(dealt.c.student))).select_from(dealt.join(variant))
+    query = select(func.count(distinct(dealt.c.student))).select_from(dealt.join(variant))
     answered = (
         select(func.count()).select_from(answer.join(delivery)).where(delivery.c.assignment_id == number)
     )
@@ -43,7 +43,7 @@ def _summary(connection: Connection, name: str, number: int) -> Summary:
     sheets = select(*sheet).where(marking.c.assignment_id == number).distinct().subquery()
     return Summary(
         name,
-        count(whose.where(issued, dealt.c.student != "")),
+        count(query.where(issued, dealt.c.student != "")),
         count(select(func.count()).select_from(variant).where(issued)),
         count(select(func.count()).select_from(delivery).where(delivery.c.assignment_id == number)),
         count(answered),

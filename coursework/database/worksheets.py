@@ -56,11 +56,11 @@ def take_in(
     files += [] if by_hand is None or by_hand.path is None else [(by_hand.path, _accepted(by_hand))]
     was = _by_answer(line for path, _ in files for line in _remembered(connection, assignment_id, path))
     now = _by_answer(line for _, lines in files for line in lines)
-    known = Decisions.read(connection, assignment_id)
+    decisions = Decisions.read(connection, assignment_id)
     names = {path.name for path, _ in files}
     changed = [on for on in dict.fromkeys((*was, *now)) if was.get(on) != now.get(on)]
     for on in changed:
-        standing = known.on(*on)
+        standing = decisions.on(*on)
         if on in was and standing and standing[-1].by in names and standing[-1].kind != WITHDRAWN:
             _keep(
                 connection,
@@ -82,35 +82,35 @@ def written(connection: Connection, assignment_id: int, path: Path) -> None:
 
 def _keep(connection: Connection, assignment_id: int, line: _Line) -> None:
     """Store a decision; ignore a line that names nothing issued, since the reader of the file reports it."""
-    place = Place(line.student, line.exercise, line.seed, line.part, line.answer)
+    answer = Place(line.student, line.exercise, line.seed, line.part, line.answer)
     with suppress(UnknownName):
-        decide(connection, assignment_id, [place], line.kind, line.points, line.reason, line.by)
+        decide(connection, assignment_id, [answer], line.kind, line.points, line.reason, line.by)
 
 
 def _by_answer(lines: Iterable[_Line]) -> dict[tuple[str, str, str], list[_Line]]:
-    found: dict[tuple[str, str, str], list[_Line]] = {}
+    by_answer: dict[tuple[str, str, str], list[_Line]] = {}
     for line in lines:
-        found.setdefault(line.on, []).append(line)
-    return found
+        by_answer.setdefault(line.on, []).append(line)
+    return by_answer
 
 
 def _given(by_person: ToMark) -> list[_Line]:
     lines = by_person.given.values()
     return [
-        _Line(*_named(one.named), GIVEN, one.points, one.reason, one.answer, by_person.path.name)
-        for one in lines
+        _Line(*_named(row.named), GIVEN, row.points, row.reason, row.answer, by_person.path.name)
+        for row in lines
     ]
 
 
-def _named(told: Sequence[str]) -> tuple[str, str, str, str]:
-    student, exercise, seed, part = told
+def _named(named: Sequence[str]) -> tuple[str, str, str, str]:
+    student, exercise, seed, part = named
     return student, exercise, seed, part
 
 
 def _accepted(by_hand: Accepted) -> list[_Line]:
     assert by_hand.path is not None
     name = by_hand.path.name
-    return [_Line(*one.named, ACCEPTED, one.points, one.reason, None, name) for one in by_hand.lines]
+    return [_Line(*line.named, ACCEPTED, line.points, line.reason, None, name) for line in by_hand.lines]
 
 
 # --------------------------------------------------------------------- remembered
@@ -121,18 +121,18 @@ def _file(path: Path) -> str:
 
 
 def _remembered(connection: Connection, assignment_id: int, path: Path) -> list[_Line]:
-    found = select(worksheet.c.lines).where(
+    query = select(worksheet.c.lines).where(
         worksheet.c.assignment_id == assignment_id, worksheet.c.file == _file(path)
     )
-    return [_Line(*line) for line in connection.execute(found).scalar() or ()]
+    return [_Line(*line) for line in connection.execute(query).scalar() or ()]
 
 
 def _remember(connection: Connection, assignment_id: int, path: Path, lines: Sequence[_Line]) -> None:
-    own = {"assignment_id": assignment_id, "file": _file(path)}
+    key = {"assignment_id": assignment_id, "file": _file(path)}
     if lines == _remembered(connection, assignment_id, path):
         return
-    connection.execute(delete(worksheet).filter_by(**own))
-    connection.execute(insert(worksheet).values(lines=[list(line) for line in lines], **own))
+    connection.execute(delete(worksheet).filter_by(**key))
+    connection.execute(insert(worksheet).values(lines=[list(line) for line in lines], **key))
 
 
 # ---------------------------------------------------------------------- applied
@@ -148,11 +148,11 @@ class DecidedToMark(ToMark):
     def found(self, graded: Graded, part: str, line: Mark) -> Given | None:
         """Return the points decided for an answer; the file itself is only checked, for its warnings."""
         super().found(graded, part, line)
-        one = self.decisions.given(graded, line)
-        if one is None:
+        decided = self.decisions.given(graded, line)
+        if decided is None:
             return None
         named = graded.student, graded.exercise, str(graded.seed), part
-        return Given(one.by, named, line.answer, one.points or 0.0, one.reason)
+        return Given(decided.by, named, line.answer, decided.points or 0.0, decided.reason)
 
 
 class DecidedAccepted(Accepted):

@@ -17,7 +17,7 @@ AT = datetime(2026, 11, 23, 9, tzinfo=UTC)
 @pytest.fixture
 def somebody(store):
     with store.begin() as connection:
-        return put_person(connection, who="z", name="Zoé", lang="", columns={})
+        return put_person(connection, identifier="z", name="Zoé", lang="", columns={})
 
 
 def test_progress_of_one_exercise_is_read_alone(store, somebody):

@@ -89,7 +89,7 @@ class Staffed(Filled):
                 told = {"number": name, "group": group}
                 connection.execute(update(person).where(person.c.id == self.ids[name]).values(columns=told))
             for name, (role, areas) in STAFF.items():
-                self.ids[name] = put_person(connection, who=name, name=name, lang="", columns={})
+                self.ids[name] = put_person(connection, identifier=name, name=name, lang="", columns={})
                 put_account(connection, self.ids[name], login=f"{name}@example.org", role=role)
                 put_areas(connection, self.ids[name], [Area(numbers[one], group) for one, group in areas])
             self.parts = [part.id for part in self.variants[ZOE].parts]

@@ -256,7 +256,7 @@ def test_names_as_people_have_them_stand_on_every_page(room, window, handed_out)
     class_, address, _ = room
     with class_.site.store.begin() as connection:
         for k, name in enumerate(HARD):
-            class_.ids[name] = put_person(connection, who=folded(name), name=name, lang="", columns={})
+            class_.ids[name] = put_person(connection, identifier=folded(name), name=name, lang="", columns={})
             put_account(connection, class_.ids[name], login=f"hard{k}@example.org", role="student")
     number = handed_out(HARD, feedback="at_once")
     codes = {}

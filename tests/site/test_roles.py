@@ -25,7 +25,7 @@ EVE = "Eve Instructor"  #: who attacks
 def site(tmp_path):
     found = Class(f"sqlite:///{tmp_path}/site.db")
     with found.site.store.begin() as connection:
-        found.ids[EVE] = put_person(connection, who="eve", name=EVE, lang="", columns={})
+        found.ids[EVE] = put_person(connection, identifier="eve", name=EVE, lang="", columns={})
         put_account(connection, found.ids[EVE], login="eve@example.org", role="instructor")
     return found
 
@@ -184,7 +184,7 @@ def test_the_first_instructor_of_an_older_database_becomes_administrator(tmp_pat
     ]
     with store.begin() as connection:
         for k, (login, role, secret, closed) in enumerate(rows, 1):
-            number = put_person(connection, who=login, name=login, lang="", columns={})
+            number = put_person(connection, identifier=login, name=login, lang="", columns={})
             told = {"person_id": number, "login": login, "role": role, "secret": secret, "closed": closed}
             connection.execute(insert(account).values(id=k, created=datetime.now(UTC), **told))
         config = Config()

@@ -65,7 +65,7 @@ def owner(site: Site) -> int:
     if existing is not None and existing.role:
         return int(existing.id)
     with site.store.begin() as connection:
-        person = put_person(connection, who="owner", name="", lang="", columns={})
+        person = put_person(connection, identifier="owner", name="", lang="", columns={})
         put_account(connection, person, login="owner", role=ADMINISTRATOR)
     return person
 
