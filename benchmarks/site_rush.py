@@ -31,12 +31,12 @@ from sqlalchemy import func, select
 from coursework import open_course
 from coursework.database import tables
 from coursework.database.assignments import put_issued
-from coursework.database.deliveries import rows_of
 from coursework.database.people import put_account, put_person
 from coursework.database.pool import Pooled, put_pooled
 from coursework.database.publication import Publication, publish
 from coursework.database.sessions import begin_session
 from coursework.database.store import Store
+from coursework.database.submissions import rows_of
 from coursework.making.assignment import AskedExercise, Assignment
 from coursework.making.issued import issued_content
 from coursework.making.roster import Student as Enrolled

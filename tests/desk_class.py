@@ -6,9 +6,9 @@ from site_people import HOME, Class
 
 from coursework.course.answer_key import Key
 from coursework.database.assignments import put_issued
-from coursework.database.deliveries import deliver
 from coursework.database.marking import mark_new
 from coursework.database.people import put_account, put_person
+from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import Collected, Rejected, Row
 
 EXERCISE, SEED = "slotted_mechanism", 42
@@ -56,7 +56,9 @@ class DeskClass(Class):
             for k, (part, text) in enumerate(own.items(), 2)
         ]
         with self.site.store.begin() as connection:
-            deliver(connection, self.number, [*rows, *more], source="answers.csv", came=self.at)
+            insert_submission(
+                connection, self.number, [*rows, *more], source="answers.csv", received_at=self.at
+            )
         mark_new(self.site.course, self.site.store, self.number)
 
     def page(self, name, end="", lang="en", **query):

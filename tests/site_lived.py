@@ -15,9 +15,9 @@ from coursework import open_course
 from coursework.cli.demo_site import TEACHER, demo_database
 from coursework.database.accounts import account_of, set_secret
 from coursework.database.assignments import names
-from coursework.database.deliveries import deliver, deliveries
 from coursework.database.people import people, put_account
 from coursework.database.store import Store
+from coursework.database.submissions import insert_submission, submissions_of
 from coursework.database.tables import person
 from coursework.gradebook.rows import Rejected
 from coursework.lti.launch import Launch
@@ -46,7 +46,7 @@ class Lived(Class):
         with self.site.store.reading() as connection:
             self.ids = {one.name: one.id for one in people(connection)}
             self.done, self.now = names(connection).values()
-            self.receipt = deliveries(connection, self.done, self.ids[STUDENT])[-1].receipt
+            self.receipt = submissions_of(connection, self.done, self.ids[STUDENT])[-1].receipt
         with self.site.store.begin() as connection:  # the student reads in the browser's language
             connection.execute(update(person).where(person.c.id == self.ids[STUDENT]).values(lang=""))
             put_account(connection, self.ids[STUDENT], login="david@example.org", role="student")
@@ -57,7 +57,7 @@ class Lived(Class):
         row = {"student": OTHER, "answer": "12", "exercise": EXERCISE, "seed": "1", "part": "rA"}
         with self.site.store.begin() as connection:
             lost = [Rejected("answers.csv, line 2", "seed 1 is of no sheet of this student", row)]
-            deliver(connection, self.done, lost, source="answers.csv", came=self.at)
+            insert_submission(connection, self.done, lost, source="answers.csv", received_at=self.at)
             link = accounts.invited(self.site, connection, self.ids[OTHER], "student5@example.org", "student")
         self.token = link.rpartition("/")[2]
 

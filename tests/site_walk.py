@@ -16,10 +16,10 @@ from sqlalchemy import update
 
 from coursework.database.assignments import put_issued
 from coursework.database.audit import note
-from coursework.database.deliveries import deliver
-from coursework.database.drafts import Sent, save
+from coursework.database.drafts import DraftChange, save
 from coursework.database.marking import mark_new
 from coursework.database.publication import AT_ONCE, CLOSED, Publication, publish
+from coursework.database.submissions import insert_submission
 from coursework.database.tables import person
 from coursework.gradebook.rows import Collected, Row
 from coursework.site.frame.limits import Limits
@@ -76,18 +76,18 @@ class Filled(Class):
             self.receipts = {}
             for name in SEEDS:
                 rows = self.rows(name)
-                made = deliver(
+                made = insert_submission(
                     connection,
                     self.number,
                     rows,
                     source="the site",
-                    came=at,
+                    received_at=at,
                     person_id=self.ids[name],
                     number=1,
                 )
                 self.receipts[name] = made.receipt
                 sheet = f"practice/{EXERCISE}/{SEEDS[name]}"
-                save(connection, self.ids[name], sheet, {"rA": Sent(f"{PLANTED[name]} draft", 0)}, at)
+                save(connection, self.ids[name], sheet, {"rA": DraftChange(f"{PLANTED[name]} draft", 0)}, at)
                 note(connection, at, name, "handed in", person=self.ids[name])
             self.token = accounts.invited(
                 self.site, connection, self.ids[MAX], "max@example.org", "student"

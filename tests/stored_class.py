@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from small_assignment import STATED, item
 
 from coursework.database.assignments import put_issued
-from coursework.database.deliveries import deliver
+from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import Collected, Row
 
 CAME = datetime(2026, 11, 23, 9, tzinfo=UTC)
@@ -49,5 +49,5 @@ def put(store, content_, *deliveries, source="answers.csv"):
     with store.begin() as connection:
         number = put_issued(connection, content_)
         for some in deliveries:
-            deliver(connection, number, some, source=source, came=CAME)
+            insert_submission(connection, number, some, source=source, received_at=CAME)
     return number

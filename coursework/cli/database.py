@@ -153,7 +153,7 @@ def _tell_new(now: GradedNow) -> None:
 
 def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     """Print the changed marks and the pending decisions."""
-    from coursework.database.standing import waiting
+    from coursework.database.current_marks import waiting
 
     for change in now.marked.changes[:_TOLD]:
         click.echo(_change(change))
@@ -197,7 +197,7 @@ def written_marks(context: click.Context, url: str, name: str, folder: Path, dec
     with store.reading() as connection:
         number = assignment_called(connection, name)
     work = Work(course, store, number)
-    if not work.stood:
+    if not work.last:
         raise BadInput("nothing of it is marked yet: coursework grade SUBMISSIONS… --db URL")
     if work.changed:
         tell(

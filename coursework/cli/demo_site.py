@@ -17,12 +17,12 @@ from coursework.cli.demo import CLASS, HABITS, ROSTER
 from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.database.assignments import names, put_issued
-from coursework.database.deliveries import deliver
 from coursework.database.marking import mark_new
 from coursework.database.people import people, put_account, put_person
 from coursework.database.permissions import ADMINISTRATOR, STUDENT
 from coursework.database.publication import AT_ONCE, CLOSED, Publication, publish
 from coursework.database.store import Store
+from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import Collected, Row
 from coursework.making.assignment import Assignment, read_assignment
 from coursework.making.issued import Issued, issued_content
@@ -105,8 +105,14 @@ def _hand_in(course: Course[Any], store: Store, number: int, issued: Issued) -> 
         for k, student in enumerate(issued.students[:-1]):  # the last one has not handed in
             received_at = _CLOSED - timedelta(days=2) + timedelta(hours=k)
             rows = list(_rows(course, issued, student, k, received_at))
-            deliver(
-                connection, number, rows, source="site", came=received_at, person_id=ids[student], number=1
+            insert_submission(
+                connection,
+                number,
+                rows,
+                source="site",
+                received_at=received_at,
+                person_id=ids[student],
+                number=1,
             )
 
 

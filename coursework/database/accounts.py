@@ -15,7 +15,7 @@ from coursework.errors import BadInput
 OWNER = "owner"  #: login of who opens the site on their own machine, without a password
 
 
-def _found() -> Select[Any]:
+def _open_accounts() -> Select[Any]:
     return (
         select(account, person.c.name, person.c.lang)
         .join(person, person.c.id == account.c.person_id)
@@ -25,24 +25,26 @@ def _found() -> Select[Any]:
 
 def account_by_login(connection: Connection, login: str) -> Any | None:
     """Return the open account of a login, with the person's name."""
-    return connection.execute(_found().where(account.c.login == login)).first()
+    return connection.execute(_open_accounts().where(account.c.login == login)).first()
 
 
 def account_of(connection: Connection, number: int) -> Any | None:
     """Return the open account of a person."""
-    return connection.execute(_found().where(account.c.person_id == number).order_by(account.c.id)).first()
+    return connection.execute(
+        _open_accounts().where(account.c.person_id == number).order_by(account.c.id)
+    ).first()
 
 
 def account_invited(connection: Connection, invitation: str, at: datetime) -> Any | None:
     """Return the account of an invitation, given its digest; None if the invitation was used, replaced or has
     expired."""
-    row = connection.execute(_found().where(account.c.invitation == invitation)).first()
+    row = connection.execute(_open_accounts().where(account.c.invitation == invitation)).first()
     return None if row is None or row.invited_until is None or row.invited_until < at else row
 
 
 def accounts(connection: Connection) -> dict[int, Any]:
     """Return the open accounts by person."""
-    return {row.person_id: row for row in connection.execute(_found())}
+    return {row.person_id: row for row in connection.execute(_open_accounts())}
 
 
 def invite(
@@ -67,7 +69,7 @@ def invite(
     connection.execute(insert(account).values({**row, **invitation_values}))
 
 
-def take_up(connection: Connection, invitation: str, secret: str, at: datetime) -> int | None:
+def accept_invitation(connection: Connection, invitation: str, secret: str, at: datetime) -> int | None:
     """Take an invitation up with what became of a password; the person, or none where somebody was faster."""
     done = connection.execute(
         update(account)

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, case, delete, func, insert, select, update
 
 from coursework.course.course import Course
-from coursework.database.class_standing import ClassNow, Facts, read_rows, read_students
+from coursework.database.class_state import ClassState, Facts, read_rows, read_students
 from coursework.database.class_tables import answers_waiting
-from coursework.database.desk import About, listed
+from coursework.database.instructor_queries import ListedAssignment, listed_assignments
 from coursework.database.outdated import EVERYBODY, ROWS, STUDENT, outdate
 from coursework.database.store import Store, insert_unless_there
 from coursework.database.tables import (
@@ -101,14 +101,14 @@ def _step(course: Course, store: Store, number: int) -> int | None:
         notes = _notes(connection, number)
         if notes is None:
             return None
-        about = next(iter(listed(connection, number)), None)
+        about = next(iter(listed_assignments(connection, number)), None)
         if about is None:
             return None
         computed = _computed(connection, course, about, notes)
     with store.begin() as connection:
         row = select(assignment.c.id).where(assignment.c.id == number)
         connection.execute(row.with_for_update(key_share=True))
-        if _taken(connection, notes.ids):
+        if _are_deleted(connection, notes.ids):
             computed.write(connection)
     return len(notes.students) or 1
 
@@ -148,7 +148,7 @@ def _notes(connection: Connection, number: int) -> _Notes | None:
     return _Notes(STUDENT, connection.execute(theirs).scalars().all(), frozenset(names))
 
 
-def _taken(connection: Connection, ids: Sequence[int]) -> bool:
+def _are_deleted(connection: Connection, ids: Sequence[int]) -> bool:
     """Delete notes; return False if another process has processed one of them meanwhile."""
     gone = 0
     for start in range(0, len(ids), _WRITTEN):
@@ -160,7 +160,7 @@ def _taken(connection: Connection, ids: Sequence[int]) -> bool:
 class _Computed:
     """Computed aggregates of an assignment, ready to be written."""
 
-    def __init__(self, about: About):
+    def __init__(self, about: ListedAssignment):
         self.about = about
         self.outdate: Collection[str] = ()  #: students who are noted
         self.away: Collection[str] = ()  #: students whose rows go
@@ -190,7 +190,7 @@ def _insert(connection: Connection, table: Any, rows: Sequence[Mapping[str, Any]
         connection.execute(insert(table), list(rows[start : start + _WRITTEN]))
 
 
-def _computed(connection: Connection, course: Course, about: About, notes: _Notes) -> _Computed:
+def _computed(connection: Connection, course: Course, about: ListedAssignment, notes: _Notes) -> _Computed:
     computed = _Computed(about)
     if notes.kind == EVERYBODY:
         computed.outdate = _everybody(connection, about)
@@ -204,7 +204,7 @@ def _computed(connection: Connection, course: Course, about: About, notes: _Note
 # ----------------------------------------------------------------------- students
 
 
-def _everybody(connection: Connection, about: About) -> list[str]:
+def _everybody(connection: Connection, about: ListedAssignment) -> list[str]:
     """Return every name that is somebody's: as issued, as marked, as computed before."""
     number = about.id
     issued = select(dealt.c.student).join(variant).where(variant.c.assignment_id == number)
@@ -220,7 +220,11 @@ def _is_pool(connection: Connection, number: int) -> bool:
 
 
 def _students(
-    connection: Connection, course: Course, about: About, noted: Collection[str], computed: _Computed
+    connection: Connection,
+    course: Course,
+    about: ListedAssignment,
+    noted: Collection[str],
+    computed: _Computed,
 ) -> None:
     """Compute some students; names are resolved to those as issued."""
     students = _as_issued(connection, about, noted)
@@ -245,7 +249,7 @@ def _students(
     computed.answers = list(_answers(now, cells))
 
 
-def _as_issued(connection: Connection, about: About, noted: Collection[str]) -> frozenset[str]:
+def _as_issued(connection: Connection, about: ListedAssignment, noted: Collection[str]) -> frozenset[str]:
     """Return the students whom names name, however these are spelled."""
     issued = select(dealt.c.student).join(variant).where(variant.c.assignment_id == about.id)
     marked = select(marking.c.student).where(marking.c.assignment_id == about.id)
@@ -266,7 +270,7 @@ def _as_issued(connection: Connection, about: About, noted: Collection[str]) -> 
     return frozenset(students)
 
 
-def _places(connection: Connection, about: About, now: ClassNow) -> dict[str, int]:
+def _places(connection: Connection, about: ListedAssignment, now: ClassState) -> dict[str, int]:
     """Return the position of each student in the class: the order of issue, then the order of arrival."""
     names = list(now.results)
     order = (
@@ -292,7 +296,7 @@ def _places(connection: Connection, about: About, now: ClassNow) -> dict[str, in
 _Cells = dict[tuple[str, str], Graded]
 
 
-def _cells(now: ClassNow) -> dict[str, _Cells]:
+def _cells(now: ClassState) -> dict[str, _Cells]:
     """Return which sheet fills each question of a student's line in the class table."""
     cells: dict[str, _Cells] = {}
     for sheet in now.graded.values():
@@ -302,8 +306,8 @@ def _cells(now: ClassNow) -> dict[str, _Cells]:
     return cells
 
 
-def _total(now: ClassNow, student: str, position: int, cells: _Cells) -> dict[str, Any]:
-    result, submitted = now.results[student], now.came.get(student)
+def _total(now: ClassState, student: str, position: int, cells: _Cells) -> dict[str, Any]:
+    result, submitted = now.results[student], now.site_submissions.get(student)
     columns = own_columns(now.issued, student)
     titles = (now.issued.assignment or {}).get("identity") or ()
     identity = " ".join(filter(None, (columns.get(folded(str(title)), "") for title in titles)))
@@ -319,7 +323,7 @@ def _total(now: ClassNow, student: str, position: int, cells: _Cells) -> dict[st
         "out_of": result.out_of,
         "charged": result.late,
         "mark": mark_of(now.issued, result.counts, result.out_of),
-        "tries": submitted.tries if submitted else max(sittings, default=0),
+        "tries": submitted.attempts if submitted else max(sittings, default=0),
         "late": submitted.late if submitted else 0,
         "waits": sum(sheet.lines[part].verdict in _WAIT for (_, part), sheet in cells.items()),
         "handed_in": bool(cells) or submitted is not None,
@@ -329,7 +333,7 @@ def _total(now: ClassNow, student: str, position: int, cells: _Cells) -> dict[st
     }
 
 
-def _answers(now: ClassNow, cells: Mapping[str, _Cells]) -> Iterator[dict[str, Any]]:
+def _answers(now: ClassState, cells: Mapping[str, _Cells]) -> Iterator[dict[str, Any]]:
     for sheet, machine in now.machine.items():
         graded = now.graded[sheet]
         measure = now.measures.get((*sheet[:3], machine.sitting), NOTHING)
@@ -425,7 +429,7 @@ def _has_files(connection: Connection, number: int) -> bool:
     return any(connection.execute(query.limit(1)).first() is not None for query in (files, faults, refused))
 
 
-def _unplaced(connection: Connection, course: Course, about: About, computed: _Computed) -> None:
+def _unplaced(connection: Connection, course: Course, about: ListedAssignment, computed: _Computed) -> None:
     """Compute the rows that have no place; whose they are is noted where that changed."""
     computed.unplaced = []
     if _has_files(connection, about.id):

@@ -10,8 +10,8 @@ from sqlalchemy import Connection, delete, insert, select
 from coursework.database.permissions import (
     ASSISTANT,
     Area,
-    Holder,
     Permission,
+    PermissionHolder,
     group_key,
     groups_within,
     may,
@@ -69,7 +69,7 @@ def groups_of(connection: Connection, number: int) -> dict[str, str]:
     return {student: group_key(group) for student, group in groups.items()}
 
 
-def students_within(connection: Connection, holder: Holder, number: int) -> frozenset[str] | None:
+def students_within(connection: Connection, holder: PermissionHolder, number: int) -> frozenset[str] | None:
     """Return the students of an assignment whom somebody of the staff sees, as issued; None for all of them."""
     groups = groups_within(holder, number)
     if groups is None:
@@ -78,7 +78,7 @@ def students_within(connection: Connection, holder: Holder, number: int) -> froz
 
 
 def may_for(
-    connection: Connection, holder: Holder, permission: Permission, number: int, student: str
+    connection: Connection, holder: PermissionHolder, permission: Permission, number: int, student: str
 ) -> bool:
     """Return True if somebody has a permission for a student of an assignment; the student is given by the
     name as issued."""
@@ -95,6 +95,6 @@ def students_in(connection: Connection, number: int, groups: Collection[str]) ->
     return frozenset(student for student, group in groups_of(connection, number).items() if group in groups)
 
 
-def held_by(connection: Connection, number: int, role: str) -> tuple[Area, ...]:
+def areas_for_role(connection: Connection, number: int, role: str) -> tuple[Area, ...]:
     """Return the areas that count for a role: an assistant's own, nobody else's."""
     return areas_of(connection, number) if role == ASSISTANT else ()

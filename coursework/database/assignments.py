@@ -83,7 +83,7 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
         "columns": {s: dict(roster_columns) for s, roster_columns in issued.columns.items()},
         **({} if (secret := secret_of(content)) is None else {"secret": secret.text}),
     }
-    was = _told_before(connection, name)
+    was = _stored_columns(connection, name)
     number, before = _assignment(connection, name, course, values)
     items = [_item(item, position) for position, item in enumerate(content["issued"])]
     variants = _put_variants(connection, number, name, items)
@@ -105,7 +105,7 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
     return number
 
 
-def _told_before(connection: Connection, name: str) -> dict[str, Any] | None:
+def _stored_columns(connection: Connection, name: str) -> dict[str, Any] | None:
     """Return the stored columns of an assignment by its name; None if there is none."""
     columns = assignment.c.stated, assignment.c.is_pool, assignment.c.columns
     row = connection.execute(select(*columns).where(assignment.c.name == name)).first()

@@ -108,7 +108,7 @@ def outline(connection: Connection, number: int) -> Outline:
 # ----------------------------------------------------------------------- students
 
 
-class Asked(NamedTuple):
+class TableRequest(NamedTuple):
     """A page of the class table, as it is asked for."""
 
     sort: str = ""  #: one of :data:`SORTS`, ``EXERCISE/PART``, or empty for the order of the class
@@ -122,16 +122,20 @@ class StudentsPage(NamedTuple):
 
     rows: Sequence[Any]  #: of ``student_total``
     cells: Mapping[str, Mapping[Question, Any]]  #: of ``answer_now``, by student
-    found: int  #: students that the search finds, on all pages
+    matches: int  #: students that the search finds, on all pages
     last: int  #: number of the latest aggregate of the class
 
     @property
     def pages(self) -> int:
-        return max(1, -(-self.found // PAGE))
+        return max(1, -(-self.matches // PAGE))
 
 
 def students_page(
-    connection: Connection, number: int, request: Asked, scope: Scope = ALL, question: Question | None = None
+    connection: Connection,
+    number: int,
+    request: TableRequest,
+    scope: Scope = ALL,
+    question: Question | None = None,
 ) -> StudentsPage:
     """Return a page of the class table; ``question`` is that of the order, where it is one."""
     of_class = and_(student_total.c.assignment_id == number, scope.of_students(student_total.c.student))
@@ -343,7 +347,7 @@ class CardRow(NamedTuple):
     number: int  #: its place among all cards, decided or not
 
 
-class Queue:
+class CardQueue:
     """The cards of an assignment, asked for few at a time."""
 
     def __init__(self, connection: Connection, number: int, order: Sequence[Question], scope: Scope = ALL):
@@ -452,7 +456,7 @@ class Queue:
         return list(self._connection.execute(first).scalars())
 
 
-def say_decided(connection: Connection, rows: Collection[int], *, decided: bool) -> None:
+def mark_decided(connection: Connection, rows: Collection[int], *, decided: bool) -> None:
     """Note at once on which answers somebody decided; what it makes of the points is computed next."""
     numbers = list(rows)
     for start in range(0, len(numbers), 5000):
@@ -463,7 +467,7 @@ def say_decided(connection: Connection, rows: Collection[int], *, decided: bool)
 # --------------------------------------------------------------------------- rows
 
 
-class RowHere(NamedTuple):
+class UnplacedTableRow(NamedTuple):
     """A row that could not be placed."""
 
     row: str
@@ -477,7 +481,7 @@ class RowHere(NamedTuple):
 def rows_page(
     connection: Connection, number: int, first: int = 0, *, named: bool = False, waiting: bool = False, row: str = "",
     student: str | None = None, exercise: str = "", part: str = "", scope: Scope = ALL, count: int = PAGE,
-) -> tuple[list[RowHere], int]:  # fmt: skip
+) -> tuple[list[UnplacedTableRow], int]:  # fmt: skip
     """Return rows that could not be placed, from one of them on, and how many there are."""
     conditions = [unplaced.c.assignment_id == number]
     if scope.students is not None:
@@ -489,7 +493,7 @@ def rows_page(
     conditions += [unplaced.c.said["exercise"].as_string() == exercise] if exercise else []
     conditions += [unplaced.c.said["part"].as_string() == part] if part else []
     base = unplaced.join(assignment, assignment.c.id == unplaced.c.assignment_id)
-    columns = [unplaced.c[name] for name in RowHere._fields]
+    columns = [unplaced.c[name] for name in UnplacedTableRow._fields]
     query = (
         select(*columns)
         .select_from(base)
@@ -499,6 +503,6 @@ def rows_page(
         .limit(count)
     )
     many = select(func.count()).select_from(base).where(*conditions)
-    return [RowHere(*unplaced_row) for unplaced_row in connection.execute(query)], int(
+    return [UnplacedTableRow(*unplaced_row) for unplaced_row in connection.execute(query)], int(
         connection.execute(many).scalar_one()
     )

@@ -22,7 +22,7 @@ from coursework.marking.mark import Mark
 ACCEPTED, GIVEN, KEPT, WITHDRAWN = KINDS = ("accepted", "given", "kept", "withdrawn")
 
 
-class Place(NamedTuple):
+class DecidedAnswer(NamedTuple):
     """An answer that is decided on."""
 
     student: str
@@ -50,7 +50,7 @@ class Decision(NamedTuple):
 def decide(
     connection: Connection,
     assignment_id: int,
-    places: Iterable[Place],
+    places: Iterable[DecidedAnswer],
     kind: str,
     points: float | None,
     reason: str,
@@ -89,7 +89,9 @@ def decide(
         outdate(connection, assignment_id, (decided.student for decided in places))
 
 
-def _check(connection: Connection, assignment_id: int, places: Sequence[Place], points: float | None) -> None:
+def _check(
+    connection: Connection, assignment_id: int, places: Sequence[DecidedAnswer], points: float | None
+) -> None:
     """Refuse what there is not, and more points than there are."""
     exercises = {answer.exercise for answer in places}
     query = select(variant.c.exercise, variant.c.record["parts"].label("parts")).where(
@@ -193,7 +195,7 @@ def _decision(row: Any) -> Decision:
 # ---------------------------------------------------------------------- history
 
 
-class Happened(NamedTuple):
+class HistoryEvent(NamedTuple):
     """Event in the history of an answer."""
 
     at: datetime
@@ -212,7 +214,7 @@ MARKED = "marked"
 
 def history(
     connection: Connection, assignment_id: int, student: str | None = None, exercise: str = "", part: str = ""
-) -> list[tuple[str, str, str, Happened]]:
+) -> list[tuple[str, str, str, HistoryEvent]]:
     """Return the events in the history of answers, in chronological order, each with its student, exercise
     and part; of the given student, exercise or part alone."""
 
@@ -227,12 +229,12 @@ def history(
     )
     decided = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
     all_events = [
-        (row.student, row.exercise, row.part, _marked(row))
+        (row.student, row.exercise, row.part, _marking_event(row))
         for row in connection.execute(marks)
         if row.verdict
     ]
     all_events += [
-        (row.student, row.exercise, row.part, _happened(row))
+        (row.student, row.exercise, row.part, _decision_event(row))
         for row in connection.execute(asked(decided, decision.c))
     ]
     folded_name = None if student is None else folded(student)
@@ -242,10 +244,10 @@ def history(
     )
 
 
-def _marked(row: Any) -> Happened:
+def _marking_event(row: Any) -> HistoryEvent:
     answer_columns = row.seed, row.sitting, row.answer, row.verdict, row.points
-    return Happened(row.made, "", MARKED, *answer_columns, row.feedback)
+    return HistoryEvent(row.made, "", MARKED, *answer_columns, row.feedback)
 
 
-def _happened(row: Any) -> Happened:
-    return Happened(row.made, row.by, row.kind, row.seed, 0, row.answer, "", row.points, row.reason)
+def _decision_event(row: Any) -> HistoryEvent:
+    return HistoryEvent(row.made, row.by, row.kind, row.seed, 0, row.answer, "", row.points, row.reason)

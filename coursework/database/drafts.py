@@ -13,33 +13,33 @@ from sqlalchemy.exc import IntegrityError
 from coursework.database.tables import draft
 
 
-class Box(NamedTuple):
+class DraftBox(NamedTuple):
     """Current text of a box."""
 
     text: str
     version: int  #: counts its changes; 0 where nothing was ever written
 
 
-class Sent(NamedTuple):
+class DraftChange(NamedTuple):
     """Text from a page, and the version that it replaces."""
 
     text: str
     over: int
 
 
-def drafts(connection: Connection, person: int, sheet: str) -> dict[str, Box]:
+def drafts(connection: Connection, person: int, sheet: str) -> dict[str, DraftBox]:
     """Return the drafts of a sheet by box."""
     rows = connection.execute(
         select(draft.c.box, draft.c.text, draft.c.version).where(
             draft.c.person_id == person, draft.c.sheet == sheet
         )
     )
-    return {row.box: Box(row.text, row.version) for row in rows}
+    return {row.box: DraftBox(row.text, row.version) for row in rows}
 
 
 def save(
-    connection: Connection, person: int, sheet: str, sent: Mapping[str, Sent], at: datetime
-) -> dict[str, Box]:
+    connection: Connection, person: int, sheet: str, sent: Mapping[str, DraftChange], at: datetime
+) -> dict[str, DraftBox]:
     """Store drafts; return the boxes that another page has changed meanwhile, with their current text. These
     are not overwritten.
 
@@ -47,7 +47,7 @@ def save(
     """
     stored, others = drafts(connection, person, sheet), {}
     for box, draft_sent in sent.items():
-        now = stored.get(box, Box("", 0))
+        now = stored.get(box, DraftBox("", 0))
         if now.text == draft_sent.text:
             continue
         if draft_sent.over < now.version or not _is_written(
@@ -57,7 +57,9 @@ def save(
     return others
 
 
-def _is_written(connection: Connection, key: tuple[int, str, str], text: str, now: Box, at: datetime) -> bool:
+def _is_written(
+    connection: Connection, key: tuple[int, str, str], text: str, now: DraftBox, at: datetime
+) -> bool:
     """Replace the draft of a box; return False if another page was faster."""
     person, sheet, box = key
     written = {"text": text, "version": now.version + 1, "changed": at}

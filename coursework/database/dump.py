@@ -16,11 +16,11 @@ from sqlalchemy import JSON, Boolean, Column, Connection, Double, Integer, Table
 from sqlalchemy.exc import DBAPIError
 
 from coursework.database.assignments import issued_of
-from coursework.database.deliveries import rows_of
 from coursework.database.outdated import outdate_everything
 from coursework.database.promoting import promote_first
 from coursework.database.store import Store, json_of
-from coursework.database.tables import METADATA, Moment, assignment
+from coursework.database.submissions import rows_of
+from coursework.database.tables import METADATA, UTCDateTime, assignment
 from coursework.errors import BadInput
 from coursework.system.folder_lock import is_bare
 from coursework.system.json_files import read_json
@@ -28,7 +28,7 @@ from coursework.system.links import check_inside
 from coursework.system.tables import as_written, inert
 from coursework.system.writing import removed_on_failure, write_whole
 
-_NOTHING = "\\N"  #: what stands where there is no value; a text that begins with \ has another before it
+_NULL = "\\N"  #: what stands where there is no value; a text that begins with \ has another before it
 CellText: TypeAlias = Callable[[str], str]
 _CHUNK = 5000  #: rows that are written at once
 FORMAT = "coursework database dump 2"
@@ -80,7 +80,7 @@ def _write(connection: Connection, table: Table, path: Path) -> int:
             to_text = [json_of if isinstance(column.type, JSON) else _as_text for column in table.c]
             for row in rows:
                 writer.writerow(
-                    _NOTHING if value is None else inert(show(value))
+                    _NULL if value is None else inert(show(value))
                     for show, value in zip(to_text, row, strict=True)
                 )
                 count += 1
@@ -115,7 +115,7 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
     """
     counted, cell_text = _about(folder)
     rows = {}
-    with _told(folder), store.begin() as connection:
+    with _naming_folder(folder), store.begin() as connection:
         for table in METADATA.sorted_tables:
             if connection.execute(select(*table.primary_key).limit(1)).first() is not None:
                 raise BadInput(f"the database is not empty: there are rows in {table.name}; name a new one")
@@ -127,7 +127,7 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
                 raise BadInput(
                     f"{path} has {rows[table.name]} rows, and the dump had {counted.get(table.name, 0)}"
                 )
-            _count_on(connection, table)
+            _continue_numbering(connection, table)
         if "area" not in counted:  # written before there were administrators
             promote_first(connection)
         _check_readable(connection)
@@ -136,7 +136,7 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
 
 
 @contextmanager
-def _told(folder: Path) -> Iterator[None]:
+def _naming_folder(folder: Path) -> Iterator[None]:
     """Turn a fault of the database into a message that names the folder of the dump."""
     try:
         yield
@@ -189,7 +189,7 @@ def _read(connection: Connection, table: Table, path: Path, cell_text: CellText)
     count = 0
     try:
         for rows in _chunks(table, path, cell_text):
-            with _told(path):
+            with _naming_folder(path):
                 connection.execute(insert(table), rows)
             count += len(rows)
     except UnicodeDecodeError as fault:
@@ -204,7 +204,7 @@ def _chunks(table: Table, path: Path, cell_text: CellText) -> Iterator[list[dict
     with path.open(encoding="utf-8", newline="") as file:
         reader = csv.reader(file)
         names = next(reader, [])
-        if not _fit(table, names):
+        if not _has_columns(table, names):
             raise BadInput(
                 f"{path} has the columns {', '.join(names)}; {table.name} has {', '.join(table.c.keys())}"
             )
@@ -219,7 +219,7 @@ def _chunks(table: Table, path: Path, cell_text: CellText) -> Iterator[list[dict
         yield rows
 
 
-def _fit(table: Table, names: Sequence[str]) -> bool:
+def _has_columns(table: Table, names: Sequence[str]) -> bool:
     """Return whether a dump has a table's columns, each once; an older one may lack those that are newer."""
     wanted = {*table.c.keys()} - _NEWER.get(table.name, set())
     return len({*names}) == len(names) and wanted <= {*names} <= {*table.c.keys()}
@@ -233,7 +233,7 @@ def _row(
     row = {}
     for name, make, cell in zip(names, makers, cells, strict=True):
         try:
-            row[name] = None if cell == _NOTHING else make(cell)
+            row[name] = None if cell == _NULL else make(cell)
         except (ValueError, RecursionError) as fault:
             raise BadInput(
                 f"{path}, line {line}: {name} is not what it is in a dump: {cell[:40]!r}"
@@ -249,7 +249,7 @@ def _maker(column: Column[Any]) -> Callable[[str], Any]:
     return lambda cell: cell.removeprefix("\\") if cell.startswith("\\") else cell
 
 
-def _whole(cell: str) -> int:
+def _integer(cell: str) -> int:
     if not -(2**63) <= (number := int(cell)) < 2**63:
         raise ValueError(cell)
     return number
@@ -263,14 +263,14 @@ def _decimal(cell: str) -> float:
 
 _MAKERS: tuple[tuple[type[Any], Callable[[str], Any]], ...] = (
     (JSON, json.loads),
-    (Moment, datetime.fromisoformat),
+    (UTCDateTime, datetime.fromisoformat),
     (Boolean, lambda cell: ("False", "True").index(cell) == 1),
-    (Integer, _whole),
+    (Integer, _integer),
     (Double, _decimal),
 )
 
 
-def _count_on(connection: Connection, table: Table) -> None:
+def _continue_numbering(connection: Connection, table: Table) -> None:
     """Let a server go on numbering after the rows that were put in."""
     if connection.dialect.name == "postgresql" and "id" in table.c:
         last = connection.execute(select(func.max(table.c.id))).scalar()

@@ -13,8 +13,8 @@ from typing import Any
 
 from sqlalchemy import Connection, Table, delete, select, update
 
-from coursework.database.belongings import Whose, conditions, ids_of, whose
 from coursework.database.outdated import outdate_rows
+from coursework.database.personal_data import PersonIdentifiers, conditions, identifiers_of, ids_of
 from coursework.database.tables import (
     answer,
     answer_now,
@@ -68,11 +68,11 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
 
     The audit's line on it is for who calls to write.
     """
-    known_as = whose(connection, number)
+    known_as = identifiers_of(connection, number)
     if known_as is None:
         return {}
     gone = {}
-    _derived_away(connection, known_as)
+    _drop_aggregates(connection, known_as)
     for name, (table, theirs) in conditions(connection, known_as).items():
         gone[name] = connection.execute(delete(table).where(theirs)).rowcount
     theirs = audit.c.actor == number
@@ -81,7 +81,7 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
     return gone
 
 
-def _derived_away(connection: Connection, known_as: Whose) -> None:
+def _drop_aggregates(connection: Connection, known_as: PersonIdentifiers) -> None:
     """Take away the aggregates of a person, and all rows without a place, which may name them; the latter are computed anew."""
     connection.execute(delete(unplaced))
     for table in (answer_now, student_total, outdated):
@@ -92,7 +92,7 @@ def _derived_away(connection: Connection, known_as: Whose) -> None:
         outdate_rows(connection, number)
 
 
-def _strike(connection: Connection, known_as: Whose) -> None:
+def _strike(connection: Connection, known_as: PersonIdentifiers) -> None:
     """Strike names out of what others wrote."""
     words = {word for word in known_as.words if len(word) >= _SHORTEST}
     in_heads = {word for word in words if not word.isalpha()}

@@ -12,13 +12,18 @@ from sqlalchemy import Connection
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
+from coursework.database.current_marks import last_markings
+from coursework.database.decision_files import (
+    DecidedAccepted,
+    DecidedToMark,
+    remember_written,
+    store_new_decisions,
+)
 from coursework.database.decisions import Decisions
-from coursework.database.deliveries import Delivery, deliver, rows_of
-from coursework.database.marking import MarkedNow, Work, marked_now
-from coursework.database.publication import charges
-from coursework.database.standing import stood
+from coursework.database.marking import MarkedNow, Work, mark_changed
+from coursework.database.publication import late_penalties
 from coursework.database.store import Store
-from coursework.database.worksheets import DecidedAccepted, DecidedToMark, take_in, written
+from coursework.database.submissions import Submission, insert_submission, rows_of
 from coursework.errors import BadInput
 from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.book import Gradebook
@@ -37,7 +42,7 @@ from coursework.system.writing import Progress
 class GradedNow:
     """Result of a grading run: submissions, new decisions, and marks."""
 
-    deliveries: list[Delivery]
+    deliveries: list[Submission]
     decided: int  #: decisions that are new in files
     marked: MarkedNow
     work: Work
@@ -76,13 +81,13 @@ def grade_new(
         issued = issued_of(connection, assignment_id)
         shows_solutions(issued, form)
         submitted = _deliver(connection, assignment_id, submissions, replaces=replaces)
-        if not stood(connection, assignment_id):
+        if not last_markings(connection, assignment_id):
             sheets = placed(course, issued, rows_of(connection, assignment_id))
             if not sheets.sheets:
                 raise BadInput(nothing_in(submissions, sheets.rejected))
-        decided = take_in(connection, assignment_id, by_person, by_hand)
-    work = marked_now(course, store, assignment_id)
-    return GradedNow(submitted, decided, work.told(), work)
+        decided = store_new_decisions(connection, assignment_id, by_person, by_hand)
+    work = mark_changed(course, store, assignment_id)
+    return GradedNow(submitted, decided, work.summary(), work)
 
 
 TO_MARK_FILE = "to_mark.csv"
@@ -97,7 +102,7 @@ def accepted_in(accepted: Path | None, out: Path | None) -> Path | None:
 
 def _deliver(
     connection: Connection, assignment_id: int, submissions: Sequence[Path], *, replaces: bool
-) -> list[Delivery]:
+) -> list[Submission]:
     """Each file, as far as it is new."""
     received_at = datetime.now(UTC)
     submitted = []
@@ -105,7 +110,9 @@ def _deliver(
         rows = [file] if isinstance(file, Rejected) else list(read_file(file, submissions))
         source = file.source if isinstance(file, Rejected) else path_text(file)
         submitted.append(
-            deliver(connection, assignment_id, rows, source=source, came=received_at, replaces=replaces)
+            insert_submission(
+                connection, assignment_id, rows, source=source, received_at=received_at, replaces=replaces
+            )
         )
     return submitted
 
@@ -126,7 +133,7 @@ def write_standing(
     so far."""
     with store.reading() as connection:
         decisions = Decisions.read(connection, work.assignment_id)
-        charged = charges(connection, work.assignment_id)
+        charged = late_penalties(connection, work.assignment_id)
     book = write_marks(
         course,
         work.issued,
@@ -142,5 +149,5 @@ def write_standing(
         form=form,
     )
     with store.begin() as connection:
-        written(connection, work.assignment_id, out / TO_MARK_FILE)
+        remember_written(connection, work.assignment_id, out / TO_MARK_FILE)
     return book

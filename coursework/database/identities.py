@@ -13,26 +13,26 @@ from coursework.database.tables import account, identity, person
 from coursework.making.identity import EMAIL, NUMBER, is_called, same_id
 
 
-def person_known(connection: Connection, issuer: str, subject: str) -> Any | None:
+def person_linked_to(connection: Connection, issuer: str, subject: str) -> Any | None:
     """Return the person with a platform's identifier; None if no person is linked to it."""
     conditions = identity.c.issuer == issuer, identity.c.subject == subject
     number = connection.execute(select(identity.c.person_id).where(*conditions)).scalar()
     return None if number is None else person_by_id(connection, number)
 
 
-def tie(connection: Connection, number: int, issuer: str, subject: str) -> bool:
+def link_identity(connection: Connection, number: int, issuer: str, subject: str) -> bool:
     """Tie a person to a platform's identifier; whether nobody was tied to it before."""
     row = {"person_id": number, "issuer": issuer, "subject": subject}
     return insert_unless_there(connection, identity, row, ("issuer", "subject")) is not None
 
 
-def known_as(connection: Connection, number: int) -> list[tuple[str, str]]:
+def identities_of(connection: Connection, number: int) -> list[tuple[str, str]]:
     """Return the identities of a person on platforms: issuer and identifier."""
     query = select(identity.c.issuer, identity.c.subject).where(identity.c.person_id == number)
     return [(row.issuer, row.subject) for row in connection.execute(query)]
 
 
-def fitting(connection: Connection, issuer: str, email: str, number: str) -> list[Any]:
+def people_matching(connection: Connection, issuer: str, email: str, number: str) -> list[Any]:
     """Return the people with the e-mail or the number of a launch who are not linked to the platform yet.
     Staff are excluded: a platform's statement of an address grants no role."""
     linked = set(
@@ -64,13 +64,13 @@ def has_password(connection: Connection, number: int) -> bool:
     return connection.execute(select(account.c.id).where(*mine)).first() is not None
 
 
-def ties_of(connection: Connection, number: int) -> list[Any]:
+def links_of(connection: Connection, number: int) -> list[Any]:
     """Return how platforms know a person: ``id``, ``issuer`` and ``subject`` of each."""
     query = select(identity.c.id, identity.c.issuer, identity.c.subject)
     return list(connection.execute(query.where(identity.c.person_id == number).order_by(identity.c.id)))
 
 
-def separate(connection: Connection, number: int, tie_id: int) -> tuple[str, str] | None:
+def unlink_identity(connection: Connection, number: int, tie_id: int) -> tuple[str, str] | None:
     """Take one tie of a person away; returns its issuer and subject, None where there was none."""
     mine = identity.c.id == tie_id, identity.c.person_id == number
     gone = delete(identity).where(*mine).returning(identity.c.issuer, identity.c.subject)
@@ -78,7 +78,7 @@ def separate(connection: Connection, number: int, tie_id: int) -> tuple[str, str
     return (row.issuer, row.subject) if row is not None else None
 
 
-def take_over(connection: Connection, number: int, name: str, lang: str) -> None:
+def update_from_platform(connection: Connection, number: int, name: str, lang: str) -> None:
     """Replace a person's name and language by those that a platform states."""
     values = {key: value for key, value in (("name", name), ("lang", lang)) if value}
     if values:

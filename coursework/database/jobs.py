@@ -18,7 +18,7 @@ MOST_TRIES = 3
 _LEASE = timedelta(minutes=2)  #: after which another worker takes what one has begun
 
 
-class Job(NamedTuple):
+class WorkerJob(NamedTuple):
     """A piece of work."""
 
     id: int
@@ -28,7 +28,7 @@ class Job(NamedTuple):
     person: int | None
     tries: int  #: how often it was begun, this time included
     fault: str
-    made: datetime
+    added_at: datetime
 
 
 _HANDED_IN = job.c.kind != PREPARE
@@ -81,7 +81,7 @@ def is_any(connection: Connection) -> bool:
     return connection.execute(select(job.c.id).where(job.c.fault == "").limit(1)).first() is not None
 
 
-def take_job(connection: Connection, worker: str, at: datetime) -> Job | None:
+def take_job(connection: Connection, worker: str, at: datetime) -> WorkerJob | None:
     """Take the first job that nobody works at, and count the try; None where there is none. Pages are prepared last.
 
     A job that was begun :data:`MOST_TRIES` times is given up: it killed its worker.
@@ -98,10 +98,10 @@ def take_job(connection: Connection, worker: str, at: datetime) -> Job | None:
             continue
         begun = {"tries": row.tries + 1, "worker": worker, "until": at + _LEASE}
         connection.execute(update(job).where(job.c.id == row.id).values(begun))
-        return Job(*row)._replace(tries=row.tries + 1)
+        return WorkerJob(*row)._replace(tries=row.tries + 1)
 
 
-def done(connection: Connection, number: int) -> None:
+def drop_job(connection: Connection, number: int) -> None:
     """Take a job away."""
     connection.execute(delete(job).where(job.c.id == number))
 
@@ -111,7 +111,7 @@ def drop_jobs(connection: Connection, delivery: int) -> None:
     connection.execute(delete(job).where(job.c.delivery_id == delivery))
 
 
-def put_back(connection: Connection, failed: Job, fault: str) -> bool:
+def put_back(connection: Connection, failed: WorkerJob, fault: str) -> bool:
     """Let a job that failed be tried again, or give it up after :data:`MOST_TRIES`; True where it is given up."""
     if failed.tries >= MOST_TRIES:
         give_up(connection, failed.id, fault)
@@ -126,21 +126,21 @@ def give_up(connection: Connection, number: int, fault: str) -> None:
     connection.execute(update(job).where(job.c.id == number).values(fault=fault, worker="", until=None))
 
 
-def job_of(connection: Connection, delivery: int) -> Job | None:
+def job_of(connection: Connection, delivery: int) -> WorkerJob | None:
     """Return the job that marks a submission; None if it is marked, or no job was added."""
     row = connection.execute(
         select(*_COLUMNS).where(job.c.delivery_id == delivery, job.c.kind == MARK)
     ).first()
-    return None if row is None else Job(*row)
+    return None if row is None else WorkerJob(*row)
 
 
-def before(connection: Connection, later: Job) -> int:
+def jobs_before(connection: Connection, later: WorkerJob) -> int:
     """Return the number of jobs ahead of one."""
     query = select(func.count()).where(job.c.fault == "", job.c.id < later.id, _HANDED_IN)
     return int(connection.execute(query).scalar_one())
 
 
-def given_up(connection: Connection, assignment: int) -> list[Job]:
+def given_up_jobs(connection: Connection, assignment: int) -> list[WorkerJob]:
     """Return the jobs of an assignment that failed too often."""
     query = select(*_COLUMNS).where(job.c.assignment_id == assignment, job.c.fault != "").order_by(job.c.id)
-    return [Job(*row) for row in connection.execute(query)]
+    return [WorkerJob(*row) for row in connection.execute(query)]

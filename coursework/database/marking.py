@@ -10,12 +10,12 @@ from sqlalchemy import Connection, insert, select
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
+from coursework.database.current_marks import LastMarking, last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
-from coursework.database.deliveries import rows_of
 from coursework.database.outdated import outdate, outdate_rows
-from coursework.database.standing import Stood, lines_of, machine_marks, stood
 from coursework.database.states import exercise_state, sheet_state
 from coursework.database.store import Store
+from coursework.database.submissions import rows_of
 from coursework.database.tables import assignment, delivery, mark, marking
 from coursework.errors import BadInput
 from coursework.gradebook.book import marks_rows
@@ -83,7 +83,7 @@ class Work:
             self.places = [sheet for sheet in self.sheets.sheets if sheet in own_sheets.sheets]
         students = {sheet[0] for sheet in self.places}
         student = self._student = students.pop() if len(students) == 1 and delivery_id is not None else None
-        self.stood: dict[SheetPlace, Stood] = stood(connection, assignment_id, student)
+        self.last: dict[SheetPlace, LastMarking] = last_markings(connection, assignment_id, student)
         self.decisions = Decisions.read(connection, assignment_id, student)
         self.is_whole = delivery_id is None
         rules = rules_of(course, self.issued)
@@ -100,14 +100,14 @@ class Work:
     @property
     def changed(self) -> list[SheetPlace]:
         """The sheets that are not in the state by which they were marked."""
-        return [p for p in self.places if p not in self.stood or self.stood[p].state != self.states[p]]
+        return [p for p in self.places if p not in self.last or self.last[p].state != self.states[p]]
 
     @property
-    def gone(self) -> list[Stood]:
+    def gone(self) -> list[LastMarking]:
         """The sheets that nothing answers to any more."""
         if not self.is_whole:
             return []
-        return [last for sheet, last in self.stood.items() if last.state and sheet not in self.sheets.sheets]
+        return [last for sheet, last in self.last.items() if last.state and sheet not in self.sheets.sheets]
 
     def mark(self) -> None:
         """Mark what changed."""
@@ -117,7 +117,7 @@ class Work:
     def results(self) -> Iterator[Judged]:
         """Every sheet with its marks as they are now."""
         places = self.sheets.sheets
-        before = self._before(self.stood[p] for p in places if p not in self.now and p in self.stood)
+        before = self._before(self.last[p] for p in places if p not in self.now and p in self.last)
         for sheet in self.sheets.sheets:
             if sheet in self.now or sheet in before:
                 yield sheet, self.now[sheet] if sheet in self.now else before[sheet]
@@ -125,11 +125,11 @@ class Work:
     def changes(self) -> Iterator[Change]:
         """Yield the changed marks of sheets that were marked before, with the decisions applied on both
         sides."""
-        marked = [self.stood[sheet] for sheet in self.now if sheet in self.stood]
+        marked = [self.last[sheet] for sheet in self.now if sheet in self.last]
         for sheet, was in self._before([*marked, *self.gone]).items():
             yield from _changes(self._rows(was), self._rows(self.now.get(sheet, "")))
 
-    def _before(self, sheets: Iterable[Stood]) -> dict[SheetPlace, Graded | str]:
+    def _before(self, sheets: Iterable[LastMarking]) -> dict[SheetPlace, Graded | str]:
         """Return the sheets as they were marked before."""
         sheets = list(sheets)
         with self.store.reading() as connection:
@@ -142,25 +142,25 @@ class Work:
             return {}
         return {row["part"]: row for row in marks_rows(self.decisions.apply(result))}
 
-    def told(self) -> MarkedNow:
-        new = sum(sheet not in self.stood for sheet in self.now)
+    def summary(self) -> MarkedNow:
+        new = sum(sheet not in self.last for sheet in self.now)
         return MarkedNow(len(self.places), len(self.now), new, tuple(self.changes()))
 
     def write(self, connection: Connection) -> None:
         """Keep what was marked, but of sheets that somebody else marked meanwhile."""
-        now = stood(connection, self.assignment_id, self._student)
+        now = last_markings(connection, self.assignment_id, self._student)
         met = {sheet: last.id for sheet, last in now.items()}
-        free = [p for p in self.now if met.get(p) == (self.stood[p].id if p in self.stood else None)]
-        gone = [last for last in self.gone if met.get(last.place) == last.id]
+        free = [p for p in self.now if met.get(p) == (self.last[p].id if p in self.last else None)]
+        gone = [last for last in self.gone if met.get(last.key) == last.id]
         marked_at = datetime.now(UTC)
         rows = [_marking(self, sheet, marked_at) for sheet in free]
         rows += [
             {
-                **_place(self.assignment_id, last.place),
+                **_sheet_columns(self.assignment_id, last.key),
                 "sitting": last.sitting,
                 "state": "",
                 "made": marked_at,
-                **_NOTHING,
+                **_EMPTY_COLUMNS,
             }
             for last in gone
         ]
@@ -176,12 +176,12 @@ class Work:
             for first in range(0, len(lines), _CHUNK):
                 connection.execute(insert(mark), lines[first : first + _CHUNK])
         outdate(connection, self.assignment_id, [row["student"] for row in rows])
-        if any(isinstance(self.now[sheet], str) or self.stood_at_fault(sheet) for sheet in free) or gone:
+        if any(isinstance(self.now[sheet], str) or self.was_at_fault(sheet) for sheet in free) or gone:
             outdate_rows(connection, self.assignment_id)
 
-    def stood_at_fault(self, sheet: SheetPlace) -> bool:
+    def was_at_fault(self, sheet: SheetPlace) -> bool:
         """Tell whether a sheet could not be marked before."""
-        return sheet in self.stood and bool(self.stood[sheet].fault)
+        return sheet in self.last and bool(self.last[sheet].fault)
 
 
 # ---------------------------------------------------------------------- marking
@@ -195,7 +195,7 @@ def mark_new(course: Course, store: Store, assignment_id: int) -> MarkedNow:
     CourseworkError
         The course cannot mark what was issued.
     """
-    return marked_now(course, store, assignment_id).told()
+    return mark_changed(course, store, assignment_id).summary()
 
 
 def mark_delivery(course: Course, store: Store, delivery_id: int) -> MarkedNow:
@@ -213,17 +213,17 @@ def mark_delivery(course: Course, store: Store, delivery_id: int) -> MarkedNow:
         assignment_id = connection.execute(query).scalar()
     if assignment_id is None:
         raise BadInput(f"no delivery number {delivery_id} in the database")
-    return marked_now(course, store, assignment_id, delivery_id).told()
+    return mark_changed(course, store, assignment_id, delivery_id).summary()
 
 
 def would_change(course: Course, store: Store, assignment_id: int) -> MarkedNow:
     """Return the result that :func:`mark_new` would have; write nothing."""
     work = Work(course, store, assignment_id)
     work.mark()
-    return work.told()
+    return work.summary()
 
 
-def marked_now(course: Course, store: Store, assignment_id: int, delivery_id: int | None = None) -> Work:
+def mark_changed(course: Course, store: Store, assignment_id: int, delivery_id: int | None = None) -> Work:
     """Mark the changed sheets of an assignment, or of a submission; store their marks, and return the work
     with all sheets."""
     work = Work(course, store, assignment_id, delivery_id)
@@ -266,10 +266,10 @@ def _verdict(row: Mapping[str, Any] | None) -> tuple[str, str]:
 
 # ------------------------------------------------------------------------- rows
 
-_NOTHING = {"lang": "", "apart": False, "submitted": "", "fault": ""}
+_EMPTY_COLUMNS = {"lang": "", "apart": False, "submitted": "", "fault": ""}
 
 
-def _place(assignment_id: int, sheet: SheetPlace) -> dict[str, Any]:
+def _sheet_columns(assignment_id: int, sheet: SheetPlace) -> dict[str, Any]:
     student, exercise, seed, attempt = sheet
     named = {"student": student, "exercise": exercise, "seed": str(seed), "attempt": attempt}
     return {"assignment_id": assignment_id, **named}
@@ -284,7 +284,12 @@ def _marking(work: Work, sheet: SheetPlace, marked_at: datetime) -> dict[str, An
         "submitted": work.sheets.submitted.get(sheet, ""),
         "fault": result if isinstance(result, str) else "",
     }
-    return {**_place(work.assignment_id, sheet), "state": work.states[sheet], "made": marked_at, **columns}
+    return {
+        **_sheet_columns(work.assignment_id, sheet),
+        "state": work.states[sheet],
+        "made": marked_at,
+        **columns,
+    }
 
 
 def _marks(number: int, result: Graded | str) -> Iterator[dict[str, Any]]:

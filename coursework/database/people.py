@@ -13,7 +13,7 @@ from coursework.making.roster import Student
 from coursework.markup.markdown import sort_key
 
 
-def found_people() -> Select[Any]:
+def people_query() -> Select[Any]:
     """Return a query of people with role and login of their open account, each None where there is none."""
     mine = (account.c.person_id == person.c.id) & account.c.closed.is_(None)
     return select(person, account.c.role, account.c.login).select_from(person.outerjoin(account, mine))
@@ -21,21 +21,21 @@ def found_people() -> Select[Any]:
 
 def people(connection: Connection) -> list[Any]:
     """Everybody, by name, whatever its accents: Bäcker stands before Blanc."""
-    rows = connection.execute(found_people().order_by(person.c.id))
+    rows = connection.execute(people_query().order_by(person.c.id))
     return sorted(rows, key=lambda row: (sort_key(row.name), row.name))
 
 
 def person_by_id(connection: Connection, number: int) -> Any | None:
     """``id``, ``who``, ``name``, ``lang``, ``columns``, ``sessions_from``, ``role``, ``login`` of a person; None for nobody."""
-    return connection.execute(found_people().where(person.c.id == number)).first()
+    return connection.execute(people_query().where(person.c.id == number)).first()
 
 
-def person_by_who(connection: Connection, identifier: str) -> Any | None:
+def person_by_identifier(connection: Connection, identifier: str) -> Any | None:
     """Return the person with a roster's identifier."""
-    return connection.execute(found_people().where(person.c.who == identifier)).first()
+    return connection.execute(people_query().where(person.c.who == identifier)).first()
 
 
-def hold(connection: Connection, number: int) -> None:
+def lock_person(connection: Connection, number: int) -> None:
     """Let nobody else write for this person before the transaction ends. One of SQLite is the only one that writes."""
     if connection.dialect.name != "sqlite":
         connection.execute(select(person.c.id).where(person.c.id == number).with_for_update(key_share=True))
@@ -46,7 +46,7 @@ def put_person(
 ) -> int:
     """Add or update the person of a roster; return the id. A name, a language and columns replace those
     before, unless they are empty."""
-    row_before = person_by_who(connection, identifier)
+    row_before = person_by_identifier(connection, identifier)
     values = {
         key: value for key, value in (("name", name), ("lang", lang), ("columns", dict(columns))) if value
     }

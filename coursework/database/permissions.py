@@ -85,7 +85,7 @@ class Area(NamedTuple):
     group: str | None = None  #: the whole class, where none is named; as :func:`group_key` writes it
 
 
-class Holder(Protocol):
+class PermissionHolder(Protocol):
     """Holder of permissions: a role, with areas for an assistant."""
 
     @property
@@ -101,7 +101,10 @@ def group_key(group: str) -> str:
 
 
 def may(
-    holder: Holder | None, permission: Permission, assignment: int | None = None, group: str | None = None
+    holder: PermissionHolder | None,
+    permission: Permission,
+    assignment: int | None = None,
+    group: str | None = None,
 ) -> bool:
     """Return True if somebody has a permission; in a given assignment, for a student of a given group.
 
@@ -129,7 +132,7 @@ def may(
     )
 
 
-def groups_within(holder: Holder, assignment: int) -> frozenset[str] | None:
+def groups_within(holder: PermissionHolder, assignment: int) -> frozenset[str] | None:
     """Return the groups of an assignment to which somebody is limited; None for the whole class."""
     if holder.role != ASSISTANT:
         return None

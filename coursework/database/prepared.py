@@ -10,10 +10,10 @@ from sqlalchemy import ColumnElement, Connection, delete, insert, literal, selec
 from sqlalchemy.dialects import postgresql, sqlite
 
 from coursework.database.jobs import PREPARE
-from coursework.database.tables import Moment, dealt, job, person, prepared, variant
+from coursework.database.tables import UTCDateTime, dealt, job, person, prepared, variant
 
 
-class Pieces(NamedTuple):
+class PreparedPieces(NamedTuple):
     """Parts of a page that contain a paper, as HTML, with empty boxes."""
 
     head: str
@@ -28,17 +28,17 @@ def prepared_state(connection: Connection, number: int, person_id: int, lang: st
 
 def prepared_pieces(
     connection: Connection, number: int, person_id: int, lang: str, state: str
-) -> Pieces | None:
+) -> PreparedPieces | None:
     """Return a page as it was made in this very state; None where there is none such."""
     query = select(prepared.c.head, prepared.c.body).where(
         *_key(number, person_id, lang), prepared.c.state == state
     )
     row = connection.execute(query).first()
-    return None if row is None else Pieces(row.head, row.body)
+    return None if row is None else PreparedPieces(row.head, row.body)
 
 
 def put_prepared(
-    connection: Connection, number: int, person_id: int, lang: str, state: str, pieces: Pieces
+    connection: Connection, number: int, person_id: int, lang: str, state: str, pieces: PreparedPieces
 ) -> None:
     """Keep a page, in place of that of another state."""
     make = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
@@ -60,7 +60,7 @@ def prepare_later(connection: Connection, number: int, at: datetime, person_id: 
     waits = select(job.c.person_id).where(
         job.c.assignment_id == number, job.c.kind == PREPARE, job.c.until.is_(None)
     )
-    wanted = select(literal(PREPARE), literal(number), person.c.id, literal(at, Moment)).where(
+    wanted = select(literal(PREPARE), literal(number), person.c.id, literal(at, UTCDateTime)).where(
         person.c.id.in_(theirs), person.c.id.not_in(waits)
     )
     if person_id is not None:

@@ -1,7 +1,7 @@
 """Publication of an assignment: its dates, the number of attempts, late submissions, and the release of marks
 and answers.
 
-Dates are compared with the server's clock alone. A date that has passed is recorded (:func:`reach`), so that a clock that is
+Dates are compared with the server's clock alone. A date that has passed is recorded (:func:`record_passed_date`), so that a clock that is
 set back neither reopens an assignment nor withdraws what was released.
 """
 
@@ -182,7 +182,7 @@ class Publication:
             return 0.0
         return min(1.0, self.late_percent / 100 * math.ceil(late / _DAY))
 
-    def tells(self, what: str, now: datetime, ends: datetime | None) -> bool:
+    def releases(self, what: str, now: datetime, ends: datetime | None) -> bool:
         """Return True if ``feedback`` or ``answers`` are released; ``ends`` is the time at which the
         assignment has closed for everybody concerned."""
         when, on = getattr(self, what), getattr(self, f"{what}_on")
@@ -238,7 +238,7 @@ def _charging(publication: Publication | None) -> tuple[object, ...]:
     return publication.closes, publication.late_until, publication.late_percent
 
 
-def charges(
+def late_penalties(
     connection: Connection, number: int, students: Collection[str] | None = None
 ) -> dict[tuple[str, int], float]:
     """Return the penalties of late submissions as shares of the points, by student and attempt; a submission
@@ -280,7 +280,7 @@ def extensions(connection: Connection, number: int) -> dict[int, Extension]:
     }
 
 
-def reach(connection: Connection, number: int, clock: datetime) -> bool:
+def record_passed_date(connection: Connection, number: int, clock: datetime) -> bool:
     """Write down the last date that has passed, where one has; tells whether it was another than before."""
     about = connection.execute(
         select(assignment.c.published).where(assignment.c.id == number).with_for_update(key_share=True)
@@ -298,7 +298,7 @@ def reach(connection: Connection, number: int, clock: datetime) -> bool:
     return True
 
 
-class Place(NamedTuple):
+class StudentAssignment(NamedTuple):
     """An assignment that somebody was issued a paper of, as it is published."""
 
     id: int
@@ -307,32 +307,34 @@ class Place(NamedTuple):
     student: str  #: the person's name as issued
     publication: Publication | None
     extension: Extension | None
-    asked: Mapping[str, Any] = MappingProxyType({})  #: what its file says, where it is of one
+    file_statement: Mapping[str, Any] = MappingProxyType({})  #: what its file says, where it is of one
 
     @property
-    def own(self) -> Publication:
+    def own_publication(self) -> Publication:
         """Publication as it applies to this person."""
         assert self.publication is not None
         return self.publication.extended(self.extension)
 
 
-def places(connection: Connection, person: int, number: int | None = None) -> list[Place]:
+def student_assignments(
+    connection: Connection, person: int, number: int | None = None
+) -> list[StudentAssignment]:
     """Return the assignments issued to a person, the latest first; one alone, if its number is given."""
     parameters = {"person": person} if number is None else {"person": person, "number": number}
     return [
-        Place(
+        StudentAssignment(
             row.id, row.name, row.stated or {}, row.student,
             None if row.published is None else Publication.of(row.published),
             None if row.made is None else Extension(row.ext_closes, row.ext_tries, row.reason, row.by, row.made),
             row.asked or {},
         )
-        for row in connection.execute(_places_query(number is not None), parameters)
+        for row in connection.execute(_student_assignments_query(number is not None), parameters)
     ]  # fmt: skip
 
 
 @cache
-def _places_query(is_of_one: bool) -> Select[Any]:
-    """Return the query of :func:`places`, cached since many requests execute it, with the person's last extension."""
+def _student_assignments_query(is_of_one: bool) -> Select[Any]:
+    """Return the query of :func:`student_assignments`, cached since many requests execute it, with the person's last extension."""
     theirs = select(variant.c.assignment_id, dealt.c.student).join(variant)
     mine = theirs.where(dealt.c.person_id == bindparam("person")).distinct().subquery()
     columns = assignment.c
@@ -350,7 +352,7 @@ def _places_query(is_of_one: bool) -> Select[Any]:
     return query.where(columns.id == bindparam("number")) if is_of_one else query
 
 
-def say_sittings(connection: Connection, number: int, counts: str) -> None:
+def set_counting_attempt(connection: Connection, number: int, counts: str) -> None:
     """Say which of several hand-ins counts, ``best`` or ``last``, where marks are put together."""
     row = connection.execute(select(assignment).where(assignment.c.id == number)).one()
     values = {

@@ -13,7 +13,7 @@ from coursework.database.store import insert_unless_there
 from coursework.database.tables import scanned, typed
 
 
-class Page(NamedTuple):
+class ScannedPage(NamedTuple):
     """A page of a scan, or a file of which no page can be read."""
 
     page: str  #: digest of the file, and number
@@ -38,7 +38,7 @@ class TypedRow(NamedTuple):
     made: datetime
 
 
-def put_scanned(connection: Connection, assignment_id: int, page: Page, picture: bytes) -> bool:
+def put_scanned(connection: Connection, assignment_id: int, page: ScannedPage, picture: bytes) -> bool:
     """Keep a page; whether it is new. One that is there stays as it is."""
     row = {
         **page._asdict(), "kept": dict(page.kept), "assignment_id": assignment_id,
@@ -47,12 +47,12 @@ def put_scanned(connection: Connection, assignment_id: int, page: Page, picture:
     return insert_unless_there(connection, scanned, row, ("assignment_id", "page")) is not None
 
 
-def pages_scanned(connection: Connection, assignment_id: int) -> list[Page]:
+def pages_scanned(connection: Connection, assignment_id: int) -> list[ScannedPage]:
     """Return the scanned pages, in the order of their files."""
-    columns = [scanned.c[name] for name in Page._fields]
+    columns = [scanned.c[name] for name in ScannedPage._fields]
     query = select(*columns).where(scanned.c.assignment_id == assignment_id)
     in_order = query.order_by(scanned.c.file, scanned.c.page)
-    return [Page(*row) for row in connection.execute(in_order)]
+    return [ScannedPage(*row) for row in connection.execute(in_order)]
 
 
 def picture_scanned(connection: Connection, assignment_id: int, page: str) -> bytes | None:

@@ -14,8 +14,8 @@ from typing import Any
 
 from sqlalchemy import Connection, Select, bindparam, delete, exists, insert, or_, select, update
 
-from coursework.database.people import found_people
-from coursework.database.settings import taken_query
+from coursework.database.people import people_query
+from coursework.database.settings import reloads_query
 from coursework.database.tables import account, person, session
 
 IDLE = timedelta(days=30)  #: a session expires when it was not used for so long
@@ -53,7 +53,7 @@ def session_of(connection: Connection, token: str, at: datetime) -> Any | None:
     """Return the session of a token with its person's columns, or None.
 
     The row has ``session_id``, ``session_created``, ``session_seen`` and ``taken``
-    (:func:`coursework.database.settings.taken_of`) beside those of :func:`coursework.database.people.person_by_id`. There is none for a token that is unknown, ended or expired, and none of a
+    (:func:`coursework.database.settings.reloads_of`) beside those of :func:`coursework.database.people.person_by_id`. There is none for a token that is unknown, ended or expired, and none of a
     person whose account is closed.
     """
     if len(token) != TOKEN_LENGTH:
@@ -69,8 +69,8 @@ def _session_query() -> Select[Any]:
     former = account.alias()
     is_closed = exists().where(former.c.person_id == person.c.id, former.c.closed.is_not(None))
     return (
-        found_people()
-        .add_columns(*columns, taken_query().scalar_subquery().label("taken"))
+        people_query()
+        .add_columns(*columns, reloads_query().scalar_subquery().label("taken"))
         .join(session, session.c.person_id == person.c.id)
         .where(session.c.digest == bindparam("digest"), session.c.until > bindparam("at"))
         .where(or_(account.c.id.is_not(None), ~is_closed))

@@ -58,24 +58,24 @@ def drop_value(connection: Connection, name: str) -> None:
     connection.execute(delete(setting).where(setting.c.name == name))
 
 
-def course_taken(connection: Connection) -> int:
+def course_reloads(connection: Connection) -> int:
     """Return the number of times that a course was reloaded after a correction of its files; every process of
     a site continues with the last."""
-    return taken_of(connection.execute(taken_query()).scalar())
+    return reloads_of(connection.execute(reloads_query()).scalar())
 
 
-def taken_query() -> Select[Any]:
-    """Return the query of the value that :func:`taken_of` reads, for use in a larger query."""
+def reloads_query() -> Select[Any]:
+    """Return the query of the value that :func:`reloads_of` reads, for use in a larger query."""
     return select(setting.c.value).where(setting.c.name == _COURSE)
 
 
-def taken_of(value: str | None) -> int:
+def reloads_of(value: str | None) -> int:
     """Return the number of reloads of a stored value."""
     return 0 if value is None else int(json.loads(value) or 0)
 
 
-def take_course(connection: Connection) -> int:
+def request_reload(connection: Connection) -> int:
     """Say that the course's files are to be read anew; gives how often that was said."""
-    now = course_taken(connection) + 1
+    now = course_reloads(connection) + 1
     put_value(connection, _COURSE, now)
     return now

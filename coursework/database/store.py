@@ -48,10 +48,12 @@ class Store:
             self.engine: Engine = create_engine(self.url, **_options(self.url))
         except (ArgumentError, NoSuchModuleError) as fault:
             raise BadInput(
-                f"no database {_shown(url)!r}: {fault}; a file is sqlite:///marks.db, a server postgresql+psycopg://user@host/name"
+                f"no database {_without_password(url)!r}: {fault}; a file is sqlite:///marks.db, a server postgresql+psycopg://user@host/name"
             ) from fault
         except ModuleNotFoundError as missing:
-            raise BadInput(f"{_shown(url)} needs the package {missing.name}: pip install it") from missing
+            raise BadInput(
+                f"{_without_password(url)} needs the package {missing.name}: pip install it"
+            ) from missing
         _make_private(self.url)
         self._reads: dict[str, Any] = {_READS: True}
         if self.engine.dialect.name == "postgresql":
@@ -81,7 +83,7 @@ class Store:
         except (DatabaseError, NoConnection) as fault:
             if _is_ours(fault):
                 raise
-            raise BadInput(f"{_shown(self.url)}: {_cause(fault)}") from fault
+            raise BadInput(f"{_without_password(self.url)}: {_cause(fault)}") from fault
 
     @contextmanager
     def begin(self) -> Iterator[Connection]:
@@ -98,7 +100,9 @@ class Store:
         except (DatabaseError, NoConnection) as fault:
             if _is_ours(fault):
                 raise
-            raise BadInput(f"{_shown(self.url)}: {_cause(fault)}; nothing of this was kept") from fault
+            raise BadInput(
+                f"{_without_password(self.url)}: {_cause(fault)}; nothing of this was kept"
+            ) from fault
 
     @property
     def has_one_writer(self) -> bool:
@@ -106,13 +110,13 @@ class Store:
         return self.engine.dialect.name == "sqlite"
 
     @property
-    def shown(self) -> str:
+    def display_name(self) -> str:
         """Its file, or its address without a password."""
         url = make_url(self.url)
         return (
             str(Path(url.database or "").resolve())
             if url.drivername.startswith("sqlite")
-            else _shown(self.url)
+            else _without_password(self.url)
         )
 
     def scrub(self, patience: float = 5.0) -> bool:
@@ -145,13 +149,13 @@ class Store:
                 command.upgrade(config, "head")
         except CommandError as fault:
             raise BadInput(
-                f"{_shown(self.url)} was written by a later version of coursework ({fault}): update the package"
+                f"{_without_password(self.url)} was written by a later version of coursework ({fault}): update the package"
             ) from fault
         except DBAPIError as fault:
-            raise BadInput(f"{_shown(self.url)} cannot be opened: {_cause(fault)}") from fault
+            raise BadInput(f"{_without_password(self.url)} cannot be opened: {_cause(fault)}") from fault
         except UnicodeDecodeError as fault:  # SQLite quotes what is damaged
             raise BadInput(
-                f"{_shown(self.url)} cannot be opened: its tables are damaged{_RESTORE}"
+                f"{_without_password(self.url)} cannot be opened: its tables are damaged{_RESTORE}"
             ) from fault
 
 
@@ -208,7 +212,7 @@ def is_shared(file: Path | None) -> bool:
     return file is not None and os.name == "posix" and file.exists() and bool(file.stat().st_mode & 0o077)
 
 
-def _shown(url: str) -> str:
+def _without_password(url: str) -> str:
     """Return the address without its password."""
     try:
         return make_url(url).render_as_string(hide_password=True)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, Select, distinct, func, select
 
 from coursework.database.assignments import names
-from coursework.database.standing import waiting
+from coursework.database.current_marks import waiting
 from coursework.database.tables import answer, dealt, decision, delivery, marking, variant
 
 

@@ -41,7 +41,7 @@ METADATA = MetaData(
 )
 
 
-class Moment(TypeDecorator[datetime]):
+class UTCDateTime(TypeDecorator[datetime]):
     """A time, UTC: what comes back knows its zone on every database."""
 
     impl = DateTime(timezone=True)
@@ -60,7 +60,7 @@ class Moment(TypeDecorator[datetime]):
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
 
 
-class Words(TypeDecorator[str]):
+class SafeText(TypeDecorator[str]):
     """Text of any length. Characters that some server cannot store are replaced: NUL by ``␀``, a lone
     surrogate by its code."""
 
@@ -73,7 +73,7 @@ class Words(TypeDecorator[str]):
         return value.replace("\0", "␀").encode("utf-8", "backslashreplace").decode("utf-8")
 
 
-class Packed(TypeDecorator[str]):
+class CompressedText(TypeDecorator[str]):
     """A long text, compressed: a page takes a fifth."""
 
     impl = LargeBinary
@@ -104,12 +104,12 @@ person = Table(
     "person",
     METADATA,
     _key(),
-    Column("who", Words, nullable=False, unique=True),
-    Column("name", Words, nullable=False),
-    Column("lang", Words, nullable=False, default=""),
+    Column("who", SafeText, nullable=False, unique=True),
+    Column("name", SafeText, nullable=False),
+    Column("lang", SafeText, nullable=False, default=""),
     Column("columns", Json, nullable=False, default=dict),  #: of the rosters that name them
-    Column("created", Moment, nullable=False),
-    Column("sessions_from", Moment),  #: written by earlier versions, and read by none
+    Column("created", UTCDateTime, nullable=False),
+    Column("sessions_from", UTCDateTime),  #: written by earlier versions, and read by none
 )
 
 #: How somebody signs in with a password; what a password becomes is argon2's business.
@@ -118,14 +118,14 @@ account = Table(
     METADATA,
     _key(),
     _of("person", index=True),
-    Column("login", Words, nullable=False, unique=True),
-    Column("secret", Words, nullable=False, default=""),  #: none before the invitation is taken up
+    Column("login", SafeText, nullable=False, unique=True),
+    Column("secret", SafeText, nullable=False, default=""),  #: none before the invitation is taken up
     Column("invitation", String(64), index=True),  #: digest of what the invitation's address ends with
-    Column("invited_until", Moment),
-    Column("joined", Moment),  #: when an invitation was taken up
+    Column("invited_until", UTCDateTime),
+    Column("joined", UTCDateTime),  #: when an invitation was taken up
     Column("role", String(16), nullable=False),  #: student, assistant, instructor, administrator
-    Column("created", Moment, nullable=False),
-    Column("closed", Moment),
+    Column("created", UTCDateTime, nullable=False),
+    Column("closed", UTCDateTime),
 )
 
 #: A browser in which somebody is signed in. No dump holds it: what is restored signs nobody in.
@@ -135,10 +135,10 @@ session = Table(
     _key(),
     _of("person", index=True),
     Column("digest", String(64), nullable=False, unique=True),  #: of the token that the browser holds
-    Column("browser", Words, nullable=False, default=""),  #: "Firefox, Linux"
-    Column("created", Moment, nullable=False),
-    Column("seen", Moment, nullable=False),  #: the last use, to some minutes
-    Column("until", Moment, nullable=False, index=True),  #: when it expires unless it is used
+    Column("browser", SafeText, nullable=False, default=""),  #: "Firefox, Linux"
+    Column("created", UTCDateTime, nullable=False),
+    Column("seen", UTCDateTime, nullable=False),  #: the last use, to some minutes
+    Column("until", UTCDateTime, nullable=False, index=True),  #: when it expires unless it is used
     info={"fleeting": True},
 )
 
@@ -150,7 +150,7 @@ area = Table(
     _key(),
     _of("person", index=True),
     Column("assignment_id", ForeignKey("assignment.id", ondelete="CASCADE")),
-    Column("class_group", Words),  #: whatever its case and spaces
+    Column("class_group", SafeText),  #: whatever its case and spaces
 )
 
 #: Passwords that did not fit, by a keyed digest of login and network: no login can be read from it.
@@ -159,7 +159,7 @@ failure = Table(
     METADATA,
     Column("key", String(64), primary_key=True),
     Column("count", Integer, nullable=False),
-    Column("last", Moment, nullable=False, index=True),
+    Column("last", UTCDateTime, nullable=False, index=True),
     info={"fleeting": True},
 )
 
@@ -169,8 +169,8 @@ identity = Table(
     METADATA,
     _key(),
     _of("person", index=True),
-    Column("issuer", Words, nullable=False),
-    Column("subject", Words, nullable=False),
+    Column("issuer", SafeText, nullable=False),
+    Column("subject", SafeText, nullable=False),
     UniqueConstraint("issuer", "subject"),
 )
 
@@ -181,8 +181,8 @@ assignment = Table(
     "assignment",
     METADATA,
     _key(),
-    Column("name", Words, nullable=False, unique=True),
-    Column("course", Words, nullable=False, default=""),  #: the course's name
+    Column("name", SafeText, nullable=False, unique=True),
+    Column("course", SafeText, nullable=False, default=""),  #: the course's name
     Column("stated", Json),  #: none for exercises without an assignment
     Column("has_roster", Boolean, nullable=False, default=False),
     Column("is_pool", Boolean, nullable=False, default=False),  #: a platform deals its variants out
@@ -191,7 +191,7 @@ assignment = Table(
     #: keys the draws of who comes later; none of what was issued without one
     Column("secret", String(32)),
     Column("published", Json),  #: dates, tries, feedback, late rules; none while it is not published
-    Column("created", Moment, nullable=False),
+    Column("created", UTCDateTime, nullable=False),
 )
 
 #: A variant that was issued; its record is what answers are marked against.
@@ -200,8 +200,8 @@ variant = Table(
     METADATA,
     _key(),
     _of("assignment", index=True),
-    Column("exercise", Words, nullable=False),
-    Column("seed", Words, nullable=False),  #: whole, however large
+    Column("exercise", SafeText, nullable=False),
+    Column("seed", SafeText, nullable=False),  #: whole, however large
     Column("letter", String(2), nullable=False, default=""),  #: A to Z, of versions that are dealt out
     Column("record", Json, nullable=False),
     UniqueConstraint("assignment_id", "exercise", "seed"),
@@ -215,9 +215,9 @@ dealt = Table(
     _of("variant", index=True),
     _of("person", null=True, index=True),  #: nobody's where there is no roster
     Column("place", Integer, nullable=False),
-    Column("student", Words, nullable=False, default=""),  #: the name as it was issued
+    Column("student", SafeText, nullable=False, default=""),  #: the name as it was issued
     Column("sitting", Integer, nullable=False, default=1),
-    Column("lang", Words, nullable=False, default=""),
+    Column("lang", SafeText, nullable=False, default=""),
 )
 
 # ------------------------------------------------------------------------ answers
@@ -229,13 +229,13 @@ delivery = Table(
     _key(),
     _of("assignment", index=True),
     _of("person", null=True, index=True),  #: who handed in on the site; none for files
-    Column("source", Words, nullable=False),
+    Column("source", SafeText, nullable=False),
     Column("digest", String(64), nullable=False),  #: of what it holds: the same twice is one
     Column("number", Integer, nullable=False, default=0),  #: which try of the person; 0 for files
     Column("receipt", String(40), nullable=False, default=""),  #: what the person is given to show
     Column("late", Integer, nullable=False, default=0),  #: seconds after it closed for them
-    Column("came", Moment, nullable=False),
-    Column("replaced", Moment),  #: when a later file took its place; none while it counts
+    Column("came", UTCDateTime, nullable=False),
+    Column("replaced", UTCDateTime),  #: when a later file took its place; none while it counts
     UniqueConstraint("assignment_id", "digest"),
     UniqueConstraint("assignment_id", "person_id", "number"),
 )
@@ -247,14 +247,14 @@ answer = Table(
     _key(),
     _of("delivery", index=True),
     Column("place", Integer, nullable=False),
-    Column("student", Words, nullable=False),
-    Column("exercise", Words, nullable=False),
-    Column("seed", Words, nullable=False),
-    Column("part", Words, nullable=False),
+    Column("student", SafeText, nullable=False),
+    Column("exercise", SafeText, nullable=False),
+    Column("seed", SafeText, nullable=False),
+    Column("part", SafeText, nullable=False),
     Column("answer", Json),  #: a text, a number, or nothing
-    Column("source", Words, nullable=False),
-    Column("warning", Words, nullable=False, default=""),
-    Column("lang", Words, nullable=False, default=""),
+    Column("source", SafeText, nullable=False),
+    Column("warning", SafeText, nullable=False, default=""),
+    Column("lang", SafeText, nullable=False, default=""),
     Column("origin", Json),  #: what a platform tells of it (:class:`coursework.gradebook.rows.Collected`)
 )
 
@@ -265,8 +265,8 @@ rejected = Table(
     _key(),
     _of("delivery", index=True),
     Column("place", Integer, nullable=False),
-    Column("source", Words, nullable=False),
-    Column("reason", Words, nullable=False),
+    Column("source", SafeText, nullable=False),
+    Column("reason", SafeText, nullable=False),
     Column("row", Json, nullable=False, default=dict),
 )
 
@@ -277,8 +277,8 @@ seen = Table(
     _key(),
     _of("delivery", index=True),
     Column("place", Integer, nullable=False),
-    Column("source", Words, nullable=False),
-    Column("what", Words, nullable=False),
+    Column("source", SafeText, nullable=False),
+    Column("what", SafeText, nullable=False),
     Column("is_tree", Boolean, nullable=False, default=False),
 )
 
@@ -291,17 +291,17 @@ marking = Table(
     METADATA,
     _key(),
     _of("assignment", index=True),
-    Column("student", Words, nullable=False),
-    Column("exercise", Words, nullable=False),
-    Column("seed", Words, nullable=False),  #: whole, however large
+    Column("student", SafeText, nullable=False),
+    Column("exercise", SafeText, nullable=False),
+    Column("seed", SafeText, nullable=False),  #: whole, however large
     Column("attempt", Integer, nullable=False, default=0),  #: where what came tells it, else 0
     Column("sitting", Integer, nullable=False, default=1),
     Column("state", String(64), nullable=False),  #: digest of record, answers, rules, course and engine
-    Column("lang", Words, nullable=False, default=""),  #: of the sheet that came back
+    Column("lang", SafeText, nullable=False, default=""),  #: of the sheet that came back
     Column("apart", Boolean, nullable=False, default=False),  #: a platform asked these parts alone
-    Column("submitted", Words, nullable=False, default=""),  #: when, where a platform tells it
-    Column("fault", Words, nullable=False, default=""),  #: why it cannot be marked
-    Column("made", Moment, nullable=False),
+    Column("submitted", SafeText, nullable=False, default=""),  #: when, where a platform tells it
+    Column("fault", SafeText, nullable=False, default=""),  #: why it cannot be marked
+    Column("made", UTCDateTime, nullable=False),
     Index("ix_marking_sheet", "assignment_id", "student", "exercise", "seed"),
 )
 
@@ -312,18 +312,18 @@ mark = Table(
     _key(),
     _of("marking", index=True),
     Column("place", Integer, nullable=False),  #: on the sheet
-    Column("part", Words, nullable=False),
+    Column("part", SafeText, nullable=False),
     Column("came", Integer),  #: its place among what came; none where nothing did
-    Column("answer", Words, nullable=False),
-    Column("read_as", Words, nullable=False),
-    Column("verdict", Words, nullable=False),
+    Column("answer", SafeText, nullable=False),
+    Column("read_as", SafeText, nullable=False),
+    Column("verdict", SafeText, nullable=False),
     Column("points", Double, nullable=False),
     Column("out_of", Double, nullable=False),
-    Column("lang", Words, nullable=False),
+    Column("lang", SafeText, nullable=False),
     Column("matches", Json, nullable=False),  #: every verdict that explains the answer
     Column("in_other_order", Boolean, nullable=False),
-    Column("says", Words, nullable=False),  #: Markdown
-    Column("feedback", Words, nullable=False),
+    Column("says", SafeText, nullable=False),  #: Markdown
+    Column("feedback", SafeText, nullable=False),
 )
 
 #: What a person decided of an answer, and who: it counts until another one of the same answer. ``answer`` is what they saw.
@@ -332,16 +332,16 @@ decision = Table(
     METADATA,
     _key(),
     _of("assignment", index=True),
-    Column("student", Words, nullable=False),
-    Column("exercise", Words, nullable=False),
-    Column("seed", Words, nullable=False),  #: empty for whatever variant they have
-    Column("part", Words, nullable=False),
+    Column("student", SafeText, nullable=False),
+    Column("exercise", SafeText, nullable=False),
+    Column("seed", SafeText, nullable=False),  #: empty for whatever variant they have
+    Column("part", SafeText, nullable=False),
     Column("kind", String(16), nullable=False),  #: accepted, given, kept, withdrawn
     Column("points", Double),  #: none for all of them
-    Column("reason", Words, nullable=False, default=""),
-    Column("answer", Words),
-    Column("by", Words, nullable=False),  #: who, or the file that says it
-    Column("made", Moment, nullable=False),
+    Column("reason", SafeText, nullable=False, default=""),
+    Column("answer", SafeText),
+    Column("by", SafeText, nullable=False),  #: who, or the file that says it
+    Column("made", UTCDateTime, nullable=False),
 )
 
 #: What became of a rejected row: placed by hand, as a delivery of its own, or put aside. ``row`` is its digest.
@@ -352,9 +352,9 @@ placing = Table(
     _of("assignment", index=True),
     Column("row", String(64), nullable=False),
     _of("delivery", null=True),
-    Column("reason", Words, nullable=False, default=""),
-    Column("by", Words, nullable=False),
-    Column("made", Moment, nullable=False),
+    Column("reason", SafeText, nullable=False, default=""),
+    Column("by", SafeText, nullable=False),
+    Column("made", UTCDateTime, nullable=False),
 )
 
 #: A file in which people write decisions, as it stood when it was last read or written: what is new in it is what differs.
@@ -376,12 +376,12 @@ scanned = Table(
     _key(),
     _of("assignment", index=True),
     Column("page", String(40), nullable=False),  #: digest of the file, and number
-    Column("file", Words, nullable=False),
+    Column("file", SafeText, nullable=False),
     Column("number", Integer, nullable=False),
-    Column("student", Words, nullable=False, default=""),  #: whose it is, where that is known
+    Column("student", SafeText, nullable=False, default=""),  #: whose it is, where that is known
     Column("kept", Json, nullable=False),
-    Column("picture", Words, nullable=False, default=""),
-    Column("came", Moment, nullable=False),
+    Column("picture", SafeText, nullable=False, default=""),
+    Column("came", UTCDateTime, nullable=False),
     UniqueConstraint("assignment_id", "page"),
 )
 
@@ -391,15 +391,15 @@ typed = Table(
     METADATA,
     _key(),
     _of("assignment", index=True),
-    Column("student", Words, nullable=False),
-    Column("exercise", Words, nullable=False),
-    Column("seed", Words, nullable=False),
-    Column("part", Words, nullable=False),
-    Column("coordinate", Words, nullable=False, default=""),
-    Column("answer", Words),  #: none where it was withdrawn
-    Column("seen", Words, nullable=False, default=""),
-    Column("by", Words, nullable=False),
-    Column("made", Moment, nullable=False),
+    Column("student", SafeText, nullable=False),
+    Column("exercise", SafeText, nullable=False),
+    Column("seed", SafeText, nullable=False),
+    Column("part", SafeText, nullable=False),
+    Column("coordinate", SafeText, nullable=False, default=""),
+    Column("answer", SafeText),  #: none where it was withdrawn
+    Column("seen", SafeText, nullable=False, default=""),
+    Column("by", SafeText, nullable=False),
+    Column("made", UTCDateTime, nullable=False),
 )
 
 # --------------------------------------------------------------------------- site
@@ -421,11 +421,11 @@ draft = Table(
     METADATA,
     _key(),
     _of("person"),
-    Column("sheet", Words, nullable=False),  #: ``practice/EXERCISE/SEED`` or ``assignment/ID``
-    Column("box", Words, nullable=False),  #: a part; of a paper ``EXERCISE/PART``
-    Column("text", Words, nullable=False),
+    Column("sheet", SafeText, nullable=False),  #: ``practice/EXERCISE/SEED`` or ``assignment/ID``
+    Column("box", SafeText, nullable=False),  #: a part; of a paper ``EXERCISE/PART``
+    Column("text", SafeText, nullable=False),
     Column("version", Integer, nullable=False),  #: counts the changes
-    Column("changed", Moment, nullable=False),
+    Column("changed", UTCDateTime, nullable=False),
     UniqueConstraint("person_id", "sheet", "box"),
 )
 
@@ -436,10 +436,10 @@ prepared = Table(
     _key(),
     _of("assignment"),
     _of("person", index=True),
-    Column("lang", Words, nullable=False),
+    Column("lang", SafeText, nullable=False),
     Column("state", String(64), nullable=False),  #: digest of all that the page depends on
-    Column("head", Packed, nullable=False),
-    Column("body", Packed, nullable=False),
+    Column("head", CompressedText, nullable=False),
+    Column("body", CompressedText, nullable=False),
     UniqueConstraint("assignment_id", "person_id", "lang"),
     info={"derived": True},
 )
@@ -451,11 +451,11 @@ extension = Table(
     _key(),
     _of("assignment", index=True),
     _of("person", index=True),
-    Column("closes", Moment),
+    Column("closes", UTCDateTime),
     Column("tries", Integer),
-    Column("reason", Words, nullable=False, default=""),
-    Column("by", Words, nullable=False),
-    Column("made", Moment, nullable=False),
+    Column("reason", SafeText, nullable=False, default=""),
+    Column("by", SafeText, nullable=False),
+    Column("made", UTCDateTime, nullable=False),
 )
 
 #: Work that a worker does beside the requests: hand-ins to mark, what was saved to be handed in once it closed, pages to
@@ -470,9 +470,9 @@ job = Table(
     _of("person", null=True, index=True),
     Column("tries", Integer, nullable=False, default=0),  #: how often it was begun
     Column("worker", String(64), nullable=False, default=""),  #: which began it last
-    Column("until", Moment),  #: when another worker may take it; none while nobody works at it
-    Column("fault", Words, nullable=False, default=""),  #: why it was given up
-    Column("made", Moment, nullable=False),
+    Column("until", UTCDateTime),  #: when another worker may take it; none while nobody works at it
+    Column("fault", SafeText, nullable=False, default=""),  #: why it was given up
+    Column("made", UTCDateTime, nullable=False),
 )
 
 #: Small things of the site itself: the key that signs its cookies.
@@ -480,7 +480,7 @@ setting = Table(
     "setting",
     METADATA,
     Column("name", String(100), primary_key=True),
-    Column("value", Words, nullable=False),
+    Column("value", SafeText, nullable=False),
 )
 
 #: Who did what that another may ask about.
@@ -488,9 +488,9 @@ audit = Table(
     "audit",
     METADATA,
     _key(),
-    Column("at", Moment, nullable=False, index=True),
-    Column("by", Words, nullable=False),  #: who did it
-    Column("what", Words, nullable=False),
+    Column("at", UTCDateTime, nullable=False, index=True),
+    Column("by", SafeText, nullable=False),  #: who did it
+    Column("what", SafeText, nullable=False),
     Column("about", Json, nullable=False, default=dict),  #: never an answer
     Column("actor", Integer),  #: id of the person who did it; none for commands and platforms
     Column("subject", Integer, index=True),  #: id of the person of whom it tells
@@ -511,7 +511,7 @@ outdated = Table(
     _key(),
     _of("assignment", index=True),
     Column("kind", String(16), nullable=False),
-    Column("student", Words, nullable=False, default=""),
+    Column("student", SafeText, nullable=False, default=""),
     info=_DERIVED,
 )
 
@@ -521,15 +521,15 @@ student_total = Table(
     METADATA,
     _key(),
     _of("assignment"),
-    Column("student", Words, nullable=False),
-    Column("search", Words, nullable=False),  #: folded name and identity
-    Column("identity", Words, nullable=False, default=""),
+    Column("student", SafeText, nullable=False),
+    Column("search", SafeText, nullable=False),  #: folded name and identity
+    Column("identity", SafeText, nullable=False, default=""),
     Column("place", BigInteger, nullable=False),  #: in the class
     Column("sitting", Integer, nullable=False),
     Column("points", Double, nullable=False),
     Column("out_of", Double, nullable=False),
     Column("charged", Double, nullable=False, default=0.0),  #: points that are taken off for lateness
-    Column("mark", Words, nullable=False, default=""),
+    Column("mark", SafeText, nullable=False, default=""),
     Column("tries", Integer, nullable=False, default=0),
     Column("late", Integer, nullable=False, default=0),  #: seconds
     Column("waits", Integer, nullable=False, default=0),  #: answers that count and that nobody could mark yet
@@ -551,12 +551,12 @@ answer_now = Table(
     Column("marking", Integer, nullable=False),
     Column("first", Integer, nullable=False),  #: marking of its sheet: the order in which sheets came
     Column("place", Integer, nullable=False),  #: on its sheet
-    Column("student", Words, nullable=False),
-    Column("exercise", Words, nullable=False),
-    Column("seed", Words, nullable=False),
+    Column("student", SafeText, nullable=False),
+    Column("exercise", SafeText, nullable=False),
+    Column("seed", SafeText, nullable=False),
     Column("sitting", Integer, nullable=False),
-    Column("part", Words, nullable=False),
-    Column("verdict", Words, nullable=False),
+    Column("part", SafeText, nullable=False),
+    Column("verdict", SafeText, nullable=False),
     Column("points", Double, nullable=False),
     Column("out_of", Double, nullable=False),
     Column("by_hand", Boolean, nullable=False),
@@ -581,10 +581,10 @@ unplaced = Table(
     _key(),
     _of("assignment", index=True),
     Column("row", String(64), nullable=False),  #: digest, as in ``placing``
-    Column("student", Words, nullable=False, default=""),  #: as issued; empty for a stranger
-    Column("near", Words, nullable=False, default=""),  #: whose name is like that of a stranger
-    Column("source", Words, nullable=False),
-    Column("reason", Words, nullable=False),
+    Column("student", SafeText, nullable=False, default=""),  #: as issued; empty for a stranger
+    Column("near", SafeText, nullable=False, default=""),  #: whose name is like that of a stranger
+    Column("source", SafeText, nullable=False),
+    Column("reason", SafeText, nullable=False),
     Column("said", Json, nullable=False, default=dict),
     info=_DERIVED,
 )

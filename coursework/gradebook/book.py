@@ -109,8 +109,8 @@ class Gradebook:
     apart: dict[str, set[str]] = field(
         default_factory=dict
     )  #: parts that a platform asked apart, by exercise
-    asked: dict[tuple[Sitting, str], set[str]] = field(default_factory=dict)  #: the same of somebody
-    whole: set[str] = field(default_factory=set)  #: exercises of which a variant came whole
+    asked_apart: dict[tuple[Sitting, str], set[str]] = field(default_factory=dict)  #: the same of somebody
+    complete: set[str] = field(default_factory=set)  #: exercises of which a variant came whole
     seen: tuple[str, ...] = ()  #: what platforms wrote of what was read
     charged: Mapping[Sitting, float] = field(
         default_factory=dict
@@ -129,9 +129,9 @@ class Gradebook:
             student.add(line)
         if graded.apart:
             self.apart.setdefault(graded.exercise, set()).update(graded.lines)
-            self.asked.setdefault((sitting, graded.exercise), set()).update(graded.lines)
+            self.asked_apart.setdefault((sitting, graded.exercise), set()).update(graded.lines)
         else:
-            self.whole.add(graded.exercise)
+            self.complete.add(graded.exercise)
         own = student.by_exercise
         own[graded.exercise] = own.get(graded.exercise, 0.0) + graded.points
         if graded.student in self._rejected_of:
@@ -258,16 +258,16 @@ def _lost(book: Gradebook, place: Sitting, key: tuple[str, int]) -> list[Mapping
     """The parts of a variant of which nothing came; where a platform asks part by part, those that it asked of others."""
     parts = book.issued.records[key]["parts"]
     apart = book.apart.get(key[0])
-    if apart is None or key[0] in book.whole:
+    if apart is None or key[0] in book.complete:
         return list(parts)
-    return [p for p in parts if p["id"] in apart - book.asked.get((place, key[0]), set())]
+    return [p for p in parts if p["id"] in apart - book.asked_apart.get((place, key[0]), set())]
 
 
 def _owed(book: Gradebook, place: Sitting, own: Iterable[tuple[str, int]]) -> set[tuple[str, int]]:
     """The variants of which nothing could be marked."""
     issued, done = book.issued, set(book.handed_in(place))
     owed = {(e, seed) for e, seed in (*issued.issued_to(*place).items(), *own) if e not in done}
-    met = {e for e, _ in owed} | (done - (book.apart.keys() - book.whole))
+    met = {e for e, _ in owed} | (done - (book.apart.keys() - book.complete))
     # Nobody's paper asks all the exercises too; which variant was theirs bears on no points.
     return owed | {next(k for k in issued.records if k[0] == e) for e in _asked_of_all(book) if e not in met}
 

@@ -68,7 +68,7 @@ class ToMark:
         for part, line in graded.lines.items():
             if line.verdict != TO_MARK:
                 continue
-            found = self.found(graded, part, line)
+            found = self.given_for(graded, part, line)
             if found is not None:
                 lines[part] = given_mark(line, found.points, found.reason, lang, found.place)
                 if part not in (*graded.answered, *unanswered):
@@ -77,7 +77,7 @@ class ToMark:
             self.rows.append(_row(graded, line, found))
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
-    def found(self, graded: Graded, part: str, line: Mark) -> Given | None:
+    def given_for(self, graded: Graded, part: str, line: Mark) -> Given | None:
         """The points that the file gives to an answer; None where it has none, or gives them to another answer."""
         key = _key(graded.student, graded.exercise, str(graded.seed), part)
         found = self.given.get(key)

@@ -77,7 +77,7 @@ class ServerSettings:
         site = self.site()
         check_administrator(site)
         site.store.close()
-        return site.store.shown
+        return site.store.display_name
 
 
 def listening(host: str, port: int) -> socket.socket:

@@ -14,13 +14,13 @@ from functools import partial
 
 from sqlalchemy import select
 
-from coursework.database.desk import unmarked
+from coursework.database.instructor_queries import unmarked
 from coursework.database.jobs import (
     MARK,
     PREPARE,
     RESCUE,
-    Job,
-    done,
+    WorkerJob,
+    drop_job,
     drop_jobs,
     is_any,
     job_of,
@@ -135,7 +135,7 @@ class Worker:
         is_rush = timedelta(0) <= now - last < _QUIET
         return not is_rush or now - first > _LONGEST
 
-    def _do(self, job: Job) -> None:
+    def _do(self, job: WorkerJob) -> None:
         if job.kind == MARK and job.delivery is not None:
             mark_delivery(self.site.course, self.site.store, job.delivery)
         elif job.kind == RESCUE and job.person is not None:
@@ -143,11 +143,11 @@ class Worker:
         elif job.kind == PREPARE and job.person is not None:
             prepare(self.site, job.assignment, job.person, self.site.clock(), self._variants)
         with self.site.store.begin() as connection:
-            done(connection, job.id)
+            drop_job(connection, job.id)
             if job.kind == MARK and job.delivery is not None:
                 drop_jobs(connection, job.delivery)
 
-    def _failed(self, job: Job, fault: Exception) -> None:
+    def _failed(self, job: WorkerJob, fault: Exception) -> None:
         name = type(fault).__name__
         with self.site.store.begin() as connection:
             is_over = put_back(connection, job, name)

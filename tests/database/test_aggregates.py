@@ -15,26 +15,33 @@ from stored_class import content
 import coursework
 from coursework.database.aggregates import outstanding, refresh
 from coursework.database.assignments import put_issued
-from coursework.database.class_standing import read_class
+from coursework.database.class_state import read_class
 from coursework.database.class_tables import (
     PAGE,
-    Asked,
+    CardQueue,
     Filter,
-    Queue,
     Scope,
+    TableRequest,
     outline,
     rows_page,
     students_page,
     totals,
 )
-from coursework.database.decisions import KINDS, Place, decide
-from coursework.database.deliveries import deliver
-from coursework.database.desk import Placed, listed, put_placing
+from coursework.database.decisions import KINDS, DecidedAnswer, decide
 from coursework.database.dump import dump, restore
 from coursework.database.erasing import erase
+from coursework.database.instructor_queries import Placing, listed_assignments, put_placing
 from coursework.database.marking import mark_delivery, mark_new
-from coursework.database.publication import CHARGE, Extension, Publication, extend, publish, say_sittings
+from coursework.database.publication import (
+    CHARGE,
+    Extension,
+    Publication,
+    extend,
+    publish,
+    set_counting_attempt,
+)
 from coursework.database.store import _MIGRATIONS, Store
+from coursework.database.submissions import insert_submission
 from coursework.database.tables import METADATA
 from coursework.gradebook.book import summary_rows
 from coursework.gradebook.rows import Collected, Rejected, Row
@@ -46,7 +53,7 @@ NAMES = ("Ana", "Ben", "Cléo", "Dan O'Neil", "Eve", "Fay")
 
 def whole(store, course, number):
     with store.reading() as connection:
-        return read_class(connection, course, listed(connection, number)[0])
+        return read_class(connection, course, listed_assignments(connection, number)[0])
 
 
 def differences(store, course, number):
@@ -56,9 +63,9 @@ def differences(store, course, number):
     with store.reading() as connection:
         assert not outstanding(connection, number)
         order = list(outline(connection, number).worth)
-        page = students_page(connection, number, Asked())
+        page = students_page(connection, number, TableRequest())
         total = totals(connection, number)[number]
-        queue = Queue(connection, number, now.questions)
+        queue = CardQueue(connection, number, now.questions)
         cards = queue.page(Filter(), 0)
         asked_for = queue.page(Filter(why="just"), 0)
         rows, count = rows_page(connection, number)
@@ -124,7 +131,7 @@ class Life:
         now = whole(store, course, self.number)
         self.questions = now.questions
         with store.reading() as connection:
-            from coursework.database.desk import people_of
+            from coursework.database.instructor_queries import people_of
 
             self.people = people_of(connection, self.number)
         self.records = now.issued
@@ -148,8 +155,8 @@ class Life:
         self.tries[student] += 1
         number = self.tries[student]
         with self.store.begin() as connection:
-            came = deliver(
-                connection, self.number, list(self.rows(student, Collected(sitting=number))), source="site", came=AT,
+            came = insert_submission(
+                connection, self.number, list(self.rows(student, Collected(sitting=number))), source="site", received_at=AT,
                 person_id=self.people[student], number=number, late=self.random.choice([0, 0, 90000]),
             )  # fmt: skip
         mark_delivery(self.course, self.store, came.id)
@@ -162,8 +169,13 @@ class Life:
         ]
         source = self.random.choice(["a.csv", "b.csv"])
         with self.store.begin() as connection:
-            deliver(
-                connection, self.number, rows, source=source, came=AT, replaces=self.random.random() < 0.5
+            insert_submission(
+                connection,
+                self.number,
+                rows,
+                source=source,
+                received_at=AT,
+                replaces=self.random.random() < 0.5,
             )
         mark_new(self.course, self.store, self.number)
 
@@ -175,7 +187,7 @@ class Life:
         part = self.random.choice(list(one.lines))
         name = self.random.choice([one.student, one.student.upper(), f" {one.student}"])
         kind = self.random.choice(KINDS)
-        place = Place(
+        place = DecidedAnswer(
             name, one.exercise, self.random.choice(["", str(one.seed)]), part, one.lines[part].answer
         )
         with self.store.begin() as connection:
@@ -187,7 +199,7 @@ class Life:
                 closes=AT - timedelta(days=2), late=CHARGE, late_percent=self.random.choice([10, 30])
             )
             publish(connection, self.number, self.random.choice([said, None]))
-            say_sittings(connection, self.number, self.random.choice(["best", "last"]))
+            set_counting_attempt(connection, self.number, self.random.choice(["best", "last"]))
 
     def more_time(self):
         if self.people:
@@ -201,7 +213,7 @@ class Life:
         if rows:
             one = self.random.choice(rows)
             with self.store.begin() as connection:
-                put_placing(connection, self.number, Placed(one.row, None, "", "Roe", AT))
+                put_placing(connection, self.number, Placing(one.row, None, "", "Roe", AT))
 
     def erase(self):
         if len(self.people) > 3:
@@ -292,7 +304,7 @@ def test_who_finds_that_another_computed_it_throws_theirs_away(lived, monkeypatc
             decide(
                 connection,
                 lived.number,
-                [Place(one.student, one.exercise, "", part)],
+                [DecidedAnswer(one.student, one.exercise, "", part)],
                 "given",
                 points,
                 "",
@@ -325,13 +337,13 @@ def test_a_page_ends_and_goes_on_and_a_search_finds_on_every_page(store, small_c
     assert not refresh(course, store, number, most=1), "some is left where there is more than was asked for"
     refresh(course, store, number)
     with store.reading() as connection:
-        pages = [students_page(connection, number, Asked(page=k)) for k in (1, 2, 3, 99)]
-        found = students_page(connection, number, Asked(find="student 22", page=1))
-        some = students_page(connection, number, Asked(), Scope(students=names[5:8]))
-        nobody = students_page(connection, number, Asked(), Scope(students=()))
+        pages = [students_page(connection, number, TableRequest(page=k)) for k in (1, 2, 3, 99)]
+        found = students_page(connection, number, TableRequest(find="student 22", page=1))
+        some = students_page(connection, number, TableRequest(), Scope(students=names[5:8]))
+        nobody = students_page(connection, number, TableRequest(), Scope(students=()))
     assert [row.student for page in pages[:3] for row in page.rows] == names
     assert [len(page.rows) for page in pages] == [PAGE, PAGE, 30, 30]
-    assert {page.found for page in pages} == {230}
+    assert {page.matches for page in pages} == {230}
     assert [row.student for row in found.rows] == names[220:230]
-    assert ([row.student for row in some.rows], some.found) == (names[5:8], 3)
-    assert (list(nobody.rows), nobody.found) == ([], 0)
+    assert ([row.student for row in some.rows], some.matches) == (names[5:8], 3)
+    assert (list(nobody.rows), nobody.matches) == ([], 0)

@@ -7,13 +7,13 @@ from sqlalchemy import func, select
 from stored_class import ANA, BEN, content, put, rows
 
 import coursework
-from coursework.database.decisions import Place, decide, history
+from coursework.database.current_marks import gradebook, graded
+from coursework.database.decisions import DecidedAnswer, decide, history
 from coursework.database.marking import mark_new
-from coursework.database.standing import gradebook, graded
 from coursework.database.tables import decision
 from coursework.errors import BadInput, UnknownName
 
-PLACE = Place(BEN, "crank_pin", "1", "x")
+PLACE = DecidedAnswer(BEN, "crank_pin", "1", "x")
 
 
 @pytest.fixture

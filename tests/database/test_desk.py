@@ -6,26 +6,26 @@ import pytest
 
 from coursework import open_course
 from coursework.database.assignments import put_issued
-from coursework.database.decisions import Place, decide
-from coursework.database.deliveries import deliver
-from coursework.database.desk import (
-    Placed,
+from coursework.database.decisions import DecidedAnswer, decide
+from coursework.database.instructor_queries import (
+    Placing,
     Stamp,
-    came_of,
     decided_since,
     drop_placing,
-    listed,
+    listed_assignments,
     people_of,
     placings,
     practised,
     put_placing,
+    site_submissions_of,
     stamp,
     students_since,
-    tries_of,
+    submissions_of_student,
     undoable,
 )
 from coursework.database.marking import mark_new
 from coursework.database.progress import PersonProgress
+from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import Collected, Row
 
 AT = datetime(2026, 11, 23, 9, tzinfo=UTC)
@@ -50,14 +50,16 @@ def number(store):
             rows = [Row("Ada", EXERCISE, "42", "rA", f"? {n}", "the site", origin=Collected(sitting=n))]
             late = 60 if n == 2 else 0
             at = AT + timedelta(hours=n)
-            deliver(connection, found, rows, source="site", came=at, person_id=person, number=n, late=late)
+            insert_submission(
+                connection, found, rows, source="site", received_at=at, person_id=person, number=n, late=late
+            )
     mark_new(course, store, found)
     return found
 
 
 def decided(store, number, kind, by, points=None):
     with store.begin() as connection:
-        decide(connection, number, [Place("Ada", EXERCISE, "42", "rA", "? 2")], kind, points, "", by)
+        decide(connection, number, [DecidedAnswer("Ada", EXERCISE, "42", "rA", "? 2")], kind, points, "", by)
 
 
 def test_a_stamp_changes_with_what_is_added_and_says_whose_it_is(store, number):
@@ -74,12 +76,12 @@ def test_a_stamp_changes_with_what_is_added_and_says_whose_it_is(store, number):
 
 def test_who_came_when_and_how_late(store, number):
     with store.reading() as connection:
-        own = came_of(connection, number)["Ada"]
-        assert (own.tries, own.late, own.last) == (2, 60, AT + timedelta(hours=2))
-        assert [one.number for one in tries_of(connection, number, "Ada")] == [1, 2]
-        (about,) = listed(connection, number)
+        own = site_submissions_of(connection, number)["Ada"]
+        assert (own.attempts, own.late, own.last) == (2, 60, AT + timedelta(hours=2))
+        assert [one.number for one in submissions_of_student(connection, number, "Ada")] == [1, 2]
+        (about,) = listed_assignments(connection, number)
         assert (about.name, about.deliveries, about.last) == ("week3", 2, AT + timedelta(hours=2))
-        assert set(came_of(connection, number)) == {"Ada"}
+        assert set(site_submissions_of(connection, number)) == {"Ada"}
 
 
 def test_what_can_be_undone_is_ones_own_and_the_last(store, number):
@@ -92,7 +94,7 @@ def test_what_can_be_undone_is_ones_own_and_the_last(store, number):
 
 def test_a_row_that_is_put_aside_may_wait_again(store, number):
     with store.begin() as connection:
-        put_placing(connection, number, Placed("digest", None, "empty", "Emmy", AT))
+        put_placing(connection, number, Placing("digest", None, "empty", "Emmy", AT))
     with store.begin() as connection:
         assert placings(connection, number)["digest"].by == "Emmy"
         drop_placing(connection, number, "digest")

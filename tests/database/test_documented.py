@@ -10,8 +10,8 @@ from sqlalchemy import text
 from stored_class import ANA, BEN, CAME, content, put, rows
 
 import coursework
-from coursework.database.deliveries import deliver
 from coursework.database.marking import mark_new
+from coursework.database.submissions import insert_submission
 from coursework.database.tables import METADATA
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs/database.md").read_text("utf-8")
@@ -29,12 +29,12 @@ def full(store, small_course):
     course = coursework.open_course(small_course)
     number = put(store, content(course), rows(course, ANA, 0), rows(course, BEN, 1, x="somewhere"))
     with store.begin() as connection:
-        deliver(
+        insert_submission(
             connection,
             number,
             rows(course, BEN, 1, 2),
             source="site",
-            came=CAME,
+            received_at=CAME,
             person_id=1,
             number=2,
             late=120,

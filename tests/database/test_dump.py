@@ -12,11 +12,11 @@ from stored_class import ANA, BEN, content, put, rows
 import coursework
 from coursework.cli import run
 from coursework.database.assignments import put_issued
-from coursework.database.decisions import Place, decide
-from coursework.database.deliveries import deliver
+from coursework.database.decisions import DecidedAnswer, decide
 from coursework.database.dump import dump, restore
 from coursework.database.marking import mark_new
 from coursework.database.store import Store
+from coursework.database.submissions import insert_submission
 from coursework.database.tables import METADATA
 from coursework.errors import BadInput
 from coursework.gradebook.rows import Collected, Rejected, Row, Seen
@@ -52,8 +52,10 @@ def full(store, small_course):
         Seen(ODD, "", True),
     ]
     with store.begin() as connection:
-        deliver(connection, number, odd, source=ODD, came=AT)
-        decide(connection, number, [Place(BEN, "crank_pin", "", "x", ODD)], "given", 1 / 3, ODD, "\\N")
+        insert_submission(connection, number, odd, source=ODD, received_at=AT)
+        decide(
+            connection, number, [DecidedAnswer(BEN, "crank_pin", "", "x", ODD)], "given", 1 / 3, ODD, "\\N"
+        )
         person = {"person_id": 1}
         own = {
             "account": {**person, "login": ODD, "role": "student", "created": AT, "closed": None},
@@ -156,7 +158,7 @@ def test_what_was_a_file_goes_on_on_a_server(full, tmp_path, postgres, small_cou
             connection,
             content(course, (ANA, BEN, "Eve")) | {"assignment": content(course, name="w4")["assignment"]},
         )
-        deliver(connection, number, rows(course, "Eve", 2), source="x", came=AT)
+        insert_submission(connection, number, rows(course, "Eve", 2), source="x", received_at=AT)
     assert mark_new(course, server, number).marked == 1
     server.close()
 

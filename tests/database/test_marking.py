@@ -14,10 +14,10 @@ from stored_class import ANA, BEN, CAME, CLEO, content, put, rows
 import coursework
 from coursework.database import marking as marking_module
 from coursework.database.assignments import put_issued
-from coursework.database.deliveries import deliver
+from coursework.database.current_marks import gradebook, graded
 from coursework.database.marking import mark_delivery, mark_new, would_change
-from coursework.database.standing import gradebook, graded
 from coursework.database.states import ENGINE, exercise_state
+from coursework.database.submissions import insert_submission
 from coursework.database.tables import mark, marking, person
 from coursework.gradebook.book import marks_rows, summary_rows
 from coursework.gradebook.class_marking import marked
@@ -103,7 +103,9 @@ def test_tables_and_sheets_are_made_of_what_comes_back(store, number, course, to
 def test_the_class_as_it_stands_is_summed_as_ever(store, number, course, told, three):
     mark_new(course, store, number)
     with store.begin() as connection:
-        deliver(connection, number, [Rejected("x.csv", "not read")], source="x.csv", came=CAME)
+        insert_submission(
+            connection, number, [Rejected("x.csv", "not read")], source="x.csv", received_at=CAME
+        )
     with store.reading() as connection:
         book = gradebook(connection, course, number)
     expected = [*summary_rows(book)]
@@ -210,8 +212,14 @@ def test_a_hand_in_on_the_site_marks_its_own_sheets(store, number, course):
     with store.begin() as connection:
         who = connection.execute(select(person.c.id).where(person.c.name == BEN)).scalar()
         ids = [
-            deliver(
-                connection, number, rows(course, BEN, 1, n), source="site", came=CAME, person_id=who, number=n
+            insert_submission(
+                connection,
+                number,
+                rows(course, BEN, 1, n),
+                source="site",
+                received_at=CAME,
+                person_id=who,
+                number=n,
             ).id
             for n in (2, 3)
         ]
@@ -231,7 +239,7 @@ def test_a_file_marks_its_own_sheets_with_what_came_before(store, told, course):
     first = rows(course, ANA, 0)
     number = put(store, told, first[:1], rows(course, BEN, 1))
     with store.begin() as connection:
-        late = deliver(connection, number, first[1:], source="late.csv", came=CAME)
+        late = insert_submission(connection, number, first[1:], source="late.csv", received_at=CAME)
     assert mark_delivery(course, store, late.id).marked == 1
     (one,) = standing(store, number)
     assert one.answered == tuple(row.part for row in first)

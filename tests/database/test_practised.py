@@ -5,7 +5,7 @@ from threading import Barrier, Thread
 
 import pytest
 
-from coursework.database.drafts import Box, Sent, drafts, save, sheets
+from coursework.database.drafts import DraftBox, DraftChange, drafts, save, sheets
 from coursework.database.people import put_person
 from coursework.database.pool import Pooled, pooled, put_pooled
 from coursework.database.progress import PersonProgress
@@ -36,7 +36,9 @@ def test_of_two_pages_that_write_at_once_one_is_told(store, somebody):
         def write(text, version=version, told=told, together=together):
             together.wait()
             with store.begin() as connection:
-                told.append(save(connection, somebody, "practice/x/1", {"rA": Sent(text, version)}, AT))
+                told.append(
+                    save(connection, somebody, "practice/x/1", {"rA": DraftChange(text, version)}, AT)
+                )
 
         threads = [Thread(target=write, args=(f"{version} {k}",)) for k in range(2)]
         for one in threads:
@@ -53,11 +55,11 @@ def test_of_two_pages_that_write_at_once_one_is_told(store, somebody):
 def test_the_last_changed_sheet_comes_first(store, somebody):
     with store.begin() as connection:
         for k, sheet in enumerate(("practice/a/1", "practice/b_c/2", "assignment/1", "practice/a/1")):
-            sent = {"rA": Sent(str(k), k)}
+            sent = {"rA": DraftChange(str(k), k)}
             save(connection, somebody, sheet, sent, AT + timedelta(minutes=k))
         assert list(sheets(connection, somebody, "practice/")) == ["practice/a/1", "practice/b_c/2"]
         assert list(sheets(connection, somebody, "practice/b_")) == ["practice/b_c/2"]
-        assert drafts(connection, somebody, "practice/a/1") == {"rA": Box("3", 2)}
+        assert drafts(connection, somebody, "practice/a/1") == {"rA": DraftBox("3", 2)}
 
 
 def test_a_pool_is_kept_by_exercise_and_version(store):

@@ -11,9 +11,16 @@ import pytest
 from site_assignments import ASSIGNMENT, CLOSES, OPENS, USUAL, code_of, dealt, handed_in, right
 from site_people import MAX, TEACHER, ZOE
 
-from coursework.database.deliveries import deliveries
-from coursework.database.publication import Extension, Publication, extend, publish, published, say_sittings
-from coursework.database.standing import graded
+from coursework.database.current_marks import graded
+from coursework.database.publication import (
+    Extension,
+    Publication,
+    extend,
+    publish,
+    published,
+    set_counting_attempt,
+)
+from coursework.database.submissions import submissions_of
 from coursework.site.desk.class_cache import class_now
 from coursework.site.papers import submission
 
@@ -22,7 +29,7 @@ SECOND = timedelta(seconds=1)
 
 def delivered(one, number, name=ZOE):
     with one.site.store.reading() as connection:
-        return deliveries(connection, number, one.ids[name])
+        return submissions_of(connection, number, one.ids[name])
 
 
 def marks(one, number, name=ZOE):
@@ -366,7 +373,7 @@ def test_what_was_saved_when_it_closed_is_handed_in_for_who_handed_in_nothing(cl
     for _ in range(2):
         class_of_three.browser(MAX).get("/assignments")  # whoever comes first
     (saved,) = delivered(class_of_three, number)
-    assert (saved.late, saved.came <= CLOSES) == (0, True)
+    assert (saved.late, saved.received_at <= CLOSES) == (0, True)
     assert len(delivered(class_of_three, number, MAX)) == 1
     assert "for you" in zoe.get(f"/assignments/{number}/receipts/{saved.receipt}").text
 
@@ -407,7 +414,7 @@ def test_which_hand_in_counts_is_said_anew_at_the_desk_at_once(class_of_three):
     handed_in(browser, number, {"e1-rA": "1"}, "2")
     for counts, sitting in (("best", 1), ("last", 2)):
         with class_of_three.site.store.begin() as connection:
-            say_sittings(connection, number, counts)
+            set_counting_attempt(connection, number, counts)
         assert class_now(class_of_three.site, number).results[ZOE].sitting == sitting
 
 

@@ -8,8 +8,8 @@ from site_assignments import USUAL, dealt
 from site_browser import WIDTHS, chromium, context_of, serious, served, too_wide
 from site_people import ZOE
 
-from coursework.database.deliveries import deliveries
 from coursework.database.drafts import drafts
+from coursework.database.submissions import submissions_of
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
@@ -58,7 +58,7 @@ def test_a_paper_is_filled_in_read_back_and_handed_in(class_of_three, browser, l
         assert too_wide(page) <= 0
         page.context.close()
     with class_of_three.site.store.reading() as connection:
-        assert len(deliveries(connection, number, class_of_three.ids[ZOE])) == 1
+        assert len(submissions_of(connection, number, class_of_three.ids[ZOE])) == 1
 
 
 def test_what_is_typed_without_a_line_is_kept_and_sent_when_it_is_back(class_of_three, browser):

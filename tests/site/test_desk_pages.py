@@ -10,9 +10,9 @@ from desk_class import EXERCISE, SEED, DeskClass, told
 from rows_of_strangers import FORMULA, computed_cells
 from site_people import TEACHER
 
-from coursework.database.desk import Stamp, people_of, stamp
 from coursework.database.erasing import erase
-from coursework.database.publication import say_sittings
+from coursework.database.instructor_queries import Stamp, people_of, stamp
+from coursework.database.publication import set_counting_attempt
 from coursework.site.desk.class_cache import class_now
 from coursework.site.desk.question_cards import question_card
 from coursework.system.tables import as_written
@@ -237,7 +237,7 @@ def test_a_zip_that_is_damaged_inside_is_refused(desk):
 def test_other_rules_show_the_table_anew(desk):
     at = stamp_of(desk)
     with desk.site.store.begin() as connection:
-        say_sittings(connection, desk.number, "last")
+        set_counting_attempt(connection, desk.number, "last")
     assert news(desk, at).headers["hx-redirect"] == f"/desk/{desk.number}"
 
 

@@ -9,9 +9,9 @@ import pytest
 from site_people import TEACHER, ZOE
 from sqlalchemy import JSON, Boolean, Double, Integer, String, insert, select, update
 
-from coursework.database.belongings import conditions, whose
+from coursework.database.personal_data import conditions, identifiers_of
 from coursework.database.store import Store
-from coursework.database.tables import METADATA, Moment, Packed, Words, person
+from coursework.database.tables import METADATA, CompressedText, SafeText, UTCDateTime, person
 from coursework.lti.launch import Launch
 from coursework.lti.roles import Role
 from coursework.lti.storage import Paper, Score, Storage, Try
@@ -34,9 +34,9 @@ def value_of(table, column, ids, site):
         return ZOE if column.name == "student" else "zoé"
     if isinstance(column.type, JSON):
         return {"told": [planted(table, column.name)]}
-    if isinstance(column.type, (String, Words, Packed)):
+    if isinstance(column.type, (String, SafeText, CompressedText)):
         return planted(table, column.name)
-    kinds = ((Moment, site.at), (Boolean, False), (Double, 1.0), (Integer, 1))
+    kinds = ((UTCDateTime, site.at), (Boolean, False), (Double, 1.0), (Integer, 1))
     return next(value for kind, value in kinds if isinstance(column.type, kind))
 
 
@@ -86,7 +86,7 @@ def erase(site):
 def test_no_byte_of_who_is_erased_is_left_in_any_file(class_of_three, tmp_path):
     fill(class_of_three)
     with class_of_three.site.store.reading() as connection:
-        owned = conditions(connection, whose(connection, class_of_three.ids[ZOE]))
+        owned = conditions(connection, identifiers_of(connection, class_of_three.ids[ZOE]))
     assert found_in_files(tmp_path, MAIL)
     before = {
         planted(table.name, column.name)
@@ -101,7 +101,9 @@ def test_no_byte_of_who_is_erased_is_left_in_any_file(class_of_three, tmp_path):
         own = {one for one in before if one.startswith(f"planted/{name}/")}
         assert own <= gone, f"{name} keeps {own - gone}"
         assert (
-            own or name == "person" or not [c for c in table.c if isinstance(c.type, (String, Words, JSON))]
+            own
+            or name == "person"
+            or not [c for c in table.c if isinstance(c.type, (String, SafeText, JSON))]
         )
     left = {one: where for one in (*gone, MAIL) if (where := found_in_files(tmp_path, one))}
     assert not left

@@ -11,10 +11,10 @@ from site_walk import EXERCISE, PLANTED, SEEDS, Filled, filled, fillings, text_o
 from sqlalchemy import insert, select, update
 
 from coursework.database.areas import put_areas
-from coursework.database.deliveries import deliver
 from coursework.database.marking import mark_new
 from coursework.database.people import put_account, put_person
 from coursework.database.permissions import Area
+from coursework.database.submissions import insert_submission
 from coursework.database.tables import person, scanned
 from coursework.gradebook.rows import Rejected, Row
 from coursework.site.application import ROUTES
@@ -108,7 +108,7 @@ class Staffed(Filled):
                     "late.csv, line 10", "nobody of that name", {"student": "Stranger", "answer": "lost two"}
                 ),
             ]
-            deliver(connection, self.number, rows, source="late.csv", came=self.at)
+            insert_submission(connection, self.number, rows, source="late.csv", received_at=self.at)
             for k, name in enumerate((ZOE, MAX)):
                 row = {
                     "assignment_id": self.number, "page": f"{k:016x}-0001", "file": f"{name}.pdf", "number": 1, "student": name,

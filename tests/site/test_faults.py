@@ -12,8 +12,8 @@ from site_people import MAX, ZOE, Class, seal_of, signed_in
 from site_server import Served, kill, until
 from sqlalchemy import select
 
-from coursework.database.deliveries import deliveries, rows_of
 from coursework.database.publication import Publication
+from coursework.database.submissions import rows_of, submissions_of
 from coursework.database.tables import mark, person
 from coursework.database.tables import progress as entries
 from coursework.site.frame.cookies import cookie_name
@@ -82,7 +82,7 @@ class Students:
         store = self.one.site.store
         with store.reading() as connection:
             for name in CLASS:
-                done = deliveries(connection, self.number, self.ids[name])
+                done = submissions_of(connection, self.number, self.ids[name])
                 assert [one.number for one in done] == list(range(1, TRIES + 1)), name
                 assert [one.receipt for one in done] == [self.receipts[name, n] for n in range(1, TRIES + 1)]
                 for one in done:
@@ -198,7 +198,7 @@ def test_a_full_disk_is_told_and_what_was_acknowledged_stays(class_of_three):
     emptied()
     site.store.close()
     with site.store.reading() as connection:
-        before = len(deliveries(connection, number, class_of_three.ids[ZOE]))
+        before = len(submissions_of(connection, number, class_of_three.ids[ZOE]))
     again = browser.fill(f"/assignments/{number}/hand-in", {box: "77", "_number": str(before + 1)})
     assert again.status_code == 303
 

@@ -15,11 +15,11 @@ from sqlalchemy import select
 from tables import each_row
 
 from coursework.database.assignments import put_issued
-from coursework.database.decisions import Place, decide
-from coursework.database.deliveries import deliver
+from coursework.database.decisions import DecidedAnswer, decide
 from coursework.database.marking import mark_new
 from coursework.database.people import put_account
 from coursework.database.publication import AT_ONCE, Publication, publish
+from coursework.database.submissions import insert_submission
 from coursework.database.tables import person
 from coursework.gradebook.rows import Rejected, Row
 from coursework.site.frame.forms import clean
@@ -59,9 +59,9 @@ class Hostile(Class):
         with self.site.store.begin() as connection:
             self.number = put_issued(connection, content)
             publish(connection, self.number, Publication(tries=None, feedback=AT_ONCE, answers=AT_ONCE))
-            deliver(connection, self.number, rows, source=self.texts[0], came=self.at)
+            insert_submission(connection, self.number, rows, source=self.texts[0], received_at=self.at)
             for place, name in zip(self.texts, self.names, strict=True):
-                told = Place(name, EXERCISE, str(SEED), parts[0], place)
+                told = DecidedAnswer(name, EXERCISE, str(SEED), parts[0], place)
                 decide(connection, self.number, [told], "given", 0.0, place, TEACHER)
             dealt = {row.name: row.id for row in connection.execute(select(person))}
             self.ids |= {name: dealt[name] for name in self.names}

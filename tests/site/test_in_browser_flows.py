@@ -12,8 +12,8 @@ from site_browser import chromium, context_of, low, serious, served, too_wide, w
 from site_people import MAX, TEACHER, ZOE, Class
 from site_practising import right_answer
 
-from coursework.database.deliveries import deliveries
 from coursework.database.people import put_account, put_person
+from coursework.database.submissions import submissions_of
 from coursework.making.students import folded
 from coursework.site.people import accounts
 
@@ -351,4 +351,4 @@ def test_a_keyboard_alone_hands_in(room, window, handed_out):
             page.keyboard.press("Enter")
     assert page.locator(".receipt .code").count() == 1
     with class_.site.store.reading() as connection:
-        assert len(deliveries(connection, number, class_.ids[ZOE])) == 1
+        assert len(submissions_of(connection, number, class_.ids[ZOE])) == 1

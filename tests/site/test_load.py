@@ -35,7 +35,7 @@ class Handed:
     def __init__(self, load, store):
         from datetime import UTC, datetime
 
-        from coursework.database.publication import places
+        from coursework.database.publication import student_assignments
         from coursework.site.frame.settings import Site
         from coursework.site.papers.student_paper import student_paper
         from coursework.site.papers.submission import ON_THE_PAGE, submit
@@ -45,7 +45,7 @@ class Handed:
         site, now = Site(load.open_course(), store), datetime.now(UTC)
         for person in cookies:
             with store.reading() as connection:
-                (place,) = places(connection, person)
+                (place,) = student_assignments(connection, person)
                 paper = student_paper(connection, site.course, place, person, "fr")
             texts = {name: f"{number}.5" for number, name in enumerate(paper.boxes)}
             made = submit(site, place, paper, person, texts, 1, now, ON_THE_PAGE)

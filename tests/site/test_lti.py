@@ -24,7 +24,7 @@ from sqlalchemy import func, select, update
 
 from coursework.database.assignments import issued_of
 from coursework.database.audit import noted
-from coursework.database.decisions import GIVEN, Place, decide
+from coursework.database.decisions import GIVEN, DecidedAnswer, decide
 from coursework.database.publication import CHARGE, NEVER
 from coursework.database.tables import account, delivery, identity, person
 from coursework.errors import BadInput
@@ -210,7 +210,7 @@ def test_a_decision_sends_the_score_anew(linked):
         decide(
             connection,
             linked.number,
-            [Place("Ada Byron", "slotted_mechanism", "", part)],
+            [DecidedAnswer("Ada Byron", "slotted_mechanism", "", part)],
             GIVEN,
             0.5,
             "half",
@@ -246,7 +246,7 @@ def test_what_cannot_be_read_is_handed_in_only_when_one_insists_and_is_pending(l
     assert visitor.hand_in(path, page, texts, _as_it_is="1").status_code == 303
     assert linked.sent()[-1]["gradingProgress"] == "PendingManual"
     with linked.site.store.begin() as connection:
-        place = Place("Ada Byron", "slotted_mechanism", "", "rA")
+        place = DecidedAnswer("Ada Byron", "slotted_mechanism", "", "rA")
         decide(connection, linked.number, [place], GIVEN, 0.25, "", "Ada")
     linked.lti.state.watch.look()
     assert linked.sent()[-1]["gradingProgress"] == "FullyGraded"

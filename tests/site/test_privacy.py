@@ -15,11 +15,11 @@ from sqlalchemy import JSON, String, insert, select, update
 
 from coursework.database import erasing
 from coursework.database.audit import note
-from coursework.database.decisions import Place, decide
-from coursework.database.deliveries import deliver
+from coursework.database.decisions import DecidedAnswer, decide
 from coursework.database.people import put_person
 from coursework.database.publication import Publication, publish
-from coursework.database.tables import METADATA, Words, extension, worksheet
+from coursework.database.submissions import insert_submission
+from coursework.database.tables import METADATA, SafeText, extension, worksheet
 from coursework.database.tables import person as people
 from coursework.errors import BadCourse
 from coursework.gradebook.rows import Rejected, Row
@@ -87,15 +87,17 @@ def lea(site):
             Row(LEA, "slotted_mechanism", "11", "rA", "1", f"{LEA}.ipynb, cell 2"),
             Rejected(f"{LEA}.csv, line 3", "no such part", {"student": LEA, "part": "zz"}),
         ]
-        deliver(connection, site.number, rows, source=f"{LEA}.zip", came=at, person_id=person, number=1)
+        insert_submission(
+            connection, site.number, rows, source=f"{LEA}.zip", received_at=at, person_id=person, number=1
+        )
         file = [
             Row(LEA.upper(), "slotted_mechanism", "11", "theta4", "2", "class.csv, line 9"),
             *site.rows(MAX),
         ]
-        deliver(connection, site.number, file, source=f"of {LEA} and others.csv", came=at)
-        place = Place(LEA, "slotted_mechanism", "11", "rA", "1")
+        insert_submission(connection, site.number, file, source=f"of {LEA} and others.csv", received_at=at)
+        place = DecidedAnswer(LEA, "slotted_mechanism", "11", "rA", "1")
         decide(connection, site.number, [place], "accepted", None, f"agreed with {LEA}", TEACHER)
-        other = Place(MAX, "slotted_mechanism", "", "rA")
+        other = DecidedAnswer(MAX, "slotted_mechanism", "", "rA")
         decide(connection, site.number, [other], "accepted", None, f"as {LEA} said", LEA)
         told = {"assignment_id": site.number, "reason": f"{LEA} was ill", "by": TEACHER, "made": at}
         connection.execute(insert(extension).values(person_id=person, **told))
@@ -182,14 +184,14 @@ def test_every_text_of_every_table_is_thought_of():
     }  # rows of theirs go; what could not be placed goes as a whole
     for one in METADATA.sorted_tables:
         for column in one.c:
-            if isinstance(column.type, (String, Words, JSON)):
+            if isinstance(column.type, (String, SafeText, JSON)):
                 known = {one.name, f"{one.name}.{column.name}"}
                 assert known & (told | owned | NOBODYS), f"{one.name}.{column.name}: can it name somebody?"
 
 
 def test_what_others_have_stays_when_somebody_is_erased(site):
     def marks():
-        from coursework.database.standing import graded
+        from coursework.database.current_marks import graded
 
         with site.site.store.reading() as connection:
             return [

@@ -6,10 +6,10 @@ import pytest
 from desk_class import EXERCISE, OTHER, SEED, DeskClass, Rejected, field, told
 from site_people import TEACHER, ZOE
 
+from coursework.database.current_marks import graded
 from coursework.database.decisions import Decisions
-from coursework.database.deliveries import deliver
-from coursework.database.desk import people_of
-from coursework.database.standing import graded
+from coursework.database.instructor_queries import people_of
+from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import Collected, Row
 from coursework.site.desk.class_cache import class_now
 
@@ -196,7 +196,9 @@ def test_a_row_that_is_placed_by_hand_is_of_the_very_hand_in(desk):
             Row("Di", EXERCISE, str(SEED), part, text, "site", origin=Collected(sitting=1))
             for part, text in (("rA", ""), ("theta4", "9"))
         ]
-        deliver(connection, desk.number, own, source="site", came=desk.at, person_id=person, number=1)
+        insert_submission(
+            connection, desk.number, own, source="site", received_at=desk.at, person_id=person, number=1
+        )
     row = {"student": "Di", "exercise": EXERCISE, "seed": "7", "part": "rA", "answer": "319.8 mm"}
     desk.hand_in({}, Rejected("late.csv, line 2", "cells where there are none", row))
     name = field(desk.page(TEACHER, "/queue", why="rejected"), "row")

@@ -14,10 +14,10 @@ from site_people import HOME, MAX, ZOE, Class, seal_of, signed_in
 from sqlalchemy import event, func, insert, select
 from starlette.concurrency import run_in_threadpool
 
-from coursework.database.deliveries import deliveries
-from coursework.database.jobs import MARK, MOST_TRIES, given_up, put_job, take_job, waiting
+from coursework.database.jobs import MARK, MOST_TRIES, given_up_jobs, put_job, take_job, waiting
 from coursework.database.people import put_account, put_person
-from coursework.database.publication import reach
+from coursework.database.publication import record_passed_date
+from coursework.database.submissions import submissions_of
 from coursework.database.tables import delivery, job, mark, marking
 from coursework.making.students import folded
 from coursework.site.frame import arrivals
@@ -82,7 +82,7 @@ def marks_of(one, number):
 
 def delivered(one, number, name=ZOE):
     with one.site.store.reading() as connection:
-        return deliveries(connection, number, one.ids[name])
+        return submissions_of(connection, number, one.ids[name])
 
 
 def test_all_who_hand_in_before_it_closes_are_taken_while_every_thread_is_busy(served, monkeypatch):
@@ -120,7 +120,7 @@ def test_all_who_hand_in_before_it_closes_are_taken_while_every_thread_is_busy(s
     monkeypatch.undo()
     for name in CROWD:
         (made,) = delivered(served, number, name)
-        assert (made.came, made.late) == (CLOSES - 6 * SECOND, 0)
+        assert (made.received_at, made.late) == (CLOSES - 6 * SECOND, 0)
 
 
 def headers_of(one, name):
@@ -184,15 +184,15 @@ def test_a_body_that_trickles_buys_no_time_beyond_the_grace(served, begins, ends
 def test_a_date_that_is_written_down_meanwhile_refuses_nobody_who_was_in_time(served, monkeypatch):
     number = dealt(served)
     served.at = CLOSES - SECOND
-    hold = submission.hold
+    lock = submission.lock_person
 
     def late(connection, person):
         """The worker writes the date down while this one waits."""
         served.at = CLOSES + SECOND
-        hold(connection, person)
-        reach(connection, number, served.at)
+        lock(connection, person)
+        record_passed_date(connection, number, served.at)
 
-    monkeypatch.setattr(submission, "hold", late)
+    monkeypatch.setattr(submission, "lock_person", late)
     assert asyncio.run(sent(served, number, ZOE)).status_code == 303
     assert delivered(served, number)[0].late == 0
 
@@ -212,24 +212,24 @@ def test_what_was_rescued_does_not_stand_for_what_arrived_in_time_and_waited(ser
 
 async def sent_from_queue(one, number):
     """What a thread does with a form that arrived in time, long after."""
-    from coursework.database.publication import places
+    from coursework.database.publication import student_assignments
     from coursework.site.papers.student_paper import student_paper
 
     with one.site.store.reading() as connection:
-        (place,) = places(connection, one.ids[ZOE], number)
+        (place,) = student_assignments(connection, one.ids[ZOE], number)
         paper = student_paper(connection, one.site.course, place, one.ids[ZOE], "en")
     texts = dict.fromkeys(paper.fields, "7")
     return submission.submit(one.site, place, paper, one.ids[ZOE], texts, 1, CLOSES - SECOND, "site").delivery
 
 
 def test_the_boxes_that_a_record_tells_are_those_of_the_page(served):
-    from coursework.database.publication import places
+    from coursework.database.publication import student_assignments
     from coursework.site.papers.student_paper import student_paper
 
     number = dealt(served)
     for name in (ZOE, MAX):
         with served.site.store.reading() as connection:
-            (place,) = places(connection, served.ids[name], number)
+            (place,) = student_assignments(connection, served.ids[name], number)
             paper = student_paper(connection, served.site.course, place, served.ids[name], "fr")
         told = {
             box.name: (box.variant.exercise.name, box.variant.seed, box.part.id, box.variant.lang)
@@ -271,7 +271,7 @@ def test_a_job_that_its_worker_left_is_taken_again_and_nothing_is_marked_twice(s
         assert take_job(connection, "other", one.at).tries == 3
     with one.site.store.begin() as connection:
         assert take_job(connection, "other", one.at + SECOND) is None  # it is given up: it ends its workers
-        assert [left.delivery for left in given_up(connection, number)] == [delivered(one, number)[0].id]
+        assert [left.delivery for left in given_up_jobs(connection, number)] == [delivered(one, number)[0].id]
         connection.execute(job.update().values(fault="", tries=0))
     worked_off(one)
     worked_off(one)
@@ -325,7 +325,7 @@ def test_a_job_that_always_fails_is_given_up_and_told(served, monkeypatch, caplo
     assert f"delivery {bad}" in caplog.text
     assert "could not be marked" in browser.get(address).text
     with served.site.store.reading() as connection:
-        assert [one.fault for one in given_up(connection, number)] == ["ZeroDivisionError"]
+        assert [one.fault for one in given_up_jobs(connection, number)] == ["ZeroDivisionError"]
 
 
 def test_what_was_saved_is_handed_in_when_nobody_asks_for_a_page(site_class):

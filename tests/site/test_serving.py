@@ -17,9 +17,9 @@ from site_server import Served, kill, lives, until
 
 from coursework import open_course
 from coursework.cli import run
+from coursework.database.current_marks import graded
 from coursework.database.pool import Pooled, pools, put_pooled
 from coursework.database.publication import Publication
-from coursework.database.standing import graded
 from coursework.database.store import Store
 
 pytestmark = pytest.mark.e2e

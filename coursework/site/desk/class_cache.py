@@ -16,12 +16,22 @@ from sqlalchemy import Connection
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
+from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
-from coursework.database.deliveries import rows_of
-from coursework.database.desk import About, Came, Placed, Stamp, came_of, listed, placings, stamp, unmarked
-from coursework.database.publication import charges
-from coursework.database.standing import lines_of, machine_marks, stood
+from coursework.database.instructor_queries import (
+    ListedAssignment,
+    Placing,
+    SiteSubmissions,
+    Stamp,
+    listed_assignments,
+    placings,
+    site_submissions_of,
+    stamp,
+    unmarked,
+)
+from coursework.database.publication import late_penalties
 from coursework.database.store import Store
+from coursework.database.submissions import rows_of
 from coursework.errors import closest
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rejecting
@@ -47,7 +57,7 @@ class RejectedRow:
     row: Rejected
     student: str  #: name of the student as issued; empty for a stranger
     near: str  #: closest name of a student, if the row names a stranger
-    became: Placed | None
+    became: Placing | None
 
     @property
     def waits(self) -> bool:
@@ -72,7 +82,7 @@ class CachedClass:
     """State of an assignment and its class at one stamp."""
 
     course: Course
-    about: About
+    about: ListedAssignment
     issued: Issued
     stamp: Stamp
     machine: Mapping[SheetPlace, Graded]  #: results of the marking, without decisions
@@ -81,8 +91,8 @@ class CachedClass:
     sheets: Sheets
     faults: Mapping[SheetPlace, str]
     decisions: Decisions
-    placings: Mapping[str, Placed]
-    received: Mapping[str, Came]
+    placings: Mapping[str, Placing]
+    received: Mapping[str, SiteSubmissions]
     charged: Mapping[Sitting, float]  #: penalties for late submissions, as shares of the points
 
     @cached_property
@@ -290,7 +300,7 @@ def _current_class(site: Site, assignment_id: int) -> CachedClass:
     with _lock:
         cached = _class_caches.setdefault(site.store, {}).setdefault(assignment_id, _ClassCache())
     with cached.lock, site.store.reading() as connection:
-        about = next(iter(listed(connection, assignment_id)), None)
+        about = next(iter(listed_assignments(connection, assignment_id)), None)
         if about is None:
             raise HTTPException("own", 404)
         at = stamp(connection, assignment_id)
@@ -306,11 +316,11 @@ def _current_class(site: Site, assignment_id: int) -> CachedClass:
 
 
 def _read(
-    course: Course, connection: Connection, about: About, at: Stamp, cached: _ClassCache
+    course: Course, connection: Connection, about: ListedAssignment, at: Stamp, cached: _ClassCache
 ) -> CachedClass:
     before = cached.now if cached.now is not None and cached.now.course is course else None
     decisions, placed_by_hand = Decisions.read(connection, about.id), placings(connection, about.id)
-    charged = charges(connection, about.id)
+    charged = late_penalties(connection, about.id)
     if before is not None and _has_come(before.stamp, before.about) == _has_come(at, about):
         now = CachedClass(
             course, about, before.issued, at, before.machine, before.numbers, before.measured, before.sheets,
@@ -320,7 +330,7 @@ def _read(
         return now
     issued = issued_of(connection, about.id)
     sheets = placed(course, issued, rows_of(connection, about.id))
-    last = stood(connection, about.id)
+    last = last_markings(connection, about.id)
     unknown = [marking for marking in last.values() if marking.id not in cached.marked]
     for sheet, marked in machine_marks(issued, unknown, lines_of(connection, unknown)):
         cached.marked[last[sheet].id] = marked
@@ -332,7 +342,7 @@ def _read(
     new = [sheet for sheet in machine if numbers[sheet] not in cached.measured]
     cached.measured.update(_measured(course, issued, [machine[p] for p in new], [numbers[p] for p in new]))
     faults = {sheet: marking for sheet, marking in outcomes.items() if isinstance(marking, str)}
-    came_in = came_of(connection, about.id)
+    came_in = site_submissions_of(connection, about.id)
     return CachedClass(
         course,
         about,
@@ -350,7 +360,7 @@ def _read(
     )
 
 
-def _has_come(at: Stamp, about: About) -> tuple[Any, ...]:
+def _has_come(at: Stamp, about: ListedAssignment) -> tuple[Any, ...]:
     """Return the part of a stamp that decisions do not change."""
     return at.markings, at.deliveries, at.dealt, about.columns, about.stated
 
@@ -391,6 +401,6 @@ def class_page_of(request: Request, now: CachedClass, template: str, tab: str, *
     )
 
 
-def assignment_title(about: About, lang: str) -> str:
+def assignment_title(about: ListedAssignment, lang: str) -> str:
     """Return the title of an assignment, or its name if it has none."""
     return text_in((about.stated or {}).get("title") or {}, lang) or about.name

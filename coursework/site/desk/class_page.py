@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from coursework.database.desk import Stamp, students_since
+from coursework.database.instructor_queries import Stamp, students_since
 from coursework.database.permissions import Permission
 from coursework.gradebook.book import Result
 from coursework.gradebook.columns import own_columns
@@ -92,7 +92,7 @@ def _row(
     identity = " ".join(filter(None, (columns.get(folded(str(title)), "") for title in titles)))
     submitted = now.received.get(student)
     tries = (
-        submitted.tries
+        submitted.attempts
         if submitted
         else max((n for s, n in now.book.students if s == student), default=0)
         if cells

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from coursework.database.assignments import issued_content
-from coursework.database.deliveries import deliver
 from coursework.database.marking import mark_new
 from coursework.database.scans import pages_scanned, typed_rows
+from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import Row
 from coursework.scanning.gathering import Answer, Card, Gathered
 from coursework.scanning.kept import ANSWERS, LOST, REFUSED, FileKept, PageKept, Scanned, page_of, with_copies
@@ -120,7 +120,7 @@ def hand_over(site: Site, number: int, now: ClassScans) -> int:
     if not rows:
         return 0
     with site.store.begin() as connection:
-        deliver(connection, number, rows, source=SOURCE, came=site.clock(), replaces=True)
+        insert_submission(connection, number, rows, source=SOURCE, received_at=site.clock(), replaces=True)
     mark_new(site.course, site.store, number)
     return len(rows)
 

@@ -12,10 +12,10 @@ from typing import Any
 
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.audit import note
-from coursework.database.deliveries import deliver, deliveries, rows_of
-from coursework.database.desk import decisions_of
+from coursework.database.instructor_queries import decisions_of
 from coursework.database.marking import mark_delivery
 from coursework.database.permissions import Permission
+from coursework.database.submissions import insert_submission, rows_of, submissions_of
 from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook.book import marks_rows, rejected_rows, summary_rows
 from coursework.gradebook.class_points import SCORES, class_points
@@ -52,9 +52,9 @@ def files_page(
     """Return the page of uploads and downloads."""
     now = class_now(request.site, assignment_of(request))
     with request.site.store.reading() as connection:
-        submissions = deliveries(connection, now.about.id)
+        submissions = submissions_of(connection, now.about.id)
     files = [
-        (moment(submission.came, request.lang), submission)
+        (moment(submission.received_at, request.lang), submission)
         for submission in submissions
         if not submission.number
     ]
@@ -81,7 +81,9 @@ def answers_in(request: Request) -> Response:
     answers = sum(isinstance(item, Row) for item in rows)
     source = ", ".join(file_name(item) for item in sent)[:500]
     with request.site.store.begin() as connection:
-        submission = deliver(connection, number, rows, source=source, came=request.received_at)
+        submission = insert_submission(
+            connection, number, rows, source=source, received_at=request.received_at
+        )
         note(
             connection,
             request.received_at,
@@ -92,7 +94,7 @@ def answers_in(request: Request) -> Response:
             source=source,
         )
     if not submission.is_new:
-        return files_page(request, [texts["again"].format(moment(submission.came, request.lang))])
+        return files_page(request, [texts["again"].format(moment(submission.received_at, request.lang))])
     marked = mark_delivery(request.site.course, request.site.store, submission.id)
     now = class_now(request.site, number)
     sources = {item.source for item in rows if not isinstance(item, Seen)}
@@ -280,7 +282,10 @@ def _origin(row: Row) -> dict[str, str]:
 
 def _submissions(request: Request, now: CachedClass) -> bytes:
     with request.site.store.reading() as connection:
-        rows = [submission._asdict() for submission in deliveries(connection, now.about.id)]
+        rows = [
+            {**submission._asdict(), "came": submission.received_at}
+            for submission in submissions_of(connection, now.about.id)
+        ]
     return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
 
 

@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from coursework.database.assignments import put_issued
 from coursework.database.audit import note
-from coursework.database.desk import listed
+from coursework.database.instructor_queries import listed_assignments
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput, CourseworkError
 from coursework.making.issued import Issued
@@ -38,7 +38,7 @@ class Tile:
 def overview(request: Request) -> Response:
     """Return the overview of the assignments, the latest first."""
     with request.site.store.reading() as connection:
-        assignments = listed(connection)
+        assignments = listed_assignments(connection)
         leap = last_leap(connection, request.received_at)
     return request.render(
         "site_desk",
@@ -69,7 +69,7 @@ def _tile(request: Request, number: int) -> Tile:
         if isinstance(fault, HTTPException):
             raise
         with request.site.store.reading() as connection:
-            about = listed(connection, number)[0]
+            about = listed_assignments(connection, number)[0]
         return Tile(number, assignment_title(about, request.lang), about.name, 0, 0, 0, "", False, str(fault))
 
 

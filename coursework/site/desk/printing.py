@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from sqlalchemy import Connection
 
 from coursework.database.permissions import Permission
-from coursework.database.publication import places
+from coursework.database.publication import student_assignments
 from coursework.errors import BadInput
 from coursework.making.booklets import parted
 from coursework.making.students import file_stems
@@ -48,7 +48,7 @@ def _papers(request: Request, connection: Connection, number: int) -> list[Stude
     for holder in holders(connection, number):
         if ticked and str(holder.person) not in ticked:
             continue
-        [assignment] = places(connection, holder.person, number)[:1]
+        [assignment] = student_assignments(connection, holder.person, number)[:1]
         lang = holder.lang or request.lang
         papers.append(student_paper(connection, request.site.course, assignment, holder.person, lang))
     return papers

@@ -10,8 +10,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from coursework.database.audit import note
-from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Place, decide
-from coursework.database.desk import Made, decided_since, place_of, undoable
+from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, DecidedAnswer, decide
+from coursework.database.instructor_queries import (
+    NumberedDecision,
+    decided_answer_of,
+    decided_since,
+    undoable,
+)
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.accepted import points_of
@@ -381,15 +386,17 @@ def _requested_decision(asked_for: str, request: Request, group: Group) -> tuple
     return GIVEN, points
 
 
-def _target(answer: Waits) -> Place:
-    return Place(
+def _target(answer: Waits) -> DecidedAnswer:
+    return DecidedAnswer(
         answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part, answer.mark.answer
     )
 
 
-def _decided_meanwhile(later: Sequence[Made]) -> dict[tuple[str, str, str, str], Made]:
+def _decided_meanwhile(
+    later: Sequence[NumberedDecision],
+) -> dict[tuple[str, str, str, str], NumberedDecision]:
     """Return the answers with a later decision."""
-    decisions: dict[tuple[str, str, str, str], Made] = {}
+    decisions: dict[tuple[str, str, str, str], NumberedDecision] = {}
     for decision in later:
         key = decision.student, decision.exercise, decision.seed, decision.part
         if decision.kind == WITHDRAWN:
@@ -405,7 +412,9 @@ def _undone(request: Request, now: CachedClass, filters: Filters) -> Response:
     with request.site.store.begin() as connection:
         batch = undoable(connection, now.about.id, by_whom(request))
         if batch:
-            decide(connection, now.about.id, map(place_of, batch), WITHDRAWN, None, "", by_whom(request))
+            decide(
+                connection, now.about.id, map(decided_answer_of, batch), WITHDRAWN, None, "", by_whom(request)
+            )
             note(
                 connection,
                 request.received_at,
@@ -426,7 +435,7 @@ def _undone(request: Request, now: CachedClass, filters: Filters) -> Response:
     return card_response(request, later, next_filters, at, message=texts["undone"].format(len(batch)))
 
 
-def _is_of(members: Sequence[Waits], decision: Made) -> bool:
+def _is_of(members: Sequence[Waits], decision: NumberedDecision) -> bool:
     return any(
         _key(w) == (decision.student, decision.exercise, decision.seed, decision.part) for w in members
     )

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from coursework.database.audit import note
-from coursework.database.deliveries import deliver
-from coursework.database.desk import Placed, drop_placing, put_placing
+from coursework.database.instructor_queries import Placing, drop_placing, put_placing
 from coursework.database.marking import mark_delivery
 from coursework.database.permissions import Permission
+from coursework.database.submissions import insert_submission
 from coursework.errors import BadInput
 from coursework.gradebook.rows import Collected, Row
 from coursework.site.desk.class_cache import CachedClass, RejectedRow, assignment_of, by_whom, class_now
@@ -52,7 +52,7 @@ def _decided(request: Request, now: CachedClass, row: RejectedRow) -> str:
     if asked_for == "aside":
         with request.site.store.begin() as connection:
             put_placing(
-                connection, now.about.id, Placed(row.id, None, reason, by_whom(request), request.received_at)
+                connection, now.about.id, Placing(row.id, None, reason, by_whom(request), request.received_at)
             )
             note(
                 connection,
@@ -68,18 +68,18 @@ def _decided(request: Request, now: CachedClass, row: RejectedRow) -> str:
     answer = _answer(request, now, row)
     source = f"{row.row.source} ({texts['by_hand'].format(by_whom(request))})"
     with request.site.store.begin() as connection:
-        submission = deliver(
+        submission = insert_submission(
             connection,
             now.about.id,
             [answer._replace(source=source)],
             source=source,
-            came=request.received_at,
+            received_at=request.received_at,
             in_place=True,
         )
         put_placing(
             connection,
             now.about.id,
-            Placed(row.id, submission.id, reason, by_whom(request), request.received_at),
+            Placing(row.id, submission.id, reason, by_whom(request), request.received_at),
         )
         note(
             connection,

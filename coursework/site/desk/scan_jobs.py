@@ -17,7 +17,7 @@ from coursework.course.course import opened
 from coursework.course.variant import Variant
 from coursework.database.assignments import issued_content
 from coursework.database.audit import note
-from coursework.database.scans import Page, put_scanned
+from coursework.database.scans import ScannedPage, put_scanned
 from coursework.database.settings import put_value, value_of
 from coursework.errors import CourseworkError
 from coursework.scanning.kept import REFUSED, PageKept, page_as_json, page_id, page_kept, picture_of
@@ -147,7 +147,7 @@ def _store(
         new = 0
         for item in scanned:
             student = papers[item.content.code].student if item.content.code in papers else ""
-            page = Page(item.page, item.file, item.number, student, page_as_json(item.content), at)
+            page = ScannedPage(item.page, item.file, item.number, student, page_as_json(item.content), at)
             is_new = put_scanned(connection, number, page, item.picture)
             new += is_new and item.number > 0
         note(connection, at, by, "scans", assignment=number, pages=len(scanned), new=new)

@@ -13,8 +13,17 @@ from itertools import groupby
 from typing import Any
 
 from coursework.database.audit import note
-from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Happened, Place, decide, history
-from coursework.database.desk import people_of, practised, tries_of
+from coursework.database.decisions import (
+    ACCEPTED,
+    GIVEN,
+    KEPT,
+    WITHDRAWN,
+    DecidedAnswer,
+    HistoryEvent,
+    decide,
+    history,
+)
+from coursework.database.instructor_queries import people_of, practised, submissions_of_student
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.accepted import points_of
@@ -86,10 +95,10 @@ def student_page(request: Request) -> Response:
     result = now.results[student]
     with request.site.store.reading() as connection:
         happened = history(connection, now.about.id, student)
-        tries = tries_of(connection, now.about.id, student)
+        tries = submissions_of_student(connection, now.about.id, student)
         person = people_of(connection, now.about.id).get(student)
         alone = practised(connection, person, now.issued.exercises) if person else {}
-    by_place: dict[tuple[str, str], list[Happened]] = {}
+    by_place: dict[tuple[str, str], list[HistoryEvent]] = {}
     for _, exercise, part, entry in happened:
         by_place.setdefault((exercise, part), []).append(entry)
     sheets = [_sheet(request, now, sheet, by_place) for sheet in now.machine if sheet[0] == student]
@@ -97,7 +106,7 @@ def student_page(request: Request) -> Response:
     return class_page_of(
         request, now, "site_desk_student", "class", student=student, result=result, told=message,
         mark=localise(mark_of(now.issued, result.counts, result.out_of), request.lang), columns=_columns(now, student),
-        tries=[(moment(entry.came, request.lang), entry) for entry in tries], known=person or 0,
+        tries=[(moment(entry.received_at, request.lang), entry) for entry in tries], known=person or 0,
         sittings=[(n, list(group)) for n, group in groupby(sheets, key=lambda entry: entry.graded.sitting)],
         practised=[_practised(request, name, *alone[name]) for name in now.issued.exercises if name in alone],
         rejected=[entry for entry in now.rejected if entry.student == student],
@@ -121,7 +130,7 @@ def _columns(now: CachedClass, student: str) -> list[tuple[str, str]]:
 
 
 def _sheet(
-    request: Request, now: CachedClass, sheet_key: Any, happened: dict[tuple[str, str], list[Happened]]
+    request: Request, now: CachedClass, sheet_key: Any, happened: dict[tuple[str, str], list[HistoryEvent]]
 ) -> StudentSheet:
     machine, graded = now.machine[sheet_key], now.graded[sheet_key]
     lines = [
@@ -133,7 +142,12 @@ def _sheet(
 
 
 def _line(
-    request: Request, now: CachedClass, machine: Graded, graded: Graded, part: str, happened: list[Happened]
+    request: Request,
+    now: CachedClass,
+    machine: Graded,
+    graded: Graded,
+    part: str,
+    happened: list[HistoryEvent],
 ) -> AnswerLine:
     events = [event for event in happened if event.seed in ("", str(machine.seed))]
     events = [event for event in events if event.sitting in (0, machine.sitting)]
@@ -147,7 +161,7 @@ def _line(
     )  # fmt: skip
 
 
-def _history_line(request: Request, event: Happened) -> str:
+def _history_line(request: Request, event: HistoryEvent) -> str:
     """Return a line of the history."""
     if event.kind == "marked":
         from coursework.rendering.feedback import verdict_word
@@ -161,7 +175,7 @@ def _history_line(request: Request, event: Happened) -> str:
 class _EventDecision:
     """Event of the history, in the form of a decision."""
 
-    def __init__(self, event: Happened):
+    def __init__(self, event: HistoryEvent):
         self.kind, self.points, self.by, self.made, self.reason = (
             event.kind,
             event.points,
@@ -199,7 +213,7 @@ def _decided(request: Request, now: CachedClass, student: str) -> str:
     if sheet is None or part not in sheet.lines:
         raise HTTPException("own", 404)
     kind, points = _kind(form.text("do"), form.text("points"), sheet.lines[part], texts)
-    target = Place(student, exercise, seed, part, sheet.lines[part].answer)
+    target = DecidedAnswer(student, exercise, seed, part, sheet.lines[part].answer)
     with request.site.store.begin() as connection:
         decide(
             connection,

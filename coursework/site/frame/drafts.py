@@ -6,13 +6,13 @@ import json
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
-from coursework.database.drafts import Box, Sent, drafts, save
-from coursework.database.people import hold
+from coursework.database.drafts import DraftBox, DraftChange, drafts, save
+from coursework.database.people import lock_person
 from coursework.site.frame.requests import FormData, HTTPException, Request, Response
 
 LONGEST = 4000  #: characters of one answer
 _TEXT, _OVER = "text.", "over."
-_BLANK = Box("", 0)
+_BLANK = DraftBox("", 0)
 
 
 def save_drafts(
@@ -35,7 +35,7 @@ def save_drafts(
     """
     sent = sent_boxes(request.form, boxes)
     with request.site.store.begin() as connection:
-        hold(connection, request.user.id)
+        lock_person(connection, request.user.id)
         if not is_open and _is_new(drafts(connection, request.user.id, sheet), sent):
             return json_response({"told": request.words["keeping"]["closed"]}, 409)
         others = save(connection, request.user.id, sheet, sent, request.received_at)
@@ -49,13 +49,13 @@ def save_drafts(
     return json_response({**answer, **reads})
 
 
-def _is_new(stood: Mapping[str, Box], sent: Mapping[str, Sent]) -> bool:
+def _is_new(stood: Mapping[str, DraftBox], sent: Mapping[str, DraftChange]) -> bool:
     return not sent or any(box.text != stood.get(name, _BLANK).text for name, box in sent.items())
 
 
 def save_form_drafts(
     request: Request, sheet: str, texts: Mapping[str, str], displayed: Mapping[str, str], versions: str
-) -> tuple[dict[str, Box], dict[str, Box]]:
+) -> tuple[dict[str, DraftBox], dict[str, DraftBox]]:
     """Store the drafts of a form without a script: ``texts`` by box, if they differ from those ``displayed`` or a
     draft exists.
 
@@ -69,10 +69,10 @@ def save_form_drafts(
     """
     over = versions_of(versions)
     with request.site.store.begin() as connection:
-        hold(connection, request.user.id)
+        lock_person(connection, request.user.id)
         stood = drafts(connection, request.user.id, sheet)
         sent = {
-            name: Sent(text, over.get(name, 0))
+            name: DraftChange(text, over.get(name, 0))
             for name, text in texts.items()
             if name in stood or text != displayed.get(name, "")
         }
@@ -88,7 +88,7 @@ def json_response(content: Mapping[str, Any], status: int = 200) -> Response:
     )
 
 
-def sent_boxes(form: FormData, boxes: Collection[str]) -> dict[str, Sent]:
+def sent_boxes(form: FormData, boxes: Collection[str]) -> dict[str, DraftChange]:
     """Return the boxes that a page sends: ``text.NAME``, and ``over.NAME``, the version that the text
     replaces."""
     sent = {}
@@ -100,7 +100,7 @@ def sent_boxes(form: FormData, boxes: Collection[str]) -> dict[str, Sent]:
                 raise HTTPException("bad_request", 400)
             if len(text) > LONGEST:
                 raise HTTPException("too_large", 413, f"{LONGEST}")
-            sent[name] = Sent(text, int(over))
+            sent[name] = DraftChange(text, int(over))
     return sent
 
 
@@ -119,7 +119,7 @@ def versions_of(text: str) -> dict[str, int]:
 
 
 def draft_attributes(
-    request: Request, address: str, sheet: str, boxes: Mapping[str, Box], prefix: str = "", **texts: str
+    request: Request, address: str, sheet: str, boxes: Mapping[str, DraftBox], prefix: str = "", **texts: str
 ) -> dict[str, str]:
     """Return the attributes of a form whose boxes are stored as drafts; ``boxes`` are those that the page
     shows.

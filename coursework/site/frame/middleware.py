@@ -28,7 +28,7 @@ from coursework.database.sessions import (
     session_of,
     touch_session,
 )
-from coursework.database.settings import taken_of
+from coursework.database.settings import reloads_of
 from coursework.errors import BadCourse, BadInput, BrokenFunction, UnknownName
 from coursework.language.words import words
 from coursework.messages import Message, as_message, localised, messages_in
@@ -272,7 +272,7 @@ class Middleware:
         now = datetime.now(UTC)
         with self.site.store.reading() as connection:
             row = session_of(connection, token, now)
-            self.site.follow(connection, None if row is None else taken_of(row.taken))
+            self.site.follow(connection, None if row is None else reloads_of(row.taken))
             person = person_of(connection, row) if row is not None else None
         if row is None:
             return None, None

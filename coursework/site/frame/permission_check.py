@@ -7,7 +7,7 @@ from typing import Any
 
 from sqlalchemy import Connection
 
-from coursework.database.areas import held_by
+from coursework.database.areas import areas_for_role
 from coursework.database.audit import note
 from coursework.database.people import person_by_id
 from coursework.database.permissions import STAFF, STUDENT, is_of_staff, may
@@ -20,7 +20,7 @@ _GREATEST = 2**31 - 1  #: greatest id of a database
 def person_of(connection: Connection, row: Any) -> Person:
     """Return a signed-in person with role and areas, from the row of the database."""
     role = row.role or STUDENT
-    return Person(row.id, row.name, role, row.lang, held_by(connection, row.id, role))
+    return Person(row.id, row.name, role, row.lang, areas_for_role(connection, row.id, role))
 
 
 def check_permission(

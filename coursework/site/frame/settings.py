@@ -16,7 +16,7 @@ from sqlalchemy import Connection
 from coursework.api import Variant
 from coursework.course.course import Course
 from coursework.course.folder import course_folder
-from coursework.database.settings import course_taken, secret, take_course
+from coursework.database.settings import course_reloads, request_reload, secret
 from coursework.database.store import Store
 from coursework.site.frame.clock import SteadyClock
 from coursework.site.frame.limits import Limits
@@ -58,7 +58,7 @@ class Site:
         if self.clock is None:
             self.clock = SteadyClock(self.store)
         with self.store.reading() as connection:
-            self._revision = course_taken(connection)
+            self._revision = course_reloads(connection)
 
     @cached_property
     def pages(self) -> SitePages:
@@ -86,13 +86,13 @@ class Site:
         """Switch all processes to the current files of the course; the practice pool stays until the next
         start."""
         with self.store.begin() as connection:
-            self._revision = take_course(connection)
+            self._revision = request_reload(connection)
         self._go_on_with(course)
 
     def follow(self, connection: Connection, revision: int | None = None) -> None:
         """Switch to the revision of the course that another process has taken; the caller may state a known
         ``revision``."""
-        revision = course_taken(connection) if revision is None else revision
+        revision = course_reloads(connection) if revision is None else revision
         if revision != self._revision:
             self._revision = revision
             self._go_on_with(self.reopened())

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection, select
 
-from coursework.database.desk import people_of
+from coursework.database.instructor_queries import people_of
 from coursework.database.publication import CHARGE, Publication
 from coursework.database.tables import identity
 from coursework.language.words import words

@@ -10,7 +10,7 @@ from itsdangerous import BadSignature, URLSafeTimedSerializer
 
 from coursework.database.accounts import account_of
 from coursework.database.audit import note
-from coursework.database.identities import tie
+from coursework.database.identities import link_identity
 from coursework.database.permissions import Permission
 from coursework.site.frame.attempts import Attempt
 from coursework.site.frame.budgets import PLAIN
@@ -71,7 +71,7 @@ def _read_token(request: Request) -> tuple[str, str, str]:
 
 def _tie(request: Request, issuer: str, subject: str, platform: str) -> None:
     with request.site.store.begin() as connection:
-        if not tie(connection, request.user.id, issuer, subject):
+        if not link_identity(connection, request.user.id, issuer, subject):
             raise HTTPException("connect_over", 410)
         about = {"person": request.user.id, "platform": platform, "how": "password"}
         note(connection, request.received_at, request.actor, "connected a platform", **about)

@@ -9,9 +9,15 @@ from sqlalchemy import Connection, select
 
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.audit import note
-from coursework.database.desk import stamp
-from coursework.database.identities import fitting, has_password, person_known, take_over, tie
-from coursework.database.people import person_by_who, put_person
+from coursework.database.identities import (
+    has_password,
+    link_identity,
+    people_matching,
+    person_linked_to,
+    update_from_platform,
+)
+from coursework.database.instructor_queries import stamp
+from coursework.database.people import person_by_identifier, put_person
 from coursework.database.tables import assignment
 from coursework.making.assignment import Assignment, assignment_of
 from coursework.making.issued import issued_content as content_of
@@ -38,16 +44,16 @@ def platform_name(launch: Launch) -> str:
 def launch_person(site: Site, launch: Launch, lang: str) -> Any:
     """Return the person of a launch, with its name and language; add a new one."""
     with site.store.reading() as connection:
-        person = person_known(connection, launch.issuer, launch.person)
+        person = person_linked_to(connection, launch.issuer, launch.person)
     if person is not None and _is_current(person, launch, lang):
         return person
     with site.store.begin() as connection:
-        person = person_known(connection, launch.issuer, launch.person)
+        person = person_linked_to(connection, launch.issuer, launch.person)
         if person is None:
             _add_person(site, connection, launch, lang)
         elif not person.login:
-            take_over(connection, person.id, launch.name, lang)
-        return person_known(connection, launch.issuer, launch.person)
+            update_from_platform(connection, person.id, launch.name, lang)
+        return person_linked_to(connection, launch.issuer, launch.person)
 
 
 def _is_current(person: Any, launch: Launch, lang: str) -> bool:
@@ -65,7 +71,7 @@ def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -
     HTTPException
         The person has a password, which must be entered once.
     """
-    matches = fitting(connection, launch.issuer, launch.email, launch.number)
+    matches = people_matching(connection, launch.issuer, launch.email, launch.number)
     if len(matches) == 1 and has_password(connection, matches[0].id):
         raise HTTPException("connect", 403, connecting.address(site, launch, matches[0].id))
     if len(matches) == 1:
@@ -73,7 +79,7 @@ def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -
     else:
         student = _new(connection, launch)
         number, how = put_person(connection, student.draw_key, launch.name, lang, student.columns), "new"
-    tie(connection, number, launch.issuer, launch.person)
+    link_identity(connection, number, launch.issuer, launch.person)
     about = {"person": number, "platform": platform_name(launch), "how": how}
     note(connection, site.clock(), platform_name(launch), "came from a platform", **about)
 
@@ -89,7 +95,7 @@ def _new(connection: Connection, launch: Launch) -> Student:
     ]
     for columns in candidates:
         student = Student(launch.name, columns=columns)
-        if all(columns.values()) and person_by_who(connection, student.draw_key) is None:
+        if all(columns.values()) and person_by_identifier(connection, student.draw_key) is None:
             return student
     raise HTTPException("own", 404)
 

@@ -17,12 +17,12 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection
 
 from coursework.database.assignments import issued_of, names
+from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
-from coursework.database.deliveries import deliveries
-from coursework.database.desk import stamp
-from coursework.database.identities import person_known
-from coursework.database.publication import extensions, last_end, places, published
-from coursework.database.standing import lines_of, machine_marks, stood
+from coursework.database.identities import person_linked_to
+from coursework.database.instructor_queries import stamp
+from coursework.database.publication import extensions, last_end, published, student_assignments
+from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
 from coursework.gradebook.graded import Graded
@@ -58,7 +58,7 @@ class Marked(NamedTuple):
         late = next(
             (submission.late for submission in state.done if submission.number == self.result.sitting), 0
         )
-        return round(self.result.points * (1 - state.assignment.own.charged(late)), 9)
+        return round(self.result.points * (1 - state.assignment.own_publication.charged(late)), 9)
 
 
 def marked_in(now: CachedClass, student: str) -> Marked | None:
@@ -69,7 +69,7 @@ def marked_in(now: CachedClass, student: str) -> Marked | None:
 
 def marked_of(connection: Connection, number: int, student: str) -> Marked | None:
     """Return the marks of one student alone, at a cost that does not depend on the size of the class."""
-    markings = stood(connection, number, student).values()
+    markings = last_markings(connection, number, student).values()
     issued = issued_of(connection, number, student=student)
     decisions = Decisions.read(connection, number, student)
     marked = machine_marks(issued, markings, lines_of(connection, markings))
@@ -100,7 +100,7 @@ def score_of(site: Site, launch: Launch, now: CachedClass | None = None) -> Scor
     if number is None:
         return None
     with site.store.reading() as connection:
-        person = person_known(connection, launch.issuer, launch.person)
+        person = person_linked_to(connection, launch.issuer, launch.person)
         state = (
             None if person is None else assignment_state(connection, number, person.id, lang, site.clock())
         )
@@ -129,12 +129,12 @@ def assignment_state(
     connection: Connection, number: int, person: int, lang: str, at: datetime
 ) -> AssignmentState | None:
     """Return the state of a published assignment for a person; None if they have no paper of it."""
-    assignment = next(iter(places(connection, person, number)), None)
+    assignment = next(iter(student_assignments(connection, person, number)), None)
     if assignment is None or assignment.publication is None:
         return None
     ends = last_end(assignment.publication, list(extensions(connection, number).values()))
     return AssignmentState(
-        assignment, lang, assignment.publication.now(at), deliveries(connection, number, person), ends
+        assignment, lang, assignment.publication.now(at), submissions_of(connection, number, person), ends
     )
 
 

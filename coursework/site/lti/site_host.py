@@ -13,8 +13,8 @@ from typing import Any
 from sqlalchemy import Connection
 
 from coursework.database.assignments import issued_of
-from coursework.database.deliveries import rows_of
-from coursework.database.publication import Phase, places, published
+from coursework.database.publication import Phase, published, student_assignments
+from coursework.database.submissions import rows_of
 from coursework.errors import BadInput
 from coursework.gradebook.rows import Row
 from coursework.language.words import words
@@ -185,7 +185,7 @@ class SiteHost:
     def _assign(self, visit: Visit, number: int, person: Any) -> None:
         with self._site.store.reading() as connection:
             publication = published(connection, number)
-            if publication is None or places(connection, person.id, number):
+            if publication is None or student_assignments(connection, person.id, number):
                 return
         phase = publication.phase(publication.now(self._site.clock()))
         if phase is Phase.TO_COME:
@@ -231,8 +231,10 @@ class SiteHost:
         counts."""
         texts, site_texts = words(visit.lang)["lti"], words(visit.lang, "site")["lti"]
         rules = []
-        if state.phase is Phase.OPEN and state.assignment.own.closes:
-            rules.append(str(site_texts["open_until"]).format(state.moment(state.assignment.own.closes)))
+        if state.phase is Phase.OPEN and state.assignment.own_publication.closes:
+            rules.append(
+                str(site_texts["open_until"]).format(state.moment(state.assignment.own_publication.closes))
+            )
         elif state.phase is Phase.LATE:
             rules.append(str(site_texts["late_now"]))
         left = state.tries_left
@@ -245,7 +247,7 @@ class SiteHost:
                 if left
                 else texts["no_try_left"]
             )
-        if state.assignment.own.tries != 1:
+        if state.assignment.own_publication.tries != 1:
             counts = state.assignment.stated.get("sittings", _BEST)
             rules.append(str(texts["counts_best" if counts == _BEST else "counts_last"]))
         return [" ".join(rules)]
@@ -255,7 +257,7 @@ class SiteHost:
     ) -> Reply:
         """Return the feedback on the last submission if it is released; otherwise a confirmation."""
         texts, last = words(visit.lang)["lti"], state.done[-1]
-        arrival = texts["try_number"].format(last.number, exact_text(last.came, visit.lang))
+        arrival = texts["try_number"].format(last.number, exact_text(last.received_at, visit.lang))
         receipt = site_request.words["lti"]["receipt"].format(last.receipt)
         more = [(f"{visit.home}?again=1", texts["again"])] if state.may_hand_in else []
         waits = pending_marking(site_request, last.id) if state.releases("feedback") else None
@@ -284,7 +286,9 @@ class SiteHost:
             return str(texts["score_none"])
         waiting = visit.scores().get(launch.person)
         if waiting is None and state is not None:
-            kept_back = "score_never" if state.assignment.own.feedback == "never" else "score_later"
+            kept_back = (
+                "score_never" if state.assignment.own_publication.feedback == "never" else "score_later"
+            )
             return str(words(visit.lang, "site")["lti"][kept_back])
         return str(texts["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
 

@@ -8,8 +8,14 @@ from datetime import datetime
 
 from sqlalchemy import Connection
 
-from coursework.database.deliveries import Delivery, deliveries, tries_used
-from coursework.database.publication import Phase, Place, extensions, last_end, places
+from coursework.database.publication import (
+    Phase,
+    StudentAssignment,
+    extensions,
+    last_end,
+    student_assignments,
+)
+from coursework.database.submissions import Submission, attempts_used, submissions_of
 from coursework.language.numbers import localise, plain
 from coursework.making.assignment import text_in
 from coursework.site.frame.requests import HTTPException, Request
@@ -22,20 +28,20 @@ from coursework.site.papers.submission import pass_dates
 class AssignmentState:
     """State of an assignment for the current user."""
 
-    assignment: Place
+    assignment: StudentAssignment
     lang: str
     now: datetime
-    done: Sequence[Delivery]
+    done: Sequence[Submission]
     everybody_ends: datetime | None
     used: int = 0  #: attempts made on the current paper
 
     @property
     def phase(self) -> Phase:
-        return self.assignment.own.phase(self.now)
+        return self.assignment.own_publication.phase(self.now)
 
     @property
     def tries_left(self) -> int | None:
-        tries = self.assignment.own.tries
+        tries = self.assignment.own_publication.tries
         return None if tries is None else max(0, tries - self.used)
 
     @property
@@ -54,13 +60,13 @@ class AssignmentState:
     def closed_for_both(self) -> datetime | None:
         """Time at which the assignment closes for the class and for this person; None if it never closes."""
         assert self.assignment.publication is not None
-        ends = self.assignment.own.ends, self.assignment.publication.ends
+        ends = self.assignment.own_publication.ends, self.assignment.publication.ends
         return None if ends[0] is None or ends[1] is None else max(ends[0], ends[1])
 
     def releases(self, content: str) -> bool:
         """Return True if ``feedback`` or ``answers`` are released now."""
         ends = self.closed_for_both if content == "feedback" else self.everybody_ends
-        return self.assignment.own.tells(content, self.now, ends)
+        return self.assignment.own_publication.releases(content, self.now, ends)
 
     def moment(self, at: datetime | None) -> str:
         return "" if at is None else moment_text(at, self.lang)
@@ -71,16 +77,16 @@ class AssignmentState:
     @property
     def left(self) -> str:
         """Remaining time as text; empty if the assignment does not close, or has closed."""
-        rules = self.assignment.own
+        rules = self.assignment.own_publication
         ends = rules.closes if self.phase is Phase.OPEN else rules.ends if self.phase is Phase.LATE else None
         return "" if ends is None else length_text(ends - self.now, self.lang)
 
 
-def state_of(request: Request, assignment: Place, connection: Connection) -> AssignmentState:
+def state_of(request: Request, assignment: StudentAssignment, connection: Connection) -> AssignmentState:
     assert assignment.publication is not None
-    done = deliveries(connection, assignment.id, request.user.id)
+    done = submissions_of(connection, assignment.id, request.user.id)
     ends = last_end(assignment.publication, list(extensions(connection, assignment.id).values()))
-    used = tries_used(connection, assignment.id, request.user.id, done)
+    used = attempts_used(connection, assignment.id, request.user.id, done)
     now = assignment.publication.counted(request.received_at, request.site.clock())
     return AssignmentState(assignment, request.lang, now, done, ends, used)
 
@@ -88,12 +94,14 @@ def state_of(request: Request, assignment: Place, connection: Connection) -> Ass
 def to_hand_in(request: Request) -> list[AssignmentState]:
     """Return the assignments that a person may submit now and has not submitted yet."""
     with request.site.store.reading() as connection:
-        published = [item for item in places(connection, request.user.id) if item.publication is not None]
+        published = [
+            item for item in student_assignments(connection, request.user.id) if item.publication is not None
+        ]
         states = [state_of(request, item, connection) for item in published]
     return [item for item in states if item.may_hand_in and not item.done]
 
 
-def user_assignment(request: Request, connection: Connection) -> Place:
+def user_assignment(request: Request, connection: Connection) -> StudentAssignment:
     """Return the requested assignment, if it is published and the person was issued a paper of it.
 
     Raises
@@ -101,7 +109,7 @@ def user_assignment(request: Request, connection: Connection) -> Place:
     HTTPException
         There is no such assignment; the response does not tell the reason.
     """
-    matches = places(connection, request.user.id, int(request.path_params["number"]))
+    matches = student_assignments(connection, request.user.id, int(request.path_params["number"]))
     if len(matches) != 1 or matches[0].publication is None:
         raise HTTPException("own", 404)
     return matches[0]
@@ -117,16 +125,16 @@ def state_and_paper(request: Request) -> tuple[AssignmentState, StudentPaper]:
 
 def assignment_and_paper(
     request: Request, connection: Connection, *, heads: bool = False
-) -> tuple[Place, StudentPaper]:
+) -> tuple[StudentAssignment, StudentPaper]:
     """Return the assignment and the paper, with the data of its heading if ``heads``; refuse it before it
     opens."""
     site, assignment = request.site, user_assignment(request, connection)
     assert assignment.publication is not None
     if (
-        assignment.own.phase(assignment.publication.counted(request.received_at, site.clock()))
+        assignment.own_publication.phase(assignment.publication.counted(request.received_at, site.clock()))
         is Phase.TO_COME
     ):
-        opens = assignment.own.opens
+        opens = assignment.own_publication.opens
         raise HTTPException("not_yet", 409, moment_text(opens, request.lang) if opens else "")
     return assignment, student_paper(
         connection, site.course, assignment, request.user.id, request.lang, site.cache, heads=heads

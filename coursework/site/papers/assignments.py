@@ -10,12 +10,12 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from coursework.database.deliveries import Delivery
-from coursework.database.drafts import Box, drafts
-from coursework.database.people import hold
+from coursework.database.drafts import DraftBox, drafts
+from coursework.database.people import lock_person
 from coursework.database.permissions import Permission
 from coursework.database.prepared import prepared_pieces
-from coursework.database.publication import Phase, places
+from coursework.database.publication import Phase, student_assignments
+from coursework.database.submissions import Submission
 from coursework.errors import BadInput
 from coursework.gradebook.by_student import as_students, for_student
 from coursework.gradebook.placing import placed
@@ -50,11 +50,17 @@ _ORDER = (Phase.OPEN, Phase.LATE, Phase.TO_COME, Phase.CLOSED)
 def list_page(request: Request) -> Response:
     """Return the page of the person's assignments, by phase."""
     with request.site.store.reading() as connection:
-        numbers = [item.id for item in places(connection, request.user.id) if item.publication is not None]
+        numbers = [
+            item.id
+            for item in student_assignments(connection, request.user.id)
+            if item.publication is not None
+        ]
     for number in numbers:
         pass_dates(request.site, number, request.received_at)
     with request.site.store.reading() as connection:
-        assignments = [item for item in places(connection, request.user.id) if item.publication is not None]
+        assignments = [
+            item for item in student_assignments(connection, request.user.id) if item.publication is not None
+        ]
         states = [state_of(request, item, connection) for item in assignments]
     groups = [(phase.value, [item for item in states if item.phase is phase]) for phase in _ORDER]
     return request.render(
@@ -79,7 +85,7 @@ def _paper_response(
     request: Request,
     state: AssignmentState,
     paper: StudentPaper,
-    boxes: Mapping[str, Box] | None = None,
+    boxes: Mapping[str, DraftBox] | None = None,
     problem: str = "",
     status: int = 200,
 ) -> Response:
@@ -122,12 +128,12 @@ def _read_back(request: Request, state: AssignmentState, paper: StudentPaper) ->
 
 def _save_form(
     request: Request, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str]
-) -> dict[str, Box]:
+) -> dict[str, DraftBox]:
     """Store the drafts of a form without a script as well; return the boxes for this page."""
     now, _ = save_form_drafts(
         request, sheet_of(state.assignment, paper), texts, {}, request.form.text("_versions")
     )
-    return {name: Box(text, now[name].version if name in now else 0) for name, text in texts.items()}
+    return {name: DraftBox(text, now[name].version if name in now else 0) for name, text in texts.items()}
 
 
 def _too_late(request: Request, state: AssignmentState) -> Response:
@@ -147,8 +153,8 @@ def _confirming(
 ) -> Response:
     """Return the reading of each answer, for confirmation."""
     lines = read_lines(paper, texts)
-    late = state.assignment.own.late_seconds(state.now)
-    charged = state.assignment.own.charged(late)
+    late = state.assignment.own_publication.late_seconds(state.now)
+    charged = state.assignment.own_publication.charged(late)
     return request.render(
         "site_assignment_read_back", state=state, lines=lines, counts=counts(lines), source=source, notes=notes,
         number=len(state.done) + 1, texts={name: text for name, text in texts.items() if text},
@@ -247,7 +253,7 @@ def confirm(request: Request) -> Response:
     source = IN_A_FILE if request.form.text("_source") == IN_A_FILE else ON_THE_PAGE
     pass_dates(site, int(request.path_params["number"]), request.received_at)
     with site.store.begin() as connection:
-        hold(connection, person_id)
+        lock_person(connection, person_id)
         assignment, paper = assignment_and_paper(request, connection)
         if not re.fullmatch("[1-9][0-9]{0,5}", number):
             raise HTTPException("bad_request", 400)
@@ -277,9 +283,9 @@ def receipt(request: Request) -> Response:
     }
     return request.render(
         "site_assignment_receipt", state=state, row=row, told=content, lines=read_lines(paper, texts),
-        came=exact_text(row.came, request.lang), zone=zone_name(row.came), again=again if again in ("same", "other") else "",
+        came=exact_text(row.received_at, request.lang), zone=zone_name(row.received_at), again=again if again in ("same", "other") else "",
         late=length_text(timedelta(seconds=row.late), request.lang) if row.late else "",
-        charged=charged_text(state.assignment.own.charged(row.late), request.lang) if state.assignment.own.charged(row.late) else "",
+        charged=charged_text(state.assignment.own_publication.charged(row.late), request.lang) if state.assignment.own_publication.charged(row.late) else "",
         saved=row.source == submission.AS_SAVED, feedback_from=feedback_from(request, state),
         marking=pending_marking(request, row.id) if state.releases("feedback") else None,
     )  # fmt: skip
@@ -287,7 +293,7 @@ def receipt(request: Request) -> Response:
 
 def feedback_from(request: Request, state: AssignmentState) -> str:
     """Return the time of the feedback, as a sentence."""
-    messages, rules = request.words["assignments"]["feedback_when"], state.assignment.own
+    messages, rules = request.words["assignments"]["feedback_when"], state.assignment.own_publication
     if rules.feedback == "date":
         return str(messages["date"]).format(state.moment(rules.feedback_on))
     if rules.feedback == "closed":
@@ -316,7 +322,7 @@ def feedback(request: Request) -> Response:
     )
 
 
-def _chosen(request: Request, state: AssignmentState) -> Delivery:
+def _chosen(request: Request, state: AssignmentState) -> Submission:
     number = request.query_params.get("number", "")
     return next((handed_in for handed_in in state.done if str(handed_in.number) == number), state.done[-1])
 

@@ -6,9 +6,9 @@ from datetime import timedelta
 from typing import Any
 
 from coursework.database.assignments import issued_content
-from coursework.database.deliveries import Delivery
+from coursework.database.current_marks import graded
 from coursework.database.marking import mark_delivery
-from coursework.database.standing import graded
+from coursework.database.submissions import Submission
 from coursework.gradebook.feedback_form import Form, shows_solutions
 from coursework.gradebook.feedback_sheets import Telling, feedback_paper
 from coursework.gradebook.scale import mark_of
@@ -22,7 +22,7 @@ from coursework.site.papers.student_paper import StudentPaper
 
 
 def feedback_of(
-    request: Request, state: AssignmentState, paper: StudentPaper, chosen: Delivery
+    request: Request, state: AssignmentState, paper: StudentPaper, chosen: Submission
 ) -> tuple[FeedbackPaper, list[str]]:
     """Return the feedback on a submission, and the notes above it: for a late one, the penalty."""
     mark_delivery(request.site.course, request.site.store, chosen.id)
@@ -64,14 +64,16 @@ def _shows_solutions(issued: Issued, state: AssignmentState) -> bool:
 
 
 def _charged(
-    request: Request, state: AssignmentState, issued: Issued, document: FeedbackPaper, chosen: Delivery
+    request: Request, state: AssignmentState, issued: Issued, document: FeedbackPaper, chosen: Submission
 ) -> list[str]:
     """Return notes on the penalty for lateness, which is separate from the marks of the answers."""
     if not chosen.late:
         return []
     messages = request.words["assignments"]
     late = length_text(timedelta(seconds=chosen.late), request.lang)
-    share = state.assignment.own.charged(min(chosen.late, state.assignment.own.late_seconds(chosen.came)))
+    share = state.assignment.own_publication.charged(
+        min(chosen.late, state.assignment.own_publication.late_seconds(chosen.received_at))
+    )
     if not share:
         return [messages["was_late"].format(late)]
     left = round(document.points * (1 - share), 9)

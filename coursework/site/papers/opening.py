@@ -12,8 +12,8 @@ from html import escape, unescape
 from sqlalchemy import Connection, select
 from sqlalchemy.exc import IntegrityError
 
-from coursework.database.prepared import Pieces, prepare_later, prepared_state, put_prepared
-from coursework.database.publication import Phase, is_over, places
+from coursework.database.prepared import PreparedPieces, prepare_later, prepared_state, put_prepared
+from coursework.database.publication import Phase, is_over, student_assignments
 from coursework.database.tables import person
 from coursework.errors import BadInput
 from coursework.site.frame.drafts import box_values
@@ -27,7 +27,9 @@ _AFTER_NAME = re.compile(r' name="[^"]*"(?: class="[^"]*")?')
 _AFTER_VALUE = re.compile(r' value="[^"]*"')
 
 
-def make_pieces(site: Site, number: int, person_id: int, paper: StudentPaper, *, stores: bool) -> Pieces:
+def make_pieces(
+    site: Site, number: int, person_id: int, paper: StudentPaper, *, stores: bool
+) -> PreparedPieces:
     """Make the parts of a page; store them in the database if ``stores``.
 
     A reader sees the page even if the database accepts no writes; nothing is stored for a person erased
@@ -55,11 +57,11 @@ def prepare(site: Site, number: int, person_id: int, at: datetime, cache: LRUCac
     count = 0
     for lang in _langs(site, person_id):
         with site.store.reading() as connection:
-            assignments = places(connection, person_id, number)
+            assignments = student_assignments(connection, person_id, number)
             assignment = assignments[0] if len(assignments) == 1 else None
             if assignment is None or assignment.publication is None:
                 return count
-            if assignment.own.phase(assignment.publication.now(at)) is Phase.CLOSED:
+            if assignment.own_publication.phase(assignment.publication.now(at)) is Phase.CLOSED:
                 return count
             paper = student_paper(connection, site.course, assignment, person_id, lang, cache)
             state = prepared_state(connection, number, person_id, lang)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import timedelta
 from typing import NamedTuple
 
-from coursework.database.jobs import before, job_of
+from coursework.database.jobs import job_of, jobs_before
 from coursework.site.frame.requests import Request
 from coursework.site.frame.times import length_text
 
@@ -32,7 +32,7 @@ def pending_marking(request: Request, delivery: int) -> PendingMarking | None:
             return None
         if job.fault:
             return PendingMarking(str(messages["not_marked"]), 0)
-        seconds = round(min(_LONGEST, _SOON + _EACH * before(connection, job)))
+        seconds = round(min(_LONGEST, _SOON + _EACH * jobs_before(connection, job)))
     return PendingMarking(
         str(messages["being_marked"]).format(length_text(timedelta(seconds=seconds), request.lang)), seconds
     )

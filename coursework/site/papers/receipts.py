@@ -11,9 +11,9 @@ from sqlalchemy import Connection
 
 from coursework.database.areas import may_for
 from coursework.database.audit import note
-from coursework.database.deliveries import Delivery, answers_of
-from coursework.database.desk import people_of
+from coursework.database.instructor_queries import people_of
 from coursework.database.permissions import Permission
+from coursework.database.submissions import Submission, answers_of
 from coursework.language.words import words
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.site.frame.times import exact_text, length_text, zone_name
@@ -28,7 +28,7 @@ def receipt_content(connection: Connection, row: Any, assignment: str, student: 
         "assignment": assignment,
         "student": student,
         "number": row.number,
-        "handed_in": row.came.isoformat(timespec="seconds"),
+        "handed_in": row.received_at.isoformat(timespec="seconds"),
         "late_seconds": row.late,
         "answered": sum(bool(answer[3].strip()) for answer in handed),
         "asked": len(handed),
@@ -45,7 +45,7 @@ def as_text(request: Request, content: dict[str, Any], row: Any) -> str:
         f"{texts['code']}: {content['receipt']}",
         f"{texts['assignment']}: {content['assignment']}",
         f"{texts['student']}: {content['student']}",
-        f"{texts['came']}: {exact_text(row.came, request.lang)} ({zone_name(row.came)})",
+        f"{texts['came']}: {exact_text(row.received_at, request.lang)} ({zone_name(row.received_at)})",
         *([f"{texts['late']}: {length_text(timedelta(seconds=row.late), request.lang)}"] if row.late else []),
         f"{texts['answered']}: {content['answered']} / {content['asked']}",
         f"SHA-256: {content['sha256']}", "",
@@ -55,7 +55,7 @@ def as_text(request: Request, content: dict[str, Any], row: Any) -> str:
     return "\n".join(lines)
 
 
-def find(done: Sequence[Delivery], code: str) -> Delivery:
+def find(done: Sequence[Submission], code: str) -> Submission:
     """Return the submission with a receipt among a person's own.
 
     Raises
@@ -112,7 +112,7 @@ def verify(request: Request) -> Response:
             content = None if row is None else receipt_content(connection, row, row.assignment, row.student)
     names: dict[str, Any] = {"code": code, "row": row, "told": content, "digest": told_digest}
     if row is not None:
-        names |= {"came": exact_text(row.came, request.lang), "zone": zone_name(row.came)}
+        names |= {"came": exact_text(row.received_at, request.lang), "zone": zone_name(row.received_at)}
         names["late"] = length_text(timedelta(seconds=row.late), request.lang) if row.late else ""
     return request.render("site_receipt_check", **names)
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from sqlalchemy import Connection
 
 from coursework.database.permissions import Permission
-from coursework.database.publication import Phase, places
+from coursework.database.publication import Phase, student_assignments
 from coursework.site.frame.requests import Request
 from coursework.site.papers.assignment_state import state_of
 
@@ -32,7 +32,7 @@ def release_to(connection: Connection, request: Request) -> Callable[[int], Rele
         return full_release
     states = [
         state_of(request, item, connection)
-        for item in places(connection, request.user.id)
+        for item in student_assignments(connection, request.user.id)
         if item.publication
     ]
     # A mark's sentence may say what is right.

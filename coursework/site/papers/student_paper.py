@@ -12,8 +12,8 @@ from sqlalchemy import Connection
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_content, sheet_content
-from coursework.database.prepared import Pieces
-from coursework.database.publication import Place
+from coursework.database.prepared import PreparedPieces
+from coursework.database.publication import StudentAssignment
 from coursework.database.states import page_state
 from coursework.gradebook.feedback_sheets import heading_of
 from coursework.making.assignment import text_in
@@ -153,13 +153,15 @@ class StudentPaper:
             raise HTTPException("too_large", 413, LONGEST)
         return answers
 
-    def pieces(self) -> Pieces:
+    def pieces(self) -> PreparedPieces:
         """Return the parts of its page, with empty boxes."""
         names, env = (
             self.template_names(self.paper),
             environment_of(self.course.folder.template_folders, self.lang),
         )
-        return Pieces(render(env, "_paper_head.html.j2", names), render(env, "_paper_body.html.j2", names))
+        return PreparedPieces(
+            render(env, "_paper_head.html.j2", names), render(env, "_paper_body.html.j2", names)
+        )
 
     def template_names(self, document: Paper | FeedbackPaper) -> dict[str, Any]:
         """Return the names for the template of a paper, or of its feedback."""
@@ -174,7 +176,7 @@ class StudentPaper:
 def student_paper(
     connection: Connection,
     course: Course[Any],
-    assignment: Place,
+    assignment: StudentAssignment,
     person: int,
     lang: str,
     cache: LRUCache | None = None,
@@ -190,7 +192,7 @@ def student_paper(
         content = issued_content(connection, assignment.id, person)
     else:
         content = sheet_content(connection, assignment.id, person, assignment.stated)
-    stated = assignment.asked.get("instructions") or {}
+    stated = assignment.file_statement.get("instructions") or {}
     instructions = {"": stated} if isinstance(stated, str) else stated
     variants = LRUCache(_VARIANTS) if cache is None else cache
     return StudentPaper(course, content, assignment.student, lang, instructions, variants)

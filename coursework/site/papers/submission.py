@@ -18,20 +18,28 @@ from sqlalchemy import Connection, func, select
 from sqlalchemy.exc import DBAPIError
 from sqlalchemy.exc import TimeoutError as NoConnection
 
-from coursework.database.deliveries import (
-    Delivery,
-    answers_of,
-    deliver,
-    deliveries,
-    next_number,
-    tries_used,
-)
 from coursework.database.drafts import drafts
 from coursework.database.jobs import MARK, drop_jobs, put_job
 from coursework.database.marking import mark_delivery
-from coursework.database.people import hold
+from coursework.database.people import lock_person
 from coursework.database.prepared import drop_prepared
-from coursework.database.publication import Phase, Place, extensions, is_over, places, published, reach
+from coursework.database.publication import (
+    Phase,
+    StudentAssignment,
+    extensions,
+    is_over,
+    published,
+    record_passed_date,
+    student_assignments,
+)
+from coursework.database.submissions import (
+    Submission,
+    answers_of,
+    attempts_used,
+    insert_submission,
+    next_number,
+    submissions_of,
+)
 from coursework.database.tables import dealt, delivery, draft, person, variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.rows import Collected, Row
@@ -47,12 +55,12 @@ ON_THE_PAGE, IN_A_FILE, AS_SAVED = "site", "site: a file", "site: as saved when 
 class SubmissionResult(NamedTuple):
     """Result of a submitted form."""
 
-    delivery: Delivery
+    delivery: Submission
     is_new: bool
     differs: bool = False  #: its answers differ from those submitted under its number
 
 
-def sheet_of(assignment: Place, paper: StudentPaper) -> str:
+def sheet_of(assignment: StudentAssignment, paper: StudentPaper) -> str:
     """Return the key under which drafts of the paper are stored."""
     return (
         f"assignment/{assignment.id}" if paper.sitting == 1 else f"assignment/{assignment.id}/{paper.sitting}"
@@ -61,7 +69,7 @@ def sheet_of(assignment: Place, paper: StudentPaper) -> str:
 
 def submit(
     site: Site,
-    assignment: Place,
+    assignment: StudentAssignment,
     paper: StudentPaper,
     person_id: int,
     texts: Texts,
@@ -77,8 +85,8 @@ def submit(
         The assignment is not open, or no attempt is left.
     """
     with site.store.begin() as connection:
-        hold(connection, person_id)
-        (fresh,) = places(connection, person_id, assignment.id)
+        lock_person(connection, person_id)
+        (fresh,) = student_assignments(connection, person_id, assignment.id)
         result = store_submission(connection, site, fresh, paper, person_id, texts, number, at, source)
     if result.is_new:
         mark(site, result.delivery.id)
@@ -88,7 +96,7 @@ def submit(
 def store_submission(
     connection: Connection,
     site: Site,
-    assignment: Place,
+    assignment: StudentAssignment,
     paper: StudentPaper,
     person_id: int,
     texts: Texts,
@@ -103,7 +111,7 @@ def store_submission(
     HTTPException
         The assignment is not open, or no attempt is left.
     """
-    done = deliveries(connection, assignment.id, person_id)
+    done = submissions_of(connection, assignment.id, person_id)
     before = done[number - 1] if number <= len(done) else None
     if before is not None:
         is_same = _holds(connection, before, paper, texts)
@@ -117,22 +125,25 @@ def store_submission(
     return SubmissionResult(submission, True)
 
 
-def _holds(connection: Connection, submission: Delivery, paper: StudentPaper, texts: Texts) -> bool:
+def _holds(connection: Connection, submission: Submission, paper: StudentPaper, texts: Texts) -> bool:
     return answers_of(connection, submission.id) == content_of(paper, texts)
 
 
-def _takes(assignment: Place, arrived: datetime, clock: datetime) -> bool:
+def _takes(assignment: StudentAssignment, arrived: datetime, clock: datetime) -> bool:
     publication = assignment.publication
-    return publication is not None and assignment.own.phase(publication.counted(arrived, clock)).takes
+    return (
+        publication is not None
+        and assignment.own_publication.phase(publication.counted(arrived, clock)).takes
+    )
 
 
 def _check(
     connection: Connection,
-    assignment: Place,
+    assignment: StudentAssignment,
     person_id: int,
     arrived: datetime,
     clock: datetime,
-    done: Sequence[Delivery],
+    done: Sequence[Submission],
 ) -> datetime:
     """Return the effective time, after a check that a submission is accepted then.
 
@@ -141,13 +152,13 @@ def _check(
     """
     if assignment.publication is None:
         raise HTTPException("own", 404)
-    rules, now = assignment.own, assignment.publication.counted(arrived, clock)
+    rules, now = assignment.own_publication, assignment.publication.counted(arrived, clock)
     if not rules.phase(now).takes:
         raise HTTPException("not_open", 409)
     rescued = sum(submission.source == AS_SAVED for submission in done)
     if (
         rules.tries is not None
-        and tries_used(connection, assignment.id, person_id, done) - rescued >= rules.tries
+        and attempts_used(connection, assignment.id, person_id, done) - rescued >= rules.tries
     ):
         raise HTTPException("no_try_left", 409)
     return now
@@ -155,22 +166,22 @@ def _check(
 
 def _deliver(
     connection: Connection,
-    assignment: Place,
+    assignment: StudentAssignment,
     paper: StudentPaper,
     person_id: int,
     texts: Texts,
     received_at: datetime,
     source: str,
-) -> Delivery:
+) -> Submission:
     number = next_number(connection, assignment.id, person_id, paper.student)
-    late = assignment.own.late_seconds(received_at)
+    late = assignment.own_publication.late_seconds(received_at)
     rows = rows_for(paper, texts, number, received_at, source)
-    return deliver(
+    return insert_submission(
         connection,
         assignment.id,
         rows,
         source=source,
-        came=received_at,
+        received_at=received_at,
         person_id=person_id,
         number=number,
         late=late,
@@ -207,7 +218,7 @@ def rows_for(paper: StudentPaper, texts: Texts, number: int, received_at: dateti
 
 
 def content_of(paper: StudentPaper, texts: Texts) -> list[list[str]]:
-    """Return the answers in the form of :func:`coursework.database.deliveries.answers_of`."""
+    """Return the answers in the form of :func:`coursework.database.submissions.answers_of`."""
     return [
         [field.exercise, str(field.seed), field.part, texts.get(name, "")]
         for name, field in paper.fields.items()
@@ -271,7 +282,7 @@ def close_passed(
                 raise
             failed(person_id, fault)
     with site.store.begin() as connection:
-        reach(connection, number, at)
+        record_passed_date(connection, number, at)
         if is_over(connection, number, at):
             drop_prepared(connection, number)
 
@@ -287,28 +298,30 @@ def unsubmitted_persons(connection: Connection, number: int) -> list[int]:
     return list(connection.execute(query.order_by(dealt.c.person_id)).scalars())
 
 
-def rescue(site: Site, number: int, person_id: int, at: datetime) -> Delivery | None:
+def rescue(site: Site, number: int, person_id: int, at: datetime) -> Submission | None:
     """Submit the saved answers of a person without a submission, once the assignment has closed for them;
     they are marked later.
 
     The submission counts from the time of the last draft.
     """
     with site.store.begin() as connection:
-        hold(connection, person_id)
+        lock_person(connection, person_id)
         submission = _saved(site, connection, number, person_id, at)
         if submission is not None:
             put_job(connection, MARK, number, site.clock(), delivery=submission.id)
         return submission
 
 
-def _saved(site: Site, connection: Connection, number: int, person_id: int, at: datetime) -> Delivery | None:
-    (assignment,) = places(connection, person_id, number)
+def _saved(
+    site: Site, connection: Connection, number: int, person_id: int, at: datetime
+) -> Submission | None:
+    (assignment,) = student_assignments(connection, person_id, number)
     if (
         assignment.publication is None
-        or assignment.own.phase(assignment.publication.now(at)) is not Phase.CLOSED
+        or assignment.own_publication.phase(assignment.publication.now(at)) is not Phase.CLOSED
     ):
         return None
-    if deliveries(connection, number, person_id):
+    if submissions_of(connection, number, person_id):
         return None
     lang = str(connection.execute(select(person.c.lang).where(person.c.id == person_id)).scalar() or "")
     paper = student_paper(
@@ -320,7 +333,7 @@ def _saved(site: Site, connection: Connection, number: int, person_id: int, at: 
         return None
     of_it = draft.c.person_id == person_id, draft.c.sheet == sheet_of(assignment, paper)
     changed = connection.execute(select(func.max(draft.c.changed)).where(*of_it)).scalar()
-    ends = assignment.own.ends or at
+    ends = assignment.own_publication.ends or at
     return _deliver(
         connection, assignment, paper, person_id, texts, min(_as_datetime(changed, ends), ends), AS_SAVED
     )
@@ -343,7 +356,12 @@ def submission_of_receipt(connection: Connection, code: str, number: int | None 
     from coursework.database.tables import assignment
 
     query = (
-        select(delivery, assignment.c.name.label("assignment"), person.c.name.label("student"))
+        select(
+            delivery,
+            delivery.c.came.label("received_at"),
+            assignment.c.name.label("assignment"),
+            person.c.name.label("student"),
+        )
         .join(assignment, assignment.c.id == delivery.c.assignment_id)
         .join(person, person.c.id == delivery.c.person_id)
         .where(delivery.c.receipt == code.strip().upper(), delivery.c.receipt != "")

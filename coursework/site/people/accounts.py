@@ -10,6 +10,7 @@ from typing import Any
 from sqlalchemy import Connection
 
 from coursework.database.accounts import (
+    accept_invitation,
     account_by_login,
     account_invited,
     account_of,
@@ -17,10 +18,9 @@ from coursework.database.accounts import (
     invite,
     set_role,
     set_secret,
-    take_up,
 )
 from coursework.database.audit import OF_ACCOUNTS, Actor, note, noted
-from coursework.database.identities import known_as
+from coursework.database.identities import identities_of
 from coursework.database.people import put_person
 from coursework.database.permissions import ADMINISTRATOR, Permission
 from coursework.database.sessions import end_session, end_sessions, sessions_of
@@ -127,7 +127,7 @@ def invitation(request: Request) -> Response:
     if wrong:
         return _invitation_page(request, mine, 422, wrong=wrong)
     with request.site.store.begin() as connection:
-        person = take_up(connection, end, secret, request.received_at)
+        person = accept_invitation(connection, end, secret, request.received_at)
         if person is None:
             raise HTTPException("invitation", 410)
         end_sessions(connection, person)
@@ -160,7 +160,7 @@ def account(request: Request) -> Response:
     if request.form.text("do") == "everywhere":
         with request.site.store.begin() as connection:
             end_sessions(connection, request.user.id)
-            identities = known_as(connection, request.user.id)
+            identities = identities_of(connection, request.user.id)
         if request.site.lti is not None:
             for issuer, subject in identities:
                 Storage(request.site.lti).end_sessions(subject, issuer)

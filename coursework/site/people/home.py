@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from urllib.parse import quote
 
-from coursework.database.people import people, person_by_who, put_account, put_person
+from coursework.database.people import people, person_by_identifier, put_account, put_person
 from coursework.database.permissions import ADMINISTRATOR, Permission
 from coursework.site.frame.budgets import PLAIN
 from coursework.site.frame.limits import FREE
@@ -61,7 +61,7 @@ def choose_language(request: Request) -> Response:
 def owner(site: Site) -> int:
     """Return the owner of a site on their own machine: an administrator who is also a student."""
     with site.store.reading() as connection:
-        existing = person_by_who(connection, "owner")
+        existing = person_by_identifier(connection, "owner")
     if existing is not None and existing.role:
         return int(existing.id)
     with site.store.begin() as connection:

@@ -13,9 +13,9 @@ from sqlalchemy import Connection
 from coursework.database.accounts import account_by_login, accounts, is_last_administrator, set_role
 from coursework.database.areas import areas_of, groups_known, put_areas
 from coursework.database.audit import note, noted
-from coursework.database.desk import listed
-from coursework.database.identities import separate, ties_of
-from coursework.database.people import people, person_by_id, person_by_who, put_person
+from coursework.database.identities import links_of, unlink_identity
+from coursework.database.instructor_queries import listed_assignments
+from coursework.database.people import people, person_by_id, person_by_identifier, put_person
 from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Area, Permission, may, to_invite
 from coursework.lti.storage import Storage
 from coursework.making.identity import EMAIL, LOGIN, plain
@@ -164,7 +164,7 @@ def _add_student(request: Request, connection: Connection, student: Student) -> 
     HTTPException
         It names a member of staff, whom the current user may not change.
     """
-    existing = person_by_who(connection, student.draw_key)
+    existing = person_by_identifier(connection, student.draw_key)
     if existing is not None and (existing.role or STUDENT) in STAFF:
         request.require(Permission.PEOPLE_ROLES)
     return put_person(connection, student.draw_key, student.name, student.lang, student.columns)
@@ -215,7 +215,9 @@ def person_page(request: Request) -> Response:
         last = is_last_administrator(connection, person.id)
         areas = areas_of(connection, person.id)
         groups = groups_known(connection)
-        assignments = [(about.id, assignment_title(about, request.lang)) for about in listed(connection)]
+        assignments = [
+            (about.id, assignment_title(about, request.lang)) for about in listed_assignments(connection)
+        ]
         ties = _ties(connection, person.id)
     return request.render(
         "site_person", line=line, last=last, columns=person.columns or {}, roles=ROLES,
@@ -235,7 +237,7 @@ def _ties(connection: Connection, person: int) -> list[tuple[Any, str]]:
     by_password = {str(line.about.get("platform")) for line in lines}
     return [
         (tie, "by_password" if urlsplit(tie.issuer).hostname in by_password else "by_platform")
-        for tie in ties_of(connection, person)
+        for tie in links_of(connection, person)
     ]
 
 
@@ -244,7 +246,7 @@ def separate_tie(request: Request) -> Response:
     _check_is_post(request)
     with request.site.store.begin() as connection:
         person = somebody(request, connection)
-        gone = separate(connection, person.id, number(request.form.text("tie")))
+        gone = unlink_identity(connection, person.id, number(request.form.text("tie")))
         if gone is None:
             raise HTTPException("own", 404)
         about = {"person": person.id, "platform": urlsplit(gone[0]).hostname or gone[0]}
@@ -297,7 +299,10 @@ def change_role(request: Request) -> Response:
 def _areas_of_form(request: Request, connection: Connection) -> list[Area]:
     """Return the areas that a form selects: each group in each assignment; none if one of the two lists is
     empty."""
-    assignments, groups = {str(item.id): item.id for item in listed(connection)}, groups_known(connection)
+    assignments, groups = (
+        {str(item.id): item.id for item in listed_assignments(connection)},
+        groups_known(connection),
+    )
     numbers = request.form.texts.get("assignment", ())
     named = request.form.texts.get("group", ())
     where = [None] if _ANY in numbers else [assignments[item] for item in numbers if item in assignments]

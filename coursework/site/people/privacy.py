@@ -14,11 +14,11 @@ from sqlalchemy import Connection
 
 from coursework.database.accounts import is_last_administrator
 from coursework.database.audit import Actor, kinds, note, noted
-from coursework.database.belongings import belongings, whose
 from coursework.database.erasing import erase
-from coursework.database.identities import known_as
+from coursework.database.identities import identities_of
 from coursework.database.people import people
 from coursework.database.permissions import Permission
+from coursework.database.personal_data import identifiers_of, personal_data
 from coursework.language.words import words
 from coursework.lti.storage import Storage
 from coursework.making.students import file_stems
@@ -53,10 +53,10 @@ def their_data(request: Request) -> Response:
 def _given(
     request: Request, connection: Connection, person: int, release_of: Callable[[int], Release]
 ) -> Response:
-    owner = whose(connection, person)
+    owner = identifiers_of(connection, person)
     if owner is None:
         raise HTTPException("own", 404)
-    tables = _withheld(belongings(connection, owner), release_of)
+    tables = _withheld(personal_data(connection, owner), release_of)
     name = next(iter(file_stems([owner.name or "me"])))
     return Response(
         media_type="application/zip", content=_zip(request, tables, owner.name), filename=f"{name}.zip"
@@ -114,11 +114,11 @@ def erase_person(request: Request) -> Response:
     """Erase a person, after their name has been typed for confirmation."""
     with request.site.store.reading() as connection:
         person = somebody(request, connection)
-        owner = whose(connection, person.id)
+        owner = identifiers_of(connection, person.id)
         if is_last_administrator(connection, person.id):
             raise HTTPException("last_administrator", 409)
         counts = (
-            {table: len(rows) for table, rows in belongings(connection, owner).items() if rows}
+            {table: len(rows) for table, rows in personal_data(connection, owner).items() if rows}
             if owner
             else {}
         )
@@ -135,7 +135,7 @@ def erase_person(request: Request) -> Response:
     with request.site.store.begin() as connection:
         if is_last_administrator(connection, person.id):
             raise HTTPException("last_administrator", 409)
-        identities = known_as(connection, person.id)
+        identities = identities_of(connection, person.id)
         gone = erase(connection, person.id)
         by = Actor("", 0, request.client_address) if person.id == request.user.id else request.actor
         note(connection, request.received_at, by, "erased", person=person.id, rows=sum(gone.values()))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from markupsafe import Markup
 
 from coursework.course.lessons import Lesson, taught_by
-from coursework.database.drafts import Box, drafts
+from coursework.database.drafts import DraftBox, drafts
 from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.errors import BadInput, CourseworkError
@@ -133,7 +133,7 @@ class Worksheet:
         return {name: ", ".join(texts.get(BOX_PREFIX + name, ()))[:LONGEST] for name in self.parts}
 
     @cached_property
-    def drafts(self) -> dict[str, Box]:
+    def drafts(self) -> dict[str, DraftBox]:
         """Drafts by part."""
         with self.request.site.store.reading() as connection:
             return drafts(connection, self.request.user.id, self.name)
@@ -149,7 +149,7 @@ class Worksheet:
             name: ", ".join(_ticked(self.variant, self.parts[name], text)) for name, text in texts.items()
         }
 
-    def save_typed(self, versions: str) -> dict[str, Box]:
+    def save_typed(self, versions: str) -> dict[str, DraftBox]:
         """Store the texts of a form without a script; return the boxes that another page has changed
         since."""
         self.drafts, others = save_form_drafts(

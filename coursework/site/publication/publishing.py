@@ -25,13 +25,13 @@ from coursework.database.publication import (
     Extension,
     Fault,
     Phase,
-    Place,
     Publication,
+    StudentAssignment,
     extend,
     extensions,
-    places,
     publish,
-    say_sittings,
+    set_counting_attempt,
+    student_assignments,
 )
 from coursework.database.tables import assignment, audit, dealt, delivery, variant
 from coursework.errors import BadInput
@@ -270,7 +270,7 @@ def publish_assignment(request: Request) -> Response:
         return _page(request, listed, publication, faults)
     with request.site.store.begin() as connection:
         publish(connection, listed.id, publication)
-        say_sittings(connection, listed.id, sittings)
+        set_counting_attempt(connection, listed.id, sittings)
         prepare_soon(request.site, connection, listed.id)
         _note(request, connection, listed, "assignment published", **publication.as_json(), sittings=sittings)
     return _redirect(listed)
@@ -436,7 +436,7 @@ def preview(request: Request) -> Response:
     )
     publication = listed.publication or Publication()
     state = AssignmentState(
-        Place(listed.id, listed.name, definition.stated(), student, publication, None),
+        StudentAssignment(listed.id, listed.name, definition.stated(), student, publication, None),
         request.lang,
         publication.now(request.received_at),
         (),
@@ -462,7 +462,7 @@ def as_somebody(request: Request) -> Response:
     with request.site.store.begin() as connection:
         listed = assignment_here(request, connection)
         person_id = int(request.path_params["person"])
-        matches = places(connection, person_id, listed.id)
+        matches = student_assignments(connection, person_id, listed.id)
         if not matches:
             raise HTTPException("page", 404)
         _note(request, connection, listed, "seen as a student", student=matches[0].student)

@@ -3,7 +3,7 @@
 import sqlalchemy as sa
 from alembic import op
 
-from coursework.database.tables import Json, Moment, Words
+from coursework.database.tables import Json, SafeText, UTCDateTime
 
 revision = "0002"
 down_revision = "0001"
@@ -15,12 +15,12 @@ def upgrade() -> None:
         sa.Column("id", sa.Integer(), nullable=False),
         sa.Column("assignment_id", sa.Integer(), nullable=False),
         sa.Column("page", sa.String(length=40), nullable=False),
-        sa.Column("file", Words(), nullable=False),
+        sa.Column("file", SafeText(), nullable=False),
         sa.Column("number", sa.Integer(), nullable=False),
-        sa.Column("student", Words(), nullable=False),
+        sa.Column("student", SafeText(), nullable=False),
         sa.Column("kept", Json, nullable=False),
-        sa.Column("picture", Words(), nullable=False),
-        sa.Column("came", Moment(), nullable=False),
+        sa.Column("picture", SafeText(), nullable=False),
+        sa.Column("came", UTCDateTime(), nullable=False),
         sa.ForeignKeyConstraint(
             ["assignment_id"],
             ["assignment.id"],
@@ -35,15 +35,15 @@ def upgrade() -> None:
         "typed",
         sa.Column("id", sa.Integer(), nullable=False),
         sa.Column("assignment_id", sa.Integer(), nullable=False),
-        sa.Column("student", Words(), nullable=False),
-        sa.Column("exercise", Words(), nullable=False),
-        sa.Column("seed", Words(), nullable=False),
-        sa.Column("part", Words(), nullable=False),
-        sa.Column("coordinate", Words(), nullable=False),
-        sa.Column("answer", Words(), nullable=True),
-        sa.Column("seen", Words(), nullable=False),
-        sa.Column("by", Words(), nullable=False),
-        sa.Column("made", Moment(), nullable=False),
+        sa.Column("student", SafeText(), nullable=False),
+        sa.Column("exercise", SafeText(), nullable=False),
+        sa.Column("seed", SafeText(), nullable=False),
+        sa.Column("part", SafeText(), nullable=False),
+        sa.Column("coordinate", SafeText(), nullable=False),
+        sa.Column("answer", SafeText(), nullable=True),
+        sa.Column("seen", SafeText(), nullable=False),
+        sa.Column("by", SafeText(), nullable=False),
+        sa.Column("made", UTCDateTime(), nullable=False),
         sa.ForeignKeyConstraint(
             ["assignment_id"],
             ["assignment.id"],

@@ -3,7 +3,7 @@
 import sqlalchemy as sa
 from alembic import op
 
-from coursework.database.tables import Json, Words
+from coursework.database.tables import Json, SafeText
 
 revision = "0003"
 down_revision = "0002"
@@ -14,7 +14,7 @@ def _key() -> sa.Column[int]:
 
 
 def _text(name: str) -> sa.Column[str]:
-    return sa.Column(name, Words(), nullable=False)
+    return sa.Column(name, SafeText(), nullable=False)
 
 
 def _number(name: str) -> sa.Column[int]:

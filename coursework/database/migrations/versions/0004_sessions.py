@@ -3,7 +3,7 @@
 import sqlalchemy as sa
 from alembic import op
 
-from coursework.database.tables import Moment, Words
+from coursework.database.tables import SafeText, UTCDateTime
 
 revision = "0004"
 down_revision = "0003"
@@ -15,10 +15,10 @@ def upgrade() -> None:
         sa.Column("id", sa.Integer(), nullable=False),
         sa.Column("person_id", sa.Integer(), nullable=False),
         sa.Column("digest", sa.String(length=64), nullable=False),
-        sa.Column("browser", Words(), nullable=False),
-        sa.Column("created", Moment(), nullable=False),
-        sa.Column("seen", Moment(), nullable=False),
-        sa.Column("until", Moment(), nullable=False),
+        sa.Column("browser", SafeText(), nullable=False),
+        sa.Column("created", UTCDateTime(), nullable=False),
+        sa.Column("seen", UTCDateTime(), nullable=False),
+        sa.Column("until", UTCDateTime(), nullable=False),
         sa.ForeignKeyConstraint(
             ["person_id"], ["person.id"], name=op.f("fk_session_person_id_person"), ondelete="CASCADE"
         ),

@@ -3,7 +3,7 @@
 import sqlalchemy as sa
 from alembic import op
 
-from coursework.database.tables import Moment, Words
+from coursework.database.tables import SafeText, UTCDateTime
 
 revision = "0005"
 down_revision = "0004"
@@ -21,9 +21,9 @@ def upgrade() -> None:
         sa.Column("person_id", sa.Integer(), nullable=True),
         sa.Column("tries", sa.Integer(), nullable=False),
         sa.Column("worker", sa.String(length=64), nullable=False),
-        sa.Column("until", Moment(), nullable=True),
-        sa.Column("fault", Words(), nullable=False),
-        sa.Column("made", Moment(), nullable=False),
+        sa.Column("until", UTCDateTime(), nullable=True),
+        sa.Column("fault", SafeText(), nullable=False),
+        sa.Column("made", UTCDateTime(), nullable=False),
         *(
             sa.ForeignKeyConstraint(
                 [f"{owner}_id"], [f"{owner}.id"], name=op.f(f"fk_job_{owner}_id_{owner}"), ondelete="CASCADE"

@@ -4,7 +4,7 @@ import sqlalchemy as sa
 from alembic import op
 
 from coursework.database.promoting import promote_first
-from coursework.database.tables import Words
+from coursework.database.tables import SafeText
 
 revision = "0006"
 down_revision = "0005"
@@ -16,7 +16,7 @@ def upgrade() -> None:
         sa.Column("id", sa.Integer(), nullable=False),
         sa.Column("person_id", sa.Integer(), nullable=False),
         sa.Column("assignment_id", sa.Integer(), nullable=True),
-        sa.Column("class_group", Words(), nullable=True),
+        sa.Column("class_group", SafeText(), nullable=True),
         sa.ForeignKeyConstraint(
             ["assignment_id"],
             ["assignment.id"],

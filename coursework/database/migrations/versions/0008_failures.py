@@ -3,7 +3,7 @@
 import sqlalchemy as sa
 from alembic import op
 
-from coursework.database.tables import Moment
+from coursework.database.tables import UTCDateTime
 
 revision = "0008"
 down_revision = "0007"
@@ -14,7 +14,7 @@ def upgrade() -> None:
         "failure",
         sa.Column("key", sa.String(length=64), nullable=False),
         sa.Column("count", sa.Integer(), nullable=False),
-        sa.Column("last", Moment(), nullable=False),
+        sa.Column("last", UTCDateTime(), nullable=False),
         sa.PrimaryKeyConstraint("key", name=op.f("pk_failure")),
     )
     with op.batch_alter_table("failure") as changed:

@@ -3,7 +3,7 @@
 import sqlalchemy as sa
 from alembic import op
 
-from coursework.database.tables import Packed, Words
+from coursework.database.tables import CompressedText, SafeText
 
 revision = "0009"
 down_revision = "0008"
@@ -17,10 +17,10 @@ def upgrade() -> None:
         sa.Column("id", sa.Integer(), nullable=False),
         sa.Column("assignment_id", sa.Integer(), nullable=False),
         sa.Column("person_id", sa.Integer(), nullable=False),
-        sa.Column("lang", Words(), nullable=False),
+        sa.Column("lang", SafeText(), nullable=False),
         sa.Column("state", sa.String(length=64), nullable=False),
-        sa.Column("head", Packed(), nullable=False),
-        sa.Column("body", Packed(), nullable=False),
+        sa.Column("head", CompressedText(), nullable=False),
+        sa.Column("body", CompressedText(), nullable=False),
         *(
             sa.ForeignKeyConstraint(
                 [f"{owner}_id"],

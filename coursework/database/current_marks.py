@@ -10,8 +10,8 @@ from sqlalchemy import Connection, Select, func, select
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.decisions import Decision, Decisions
-from coursework.database.deliveries import rows_of
-from coursework.database.publication import charges
+from coursework.database.publication import late_penalties
+from coursework.database.submissions import rows_of
 from coursework.database.tables import mark, marking
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.class_marking import rejecting
@@ -31,11 +31,11 @@ _MATCHES = _LINE.index(mark.c.matches)
 _CHUNK = 5000  #: sheets that are read at once
 
 
-class Stood(NamedTuple):
+class LastMarking(NamedTuple):
     """A sheet as it was last marked."""
 
     id: int
-    place: SheetPlace
+    key: SheetPlace
     sitting: int
     state: str
     lang: str
@@ -49,13 +49,15 @@ class Stood(NamedTuple):
 Whom = str | Collection[str] | None
 
 
-def stood(connection: Connection, assignment_id: int, student: Whom = None) -> dict[SheetPlace, Stood]:
+def last_markings(
+    connection: Connection, assignment_id: int, student: Whom = None
+) -> dict[SheetPlace, LastMarking]:
     """Return the last marking of each sheet, in the order of the first marking of each; including sheets
     without any current answer."""
     last = _last(assignment_id, student).subquery()
     query = select(marking, last.c.first).join(last, marking.c.id == last.c.last).order_by(last.c.first)
     rows = connection.execute(query)
-    return {sheet.place: sheet for sheet in (_stood(row)._replace(first=row.first) for row in rows)}
+    return {sheet.key: sheet for sheet in (_last_marking(row)._replace(first=row.first) for row in rows)}
 
 
 def _last(assignment_id: int, student: Whom) -> Select[Any]:
@@ -66,19 +68,19 @@ def _last(assignment_id: int, student: Whom) -> Select[Any]:
     return query.where(marking.c.student.in_([student] if isinstance(student, str) else list(student)))
 
 
-def _stood(row: Any) -> Stood:
+def _last_marking(row: Any) -> LastMarking:
     key = row.student, row.exercise, int(row.seed), row.attempt
-    return Stood(row.id, key, row.sitting, row.state, row.lang, row.apart, row.submitted, row.fault)
+    return LastMarking(row.id, key, row.sitting, row.state, row.lang, row.apart, row.submitted, row.fault)
 
 
-class _Lines(NamedTuple):
+class _SheetMarks(NamedTuple):
     """Marks of a sheet, and its answered parts in their order."""
 
     marks: Mapping[str, Mark]
-    came: tuple[str, ...]
+    answered: tuple[str, ...]
 
 
-def lines_of(connection: Connection, sheets: Iterable[Stood]) -> dict[int, _Lines]:
+def lines_of(connection: Connection, sheets: Iterable[LastMarking]) -> dict[int, _SheetMarks]:
     """Return the marks of sheets, by the marking's id."""
     ids = [sheet.id for sheet in sheets]
     marks: dict[int, dict[str, Mark]] = {}
@@ -92,7 +94,7 @@ def lines_of(connection: Connection, sheets: Iterable[Stood]) -> dict[int, _Line
             if position is not None:
                 order.setdefault(number, []).append((position, line.part))
     return {
-        number: _Lines(sheet_marks, tuple(part for _, part in sorted(order.get(number, ()))))
+        number: _SheetMarks(sheet_marks, tuple(part for _, part in sorted(order.get(number, ()))))
         for number, sheet_marks in marks.items()
     }
 
@@ -103,30 +105,30 @@ def _line(sent: Sequence[Any]) -> Mark:
 
 
 def machine_marks(
-    issued: Issued, sheets: Iterable[Stood], lines: Mapping[int, _Lines]
+    issued: Issued, sheets: Iterable[LastMarking], lines: Mapping[int, _SheetMarks]
 ) -> Iterator[tuple[SheetPlace, Graded | str]]:
     """Yield each sheet as marked by the machine, or the reason for which it cannot be marked; skip sheets
     without any current answer."""
     for sheet in sheets:
         if sheet.fault:
-            yield sheet.place, sheet.fault
+            yield sheet.key, sheet.fault
         elif sheet.state:
-            yield sheet.place, _graded(issued, sheet, lines[sheet.id])
+            yield sheet.key, _graded(issued, sheet, lines[sheet.id])
 
 
-def _graded(issued: Issued, sheet: Stood, lines: _Lines) -> Graded:
-    record = issued.record_of(*sheet.place[:3])
+def _graded(issued: Issued, sheet: LastMarking, lines: _SheetMarks) -> Graded:
+    record = issued.record_of(*sheet.key[:3])
     if sheet.apart:
         record = {**record, "parts": [p for p in record["parts"] if p["id"] in lines.marks]}
     if sheet.lang != str(record.get("lang", "")):
         record = {**record, "lang": sheet.lang}
-    graded = Graded(*sheet.place[:3], lines.marks, lines.came, record, sitting=sheet.sitting)
+    graded = Graded(*sheet.key[:3], lines.marks, lines.answered, record, sitting=sheet.sitting)
     return graded._replace(submitted=sheet.submitted, apart=sheet.apart)
 
 
 def graded(connection: Connection, assignment_id: int, student: str | None = None) -> list[Graded]:
     """Return the current sheets of a class, or of a student: the last marking with the decisions applied."""
-    sheets = stood(connection, assignment_id, student)
+    sheets = last_markings(connection, assignment_id, student)
     if not sheets:
         return []
     lines = lines_of(connection, sheets.values())
@@ -146,7 +148,7 @@ def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gra
     """
     issued = issued_of(connection, assignment_id)
     sheets = placed(course, issued, rows_of(connection, assignment_id))
-    standing = stood(connection, assignment_id)
+    standing = last_markings(connection, assignment_id)
     marked = [standing[key] for key in sheets.sheets if key in standing]
     results = machine_marks(issued, marked, lines_of(connection, marked))
     decisions = Decisions.read(connection, assignment_id)
@@ -154,11 +156,11 @@ def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gra
     for sheet in map(decisions.apply, rejecting(sheets, results)):
         book.add(sheet)
         book.waiting += sum(line.verdict == TO_MARK for line in sheet.lines.values())
-    book.seen, book.charged = told_seen(sheets.seen), charges(connection, assignment_id)
+    book.seen, book.charged = told_seen(sheets.seen), late_penalties(connection, assignment_id)
     return book
 
 
-class Waits(NamedTuple):
+class WaitingAnswer(NamedTuple):
     """An answer that a person looks at."""
 
     student: str
@@ -170,7 +172,7 @@ class Waits(NamedTuple):
     verdict: str  #: of the marking
     points: float
     out_of: float
-    says: str  #: Markdown
+    message: str  #: Markdown
     lang: str
     decision: Decision | None  #: that counts; None while it waits
 
@@ -181,7 +183,7 @@ WAIT = (TO_MARK, "unreadable")
 
 def waiting(
     connection: Connection, assignment_id: int, verdicts: Sequence[str] = WAIT, *, decided: bool = False
-) -> list[Waits]:
+) -> list[WaitingAnswer]:
     """Return the answers that wait for a person, question by question; on request, including those that are
     ``decided``."""
     last = _last(assignment_id, None).subquery()
@@ -194,14 +196,14 @@ def waiting(
     decisions = Decisions.read(connection, assignment_id)
     waits = []
     for row in connection.execute(query.where(mark.c.verdict.in_(verdicts))):
-        sheet, line = _stood(row), _line(row[len(marking.c) :])
-        waits.append(_waits(sheet, line, next(decisions.counting(sheet.place[:3], line), None)))
+        sheet, line = _last_marking(row), _line(row[len(marking.c) :])
+        waits.append(_waits(sheet, line, next(decisions.counting(sheet.key[:3], line), None)))
     return sorted(
         (answer for answer in waits if decided or answer.decision is None),
         key=lambda answer: (answer.exercise, answer.part),
     )
 
 
-def _waits(sheet: Stood, line: Mark, decision: Decision | None) -> Waits:
-    columns = *sheet.place[:3], sheet.sitting, line.part, line.answer
-    return Waits(*columns, line.verdict, line.points, line.out_of, line.says, line.lang, decision)
+def _waits(sheet: LastMarking, line: Mark, decision: Decision | None) -> WaitingAnswer:
+    columns = *sheet.key[:3], sheet.sitting, line.part, line.answer
+    return WaitingAnswer(*columns, line.verdict, line.points, line.out_of, line.says, line.lang, decision)

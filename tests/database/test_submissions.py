@@ -10,8 +10,8 @@ from sqlalchemy import func, select
 from stored_class import ANA, BEN, CAME, content, put, rows
 
 import coursework
-from coursework.database.deliveries import deliver, deliveries, next_number, rows_of
 from coursework.database.marking import mark_new
+from coursework.database.submissions import insert_submission, next_number, rows_of, submissions_of
 from coursework.database.tables import answer, person
 from coursework.gradebook.rows import Collected, Rejected, Row, Seen
 
@@ -44,7 +44,7 @@ def number(store, course):
 
 def keep(store, number, some, **more):
     with store.begin() as connection:
-        return deliver(connection, number, some, **{"source": "a.csv", "came": CAME, **more})
+        return insert_submission(connection, number, some, **{"source": "a.csv", "received_at": CAME, **more})
 
 
 def came(store, number, *which):
@@ -70,7 +70,7 @@ def test_the_same_content_under_another_name_is_one_delivery(store, number):
         row._replace(source=f"other/{row.source}") if not isinstance(row, Rejected) else row
         for row in CAME_ROWS
     ]
-    again = keep(store, number, moved, source="copy.csv", came=CAME + timedelta(1))
+    again = keep(store, number, moved, source="copy.csv", received_at=CAME + timedelta(1))
     assert (first.is_new, again.is_new) == (True, False)
     assert again == first._replace(is_new=False)
     assert came(store, number) == CAME_ROWS
@@ -134,24 +134,24 @@ def test_tries_are_counted_on_the_site_and_elsewhere(store, number, course):
     with store.begin() as connection:
         who = connection.execute(select(person.c.id).where(person.c.name == ANA)).scalar()
         assert next_number(connection, number, who, ANA) == 1
-        first = deliver(
+        first = insert_submission(
             connection,
             number,
             rows(course, ANA, 0, 1),
             source="site",
-            came=CAME,
+            received_at=CAME,
             person_id=who,
             number=1,
             late=40,
         )
         assert next_number(connection, number, who, ANA) == 2
-        assert deliveries(connection, number, who) == [first._replace(is_new=False)]
+        assert submissions_of(connection, number, who) == [first._replace(is_new=False)]
         assert first.late == 40
-        deliver(connection, number, rows(course, ANA, 0), source="paper.csv", came=CAME)
+        insert_submission(connection, number, rows(course, ANA, 0), source="paper.csv", received_at=CAME)
         assert next_number(connection, number, who, ANA) == 3
-        deliver(connection, number, rows(course, ANA, 0, 4), source="moodle.csv", came=CAME)
+        insert_submission(connection, number, rows(course, ANA, 0, 4), source="moodle.csv", received_at=CAME)
         assert next_number(connection, number, who, ANA) == 6
-        deliver(connection, number, rows(course, BEN, 0), source="paper.csv", came=CAME)
+        insert_submission(connection, number, rows(course, BEN, 0), source="paper.csv", received_at=CAME)
         found = {
             (row.student, row.origin.sitting if row.origin else 0) for row in rows_of(connection, number)
         }
@@ -166,15 +166,15 @@ def test_tries_are_counted_on_the_site_and_elsewhere(store, number, course):
 def test_whose_a_file_is_hangs_on_no_spelling_where_tries_are_counted(store, number, course):
     with store.begin() as connection:
         who = connection.execute(select(person.c.id).where(person.c.name == ANA)).scalar()
-        deliver(connection, number, rows(course, " ana", 0), source="paper.csv", came=CAME)
+        insert_submission(connection, number, rows(course, " ana", 0), source="paper.csv", received_at=CAME)
     mark_new(course, store, number)
     with store.begin() as connection:
         assert next_number(connection, number, who, ANA) == 2
         own = rows(course, ANA, 0, 2)
-        deliver(connection, number, own, source="site", came=CAME, person_id=who, number=2)
+        insert_submission(connection, number, own, source="site", received_at=CAME, person_id=who, number=2)
         by_number = Collected((("number", "100"),))
         late = [row._replace(student="A. N. A.", origin=by_number) for row in rows(course, ANA, 0)]
-        deliver(connection, number, late, source="moodle.csv", came=CAME)
+        insert_submission(connection, number, late, source="moodle.csv", received_at=CAME)
     assert {row.origin.sitting for row in came(store, number) if row.student == "A. N. A."} == {3}
 
 

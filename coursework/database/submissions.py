@@ -38,10 +38,10 @@ from coursework.gradebook.rows import Collected, Rejected, Row, Seen
 from coursework.making.issued import Issued
 
 _CHUNK = 5000  #: rows that are written at once
-_Placed = tuple[tuple[Any, ...], Row | Rejected | Seen]  #: delivery and place in it
+_PlacedRow = tuple[tuple[Any, ...], Row | Rejected | Seen]  #: delivery and place in it
 
 
-class Delivery(NamedTuple):
+class Submission(NamedTuple):
     """Submission of several answers together."""
 
     id: int
@@ -50,25 +50,25 @@ class Delivery(NamedTuple):
     number: int  #: which try of the person; 0 for files
     receipt: str
     late: int  #: seconds
-    came: datetime
+    received_at: datetime
 
 
 # ---------------------------------------------------------------------- writing
 
 
-def deliver(
+def insert_submission(
     connection: Connection,
     assignment_id: int,
     rows: Iterable[Row | Rejected | Seen],
     *,
     source: str,
-    came: datetime,
+    received_at: datetime,
     person_id: int | None = None,
     number: int = 0,
     late: int = 0,
     replaces: bool = False,
     in_place: bool = False,
-) -> Delivery:
+) -> Submission:
     """Store the rows of a submission as received; return an equal one from before, if there is one, and store
     nothing.
 
@@ -79,28 +79,28 @@ def deliver(
     came_rows = list(rows)
     digest = _digest(came_rows, person_id)
     if person_id is None and not in_place:
-        came_rows = _after_tries(connection, assignment_id, came_rows)
+        came_rows = _after_attempts_on_site(connection, assignment_id, came_rows)
     receipt = _receipt(assignment_id, digest)
-    values = {"source": source, "number": number, "receipt": receipt, "late": late, "came": came}
+    values = {"source": source, "number": number, "receipt": receipt, "late": late, "came": received_at}
     row = {"assignment_id": assignment_id, "person_id": person_id, "digest": digest, **values}
     number_added = insert_unless_there(connection, delivery, row, ("assignment_id", "digest"))
     if number_added is None:
-        earlier = delivery_alike(connection, assignment_id, digest)
+        earlier = submission_alike(connection, assignment_id, digest)
         if replaces:
-            _replace(connection, assignment_id, earlier.id, source, came)
+            _replace(connection, assignment_id, earlier.id, source, received_at)
             outdate_rows(connection, assignment_id)
         return earlier
     _put_rows(connection, number_added, came_rows)
     if replaces:
-        _replace(connection, assignment_id, number_added, source, came)
+        _replace(connection, assignment_id, number_added, source, received_at)
     if person_id is None:
         outdate_rows(connection, assignment_id)
     else:
         outdate(connection, assignment_id, [row.student for row in came_rows if isinstance(row, Row)])
-    return Delivery(number_added, True, source, number, receipt, late, came)
+    return Submission(number_added, True, source, number, receipt, late, received_at)
 
 
-def _after_tries(
+def _after_attempts_on_site(
     connection: Connection, assignment_id: int, rows: list[Row | Rejected | Seen]
 ) -> list[Row | Rejected | Seen]:
     """Return the rows of a file; those of students who submitted on the site get a later attempt number, so
@@ -113,7 +113,7 @@ def _after_tries(
     issued = issued_of(connection, assignment_id)
 
     def moved(row: Row | Rejected | Seen) -> Row | Rejected | Seen:
-        if not isinstance(row, Row) or not (before := tries.get(_whose(issued, row) or "", 0)):
+        if not isinstance(row, Row) or not (before := tries.get(_student_or_none(issued, row) or "", 0)):
             return row
         origin = row.origin or Collected()
         return row._replace(origin=origin._replace(sitting=before + max(1, origin.sitting)))
@@ -121,7 +121,7 @@ def _after_tries(
     return [moved(row) for row in rows]
 
 
-def _whose(issued: Issued, row: Row) -> str | None:
+def _student_or_none(issued: Issued, row: Row) -> str | None:
     with suppress(Refused):
         return student_of(issued, row) if row.student else None
     return None
@@ -166,16 +166,16 @@ def _sittings_query() -> CompoundSelect[Any]:
     )
 
 
-def delivery_alike(connection: Connection, assignment_id: int, digest: str) -> Delivery:
+def submission_alike(connection: Connection, assignment_id: int, digest: str) -> Submission:
     """Return the submission with the given digest."""
     row = connection.execute(
         select(delivery).where(delivery.c.assignment_id == assignment_id, delivery.c.digest == digest)
     ).one()
-    return _delivery(row, is_new=False)
+    return _submission(row, is_new=False)
 
 
-def _delivery(row: Any, *, is_new: bool) -> Delivery:
-    return Delivery(row.id, is_new, row.source, row.number, row.receipt, row.late, row.came)
+def _submission(row: Any, *, is_new: bool) -> Submission:
+    return Submission(row.id, is_new, row.source, row.number, row.receipt, row.late, row.came)
 
 
 def _put_rows(connection: Connection, number: int, rows: Sequence[Row | Rejected | Seen]) -> None:
@@ -200,20 +200,22 @@ def _put_rows(connection: Connection, number: int, rows: Sequence[Row | Rejected
 # ---------------------------------------------------------------------- reading
 
 
-def deliveries(connection: Connection, assignment_id: int, person_id: int | None = None) -> list[Delivery]:
+def submissions_of(
+    connection: Connection, assignment_id: int, person_id: int | None = None
+) -> list[Submission]:
     """Return the submissions for an assignment, in order; of one person alone, if given."""
     parameters = (
         {"assignment": assignment_id}
         if person_id is None
         else {"assignment": assignment_id, "person": person_id}
     )
-    rows = connection.execute(_deliveries_query(person_id is not None), parameters)
-    return [_delivery(row, is_new=False) for row in rows]
+    rows = connection.execute(_submissions_query(person_id is not None), parameters)
+    return [_submission(row, is_new=False) for row in rows]
 
 
 @cache
-def _deliveries_query(is_of_one: bool) -> Select[Any]:
-    """Return the query of :func:`deliveries`, cached since many requests execute it."""
+def _submissions_query(is_of_one: bool) -> Select[Any]:
+    """Return the query of :func:`submissions_of`, cached since many requests execute it."""
     query = select(delivery).where(delivery.c.assignment_id == bindparam("assignment"))
     if is_of_one:
         query = query.where(delivery.c.person_id == bindparam("person"))
@@ -223,7 +225,7 @@ def _deliveries_query(is_of_one: bool) -> Select[Any]:
 def answers_of(connection: Connection, delivery_id: int) -> list[list[str]]:
     """Return exercise, seed, part and answer of each question of a submission, in order."""
     rows = connection.execute(_answers_query(), {"delivery": delivery_id})
-    return [[*row[:3], str(_as_came(row.answer) or "")] for row in rows]
+    return [[*row[:3], str(_from_json(row.answer) or "")] for row in rows]
 
 
 @cache
@@ -240,11 +242,13 @@ def _papers_query() -> Select[Any]:
     return select(dealt.c.sitting, variant.c.exercise, variant.c.seed).join(variant).where(*theirs)
 
 
-def tries_used(connection: Connection, assignment_id: int, person_id: int, done: Sequence[Delivery]) -> int:
+def attempts_used(
+    connection: Connection, assignment_id: int, person_id: int, done: Sequence[Submission]
+) -> int:
     """Return the number of attempts that a person has used for the paper that is now theirs; a make-up is
     another paper.
 
-    ``done`` are the person's :func:`deliveries`.
+    ``done`` are the person's :func:`submissions_of`.
     """
     if not done:
         return 0
@@ -281,11 +285,11 @@ def rows_of(
         return query.order_by(table.c.delivery_id, table.c.place)
 
     met: dict[str, Collected] = {}
-    refused: list[_Placed] = [
+    refused: list[_PlacedRow] = [
         (tuple(row[:2]), Rejected(*row[2:])) for row in connection.execute(of(rejected))
     ]
-    seen_rows: list[_Placed] = [(tuple(row[:2]), Seen(*row[2:])) for row in connection.execute(of(seen))]
-    answers: Iterator[_Placed] = (
+    seen_rows: list[_PlacedRow] = [(tuple(row[:2]), Seen(*row[2:])) for row in connection.execute(of(seen))]
+    answers: Iterator[_PlacedRow] = (
         (tuple(row[:2]), _as_row(row, met)) for row in connection.execute(of(answer))
     )
     first: dict[Any, int] = {}
@@ -307,7 +311,15 @@ def _content(row: Row | Rejected | Seen) -> tuple[Any, ...] | None:
 def _as_row(row: Sequence[Any], met: dict[str, Collected]) -> Row:
     student, exercise, seed, part, value, source, warning, lang, origin = row[2:]
     return Row(
-        student, exercise, seed, part, _as_came(value), source, warning, lang, _origin_as_came(origin, met)
+        student,
+        exercise,
+        seed,
+        part,
+        _from_json(value),
+        source,
+        warning,
+        lang,
+        _origin_from_json(origin, met),
     )
 
 
@@ -326,7 +338,7 @@ def _as_json(value: Any) -> Any:
     return str(value) if kind is None else {kind: str(value)}
 
 
-def _as_came(value: Any) -> Any:
+def _from_json(value: Any) -> Any:
     if not isinstance(value, Mapping):
         return value
     ((kind, digits),) = value.items()
@@ -339,7 +351,7 @@ def _origin_as_json(origin: Collected) -> dict[str, Any]:
     return {name: value for name, value in origin._asdict().items() if value != usual[name]}
 
 
-def _origin_as_came(stored: Mapping[str, Any] | None, met: dict[str, Collected]) -> Collected | None:
+def _origin_from_json(stored: Mapping[str, Any] | None, met: dict[str, Collected]) -> Collected | None:
     if stored is None:
         return None
     key = repr(stored)
@@ -356,11 +368,11 @@ def _digest(rows: Sequence[Row | Rejected | Seen], person_id: int | None) -> str
     """Of what rows say, wherever they stood; of what says nobody's name, where as well."""
     digest = sha256(b"" if person_id is None else str(person_id).encode())
     for row in rows:
-        digest.update(repr(_said(row)).encode("utf-8", "backslashreplace"))
+        digest.update(repr(_digest_content(row)).encode("utf-8", "backslashreplace"))
     return digest.hexdigest()
 
 
-def _said(row: Row | Rejected | Seen) -> tuple[Any, ...]:
+def _digest_content(row: Row | Rejected | Seen) -> tuple[Any, ...]:
     if isinstance(row, Row):
         content = (*row[:5], row.lang, row.origin)
         return content if row.student else (*content, _name(row.source))

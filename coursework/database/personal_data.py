@@ -45,7 +45,7 @@ _HIDDEN = {
 }
 
 
-class Whose(NamedTuple):
+class PersonIdentifiers(NamedTuple):
     """By what the tables know somebody."""
 
     person: int
@@ -58,7 +58,7 @@ class Whose(NamedTuple):
         return (number, folded(student)) in self.students
 
 
-def whose(connection: Connection, number: int) -> Whose | None:
+def identifiers_of(connection: Connection, number: int) -> PersonIdentifiers | None:
     """By what the tables know a person; None for nobody.
 
     In an assignment with a roster it is who was issued something; in one without, whoever gave the same name, as long as
@@ -80,7 +80,7 @@ def whose(connection: Connection, number: int) -> Whose | None:
         students |= {
             (assignment_id, folded(mine.name)) for assignment_id in connection.execute(free).scalars()
         }
-    return Whose(number, mine.name, frozenset(students), _words(connection, mine, issued))
+    return PersonIdentifiers(number, mine.name, frozenset(students), _words(connection, mine, issued))
 
 
 def _words(connection: Connection, mine: Any, issued: Any) -> frozenset[str]:
@@ -96,7 +96,9 @@ def _words(connection: Connection, mine: Any, issued: Any) -> frozenset[str]:
     return frozenset(word.strip() for word in words if word and word.strip())
 
 
-def conditions(connection: Connection, known_as: Whose) -> dict[str, tuple[Table, ColumnElement[bool]]]:
+def conditions(
+    connection: Connection, known_as: PersonIdentifiers
+) -> dict[str, tuple[Table, ColumnElement[bool]]]:
     """Return the condition that selects the person's rows of each table, in an order in which they can be
     deleted."""
     deliveries = select(delivery.c.id).where(delivery.c.person_id == known_as.person)
@@ -124,7 +126,7 @@ def conditions(connection: Connection, known_as: Whose) -> dict[str, tuple[Table
     }  # fmt: skip
 
 
-def ids_of(connection: Connection, table: Table, known_as: Whose) -> list[int]:
+def ids_of(connection: Connection, table: Table, known_as: PersonIdentifiers) -> list[int]:
     """Return the ids of the person's rows in a table with the columns assignment and student."""
     numbers = {number for number, _ in known_as.students}
     query = select(table.c.id, table.c.assignment_id, table.c.student).where(
@@ -135,7 +137,7 @@ def ids_of(connection: Connection, table: Table, known_as: Whose) -> list[int]:
     ]
 
 
-def _dealt(connection: Connection, known_as: Whose) -> list[int]:
+def _dealt(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
     """Return the ids of the variants issued under the person's name without a roster."""
     query = (
         select(dealt.c.id, dealt.c.student, variant.c.assignment_id)
@@ -147,7 +149,7 @@ def _dealt(connection: Connection, known_as: Whose) -> list[int]:
     ]
 
 
-def _answers(connection: Connection, known_as: Whose) -> list[int]:
+def _answers(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
     numbers = {number for number, _ in known_as.students}
     query = (
         select(answer.c.id, delivery.c.assignment_id, answer.c.student)
@@ -159,7 +161,7 @@ def _answers(connection: Connection, known_as: Whose) -> list[int]:
     ]
 
 
-def _rejected(connection: Connection, known_as: Whose) -> list[int]:
+def _rejected(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
     """Return the ids of rejected rows that name this person."""
     names = {folded(word) for word in known_as.words}
     ids = []
@@ -170,7 +172,7 @@ def _rejected(connection: Connection, known_as: Whose) -> list[int]:
     return ids
 
 
-def belongings(connection: Connection, known_as: Whose) -> dict[str, list[dict[str, Any]]]:
+def personal_data(connection: Connection, known_as: PersonIdentifiers) -> dict[str, list[dict[str, Any]]]:
     """Return all stored data of a person: the rows of each table, and the audit entries about the person."""
     data = {}
     for name, (table, mine) in reversed(conditions(connection, known_as).items()):
@@ -183,13 +185,13 @@ def belongings(connection: Connection, known_as: Whose) -> dict[str, list[dict[s
     return data
 
 
-def _of_audit(row: Any, known_as: Whose) -> dict[str, Any]:
+def _of_audit(row: Any, known_as: PersonIdentifiers) -> dict[str, Any]:
     """Return a line of the audit; from where it was done, only where the person did it."""
     entry = dict(row._mapping)
     return entry if row.actor == known_as.person else {**entry, "address": None}
 
 
-def _tells_of(row: Any, known_as: Whose) -> bool:
+def _tells_of(row: Any, known_as: PersonIdentifiers) -> bool:
     about = row.about if isinstance(row.about, Mapping) else {}
     people = about.get("people")
     return (
@@ -199,7 +201,7 @@ def _tells_of(row: Any, known_as: Whose) -> bool:
     )
 
 
-def _papers(connection: Connection, known_as: Whose) -> list[dict[str, Any]]:
+def _papers(connection: Connection, known_as: PersonIdentifiers) -> list[dict[str, Any]]:
     """Return the variants issued to the person, with their given values."""
     query = (
         select(

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection, delete, insert, select
 
-from coursework.database.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decisions, Place, decide
+from coursework.database.decisions import ACCEPTED, GIVEN, WITHDRAWN, DecidedAnswer, Decisions, decide
 from coursework.database.tables import worksheet
 from coursework.errors import UnknownName
 from coursework.gradebook.accepted import Accepted
@@ -24,7 +24,7 @@ from coursework.making.students import folded
 from coursework.marking.mark import Mark
 
 
-class _Line(NamedTuple):
+class _StatedDecision(NamedTuple):
     """A decision as a file states it."""
 
     student: str
@@ -42,7 +42,7 @@ class _Line(NamedTuple):
         return folded(self.student), self.exercise, self.part
 
 
-def take_in(
+def store_new_decisions(
     connection: Connection, assignment_id: int, by_person: ToMark | None, by_hand: Accepted | None
 ) -> int:
     """Keep what is new in the files that there are, as decisions; gives how many answers it is of.
@@ -52,8 +52,12 @@ def take_in(
     BadInput
         An answer is given more points than its part has.
     """
-    files = [(by_person.path, _given(by_person))] if by_person is not None and by_person.path.exists() else []
-    files += [] if by_hand is None or by_hand.path is None else [(by_hand.path, _accepted(by_hand))]
+    files = (
+        [(by_person.path, _given_decisions(by_person))]
+        if by_person is not None and by_person.path.exists()
+        else []
+    )
+    files += [] if by_hand is None or by_hand.path is None else [(by_hand.path, _accepted_decisions(by_hand))]
     was = _by_answer(line for path, _ in files for line in _remembered(connection, assignment_id, path))
     now = _by_answer(line for _, lines in files for line in lines)
     decisions = Decisions.read(connection, assignment_id)
@@ -62,42 +66,42 @@ def take_in(
     for on in changed:
         standing = decisions.on(*on)
         if on in was and standing and standing[-1].by in names and standing[-1].kind != WITHDRAWN:
-            _keep(
+            _store_decision(
                 connection,
                 assignment_id,
                 was[on][-1]._replace(kind=WITHDRAWN, seed="", points=None, reason=""),
             )
         for line in now.get(on, ()):
-            _keep(connection, assignment_id, line)
+            _store_decision(connection, assignment_id, line)
     for path, lines in files:
         _remember(connection, assignment_id, path, lines)
     return len(changed)
 
 
-def written(connection: Connection, assignment_id: int, path: Path) -> None:
+def remember_written(connection: Connection, assignment_id: int, path: Path) -> None:
     """Remember ``to_mark.csv`` as it stands, just written."""
     if path.exists():
-        _remember(connection, assignment_id, path, _given(ToMark(path)))
+        _remember(connection, assignment_id, path, _given_decisions(ToMark(path)))
 
 
-def _keep(connection: Connection, assignment_id: int, line: _Line) -> None:
+def _store_decision(connection: Connection, assignment_id: int, line: _StatedDecision) -> None:
     """Store a decision; ignore a line that names nothing issued, since the reader of the file reports it."""
-    answer = Place(line.student, line.exercise, line.seed, line.part, line.answer)
+    answer = DecidedAnswer(line.student, line.exercise, line.seed, line.part, line.answer)
     with suppress(UnknownName):
         decide(connection, assignment_id, [answer], line.kind, line.points, line.reason, line.by)
 
 
-def _by_answer(lines: Iterable[_Line]) -> dict[tuple[str, str, str], list[_Line]]:
-    by_answer: dict[tuple[str, str, str], list[_Line]] = {}
+def _by_answer(lines: Iterable[_StatedDecision]) -> dict[tuple[str, str, str], list[_StatedDecision]]:
+    by_answer: dict[tuple[str, str, str], list[_StatedDecision]] = {}
     for line in lines:
         by_answer.setdefault(line.on, []).append(line)
     return by_answer
 
 
-def _given(by_person: ToMark) -> list[_Line]:
+def _given_decisions(by_person: ToMark) -> list[_StatedDecision]:
     lines = by_person.given.values()
     return [
-        _Line(*_named(row.named), GIVEN, row.points, row.reason, row.answer, by_person.path.name)
+        _StatedDecision(*_named(row.named), GIVEN, row.points, row.reason, row.answer, by_person.path.name)
         for row in lines
     ]
 
@@ -107,10 +111,12 @@ def _named(named: Sequence[str]) -> tuple[str, str, str, str]:
     return student, exercise, seed, part
 
 
-def _accepted(by_hand: Accepted) -> list[_Line]:
+def _accepted_decisions(by_hand: Accepted) -> list[_StatedDecision]:
     assert by_hand.path is not None
     name = by_hand.path.name
-    return [_Line(*line.named, ACCEPTED, line.points, line.reason, None, name) for line in by_hand.lines]
+    return [
+        _StatedDecision(*line.named, ACCEPTED, line.points, line.reason, None, name) for line in by_hand.lines
+    ]
 
 
 # --------------------------------------------------------------------- remembered
@@ -120,14 +126,16 @@ def _file(path: Path) -> str:
     return sha256(str(path.resolve()).encode("utf-8", "backslashreplace")).hexdigest()
 
 
-def _remembered(connection: Connection, assignment_id: int, path: Path) -> list[_Line]:
+def _remembered(connection: Connection, assignment_id: int, path: Path) -> list[_StatedDecision]:
     query = select(worksheet.c.lines).where(
         worksheet.c.assignment_id == assignment_id, worksheet.c.file == _file(path)
     )
-    return [_Line(*line) for line in connection.execute(query).scalar() or ()]
+    return [_StatedDecision(*line) for line in connection.execute(query).scalar() or ()]
 
 
-def _remember(connection: Connection, assignment_id: int, path: Path, lines: Sequence[_Line]) -> None:
+def _remember(
+    connection: Connection, assignment_id: int, path: Path, lines: Sequence[_StatedDecision]
+) -> None:
     key = {"assignment_id": assignment_id, "file": _file(path)}
     if lines == _remembered(connection, assignment_id, path):
         return
@@ -145,9 +153,9 @@ class DecidedToMark(ToMark):
         super().__init__(path)
         self.decisions = decisions
 
-    def found(self, graded: Graded, part: str, line: Mark) -> Given | None:
+    def given_for(self, graded: Graded, part: str, line: Mark) -> Given | None:
         """Return the points decided for an answer; the file itself is only checked, for its warnings."""
-        super().found(graded, part, line)
+        super().given_for(graded, part, line)
         decided = self.decisions.given(graded, line)
         if decided is None:
             return None

@@ -12,7 +12,7 @@ from zlib import crc32
 
 from sqlalchemy import Connection, Select, delete, func, insert, select
 
-from coursework.database.decisions import WITHDRAWN, Place
+from coursework.database.decisions import WITHDRAWN, DecidedAnswer
 from coursework.database.tables import (
     answer,
     assignment,
@@ -72,7 +72,7 @@ def stamp(connection: Connection, assignment_id: int) -> Stamp:
     return Stamp(*counts)
 
 
-class About(NamedTuple):
+class ListedAssignment(NamedTuple):
     """Assignment, as the instructor's pages list it."""
 
     id: int
@@ -85,7 +85,7 @@ class About(NamedTuple):
     last: datetime | None  #: when something came in
 
 
-def listed(connection: Connection, assignment_id: int | None = None) -> list[About]:
+def listed_assignments(connection: Connection, assignment_id: int | None = None) -> list[ListedAssignment]:
     """Return the assignments, the latest first; one alone if given."""
     query = (
         select(assignment, func.count(delivery.c.id), func.max(delivery.c.id))
@@ -101,7 +101,7 @@ def listed(connection: Connection, assignment_id: int | None = None) -> list[Abo
     )
     received_at = {row.id: row.came for row in connection.execute(last)}
     return [
-        About(
+        ListedAssignment(
             row.id,
             row.name,
             row.stated,
@@ -118,7 +118,7 @@ def listed(connection: Connection, assignment_id: int | None = None) -> list[Abo
 # --------------------------------------------------------------------- decisions
 
 
-class Made(NamedTuple):
+class NumberedDecision(NamedTuple):
     """A decision with its number."""
 
     id: int
@@ -134,28 +134,31 @@ class Made(NamedTuple):
     made: datetime
 
 
-def _made(query: Select[Any], connection: Connection) -> list[Made]:
-    return [Made(*(getattr(row, name) for name in Made._fields)) for row in connection.execute(query)]
+def _numbered_decisions(query: Select[Any], connection: Connection) -> list[NumberedDecision]:
+    return [
+        NumberedDecision(*(getattr(row, name) for name in NumberedDecision._fields))
+        for row in connection.execute(query)
+    ]
 
 
-def decided_since(connection: Connection, assignment_id: int, after: int) -> list[Made]:
+def decided_since(connection: Connection, assignment_id: int, after: int) -> list[NumberedDecision]:
     """Return the decisions with an id above a number, in their order."""
     query = select(decision).where(decision.c.assignment_id == assignment_id, decision.c.id > after)
-    return _made(query.order_by(decision.c.id), connection)
+    return _numbered_decisions(query.order_by(decision.c.id), connection)
 
 
-def decisions_of(connection: Connection, assignment_id: int) -> list[Made]:
+def decisions_of(connection: Connection, assignment_id: int) -> list[NumberedDecision]:
     """Every decision of an assignment, in order."""
     return decided_since(connection, assignment_id, 0)
 
 
-def undoable(connection: Connection, assignment_id: int, by: str) -> list[Made]:
+def undoable(connection: Connection, assignment_id: int, by: str) -> list[NumberedDecision]:
     """Return the latest batch of decisions of a person that can be undone: no later decision replaces them."""
     query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id.desc())
     met: set[tuple[str, ...]] = set()
-    batch: list[Made] = []
+    batch: list[NumberedDecision] = []
     for row in connection.execute(query):
-        decided = Made(*(getattr(row, name) for name in Made._fields))
+        decided = NumberedDecision(*(getattr(row, name) for name in NumberedDecision._fields))
         key = decided.student, decided.exercise, decided.seed, decided.part
         if batch and (decided.made != batch[0].made or decided.by != by):
             break
@@ -165,15 +168,15 @@ def undoable(connection: Connection, assignment_id: int, by: str) -> list[Made]:
     return batch[::-1]
 
 
-def place_of(decided: Made) -> Place:
+def decided_answer_of(decided: NumberedDecision) -> DecidedAnswer:
     """Return the key of the answer that a decision is about."""
-    return Place(decided.student, decided.exercise, decided.seed, decided.part, decided.answer)
+    return DecidedAnswer(decided.student, decided.exercise, decided.seed, decided.part, decided.answer)
 
 
 # ---------------------------------------------------------------------- rejected
 
 
-class Placed(NamedTuple):
+class Placing(NamedTuple):
     """Placing of a rejected row."""
 
     row: str  #: digest
@@ -183,14 +186,14 @@ class Placed(NamedTuple):
     made: datetime
 
 
-def placings(connection: Connection, assignment_id: int) -> dict[str, Placed]:
+def placings(connection: Connection, assignment_id: int) -> dict[str, Placing]:
     """Return the placings of rejected rows by digest; the last of each row counts."""
     query = select(placing).where(placing.c.assignment_id == assignment_id).order_by(placing.c.id)
     rows = connection.execute(query)
-    return {row.row: Placed(row.row, row.delivery_id, row.reason, row.by, row.made) for row in rows}
+    return {row.row: Placing(row.row, row.delivery_id, row.reason, row.by, row.made) for row in rows}
 
 
-def put_placing(connection: Connection, assignment_id: int, placed: Placed) -> None:
+def put_placing(connection: Connection, assignment_id: int, placed: Placing) -> None:
     """Keep what became of a rejected row."""
     connection.execute(insert(placing).values(assignment_id=assignment_id, **placed._asdict()))
 
@@ -208,17 +211,17 @@ def drop_placing(connection: Connection, assignment_id: int, row: str) -> None:
 # -------------------------------------------------------------------------- came
 
 
-class Came(NamedTuple):
+class SiteSubmissions(NamedTuple):
     """Submissions of a student on the site: the number of attempts, and the last of them."""
 
-    tries: int
+    attempts: int
     last: datetime
     late: int  #: seconds, of the last one
 
 
-def came_of(
+def site_submissions_of(
     connection: Connection, assignment_id: int, students: Collection[str] | None = None
-) -> dict[str, Came]:
+) -> dict[str, SiteSubmissions]:
     """Return the submissions on the site, by the student's name as issued; of some students alone, if given."""
     names = {person: name for name, person in people_of(connection, assignment_id, students).items()}
     query = (
@@ -228,10 +231,10 @@ def came_of(
     )
     if students is not None:
         query = query.where(delivery.c.person_id.in_(list(names)))
-    met: dict[str, Came] = {}
+    met: dict[str, SiteSubmissions] = {}
     for person, received_at, late in connection.execute(query):
         if (name := names.get(person)) is not None:
-            met[name] = Came(met[name].tries + 1 if name in met else 1, received_at, late)
+            met[name] = SiteSubmissions(met[name].attempts + 1 if name in met else 1, received_at, late)
     return met
 
 
@@ -280,17 +283,19 @@ def people_of(
     return {row.student: row.person_id for row in connection.execute(query)}
 
 
-class Try(NamedTuple):
+class StudentSubmission(NamedTuple):
     """Submission on the site, or file with answers, of a student."""
 
     source: str
     number: int  #: which try on the site; 0 for a file
     receipt: str
     late: int  #: seconds
-    came: datetime
+    received_at: datetime
 
 
-def tries_of(connection: Connection, assignment_id: int, student: str) -> list[Try]:
+def submissions_of_student(
+    connection: Connection, assignment_id: int, student: str
+) -> list[StudentSubmission]:
     """Return the submissions of a student, in order: those on the site, and files that name the student as
     issued."""
     named = select(answer.c.delivery_id).where(answer.c.student == student)
@@ -299,7 +304,10 @@ def tries_of(connection: Connection, assignment_id: int, student: str) -> list[T
         .where(delivery.c.assignment_id == assignment_id, delivery.c.id.in_(named))
         .order_by(delivery.c.id)
     )
-    return [Try(row.source, row.number, row.receipt, row.late, row.came) for row in connection.execute(query)]
+    return [
+        StudentSubmission(row.source, row.number, row.receipt, row.late, row.came)
+        for row in connection.execute(query)
+    ]
 
 
 def practised(

@@ -14,11 +14,19 @@ from sqlalchemy import Connection
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
+from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
-from coursework.database.deliveries import rows_of
-from coursework.database.desk import About, Came, Placed, Stamp, came_of, placings, stamp
-from coursework.database.publication import charges
-from coursework.database.standing import lines_of, machine_marks, stood
+from coursework.database.instructor_queries import (
+    ListedAssignment,
+    Placing,
+    SiteSubmissions,
+    Stamp,
+    placings,
+    site_submissions_of,
+    stamp,
+)
+from coursework.database.publication import late_penalties
+from coursework.database.submissions import rows_of
 from coursework.errors import closest
 from coursework.gradebook.book import Gradebook, Result, Sitting, Total, results
 from coursework.gradebook.class_marking import rejecting
@@ -31,14 +39,14 @@ from coursework.making.students import namesakes
 
 
 @dataclass(frozen=True)
-class RejectedRow:
+class UnplacedRow:
     """A row that could not be placed."""
 
     id: str  #: digest of what it says and where
     row: Rejected
     student: str  #: whom it names, as issued; empty for a stranger
     near: str  #: whose name is like the one that it tells, where it names a stranger
-    became: Placed | None
+    became: Placing | None
 
     @property
     def waits(self) -> bool:
@@ -47,7 +55,7 @@ class RejectedRow:
 
 
 @dataclass(frozen=True)
-class Open:
+class OpenGroup:
     """Group of answers, with those of its members that still wait for a person."""
 
     group: Group
@@ -64,28 +72,28 @@ class Facts:
     student."""
 
     exercises: tuple[str, ...] = ()
-    whole: frozenset[str] = frozenset()
+    complete: frozenset[str] = frozenset()
     apart: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     def as_json(self) -> dict[str, Any]:
         apart = {name: sorted(parts) for name, parts in sorted(self.apart.items())}
-        return {"exercises": sorted(self.exercises), "whole": sorted(self.whole), "apart": apart}
+        return {"exercises": sorted(self.exercises), "whole": sorted(self.complete), "apart": apart}
 
-    def tell(self, book: Gradebook) -> None:
+    def add_to(self, book: Gradebook) -> None:
         """Let a gradebook of some know it."""
         for name in self.exercises:
             book.exercises.setdefault(name, Total())
-        book.whole.update(self.whole)
+        book.complete.update(self.complete)
         for name, parts in self.apart.items():
             book.apart.setdefault(name, set()).update(parts)
 
 
 @dataclass
-class ClassNow:
+class ClassState:
     """An assignment and its class, or some students of it, at one stamp."""
 
     course: Course
-    about: About
+    about: ListedAssignment
     issued: Issued
     stamp: Stamp
     machine: Mapping[SheetPlace, Graded]  #: as the marking gave them
@@ -95,8 +103,8 @@ class ClassNow:
     sheets: Sheets
     faults: Mapping[SheetPlace, str]
     decisions: Decisions
-    placings: Mapping[str, Placed]
-    came: Mapping[str, Came]
+    placings: Mapping[str, Placing]
+    site_submissions: Mapping[str, SiteSubmissions]
     charged: Mapping[Sitting, float]  #: shares that are taken off of what came late
     facts: Facts | None = None  #: of the whole class, where this is a part of it
     is_part: bool = False  #: some students alone; which rows came is not read
@@ -120,7 +128,7 @@ class ClassNow:
         )
         book.charged = self.charged
         if self.facts is not None:
-            self.facts.tell(book)
+            self.facts.add_to(book)
         if self.is_part:
             for graded in self.graded.values():
                 book.add(graded)
@@ -220,13 +228,13 @@ class ClassNow:
         }
 
     @cached_property
-    def open(self) -> dict[str, Open]:
+    def open(self) -> dict[str, OpenGroup]:
         """Groups that wait for a person, by id, in order; including those that are looked at only on request."""
         open_groups = {}
         for group in self.groups:
             members = tuple(answer for answer in group.members if not self.is_decided(answer))
             if members:
-                open_groups[group.id] = Open(group, members)
+                open_groups[group.id] = OpenGroup(group, members)
         return open_groups
 
     def is_decided(self, answer: Waits) -> bool:
@@ -246,9 +254,9 @@ class ClassNow:
         return tuple((row_id(row), row, *named_by(self.issued, row)) for row in sheets.rejected)
 
     @cached_property
-    def rejected(self) -> tuple[RejectedRow, ...]:
+    def rejected(self) -> tuple[UnplacedRow, ...]:
         """Every row that could not be placed, with what became of it."""
-        return tuple(RejectedRow(*unplaced, self.placings.get(unplaced[0])) for unplaced in self.unplaced)
+        return tuple(UnplacedRow(*unplaced, self.placings.get(unplaced[0])) for unplaced in self.unplaced)
 
     @property
     def of_nobody(self) -> int:
@@ -256,7 +264,7 @@ class ClassNow:
         return sum(row.waits for row in self.rejected) - sum(row.waits for row in self.named)
 
     @property
-    def named(self) -> tuple[RejectedRow, ...]:
+    def named(self) -> tuple[UnplacedRow, ...]:
         """Those of a student of the class."""
         return tuple(row for row in self.rejected if row.student and row.student in self.issued.students)
 
@@ -279,7 +287,7 @@ def row_id(row: Rejected) -> str:
 # ------------------------------------------------------------------------ reading
 
 
-def read_class(connection: Connection, course: Course, about: About) -> ClassNow:
+def read_class(connection: Connection, course: Course, about: ListedAssignment) -> ClassState:
     """Read a whole class: for a table that goes out, never for a page.
 
     Raises
@@ -295,11 +303,11 @@ def read_class(connection: Connection, course: Course, about: About) -> ClassNow
 def read_students(
     connection: Connection,
     course: Course,
-    about: About,
+    about: ListedAssignment,
     students: Collection[str],
     rejected: Sequence[Rejected] = (),
     facts: Facts | None = None,
-) -> ClassNow:
+) -> ClassState:
     """Read some students of a class; ``rejected`` are their rows that could not be placed or marked.
 
     Raises
@@ -313,7 +321,7 @@ def read_students(
 
 
 def read_rows(
-    connection: Connection, course: Course, about: About
+    connection: Connection, course: Course, about: ListedAssignment
 ) -> tuple[tuple[str, Rejected, str, str], ...]:
     """Read every row that could not be placed or marked: its digest, whom it names, and whose name is like that.
 
@@ -324,7 +332,7 @@ def read_rows(
     """
     issued = issued_of(connection, about.id)
     sheets = placed(course, issued, rows_of(connection, about.id))
-    faults = {sheet: last.fault for sheet, last in stood(connection, about.id).items() if last.fault}
+    faults = {sheet: last.fault for sheet, last in last_markings(connection, about.id).items() if last.fault}
     list(rejecting(sheets, ((p, why) for p, why in faults.items() if p in sheets.sheets)))
     return tuple((row_id(row), row, *named_by(issued, row)) for row in sheets.rejected)
 
@@ -332,22 +340,22 @@ def read_rows(
 def _read(
     connection: Connection,
     course: Course,
-    about: About,
+    about: ListedAssignment,
     issued: Issued,
     sheets: Sheets,
     students: Collection[str] | None,
     facts: Facts | None = None,
-) -> ClassNow:
-    last = stood(connection, about.id, students)
+) -> ClassState:
+    last = last_markings(connection, about.id, students)
     marks = dict(machine_marks(issued, last.values(), lines_of(connection, last.values())))
     machine = {sheet: result for sheet, result in marks.items() if not isinstance(result, str)}
     numbers = {sheet: last[sheet].id for sheet in machine}
     measured = dict(zip(numbers.values(), measures(course, issued, list(machine.values())), strict=True))
     faults = {sheet: result for sheet, result in marks.items() if isinstance(result, str)}
     firsts = {sheet: last[sheet].first for sheet in machine}
-    return ClassNow(
+    return ClassState(
         course, about, issued, stamp(connection, about.id), machine, numbers, firsts, measured, sheets,
         faults if students is None else {}, Decisions.read(connection, about.id, students),
-        placings(connection, about.id) if students is None else {}, came_of(connection, about.id, students),
-        charges(connection, about.id, students), facts, students is not None,
+        placings(connection, about.id) if students is None else {}, site_submissions_of(connection, about.id, students),
+        late_penalties(connection, about.id, students), facts, students is not None,
     )  # fmt: skip
