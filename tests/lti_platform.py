@@ -20,9 +20,9 @@ from jwt.algorithms import RSAAlgorithm
 import coursework
 from coursework.lti.course_host import CourseHost
 from coursework.lti.keys import KeyFolder
-from coursework.lti.pages import Pages
+from coursework.lti.pages import LTIPages
 from coursework.lti.service import service
-from coursework.lti.settings import Platform, Settings
+from coursework.lti.settings import LTIPlatform, Settings
 from coursework.lti.storage import Storage
 
 LTI = "https://purl.imsglobal.org/spec/lti/claim/"
@@ -37,7 +37,7 @@ STUDENT, TEACHER = [f"{MEMBER}Learner"], [f"{MEMBER}Instructor"]
 
 _KEYS = [rsa.generate_private_key(public_exponent=65537, key_size=2048) for _ in range(3)]
 
-PLATFORM = Platform(
+PLATFORM = LTIPlatform(
     "learn",
     SITE,
     CLIENT,
@@ -267,7 +267,7 @@ class Tool:
         self.app = self.made()
 
     def made(self):
-        pages = Pages(self.course.folder)
+        pages = LTIPages(self.course.folder)
         return service(
             self.settings,
             self.host,

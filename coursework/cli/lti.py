@@ -25,7 +25,7 @@ from coursework.system.extras import libraries
 from coursework.system.limits import MOST_PORT
 
 if TYPE_CHECKING:
-    from coursework.lti.settings import Platform, Settings
+    from coursework.lti.settings import LTIPlatform, Settings
 
 _LIBRARIES = ("cryptography", "httpx", "jwt", "starlette", "uvicorn")
 KINDS = ("moodle", "canvas", "other")
@@ -122,10 +122,10 @@ def _platform(
     deployments: Sequence[str],
     name: str,
     addresses: dict[str, str | None],
-) -> Platform | None:
+) -> LTIPlatform | None:
     """The platform that is told; none as long as it has not said its client ID."""
     from coursework.lti.settings import KINDS as known
-    from coursework.lti.settings import Platform, checked_url, origin
+    from coursework.lti.settings import LTIPlatform, checked_url, origin
 
     if kind not in KINDS:
         raise BadInput(f"no kind of platform {kind!r}{nearest(kind, KINDS)}")
@@ -144,7 +144,7 @@ def _platform(
         endpoints[key] = checked_url(str(endpoints[key]), f"--{key.replace('_', '-')}")
     origins = tuple(origin(checked_url(address, "the site")) for address in endpoints.pop("origins", ()))
     host = urlsplit(base).hostname or base
-    return Platform(
+    return LTIPlatform(
         name=name or host, client_id=client_id, deployments=tuple(deployments), origins=origins, **endpoints
     )
 
@@ -214,7 +214,7 @@ def _list(settings: Settings, check: bool, as_json: bool) -> int:
     return FOUND if any(faults.values()) else DONE
 
 
-def _checked(settings: Settings, registered: Platform) -> str:
+def _checked(settings: Settings, registered: LTIPlatform) -> str:
     """Return the fault of a platform; an empty text where it gives its keys, and a token for ours."""
     import httpx
 
@@ -340,7 +340,7 @@ def _application(
 
     from coursework.lti.course_host import CourseHost
     from coursework.lti.keys import KeyFolder
-    from coursework.lti.pages import Pages
+    from coursework.lti.pages import LTIPages
     from coursework.lti.service import service
     from coursework.lti.settings import checked_url, is_loopback, read_settings
     from coursework.lti.storage import Storage
@@ -363,7 +363,7 @@ def _application(
         tell([f"a key was made: {key_folder.new().kid}"])
     course, storage = opened(context), Storage(folder)
     crowd = CourseHost(course, storage, settings.assignments)
-    return service(settings, crowd, Pages(course.folder), storage=storage), settings.url
+    return service(settings, crowd, LTIPages(course.folder), storage=storage), settings.url
 
 
 # --------------------------------------------------------------- scores, roster
@@ -387,7 +387,7 @@ def scores(folder: Path, send: bool, as_json: bool) -> int:
             "person": entry.person,
             "points": f"{entry.score.given:g}/{entry.score.maximum:g}",
             "tries": entry.failures,
-            "why": entry.said,
+            "why": entry.problem,
         }
         for entry in every
         if entry.due is not None

@@ -15,18 +15,22 @@ COLUMNS = ("student", "email", "number", "lti_user_id")
 
 def students(members: Iterable[Member]) -> list[Member]:
     """Return the active students of a roster, sorted by name."""
-    found = [one for one in members if one.role is Role.STUDENT and one.active]
-    return sorted(found, key=lambda one: (folded(one.name), one.person))
+    active = [member for member in members if member.role is Role.STUDENT and member.active]
+    return sorted(active, key=lambda member: (folded(member.name), member.person))
 
 
 def as_csv(members: Iterable[Member]) -> str:
     """Return the class list as CSV, one line per student; two students of one name are distinguished by
     e-mail, number or identifier."""
-    found = students(members)
-    alike = Counter(folded(one.name) for one in found)
+    active = students(members)
+    alike = Counter(folded(member.name) for member in active)
     rows = []
-    for one in found:
-        apart = one.email or one.number or one.person
-        name = one.name if one.name and alike[folded(one.name)] == 1 else f"{one.name} ({apart})".strip()
-        rows.append(dict(zip(COLUMNS, (name, one.email, one.number, one.person), strict=True)))
+    for member in active:
+        apart = member.email or member.number or member.person
+        name = (
+            member.name
+            if member.name and alike[folded(member.name)] == 1
+            else f"{member.name} ({apart})".strip()
+        )
+        rows.append(dict(zip(COLUMNS, (name, member.email, member.number, member.person), strict=True)))
     return csv_text(rows, COLUMNS)

@@ -9,18 +9,18 @@ from typing import Any, NamedTuple
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.class_list import students
-from coursework.lti.host import Visit
+from coursework.lti.host import LTIRequest
+from coursework.lti.link_settings import BEST, LinkSettings
 from coursework.lti.services import Member
-from coursework.lti.storage import Paper, Try, Waiting
-from coursework.lti.wanted import BEST, Wanted
+from coursework.lti.storage import LTIAttempt, LTIPaper, Waiting
 from coursework.making.assignment import Assignment
 from coursework.making.issued import COLUMNS, ISSUED_FORMAT
 from coursework.making.students import folded
 from coursework.system.tables import csv_file
 
 
-class Row(NamedTuple):
-    """A student of the class, or one who was."""
+class ClassListRow(NamedTuple):
+    """Row of the class: a student, or a former student."""
 
     name: str
     variants: str
@@ -30,48 +30,50 @@ class Row(NamedTuple):
     outside: bool = False
 
 
-def settings_rows(visit: Visit, wanted: Wanted, title: str, versions: int | None) -> list[tuple[str, str]]:
+def settings_rows(
+    visit: LTIRequest, wanted: LinkSettings, title: str, versions: int | None
+) -> list[tuple[str, str]]:
     """Return the settings of the link, each with its label."""
-    said = words(visit.lang)["lti"]["class"]
+    texts = words(visit.lang)["lti"]["class"]
     dealt = (
-        said["own"]
+        texts["own"]
         if versions is None
-        else said["same"]
+        else texts["same"]
         if versions == 1
-        else said["versions"].format(versions)
+        else texts["versions"].format(versions)
     )
     return [
-        (said["opens"], title),
-        (said["variants"], dealt),
-        (said["tries"], said["any_number"] if wanted.tries is None else str(wanted.tries)),
-        (said["counts"], said["best" if wanted.counts == BEST else "last"]),
-        (said["answers"], said["after" if wanted.shows_answers else "never"]),
-        (said["sends"], said["yes" if visit.launch.line or visit.launch.lines else "no"]),
+        (texts["opens"], title),
+        (texts["variants"], dealt),
+        (texts["tries"], texts["any_number"] if wanted.tries is None else str(wanted.tries)),
+        (texts["counts"], texts["best" if wanted.counts == BEST else "last"]),
+        (texts["answers"], texts["after" if wanted.shows_answers else "never"]),
+        (texts["sends"], texts["yes" if visit.launch.line or visit.launch.lines else "no"]),
     ]
 
 
 def class_rows(
-    papers: Sequence[Paper], tries: Sequence[Try], counted: Mapping[str, Try | None], scores: Mapping[str, Waiting],
+    papers: Sequence[LTIPaper], tries: Sequence[LTIAttempt], counted: Mapping[str, LTIAttempt | None], scores: Mapping[str, Waiting],
     members: Sequence[Member] | None, lang: str,
-) -> list[Row]:  # fmt: skip
+) -> list[ClassListRow]:  # fmt: skip
     """Return one row per student of the roster or of the opened link, sorted by name."""
-    done = Counter(one.person for one in tries)
-    own = {paper.person: paper for paper in papers}
-    there = {one.person: one for one in students(members or ())}
+    done = Counter(member.person for member in tries)
+    paper_of = {paper.person: paper for paper in papers}
+    there = {member.person: member for member in students(members or ())}
     names = {
-        **{person: paper.name for person, paper in own.items()},
+        **{person: paper.name for person, paper in paper_of.items()},
         **{p: m.name or p for p, m in there.items()},
     }
     rows = []
-    for person in sorted(names, key=lambda one: (folded(names[one]), one)):
-        paper, best = own.get(person), counted.get(person)
+    for person in sorted(names, key=lambda member: (folded(names[member]), member)):
+        paper, best = paper_of.get(person), counted.get(person)
         rows.append(
-            Row(
+            ClassListRow(
                 names[person],
                 ", ".join(f"{r['exercise']} {r['seed']}" for r in paper.records) if paper else "",
                 str(done[person] or ""),
                 f"{_text(best.points, lang)} / {_text(best.out_of, lang)}" if best else "",
-                _standing(best, scores.get(person), lang),
+                _score_state(best, scores.get(person), lang),
                 members is not None and person not in there,
             )
         )
@@ -82,34 +84,36 @@ def _text(number: float, lang: str) -> str:
     return localise(plain(round(number, 3)), lang)
 
 
-def _standing(best: Try | None, waiting: Waiting | None, lang: str) -> str:
-    said = words(lang)["lti"]["class"]
+def _score_state(best: LTIAttempt | None, waiting: Waiting | None, lang: str) -> str:
+    texts = words(lang)["lti"]["class"]
     if best is None or waiting is None:
         return ""
     if waiting.due is None:
-        return str(said["waits_person"] if best.waits else said["arrived"])
-    return str(said["waits_because"].format(waiting.said) if waiting.said else said["on_its_way"])
+        return str(texts["waits_person"] if best.waits else texts["arrived"])
+    return str(texts["waits_because"].format(waiting.problem) if waiting.problem else texts["on_its_way"])
 
 
 # ------------------------------------------------------------------------ files
 
 
-def called(papers: Sequence[Paper]) -> dict[str, str]:
+def file_names(papers: Sequence[LTIPaper]) -> dict[str, str]:
     """Return the name of each person in files; two people of one name are distinguished by their identifiers."""
     alike = Counter(folded(paper.name) for paper in papers)
     return {p.person: p.name if alike[folded(p.name)] == 1 else f"{p.name} ({p.person})" for p in papers}
 
 
-def taken_csv(papers: Sequence[Paper], counted: Mapping[str, Try | None]) -> bytes:
+def taken_csv(papers: Sequence[LTIPaper], counted: Mapping[str, LTIAttempt | None]) -> bytes:
     """Return the answers that count as CSV, in the format that ``coursework grade`` reads."""
     return csv_file(_answer_rows(papers, counted), COLUMNS)
 
 
-def _answer_rows(papers: Sequence[Paper], counted: Mapping[str, Try | None]) -> Iterator[dict[str, Any]]:
-    names = called(papers)
+def _answer_rows(
+    papers: Sequence[LTIPaper], counted: Mapping[str, LTIAttempt | None]
+) -> Iterator[dict[str, Any]]:
+    names = file_names(papers)
     for paper in papers:
-        made = counted.get(paper.person)
-        for record, texts in zip(paper.records, made.answers if made else (), strict=False):
+        attempt = counted.get(paper.person)
+        for record, texts in zip(paper.records, attempt.answers if attempt else (), strict=False):
             for part, text in texts.items():
                 yield dict(
                     zip(
@@ -120,9 +124,9 @@ def _answer_rows(papers: Sequence[Paper], counted: Mapping[str, Try | None]) -> 
                 )
 
 
-def issued_json(papers: Sequence[Paper], assignment: Assignment | None) -> dict[str, Any]:
+def issued_json(papers: Sequence[LTIPaper], assignment: Assignment | None) -> dict[str, Any]:
     """Return the records issued to each person, in the format that ``coursework grade --issued`` reads."""
-    names = called(papers)
+    names = file_names(papers)
     stated = {} if assignment is None else {"assignment": assignment.stated()}
     items: Iterable[dict[str, Any]] = (
         {"student": names[paper.person], "record": record} for paper in papers for record in paper.records

@@ -1,4 +1,4 @@
-"""Deep linking: an instructor picks what links open, and the platform makes the links."""
+"""Deep linking: an instructor chooses the content of links, and the platform creates the links."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from typing import Any
 
 import jwt
 
-from coursework.lti.host import Form, Offer, Shelf
-from coursework.lti.keys import Key
+from coursework.lti.host import Form, Offer, OfferGroup
+from coursework.lti.keys import SigningKey
 from coursework.lti.launch import Launch
-from coursework.lti.refusal import Refused
-from coursework.lti.wanted import AFTER, BEST, LAST, NEVER, Wanted, tries_of
+from coursework.lti.link_settings import AFTER, BEST, LAST, NEVER, LinkSettings, tries_of
+from coursework.lti.refusal import LTIRefusal
 
 _LTI = "https://purl.imsglobal.org/spec/lti/claim/"
 _DEEP = "https://purl.imsglobal.org/spec/lti-dl/claim/"
 _MOST_POINTS = 1_000_000.0
 
 
-def found(shelves: Sequence[Shelf], sought: str) -> list[Shelf]:
+def matching_offers(offer_groups: Sequence[OfferGroup], sought: str) -> list[OfferGroup]:
     """Return the groups of offers, each reduced to the offers whose title, in any language, or name contains
     every searched word."""
     pieces = _folded(sought).split()
-    kept = (
+    matching = (
         (
             s,
             tuple(
@@ -36,9 +36,9 @@ def found(shelves: Sequence[Shelf], sought: str) -> list[Shelf]:
                 if all(piece in _folded(f"{o.title} {o.words} {s.title}") for piece in pieces)
             ),
         )
-        for s in shelves
+        for s in offer_groups
     )
-    return [replace(shelf, offers=offers) for shelf, offers in kept if offers]
+    return [replace(group, offers=offers) for group, offers in matching if offers]
 
 
 def _folded(text: str) -> str:
@@ -47,30 +47,32 @@ def _folded(text: str) -> str:
     return "".join(char for char in apart if not unicodedata.combining(char))
 
 
-def content_items(launch: Launch, shelves: Iterable[Shelf], form: Form, url: str) -> list[dict[str, Any]]:
+def content_items(
+    launch: Launch, offer_groups: Iterable[OfferGroup], form: Form, url: str
+) -> list[dict[str, Any]]:
     """Return the links that a form requests.
 
     Raises
     ------
-    Refused
+    LTIRefusal
         Nothing was ticked, more than the platform takes, what is not offered, or a setting that makes no sense.
     """
     picking = launch.picking
     if picking is None or not picking.links:
-        raise Refused("no_links", 400, "the platform takes no link here")
-    offers = {offer.key: offer for shelf in shelves for offer in shelf.offers}
+        raise LTIRefusal("no_links", 400, "the platform takes no link here")
+    offers = {offer.key: offer for group in offer_groups for offer in group.offers}
     keys = list(dict.fromkeys(form.get("offer", ())))
     if not keys:
-        raise Refused("no_choice", 400, "nothing was ticked")
+        raise LTIRefusal("no_choice", 400, "nothing was ticked")
     if len(keys) > 1 and not picking.several:
-        raise Refused("too_many", 400, f"{len(keys)} links where one is taken")
+        raise LTIRefusal("too_many", 400, f"{len(keys)} links where one is taken")
     if any(key not in offers for key in keys):
-        raise Refused("unknown_choice", 400, "what is not offered")
+        raise LTIRefusal("unknown_choice", 400, "what is not offered")
     rules = _rules(form)
     return [
         _item(
             offers[key],
-            _opened(rules, key),
+            _with_content(rules, key),
             _points(form) or offers[key].points,
             url,
             picking.with_line,
@@ -79,20 +81,20 @@ def content_items(launch: Launch, shelves: Iterable[Shelf], form: Form, url: str
     ]
 
 
-def _opened(rules: Wanted, key: str) -> Wanted:
+def _with_content(rules: LinkSettings, key: str) -> LinkSettings:
     kind, _, name = key.partition(":")
     return replace(rules, assignment=name) if kind == "assignment" else replace(rules, exercise=name)
 
 
-def _rules(form: Form) -> Wanted:
-    counts, answers = _one(form, "counts") or BEST, _one(form, "answers") or NEVER
+def _rules(form: Form) -> LinkSettings:
+    counts, answers = _field(form, "counts") or BEST, _field(form, "answers") or NEVER
     if counts not in (BEST, LAST) or answers not in (NEVER, AFTER):
-        raise Refused("no_question", 400, "no such rule")
-    return Wanted(tries=tries_of(_one(form, "tries")), counts=counts, answers=answers)
+        raise LTIRefusal("no_question", 400, "no such rule")
+    return LinkSettings(tries=tries_of(_field(form, "tries")), counts=counts, answers=answers)
 
 
 def _points(form: Form) -> float | None:
-    text = _one(form, "points").replace(",", ".")
+    text = _field(form, "points").replace(",", ".")
     if not text:
         return None
     try:
@@ -100,15 +102,15 @@ def _points(form: Form) -> float | None:
     except ValueError:
         points = math.nan
     if not 0 < points <= _MOST_POINTS:
-        raise Refused("no_question", 400, "points are no number above 0")
+        raise LTIRefusal("no_question", 400, "points are no number above 0")
     return points
 
 
-def _one(form: Form, name: str) -> str:
+def _field(form: Form, name: str) -> str:
     return next(iter(form.get(name, ())), "").strip()
 
 
-def _item(offer: Offer, wanted: Wanted, points: float, url: str, with_line: bool) -> dict[str, Any]:
+def _item(offer: Offer, wanted: LinkSettings, points: float, url: str, with_line: bool) -> dict[str, Any]:
     line = (
         {"lineItem": {"scoreMaximum": points, "label": offer.title, "resourceId": offer.key}}
         if with_line
@@ -123,10 +125,10 @@ def _item(offer: Offer, wanted: Wanted, points: float, url: str, with_line: bool
     }
 
 
-def response(launch: Launch, items: Sequence[dict[str, Any]], key: Key) -> str:
+def response(launch: Launch, items: Sequence[dict[str, Any]], key: SigningKey) -> str:
     """Return the signed response to the platform; it lists no items if nothing was chosen."""
     now, picking = int(time.time()), launch.picking
-    told: dict[str, Any] = {
+    claims: dict[str, Any] = {
         "iss": launch.client_id,
         "aud": [launch.issuer],
         "iat": now,
@@ -138,5 +140,5 @@ def response(launch: Launch, items: Sequence[dict[str, Any]], key: Key) -> str:
         f"{_DEEP}content_items": list(items),
     }
     if picking is not None and picking.data is not None:
-        told[f"{_DEEP}data"] = picking.data
-    return jwt.encode(told, key.private, "RS256", headers={"kid": key.kid})
+        claims[f"{_DEEP}data"] = picking.data
+    return jwt.encode(claims, key.private, "RS256", headers={"kid": key.kid})

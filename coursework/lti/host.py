@@ -15,25 +15,25 @@ from coursework.lti.launch import Launch
 from coursework.lti.services import Member
 from coursework.lti.storage import Score, Waiting
 
-Form = Mapping[str, Sequence[str]]  #: the values of each field, as they came
+Form = Mapping[str, Sequence[str]]  #: values of each field
 
 
 @dataclass(frozen=True)
-class Visit:
+class LTIRequest:
     """Request within the session of a launch."""
 
     launch: Launch
     lang: str
     home: str  #: address of the session's pages, ``/at/NAME``
-    path: str = ""  #: what stands behind it
+    path: str = ""  #: path below it
     query: Mapping[str, str] = field(default_factory=dict)
-    seal: str = ""  #: what a form of the session holds in its field ``_seal``
-    roster: Callable[[], Sequence[Member]] | None = None  #: none where the platform offers none
-    scores: Callable[[], Mapping[str, Waiting]] = dict  #: on their way and arrived, by person
+    csrf_token: str = ""  #: value of the forms' field ``_seal``
+    roster: Callable[[], Sequence[Member]] | None = None  #: None if the platform offers none
+    scores: Callable[[], Mapping[str, Waiting]] = dict  #: queued and arrived scores, by person
 
 
 @dataclass(frozen=True)
-class Reply:
+class LTIResponse:
     """Response: a page, a redirect, or a file."""
 
     html: str = ""
@@ -51,11 +51,11 @@ class Offer:
     key: str  #: ``exercise:slotted_mechanism``
     title: str
     points: float
-    words: str = ""  #: what it is found by besides its title: its title in other languages
+    words: str = ""  #: further search text: its title in other languages
 
 
 @dataclass(frozen=True)
-class Shelf:
+class OfferGroup:
     """Offers that stand together, under a title."""
 
     title: str
@@ -70,24 +70,24 @@ class Host(Protocol):
         """Languages of the pages, the default one first."""
         ...
 
-    def shelves(self, lang: str) -> Sequence[Shelf]:
+    def offer_groups(self, lang: str) -> Sequence[OfferGroup]:
         """Return the groups of offers that an instructor may choose from."""
         ...
 
-    def show(self, visit: Visit) -> Reply:
+    def show(self, visit: LTIRequest) -> LTIResponse:
         """Return the requested page.
 
         Raises
         ------
-        Refused
+        LTIRefusal
             The person may not see it, or there is none.
         """
         ...
 
-    def take(self, visit: Visit, form: Form) -> Reply:
+    def take(self, visit: LTIRequest, form: Form) -> LTIResponse:
         """Process a submitted form; the same form may be submitted twice."""
         ...
 
-    def score(self, visit: Visit) -> Score | None:
+    def score(self, visit: LTIRequest) -> Score | None:
         """Return the person's score for the platform; None if there is no score to report yet."""
         ...

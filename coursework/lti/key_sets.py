@@ -11,52 +11,56 @@ from typing import Any
 import httpx
 import jwt
 
-from coursework.lti.refusal import Refused
-from coursework.lti.settings import Platform
+from coursework.lti.refusal import LTIRefusal
+from coursework.lti.settings import LTIPlatform
 
-KEPT_SECONDS = 3600.0  #: after which keys are had anew, should the platform answer
+CACHE_SECONDS = 3600.0  #: after which keys are fetched again, if the platform answers
 AGAIN_SECONDS = 30.0  #: between two requests to one platform
 _LARGEST = 256 * 1024  #: bytes of a set of keys
 
 
 @dataclass
-class _Kept:
+class _CachedKeys:
+    """Keys of a platform, with the times of the last response and of the last request."""
+
     keys: dict[str, Any] = field(default_factory=dict)  #: by their identifiers
     had: float = float("-inf")
-    asked: float = float("-inf")
+    requested: float = float("-inf")
 
 
 class KeySets:
-    """Finds the key that a platform signed with."""
+    """Public keys of the platforms."""
 
     def __init__(self, client: httpx.Client, clock: Callable[[], float] = time.monotonic):
         self._client, self._clock = client, clock
-        self._kept: dict[str, _Kept] = {}
+        self._kept: dict[str, _CachedKeys] = {}
         self._lock = threading.Lock()
 
-    def key(self, platform: Platform, kid: str) -> Any:
+    def key(self, platform: LTIPlatform, kid: str) -> Any:
         """Return the public key with the given identifier.
 
         Raises
         ------
-        Refused
+        LTIRefusal
             The platform has no such key, or does not answer.
         """
         with self._lock:
-            kept = self._kept.setdefault(platform.jwks_url, _Kept())
+            cached = self._kept.setdefault(platform.jwks_url, _CachedKeys())
             now = self._clock()
-            if (kid not in kept.keys or now - kept.had > KEPT_SECONDS) and now - kept.asked > AGAIN_SECONDS:
-                kept.asked = now
-                found = self._fetched(platform)
-                if found is not None:
-                    kept.keys, kept.had = found, now
-        if kid in kept.keys:
-            return kept.keys[kid]
-        if kept.had == float("-inf"):
-            raise Refused("platform_down", 502, f"no keys from {platform.name}")
-        raise Refused("signature", 401, f"{platform.name} has no key {kid[:80]!r}")
+            if (
+                kid not in cached.keys or now - cached.had > CACHE_SECONDS
+            ) and now - cached.requested > AGAIN_SECONDS:
+                cached.requested = now
+                fetched = self._fetched(platform)
+                if fetched is not None:
+                    cached.keys, cached.had = fetched, now
+        if kid in cached.keys:
+            return cached.keys[kid]
+        if cached.had == float("-inf"):
+            raise LTIRefusal("platform_down", 502, f"no keys from {platform.name}")
+        raise LTIRefusal("signature", 401, f"{platform.name} has no key {kid[:80]!r}")
 
-    def _fetched(self, platform: Platform) -> dict[str, Any] | None:
+    def _fetched(self, platform: LTIPlatform) -> dict[str, Any] | None:
         """Return the RSA keys by identifier; None if the platform does not respond with keys."""
         try:
             with self._client.stream("GET", platform.jwks_url) as answer:
@@ -67,7 +71,7 @@ class KeySets:
                     if len(data) > _LARGEST:
                         return None
             stated = httpx.Response(200, content=data).json()["keys"]
-            return {str(one["kid"]): key for one in stated if (key := _usable(one)) is not None}
+            return {str(jwk["kid"]): key for jwk in stated if (key := _usable(jwk)) is not None}
         except (httpx.HTTPError, ValueError, KeyError, TypeError, AttributeError):
             return None
 

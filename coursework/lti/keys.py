@@ -1,4 +1,4 @@
-"""The tool's own keys: one signs, those before it stay public until they are retired."""
+"""Signing keys of the tool: the newest signs; earlier keys stay public until they are retired."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ _NAME = re.compile(r"(?P<at>\d{8}T\d{6}Z)-(?P<kid>[\w-]{43})\.pem")
 
 
 @dataclass(frozen=True)
-class Key:
-    """A key: the private half in a file that only its owner reads."""
+class SigningKey:
+    """Signing key, with its private half in a file that only its owner can read."""
 
     kid: str  #: digest of the public half, RFC 7638
     made: str  #: as in ``20261204T093000Z``
@@ -37,7 +37,7 @@ class Key:
 
     @property
     def private(self) -> rsa.RSAPrivateKey:
-        """The private half.
+        """Return the private half.
 
         Raises
         ------
@@ -47,38 +47,38 @@ class Key:
         if os.name == "posix" and self.path.stat().st_mode & 0o077:
             raise BadInput(f"others may read the private key {self.path}: chmod 600 {self.path}")
         try:
-            found = serialization.load_pem_private_key(self.path.read_bytes(), None)
+            private_key = serialization.load_pem_private_key(self.path.read_bytes(), None)
         except (OSError, ValueError, TypeError) as fault:
             raise BadInput(
                 f"{self.path} is no private key: {type(fault).__name__}; 'coursework lti keys rotate' makes another"
             ) from fault
-        if not isinstance(found, rsa.RSAPrivateKey):
+        if not isinstance(private_key, rsa.RSAPrivateKey):
             raise BadInput(
                 f"{self.path} is no RSA key, which LTI signs with; 'coursework lti keys rotate' makes one"
             )
-        return found
+        return private_key
 
     @property
     def public(self) -> dict[str, Any]:
-        """The public half, as a JSON web key."""
+        """Return the public half as a JSON web key."""
         return {**_jwk(self.private), "kid": self.kid, "alg": "RS256", "use": "sig"}
 
 
 class KeyFolder:
-    """The keys of a service, in a folder of mode 700, each in a file of mode 600."""
+    """Keys of a service, in a folder of mode 700, each in a file of mode 600."""
 
     def __init__(self, folder: Path, clock: Callable[[], float] = time.time):
         self.folder, self._clock = folder, clock
 
     @property
-    def keys(self) -> tuple[Key, ...]:
-        """The keys that are public, the one that signs last."""
+    def keys(self) -> tuple[SigningKey, ...]:
+        """Return the public keys; the last one signs."""
         named = (_NAME.fullmatch(path.name) for path in sorted(self.folder.glob("*.pem")))
-        return tuple(Key(m["kid"], m["at"], self.folder / m[0]) for m in named if m)
+        return tuple(SigningKey(m["kid"], m["at"], self.folder / m[0]) for m in named if m)
 
     @property
-    def signing(self) -> Key:
-        """The newest.
+    def signing(self) -> SigningKey:
+        """Return the newest key.
 
         Raises
         ------
@@ -94,8 +94,8 @@ class KeyFolder:
         """Return the public key set that ``/jwks`` serves."""
         return {"keys": [key.public for key in self.keys]}
 
-    def new(self) -> Key:
-        """Another key, which signs from now on; those before stay public."""
+    def new(self) -> SigningKey:
+        """Create a key, which signs from now on; earlier keys stay public."""
         private = rsa.generate_private_key(public_exponent=65537, key_size=_BITS)
         pem = private.private_bytes(
             serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
@@ -104,7 +104,7 @@ class KeyFolder:
         kid = _thumbprint(_jwk(private))
         path = self.folder / f"{at}-{kid}.pem"
         self._write(path, pem)
-        return Key(kid, at, path)
+        return SigningKey(kid, at, path)
 
     def _after_the_last(self) -> float:
         """Return the earliest time of creation of another key, since the second of creation identifies a key."""
@@ -112,24 +112,24 @@ class KeyFolder:
             return 0.0
         return calendar.timegm(time.strptime(self.keys[-1].made, "%Y%m%dT%H%M%SZ")) + 1.0
 
-    def retire(self, kid: str) -> Key:
-        """Take a key away: what it signed is refused from now on.
+    def retire(self, kid: str) -> SigningKey:
+        """Delete a key; tokens that it signed are refused from now on.
 
         Raises
         ------
         BadInput
             There is no such key, or it is the one that signs.
         """
-        known = [key.kid for key in self.keys]
-        found = [key for key in self.keys if kid and key.kid.startswith(kid)]
-        if len(found) != 1:
-            raise BadInput(f"no one key {kid!r}{nearest(kid, known)}")
-        if found[0] == self.signing:
+        kids = [key.kid for key in self.keys]
+        matching = [key for key in self.keys if kid and key.kid.startswith(kid)]
+        if len(matching) != 1:
+            raise BadInput(f"no one key {kid!r}{nearest(kid, kids)}")
+        if matching[0] == self.signing:
             raise BadInput(
-                f"{found[0].kid} is the key that signs; 'coursework lti keys rotate' makes another first"
+                f"{matching[0].kid} is the key that signs; 'coursework lti keys rotate' makes another first"
             )
-        found[0].path.unlink()
-        return found[0]
+        matching[0].path.unlink()
+        return matching[0]
 
     @property
     def secret(self) -> bytes:
@@ -154,8 +154,8 @@ class KeyFolder:
 
 
 def _jwk(private: rsa.RSAPrivateKey) -> dict[str, Any]:
-    found: dict[str, Any] = RSAAlgorithm.to_jwk(private.public_key(), as_dict=True)
-    return {name: found[name] for name in ("e", "kty", "n")}
+    jwk: dict[str, Any] = RSAAlgorithm.to_jwk(private.public_key(), as_dict=True)
+    return {name: jwk[name] for name in ("e", "kty", "n")}
 
 
 def _thumbprint(jwk: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""A launch: who comes, from which course and link, and what the platform offers in return."""
+"""Launch: the person, the course and the link, and the services that the platform offers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Self
 
-from coursework.lti.refusal import Refused
+from coursework.lti.refusal import LTIRefusal
 from coursework.lti.roles import Role, role_of
 
 _LTI = "https://purl.imsglobal.org/spec/lti/claim/"
@@ -17,7 +17,7 @@ _PERSON = "https://purl.imsglobal.org/spec/lti/claim/lis"
 _ROSTER = "https://purl.imsglobal.org/spec/lti-nrps/claim/namesroleservice"
 
 RESOURCE, PICKING = "LtiResourceLinkRequest", "LtiDeepLinkingRequest"
-_LONGEST = 4000  #: characters of any claim that is kept
+_LONGEST = 4000  #: characters of any stored claim
 
 
 @dataclass(frozen=True)
@@ -25,10 +25,10 @@ class Picking:
     """Deep-linking request: the platform's rules for the choice of a link's content."""
 
     return_url: str
-    data: str | None = None  #: to be sent back as it came
+    data: str | None = None  #: to be returned unchanged
     several: bool = False
-    with_line: bool = True  #: whether a column of the gradebook may be asked for
-    links: bool = True  #: whether it takes links at all
+    with_line: bool = True  #: whether a gradebook column may be requested
+    links: bool = True  #: whether it accepts links
 
 
 @dataclass(frozen=True)
@@ -54,17 +54,17 @@ class Launch:
     scopes: tuple[str, ...] = ()
     memberships: str = ""  #: address of the roster
     picking: Picking | None = None
-    email: str = ""  #: where the platform tells it
-    number: str = ""  #: by which the institution knows the person, where the platform tells it
+    email: str = ""  #: if the platform provides it
+    number: str = ""  #: identifier of the person at the institution, if the platform provides it
 
     @property
-    def place(self) -> str:
-        """The link among those of all platforms."""
+    def link_key(self) -> str:
+        """Return the key of the link, unique over all platforms."""
         return json.dumps([self.issuer, self.client_id, self.deployment, self.link])
 
     @property
     def course(self) -> str:
-        """The course among those of all platforms."""
+        """Return the key of the course, unique over all platforms."""
         return json.dumps([self.issuer, self.client_id, self.deployment, self.context])
 
     def as_json(self) -> str:
@@ -72,10 +72,10 @@ class Launch:
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        told = json.loads(text)
-        picking = told["picking"] and Picking(**told["picking"])
+        fields = json.loads(text)
+        picking = fields["picking"] and Picking(**fields["picking"])
         return cls(
-            **{**told, "role": Role(told["role"]), "scopes": tuple(told["scopes"]), "picking": picking}
+            **{**fields, "role": Role(fields["role"]), "scopes": tuple(fields["scopes"]), "picking": picking}
         )
 
 
@@ -84,45 +84,45 @@ def launch_of(claims: Mapping[str, Any]) -> Launch:
 
     Raises
     ------
-    Refused
-        A claim that is needed is missing or of another form.
+    LTIRefusal
+        A required claim is missing or malformed.
     """
     kind = _text(claims, f"{_LTI}message_type", needed=True)
     if kind not in (RESOURCE, PICKING):
-        raise Refused("message", 400, f"message type {kind[:60]!r}")
+        raise LTIRefusal("message", 400, f"message type {kind[:60]!r}")
     if _text(claims, f"{_LTI}version", needed=True) != "1.3.0":
-        raise Refused("message", 400, "not version 1.3.0")
+        raise LTIRefusal("message", 400, "not version 1.3.0")
     roles = claims.get(f"{_LTI}roles")
     if not isinstance(roles, list):
-        raise Refused("claim", 400, "roles missing")
+        raise LTIRefusal("claim", 400, "roles missing")
     link = _table(claims, f"{_LTI}resource_link")
-    context, shown = _table(claims, f"{_LTI}context"), _table(claims, f"{_LTI}launch_presentation")
+    context, presentation = _table(claims, f"{_LTI}context"), _table(claims, f"{_LTI}launch_presentation")
     grades, roster = _table(claims, _GRADES), _table(claims, _ROSTER)
     custom = {
-        _kept(k): _kept(str(v))
+        _storable(k): _storable(str(v))
         for k, v in _table(claims, f"{_LTI}custom").items()
         if isinstance(v, (str, float)) or (isinstance(v, int) and _written(v))
     }
-    whole = " ".join(filter(None, (_text(claims, "given_name"), _text(claims, "family_name"))))
+    full_name = " ".join(filter(None, (_text(claims, "given_name"), _text(claims, "family_name"))))
     scopes = grades.get("scope")
     return Launch(
         issuer=_text(claims, "iss", needed=True),
         client_id=_text(claims, "client_id", needed=True),
         deployment=_text(claims, f"{_LTI}deployment_id", needed=True),
         person=_text(claims, "sub", needed=True),
-        name=_text(claims, "name") or whole,
-        role=role_of(one for one in roles if isinstance(one, str)),
+        name=_text(claims, "name") or full_name,
+        role=role_of(text for text in roles if isinstance(text, str)),
         kind=kind,
-        link=_text(link, "id", needed=kind == RESOURCE, called="resource_link"),
+        link=_text(link, "id", needed=kind == RESOURCE, label="resource_link"),
         link_title=_text(link, "title"),
         context=_text(context, "id"),
         context_title=_text(context, "title") or _text(context, "label"),
         custom=custom,
-        locale=_text(shown, "locale"),
-        return_url=_address(shown, "return_url"),
+        locale=_text(presentation, "locale"),
+        return_url=_address(presentation, "return_url"),
         line=_address(grades, "lineitem"),
         lines=_address(grades, "lineitems"),
-        scopes=tuple(_kept(str(one)) for one in scopes if isinstance(one, str))
+        scopes=tuple(_storable(str(text)) for text in scopes if isinstance(text, str))
         if isinstance(scopes, list)
         else (),
         memberships=_address(roster, "context_memberships_url"),
@@ -132,16 +132,16 @@ def launch_of(claims: Mapping[str, Any]) -> Launch:
     )
 
 
-def _picking(told: Mapping[str, Any]) -> Picking:
-    url = _address(told, "deep_link_return_url")
+def _picking(fields: Mapping[str, Any]) -> Picking:
+    url = _address(fields, "deep_link_return_url")
     if not url:
-        raise Refused("claim", 400, "deep_link_return_url missing")
-    data, kinds = told.get("data"), told.get("accept_types", ["ltiResourceLink"])
+        raise LTIRefusal("claim", 400, "deep_link_return_url missing")
+    data, kinds = fields.get("data"), fields.get("accept_types", ["ltiResourceLink"])
     return Picking(
         url,
         data if isinstance(data, str) else None,
-        _truth(told.get("accept_multiple", False)),
-        _truth(told.get("accept_lineitem", True)),
+        _truth(fields.get("accept_multiple", False)),
+        _truth(fields.get("accept_lineitem", True)),
         not isinstance(kinds, list) or "ltiResourceLink" in kinds,
     )
 
@@ -152,26 +152,26 @@ def _truth(value: Any) -> bool:
 
 
 def _table(claims: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    found = claims.get(name)
-    return found if isinstance(found, Mapping) else {}
+    value = claims.get(name)
+    return value if isinstance(value, Mapping) else {}
 
 
-def _text(claims: Mapping[str, Any], name: str, *, needed: bool = False, called: str = "") -> str:
+def _text(claims: Mapping[str, Any], name: str, *, needed: bool = False, label: str = "") -> str:
     """Return the text of a claim. A ``needed`` claim, such as an identifier, is refused if it is too long:
     cut short, two of them could become equal."""
-    found = claims.get(name)
-    text = found if isinstance(found, str) else _written(found) if type(found) is int else ""
-    kept = _kept(text)
-    if needed and (not text.strip() or kept != text):
-        raise Refused(
+    value = claims.get(name)
+    text = value if isinstance(value, str) else _written(value) if type(value) is int else ""
+    stored = _storable(text)
+    if needed and (not text.strip() or stored != text):
+        raise LTIRefusal(
             "claim",
             400,
-            f"{called or name.rpartition('/')[2]} {'missing' if not text.strip() else 'too odd'}",
+            f"{label or name.rpartition('/')[2]} {'missing' if not text.strip() else 'too odd'}",
         )
-    return kept
+    return stored
 
 
-def _kept(text: str) -> str:
+def _storable(text: str) -> str:
     """Return a text without the characters that some databases cannot store."""
     return text[:_LONGEST].replace("\0", "").encode("utf-8", "replace").decode()
 
@@ -182,5 +182,5 @@ def _written(number: int) -> str:
 
 def _address(claims: Mapping[str, Any], name: str) -> str:
     """Return a web address; empty for any other scheme."""
-    found = _text(claims, name)
-    return found if found.startswith(("https://", "http://")) else ""
+    address = _text(claims, name)
+    return address if address.startswith(("https://", "http://")) else ""

@@ -1,7 +1,7 @@
 """Login: the redirect of a browser to its platform, and the check that the same browser returns.
 
-What is to be remembered meanwhile travels in the ``state``, sealed by the service. So nobody can fill its disk by logging
-in, and only what comes back well is written down, once.
+The data of a login travel in the ``state``, signed by the service. Logins therefore take no disk space; only
+a verified launch is recorded, once.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from urllib.parse import urlencode, urlsplit
 
 import jwt
 
-from coursework.lti.refusal import Refused
-from coursework.lti.settings import Platform, Settings, origin
+from coursework.lti.refusal import LTIRefusal
+from coursework.lti.settings import LTIPlatform, Settings, origin
 
 _HINTS = ("iss", "login_hint", "target_link_uri", "lti_message_hint", "lti_deployment_id", "client_id")
 _LONGEST = 2000  #: characters of a parameter
@@ -25,7 +25,7 @@ _USE = "login"
 
 
 @dataclass(frozen=True)
-class Sent:
+class LoginRedirect:
     """Redirect of a browser to the platform, and the cookie that identifies the browser on its return."""
 
     url: str
@@ -34,50 +34,50 @@ class Sent:
 
 
 @dataclass(frozen=True)
-class Returned:
+class VerifiedLogin:
     """Verified return of a browser from its platform."""
 
-    platform: Platform
+    platform: LTIPlatform
     nonce: str
     until: float
     again: dict[str, str]
 
 
 class Login:
-    """Sends browsers to their platforms, and knows them again."""
+    """Redirection of browsers to their platforms, and verification of their return."""
 
     def __init__(self, settings: Settings, secret: bytes, clock: Callable[[], float] = time.time):
         self.settings, self._secret, self._clock = settings, secret, clock
 
-    def sent(self, told: Mapping[str, str]) -> Sent:
+    def sent(self, parameters: Mapping[str, str]) -> LoginRedirect:
         """Return the redirect that answers a login request of a platform.
 
         Raises
         ------
-        Refused
-            The platform is not known, does not say for whom it asks, or asks for a page that is not ours.
+        LTIRefusal
+            The platform is unknown, gives no login hint, or requests a page of another site.
         """
         for name in _HINTS:
-            if len(told.get(name, "")) > _LONGEST:
-                raise Refused("bad_request", 400, f"{name} too long")
-        platform = self.settings.platform(told.get("iss", ""), told.get("client_id", ""))
+            if len(parameters.get(name, "")) > _LONGEST:
+                raise LTIRefusal("bad_request", 400, f"{name} too long")
+        platform = self.settings.platform(parameters.get("iss", ""), parameters.get("client_id", ""))
         if platform is None:
-            raise Refused("platform", 403, f"login from {told.get('iss', '')[:100]!r}")
-        if not told.get("login_hint"):
-            raise Refused("bad_request", 400, "login_hint missing")
-        target = told.get("target_link_uri", "")
+            raise LTIRefusal("platform", 403, f"login from {parameters.get('iss', '')[:100]!r}")
+        if not parameters.get("login_hint"):
+            raise LTIRefusal("bad_request", 400, "login_hint missing")
+        target = parameters.get("target_link_uri", "")
         if _unlike(target, self.settings.url):
-            raise Refused("target", 400, f"target_link_uri at {origin(target)[:100]!r}")
-        return self._to(platform, {name: told[name] for name in _HINTS if told.get(name)})
+            raise LTIRefusal("target", 400, f"target_link_uri at {origin(target)[:100]!r}")
+        return self._to(platform, {name: parameters[name] for name in _HINTS if parameters.get(name)})
 
-    def _to(self, platform: Platform, hints: dict[str, str]) -> Sent:
+    def _to(self, platform: LTIPlatform, hints: dict[str, str]) -> LoginRedirect:
         nonce, value = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
         held = {
             "use": _USE, "nonce": nonce, "of": [platform.issuer, platform.client_id], "by": _digest(value),
             "exp": int(self._clock() + self.settings.login_seconds), "hints": hints,
         }  # fmt: skip
         state = jwt.encode(held, self._secret, "HS256")
-        asked = {
+        query = {
             "scope": "openid",
             "response_type": "id_token",
             "response_mode": "form_post",
@@ -89,19 +89,19 @@ class Login:
             "nonce": nonce,
         }
         if "lti_message_hint" in hints:
-            asked["lti_message_hint"] = hints["lti_message_hint"]
+            query["lti_message_hint"] = hints["lti_message_hint"]
         join = "&" if urlsplit(platform.auth_url).query else "?"
-        return Sent(
-            f"{platform.auth_url}{join}{urlencode(asked)}", cookie_of(state, self.settings.url), value
+        return LoginRedirect(
+            f"{platform.auth_url}{join}{urlencode(query)}", cookie_of(state, self.settings.url), value
         )
 
-    def returned(self, state: str, cookies: Mapping[str, str]) -> Returned:
+    def returned(self, state: str, cookies: Mapping[str, str]) -> VerifiedLogin:
         """Return the login to which a state belongs.
 
         Raises
         ------
-        Refused
-            We did not make it, it is too old, its platform is gone, or the browser is another.
+        LTIRefusal
+            The state was not made here, is too old, its platform is gone, or another browser sent it.
         """
         try:
             held: dict[str, Any] = jwt.decode(
@@ -111,20 +111,20 @@ class Login:
                 options={"require": ["exp"], "verify_exp": False, "verify_iat": False},
             )
         except jwt.PyJWTError:
-            raise Refused("state", 400, "a state that is not ours") from None
+            raise LTIRefusal("state", 400, "a state that is not ours") from None
         if held.get("use") != _USE:
-            raise Refused("state", 400, "not a state")
+            raise LTIRefusal("state", 400, "not a state")
         platform = self.settings.platform(*held["of"])
         if platform is None:
-            raise Refused("platform", 403, f"{held['of'][0]!r} is no longer known")
+            raise LTIRefusal("platform", 403, f"{held['of'][0]!r} is no longer known")
         if self._clock() > held["exp"]:
-            raise Refused("stale", 400, "a login of long ago", again=held["hints"])
+            raise LTIRefusal("stale", 400, "a login of long ago", again=held["hints"])
         value = cookies.get(cookie_of(state, self.settings.url))
         if value is None:
-            raise Refused("cookie", 400, "no cookie came back", again=held["hints"])
+            raise LTIRefusal("cookie", 400, "no cookie came back", again=held["hints"])
         if not secrets.compare_digest(_digest(value), held["by"]):
-            raise Refused("browser", 403, "the cookie of another login")
-        return Returned(platform, held["nonce"], float(held["exp"]), held["hints"])
+            raise LTIRefusal("browser", 403, "the cookie of another login")
+        return VerifiedLogin(platform, held["nonce"], float(held["exp"]), held["hints"])
 
 
 def cookie_of(state: str, url: str) -> str:
@@ -138,8 +138,8 @@ def session_cookie(session: str, url: str) -> str:
 
 
 def cookie_name(name: str, url: str) -> str:
-    """Return the name of a cookie of the service at ``url``: over https with the prefix that keeps plain http and neighbouring hosts
-    from setting one in its place."""
+    """Return the name of a cookie of the service at ``url``; over https with the prefix that prevents plain
+    http and neighbouring hosts from setting it."""
     return f"__Host-{name}" if url.startswith("https:") else name
 
 

@@ -1,4 +1,4 @@
-"""The pages of the service, through the templates of a course."""
+"""Pages of the service, rendered with the templates of a course."""
 
 from __future__ import annotations
 
@@ -18,37 +18,37 @@ Filled = Mapping[str, Sequence[str]]
 
 
 @dataclass(frozen=True)
-class Form:
+class SheetForm:
     """Surroundings of a sheet that is to be submitted, or of its feedback."""
 
     action: str
-    seal: str
+    csrf_token: str
     number: int = 1
-    filled: Filled = field(default_factory=dict)  #: what stands in the boxes, by their names
+    filled: Filled = field(default_factory=dict)  #: values of the input fields, by their names
     notes: tuple[str, ...] = ()  #: sentences above the sheet, Markdown
     unread: tuple[str, ...] = ()  #: of answers that could not be read
     may_insist: bool = False
-    more: tuple[tuple[str, str], ...] = ()  #: addresses to go on to, each with its words
-    leave: str = ""  #: address of the course, in place of all that its frame is in
+    more: tuple[tuple[str, str], ...] = ()  #: further links: address and text
+    leave: str = ""  #: address of the course, opened outside the frame
 
 
-class Pages:
-    """Renders pages of one course."""
+class LTIPages:
+    """Renderer of the pages of one course."""
 
     def __init__(self, folder: Folder):
         self._folders = folder.template_folders
 
     def page(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
         """Return the page of a template such as ``lti_class``."""
-        said = words(lang)
-        usual = {"lang": lang, "words": said, "said": said["lti"], "paper": "a4", "title": ""}
+        texts = words(lang)
+        usual = {"lang": lang, "words": texts, "said": texts["lti"], "paper": "a4", "title": ""}
         return render(environment_of(self._folders, lang), f"{template}.html.j2", {**usual, **names})
 
     def digest(self, script: str) -> str:
         """Return the digest by which a policy allows a script among the templates, ``sha256-…``."""
         return script_digest(environment_of(self._folders, "en"), script)
 
-    def sheet(self, paper: Paper, form: Form, *, alone: bool) -> str:
+    def sheet(self, paper: Paper, form: SheetForm, *, alone: bool) -> str:
         """Return a sheet with input fields for the answers; ``alone`` for a single exercise without a paper."""
         if alone:
             return self.page(
@@ -56,21 +56,21 @@ class Pages:
             )
         return self.page("lti_paper", paper.heading.lang, {**self._paper(paper, form), **_formed(form)})
 
-    def feedback(self, told: FeedbackPaper, form: Form, *, alone: bool) -> str:
+    def feedback(self, paper: FeedbackPaper, form: SheetForm, *, alone: bool) -> str:
         """Return the feedback page of a submission."""
-        env = environment_of(self._folders, told.heading.lang)
+        env = environment_of(self._folders, paper.heading.lang)
         if alone:
-            names = feedback.context(told.sheets[0], "html.j2", partial(render, env))
-            return self.page("lti_feedback", told.heading.lang, {**names, **_formed(form)})
+            names = feedback.context(paper.sheets[0], "html.j2", partial(render, env))
+            return self.page("lti_feedback", paper.heading.lang, {**names, **_formed(form)})
         return self.page(
-            "lti_paper_feedback", told.heading.lang, {**self._paper(told, form), **_formed(form)}
+            "lti_paper_feedback", paper.heading.lang, {**self._paper(paper, form), **_formed(form)}
         )
 
-    def _paper(self, paper: Paper | FeedbackPaper, form: Form) -> dict[str, Any]:
+    def _paper(self, paper: Paper | FeedbackPaper, form: SheetForm) -> dict[str, Any]:
         env = environment_of(self._folders, paper.heading.lang)
         files = [{"filled": form.filled}] * len(papers.sheets_of(paper))
         return {**papers.context(paper, "html.j2", partial(render, env), files), "image": papers.image}
 
 
-def _formed(form: Form) -> dict[str, Any]:
+def _formed(form: SheetForm) -> dict[str, Any]:
     return {"form": form, "filled": form.filled, "keeping": ""}

@@ -5,12 +5,12 @@ from __future__ import annotations
 from coursework.errors import CourseworkError
 
 
-class Refused(CourseworkError, PermissionError):
+class LTIRefusal(CourseworkError, PermissionError):
     """Refusal of a request.
 
-    ``why`` names the sentence in ``[lti.refused]`` of each language; ``detail`` is for the log alone, and holds neither
-    an answer nor a token. ``again`` are the parameters by which the platform is asked once more, in a new window, ``wait`` the
-    seconds until one may try again.
+    ``why`` is the key of the sentence in ``[lti.refused]`` of each language; ``detail`` is for the log only
+    and contains neither answers nor tokens. ``again`` has the parameters to repeat the login in a new window,
+    ``wait`` the seconds until another attempt.
     """
 
     def __init__(

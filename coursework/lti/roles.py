@@ -19,8 +19,8 @@ class Role(StrEnum):
     ASSISTANT = "assistant"  #: sees the class
     ADMIN = "admin"  #: of the course's platform: sees the class, picks
     STUDENT = "student"  #: answers
-    OBSERVER = "observer"  #: is told that there is nothing to see
-    NOBODY = "nobody"  #: the same, for want of any role that is known
+    OBSERVER = "observer"  #: sees a note that there is nothing to see
+    NOBODY = "nobody"  #: the same, for a person without a known role
 
     @property
     def sees_class(self) -> bool:
@@ -31,7 +31,7 @@ class Role(StrEnum):
         return self in (Role.INSTRUCTOR, Role.ADMIN)
 
 
-#: Roles in the course, by their name after ``membership#``; the first that is there counts. Moodle names no assistant,
+#: Roles in the course, by their name after ``membership#``; the first one present counts. Moodle names no assistant,
 #: and its observers are mentors.
 _IN_COURSE = {
     "Administrator": Role.ADMIN,
@@ -47,13 +47,13 @@ _ASSISTANTS = ("TeachingAssistant", "TeachingAssistantGroup", "TeachingAssistant
 def role_of(stated: Iterable[str]) -> Role:
     """Return the role that a launch states.
 
-    Roles in the course count; only who has none there and administers the institution or the platform is an admin. Who is
-    teacher or student elsewhere is nobody here.
+    Roles in the course count. An administrator of the institution or the platform without a role in the
+    course is an admin; a teacher or student of another course has no role here.
     """
     roles = list(stated)
-    if any(role == f"{_MEMBER}/Instructor#{one}" for role in roles for one in _ASSISTANTS):
+    if any(role == f"{_MEMBER}/Instructor#{title}" for role in roles for title in _ASSISTANTS):
         return Role.ASSISTANT
-    # A role of the course may stand by its name alone.
+    # A role of the course may be given by its short name.
     mine = {
         role.removeprefix(f"{_MEMBER}#") for role in roles if role.startswith(f"{_MEMBER}#") or role.isalpha()
     }

@@ -1,4 +1,4 @@
-"""Scores on their way: sent in the background, again and later where a platform does not take them; none is lost."""
+"""Sending of scores in the background, repeated at growing intervals until the platform accepts them."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from coursework.lti.settings import Settings
 from coursework.lti.storage import Storage, Waiting
 
 LOG = logging.getLogger("coursework.lti")
-_FIRST, _LONGEST = 5.0, 3600.0  #: seconds to the next try after one failure, and after many
-_PAUSE = 5.0  #: seconds between two looks
+_FIRST, _LONGEST = 5.0, 3600.0  #: seconds to the next attempt after one failure, and after many
+_PAUSE = 5.0  #: seconds between two checks
 _CONFLICT = 409
-#: Answers that another try will hardly change: it is made at long intervals, since an administrator may mend it.
+#: Responses that another attempt will hardly change; it is made at long intervals, in case an administrator fixes the cause.
 _HARD = (400, 403, 404, 405, 410, 415, 422)
 
 
 class Sender:
-    """Sends what is due."""
+    """Background thread that sends due scores."""
 
     def __init__(self, settings: Settings, storage: Storage, services: Services):
         self._settings, self._storage, self._services = settings, storage, services
@@ -27,7 +27,7 @@ class Sender:
         self._thread: threading.Thread | None = None
 
     def send_due(self) -> tuple[int, int]:
-        """Send what is due now; how many arrived, and how many did not."""
+        """Send the scores that are due; return how many arrived and how many did not."""
         arrived = failed = 0
         for (issuer, client_id), waiting in self._storage.due():
             platform = self._settings.platform(issuer, client_id)

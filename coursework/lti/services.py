@@ -17,7 +17,7 @@ import jwt
 from coursework.errors import CourseworkError
 from coursework.lti.keys import KeyFolder
 from coursework.lti.roles import Role, role_of
-from coursework.lti.settings import Platform, origin
+from coursework.lti.settings import LTIPlatform, origin
 from coursework.lti.storage import Waiting
 
 _GRADES = "https://purl.imsglobal.org/spec/lti-ags/scope/"
@@ -31,16 +31,16 @@ _PAGES = 200  #: of a roster at most
 
 
 class NotServed(CourseworkError, ConnectionError):
-    """A platform did not do what it was asked; ``status`` is what it answered, 0 where it did not."""
+    """Error of a platform's service; ``status`` is that of its response, 0 if there was none."""
 
-    def __init__(self, said: str, status: int = 0):
-        super().__init__(said)
+    def __init__(self, message: str, status: int = 0):
+        super().__init__(message)
         self.status = status
 
 
 @dataclass(frozen=True)
 class Member:
-    """A line of a platform's roster."""
+    """Entry of a platform's roster."""
 
     person: str
     name: str
@@ -60,18 +60,18 @@ class Services:
 
     # ------------------------------------------------------------------ scores
 
-    def send(self, platform: Platform, waiting: Waiting) -> None:
-        """Tell a platform a score.
+    def send(self, platform: LTIPlatform, waiting: Waiting) -> None:
+        """Send a score to a platform.
 
         Raises
         ------
         NotServed
-            It did not take it.
+            The platform did not accept it.
         """
         line = waiting.line or self._line(platform, waiting)
         score = waiting.score
         at = datetime.datetime.fromtimestamp(waiting.stamp, datetime.UTC).isoformat(timespec="milliseconds")
-        told: dict[str, Any] = {
+        body: dict[str, Any] = {
             "userId": waiting.person,
             "scoreGiven": score.given,
             "scoreMaximum": score.maximum,
@@ -80,59 +80,59 @@ class Services:
             "gradingProgress": "PendingManual" if score.waits else "FullyGraded",
         }
         if score.comment:
-            told["comment"] = score.comment
-        self._asked(platform, [SCORE], "POST", _below(line, "scores"), json=told, kind=_SCORE_TYPE)
+            body["comment"] = score.comment
+        self._request(platform, [SCORE], "POST", _below(line, "scores"), json=body, kind=_SCORE_TYPE)
 
-    def _line(self, platform: Platform, waiting: Waiting) -> str:
+    def _line(self, platform: LTIPlatform, waiting: Waiting) -> str:
         """Return the address of a gradebook column for a link without one: an existing column of the link, or
         else a new one."""
         link = waiting.link
         if not waiting.lines or LINE not in waiting.scopes:
             raise NotServed("the link has no column in the gradebook", 404)
         url = _with(waiting.lines, resource_link_id=link)
-        found = self._asked(platform, [LINE], "GET", url, accept=_LINES_TYPE).json()
-        for one in found if isinstance(found, list) else []:
-            if isinstance(one, Mapping) and str(one.get("resourceLinkId")) == link and one.get("id"):
-                return str(one["id"])
+        columns = self._request(platform, [LINE], "GET", url, accept=_LINES_TYPE).json()
+        for column in columns if isinstance(columns, list) else []:
+            if isinstance(column, Mapping) and str(column.get("resourceLinkId")) == link and column.get("id"):
+                return str(column["id"])
         wanted = {
             "label": waiting.title or link,
             "scoreMaximum": waiting.score.maximum,
             "resourceLinkId": link,
         }
-        made = self._asked(
+        created = self._request(
             platform, [LINE], "POST", waiting.lines, json=wanted, kind=_LINE_TYPE, accept=_LINE_TYPE
         ).json()
-        return str(made["id"])
+        return str(created["id"])
 
     # ------------------------------------------------------------------ roster
 
-    def roster(self, platform: Platform, url: str) -> list[Member]:
+    def roster(self, platform: LTIPlatform, url: str) -> list[Member]:
         """Return the members of a course.
 
         Raises
         ------
         NotServed
-            The platform does not say.
+            The platform gives no roster.
         """
-        found: list[Member] = []
+        members: list[Member] = []
         seen: set[str] = set()
         page = url
         while page and page not in seen and len(seen) < _PAGES:
             seen.add(page)
-            answer = self._asked(platform, [ROSTER], "GET", page, accept=_ROSTER_TYPE)
+            answer = self._request(platform, [ROSTER], "GET", page, accept=_ROSTER_TYPE)
             try:
-                found += [_member(one) for one in answer.json().get("members", [])]
+                members += [_member(member) for member in answer.json().get("members", [])]
             except (ValueError, AttributeError, TypeError, KeyError) as fault:
                 raise NotServed(f"{platform.name} answers with no roster") from fault
             page = answer.links.get("next", {}).get("url", "")
             if page and origin(page) != origin(url):
                 raise NotServed(f"{platform.name} sends us elsewhere for the rest of its roster")
-        return found
+        return members
 
-    # ------------------------------------------------------------------ asking
+    # ------------------------------------------------------------------ requests
 
-    def _asked(
-        self, platform: Platform, scopes: Sequence[str], method: str, url: str, *, accept: str = "", kind: str = "", json: Any = None
+    def _request(
+        self, platform: LTIPlatform, scopes: Sequence[str], method: str, url: str, *, accept: str = "", kind: str = "", json: Any = None
     ) -> httpx.Response:  # fmt: skip
         """Return the response of the platform; retry once with a new token if it rejects the cached one."""
         if origin(url) not in platform.services:
@@ -152,26 +152,26 @@ class Services:
             raise NotServed(f"{platform.name} answers {answer.status_code}", answer.status_code)
         return answer
 
-    def token(self, platform: Platform, scopes: Sequence[str], fresh: bool = False) -> str:
+    def token(self, platform: LTIPlatform, scopes: Sequence[str], fresh: bool = False) -> str:
         """Return an access token for these scopes; request a new one if ``fresh``.
 
         Raises
         ------
         NotServed
-            It gives none.
+            The platform gives no token.
         """
         name = platform.issuer, platform.client_id, " ".join(sorted(scopes))
         with self._lock:
-            kept, until = self._tokens.get(name, ("", 0.0))
-            if kept and not fresh and time.monotonic() < until:
-                return kept
-        told = {
+            cached, until = self._tokens.get(name, ("", 0.0))
+            if cached and not fresh and time.monotonic() < until:
+                return cached
+        request = {
             "grant_type": "client_credentials",
             "client_assertion_type": "urn:ietf:params:oauth:client-assertion-type:jwt-bearer",
             "client_assertion": self._assertion(platform),
             "scope": name[2],
         }
-        answer = self._sent(platform, "POST", platform.token_url, data=told)
+        answer = self._sent(platform, "POST", platform.token_url, data=request)
         if not answer.is_success:
             raise NotServed(
                 f"{platform.name} gives no token: it answers {answer.status_code}", answer.status_code
@@ -185,18 +185,18 @@ class Services:
             self._tokens[name] = token, time.monotonic() + max(0.0, seconds - 30)
         return token
 
-    def _assertion(self, platform: Platform) -> str:
-        """By which a platform knows us: signed by the key that it finds among ours."""
+    def _assertion(self, platform: LTIPlatform) -> str:
+        """Return the assertion that identifies this tool to a platform, signed with one of its keys."""
         key, now = self._keys.signing, int(time.time())
-        told = {
+        claims = {
             "iss": platform.client_id, "sub": platform.client_id, "aud": platform.audience or platform.token_url,
             "iat": now, "exp": now + 60, "jti": secrets.token_urlsafe(24),
         }  # fmt: skip
-        return jwt.encode(told, key.private, "RS256", headers={"kid": key.kid})
+        return jwt.encode(claims, key.private, "RS256", headers={"kid": key.kid})
 
-    def _sent(self, platform: Platform, method: str, url: str, **told: Any) -> httpx.Response:
+    def _sent(self, platform: LTIPlatform, method: str, url: str, **options: Any) -> httpx.Response:
         try:
-            return self._client.request(method, url, **told)
+            return self._client.request(method, url, **options)
         except (httpx.HTTPError, httpx.InvalidURL) as fault:
             raise NotServed(f"{platform.name} does not answer: {type(fault).__name__}") from None
 
@@ -208,19 +208,21 @@ def _below(line: str, name: str) -> str:
     return urlunsplit(parts._replace(path=f"{parts.path.rstrip('/')}/{name}"))
 
 
-def _with(url: str, **told: str) -> str:
+def _with(url: str, **parameters: str) -> str:
     parts = urlsplit(url)
-    return urlunsplit(parts._replace(query="&".join(filter(None, (parts.query, urlencode(told))))))
+    return urlunsplit(parts._replace(query="&".join(filter(None, (parts.query, urlencode(parameters))))))
 
 
-def _member(told: Mapping[str, Any]) -> Member:
-    whole = " ".join(filter(None, (str(told.get(part) or "") for part in ("given_name", "family_name"))))
-    roles = told.get("roles") or []
+def _member(fields: Mapping[str, Any]) -> Member:
+    full_name = " ".join(
+        filter(None, (str(fields.get(part) or "") for part in ("given_name", "family_name")))
+    )
+    roles = fields.get("roles") or []
     return Member(
-        str(told["user_id"]),
-        " ".join((str(told.get("name") or "") or whole).split()),
-        str(told.get("email") or ""),
-        str(told.get("lis_person_sourcedid") or ""),
-        role_of(str(one) for one in roles),
-        str(told.get("status", "Active")) == "Active",
+        str(fields["user_id"]),
+        " ".join((str(fields.get("name") or "") or full_name).split()),
+        str(fields.get("email") or ""),
+        str(fields.get("lis_person_sourcedid") or ""),
+        role_of(str(role) for role in roles),
+        str(fields.get("status", "Active")) == "Active",
     )

@@ -19,25 +19,26 @@ _HOUR = 3600.0
 
 
 @dataclass(frozen=True)
-class Platform:
-    """A platform where the tool is registered."""
+class LTIPlatform:
+    """Platform where the tool is registered."""
 
-    name: str  #: what commands and logs call it
+    name: str  #: name in commands and logs
     issuer: str
     client_id: str
     deployments: tuple[str, ...]
-    auth_url: str  #: where a login goes
-    token_url: str  #: where a token for grades and rosters is had
+    auth_url: str  #: address of logins
+    token_url: str  #: address of tokens for grades and rosters
     jwks_url: str  #: its public keys
     origins: tuple[
         str, ...
     ] = ()  #: whose pages may hold ours in a frame, and which have gradebook and roster, besides ``issuer`` and ``auth_url``
-    audience: str = ""  #: of a request for a token; ``token_url`` unless told
-    emails_verified: bool = False  #: its e-mails are verified by it, so that nobody can take another's
+    audience: str = ""  #: of a request for a token; ``token_url`` by default
+    emails_verified: bool = False  #: it verifies e-mails, so that nobody can use another person's
 
     @property
     def services(self) -> tuple[str, ...]:
-        """The origins that are asked for tokens, columns of the gradebook and rosters, whatever a launch says."""
+        """Return the origins that may be asked for tokens, gradebook columns and rosters; a launch cannot add
+        any."""
         return tuple(dict.fromkeys([*self.frames, origin(self.token_url), origin(self.jwks_url)]))
 
     @property
@@ -51,26 +52,26 @@ class Settings:
     """Settings of the service: its address, its platforms, and its time limits."""
 
     folder: Path  #: of the keys and the data
-    url: str = ""  #: where browsers find it, without a slash at the end
-    platforms: tuple[Platform, ...] = ()
-    assignments: tuple[Path, ...] = ()  #: that may be picked
+    url: str = ""  #: its address in browsers, without a slash at the end
+    platforms: tuple[LTIPlatform, ...] = ()
+    assignments: tuple[Path, ...] = ()  #: that instructors can choose
     session_seconds: float = 12 * _HOUR
     login_seconds: float = 600.0
     extra: Mapping[str, Any] = field(default_factory=dict)
 
-    def platform(self, issuer: str, client_id: str = "") -> Platform | None:
+    def platform(self, issuer: str, client_id: str = "") -> LTIPlatform | None:
         """Return the platform of an issuer; if the issuer has several clients, the one with the given client
         identifier."""
-        found = [p for p in self.platforms if p.issuer == issuer and client_id in ("", p.client_id)]
-        return found[0] if len(found) == 1 else None
+        matching = [p for p in self.platforms if p.issuer == issuer and client_id in ("", p.client_id)]
+        return matching[0] if len(matching) == 1 else None
 
     @property
     def frames(self) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(one for p in self.platforms for one in p.frames))
+        return tuple(dict.fromkeys(frame for p in self.platforms for frame in p.frames))
 
 
 def origin(url: str) -> str:
-    """``https://moodle.example.org`` of any address there."""
+    """Return the origin of an address: ``https://moodle.example.org``."""
     parts = urlsplit(url)
     return f"{parts.scheme}://{parts.netloc}"
 
@@ -83,13 +84,13 @@ def is_loopback(host: str) -> bool:
         return host == "localhost" or host.endswith(".localhost")
 
 
-def checked_url(url: str, what: str, *, slash: bool = False) -> str:
+def checked_url(url: str, label: str, *, slash: bool = False) -> str:
     """Check an address; return it, without slashes at its end unless ``slash``.
 
     Raises
     ------
     BadInput
-        It is none, or it is plain http to another machine.
+        It is no web address, or plain http to another machine.
     """
     try:
         parts = urlsplit(url)
@@ -102,10 +103,10 @@ def checked_url(url: str, what: str, *, slash: bool = False) -> str:
         or parts.username
         or any(c.isspace() or c in "\"'<>;," for c in url)
     ):
-        raise BadInput(f"{what} is an address such as https://moodle.example.org; found {url!r}")
+        raise BadInput(f"{label} is an address such as https://moodle.example.org; found {url!r}")
     if parts.scheme == "http" and not is_loopback(host):
         raise BadInput(
-            f"{what} is plain http: {url}; keys and launches would go unprotected: give its https address"
+            f"{label} is plain http: {url}; keys and launches would go unprotected: give its https address"
         )
     return url if slash else url.rstrip("/")
 
@@ -113,7 +114,7 @@ def checked_url(url: str, what: str, *, slash: bool = False) -> str:
 # ------------------------------------------------------------------------ kinds
 
 
-def moodle(site: str, **told: Any) -> dict[str, Any]:
+def moodle(site: str, **options: Any) -> dict[str, Any]:
     """Return the addresses of a Moodle platform."""
     lti = f"{site}/mod/lti"
     return {
@@ -124,7 +125,7 @@ def moodle(site: str, **told: Any) -> dict[str, Any]:
     }
 
 
-def canvas(site: str, **told: Any) -> dict[str, Any]:
+def canvas(site: str, **options: Any) -> dict[str, Any]:
     """Return the addresses of a Canvas platform hosted by Instructure; all of them share one issuer."""
     security = "https://sso.canvaslms.com/api/lti"
     return {
@@ -161,7 +162,7 @@ def read_settings(folder: Path) -> Settings:
     Raises
     ------
     BadInput
-        It cannot be read, or says what makes no sense: with its line.
+        It cannot be read, or a key or value is wrong; the message has the line.
     """
     path = folder / FILE
     if not path.exists():
@@ -171,15 +172,17 @@ def read_settings(folder: Path) -> Settings:
         table = tomllib.loads(source)
     except (OSError, ValueError, RecursionError) as fault:
         raise BadInput(f"{path} cannot be read: {fault}") from fault
-    return _Reader(path, source).settings(table)
+    return _SettingsReader(path, source).settings(table)
 
 
-class _Reader:
+class _SettingsReader:
+    """Reader of ``platforms.toml``; its errors name the line."""
+
     def __init__(self, path: Path, source: str):
         self.path, self.source = path, source
 
-    def refused(self, place: Sequence[str | int], why: str) -> BadInput:
-        line = line_of(self.source, place)
+    def refused(self, key_path: Sequence[str | int], why: str) -> BadInput:
+        line = line_of(self.source, key_path)
         return BadInput(f"{self.path}{f', line {line}' if line else ''}: {why}")
 
     def settings(self, table: Mapping[str, Any]) -> Settings:
@@ -192,8 +195,8 @@ class _Reader:
         for key in service:
             if key not in _SERVICE:
                 raise self.refused(["service", key], f"no key {key!r} in [service]{nearest(key, _SERVICE)}")
-        found = tuple(self.platform(number, one) for number, one in enumerate(listed))
-        self._check_twice(found)
+        platforms = tuple(self.platform(number, entry) for number, entry in enumerate(listed))
+        self._check_twice(platforms)
         hours = service.get("session_hours", 12)
         if isinstance(hours, bool) or not isinstance(hours, (int, float)) or not 0 < hours <= 168:
             raise self.refused(
@@ -202,100 +205,100 @@ class _Reader:
         return Settings(
             self.path.parent,
             self._url(["service", "url"], service["url"]) if "url" in service else "",
-            found,
+            platforms,
             tuple(
-                self.path.parent / one
-                for one in self._texts(["service", "assignments"], service.get("assignments", []))
+                self.path.parent / entry
+                for entry in self._texts(["service", "assignments"], service.get("assignments", []))
             ),
             session_seconds=hours * _HOUR,
         )
 
-    def platform(self, number: int, table: Any) -> Platform:
-        place: list[str | int] = ["platforms", number]
+    def platform(self, number: int, table: Any) -> LTIPlatform:
+        key_path: list[str | int] = ["platforms", number]
         if not isinstance(table, Mapping):
-            raise self.refused(place, "platforms are tables: [[platforms]], then issuer = …")
+            raise self.refused(key_path, "platforms are tables: [[platforms]], then issuer = …")
         for key in table:
             if key not in _KEYS:
-                raise self.refused([*place, key], f"no key {key!r} in [[platforms]]{nearest(key, _KEYS)}")
+                raise self.refused([*key_path, key], f"no key {key!r} in [[platforms]]{nearest(key, _KEYS)}")
         for key in ("issuer", "client_id", "deployments", "auth_url", "token_url", "jwks_url"):
             if not table.get(key):
-                raise self.refused(place, f"a platform needs {key}; 'coursework lti platform' writes one")
-        urls = {key: self._url([*place, key], table[key]) for key in ("auth_url", "token_url", "jwks_url")}
-        # The issuer is a name that is compared letter by letter; a slash at its end belongs to it.
-        self._url([*place, "issuer"], table["issuer"])
-        return Platform(
+                raise self.refused(key_path, f"a platform needs {key}; 'coursework lti platform' writes one")
+        urls = {key: self._url([*key_path, key], table[key]) for key in ("auth_url", "token_url", "jwks_url")}
+        # The issuer is compared literally, including a slash at its end.
+        self._url([*key_path, "issuer"], table["issuer"])
+        return LTIPlatform(
             name=str(table.get("name") or urlsplit(table["issuer"]).hostname),
             issuer=table["issuer"],
             client_id=str(table["client_id"]),
-            deployments=self._texts([*place, "deployments"], table["deployments"]),
+            deployments=self._texts([*key_path, "deployments"], table["deployments"]),
             origins=tuple(
-                origin(self._url([*place, "origins"], one))
-                for one in self._texts([*place, "origins"], table.get("origins", []))
+                origin(self._url([*key_path, "origins"], address))
+                for address in self._texts([*key_path, "origins"], table.get("origins", []))
             ),
             audience=str(table.get("audience", "")),
-            emails_verified=self._truth([*place, "emails_verified"], table.get("emails_verified", False)),
+            emails_verified=self._truth([*key_path, "emails_verified"], table.get("emails_verified", False)),
             **urls,
         )
 
-    def _truth(self, place: Sequence[str | int], value: Any) -> bool:
+    def _truth(self, key_path: Sequence[str | int], value: Any) -> bool:
         if not isinstance(value, bool):
-            raise self.refused(place, f"{place[-1]} is true or false; found {value!r}")
+            raise self.refused(key_path, f"{key_path[-1]} is true or false; found {value!r}")
         return value
 
-    def _texts(self, place: Sequence[str | int], value: Any) -> tuple[str, ...]:
+    def _texts(self, key_path: Sequence[str | int], value: Any) -> tuple[str, ...]:
         if not isinstance(value, list) or not all(
-            isinstance(one, (str, int)) and str(one).strip() for one in value
+            isinstance(text, (str, int)) and str(text).strip() for text in value
         ):
-            raise self.refused(place, f'{place[-1]} is a list: ["1"]; found {value!r}')
-        return tuple(str(one) for one in value)
+            raise self.refused(key_path, f'{key_path[-1]} is a list: ["1"]; found {value!r}')
+        return tuple(str(text) for text in value)
 
-    def _url(self, place: Sequence[str | int], value: Any) -> str:
+    def _url(self, key_path: Sequence[str | int], value: Any) -> str:
         try:
-            return checked_url(str(value), str(place[-1]))
+            return checked_url(str(value), str(key_path[-1]))
         except BadInput as fault:
-            raise self.refused(place, str(fault)) from None
+            raise self.refused(key_path, str(fault)) from None
 
-    def _check_twice(self, found: Sequence[Platform]) -> None:
+    def _check_twice(self, platforms: Sequence[LTIPlatform]) -> None:
         seen: set[tuple[str, str]] = set()
-        for number, one in enumerate(found):
-            if (one.issuer, one.client_id) in seen:
+        for number, platform in enumerate(platforms):
+            if (platform.issuer, platform.client_id) in seen:
                 raise self.refused(
                     ["platforms", number],
-                    f"{one.issuer} with client_id {one.client_id} stands twice; keep one",
+                    f"{platform.issuer} with client_id {platform.client_id} stands twice; keep one",
                 )
-            seen.add((one.issuer, one.client_id))
+            seen.add((platform.issuer, platform.client_id))
 
 
 # ---------------------------------------------------------------------- writing
 
 
-def with_platform(settings: Settings, added: Platform) -> Settings:
+def with_platform(settings: Settings, added: LTIPlatform) -> Settings:
     """Return the settings with one more platform, which replaces another of the same issuer and client."""
-    kept = [p for p in settings.platforms if (p.issuer, p.client_id) != (added.issuer, added.client_id)]
-    return replace(settings, platforms=(*kept, added))
+    others = [p for p in settings.platforms if (p.issuer, p.client_id) != (added.issuer, added.client_id)]
+    return replace(settings, platforms=(*others, added))
 
 
 def as_toml(settings: Settings) -> str:
-    """``platforms.toml``."""
+    """Return the content of ``platforms.toml``."""
     lines = [
         "# Platforms where this tool is registered: https://www.imsglobal.org/spec/lti/v1p3",
         "[service]",
     ]
     lines += [f"url = {_text(settings.url)}  # where browsers find this service"] if settings.url else []
     below = [
-        one.relative_to(settings.folder) if one.is_relative_to(settings.folder) else one
-        for one in settings.assignments
+        entry.relative_to(settings.folder) if entry.is_relative_to(settings.folder) else entry
+        for entry in settings.assignments
     ]
-    lines += [f"assignments = {_list([one.as_posix() for one in below])}"] if below else []
+    lines += [f"assignments = {_list([entry.as_posix() for entry in below])}"] if below else []
     if settings.session_seconds != 12 * _HOUR:
         lines.append(f"session_hours = {settings.session_seconds / _HOUR:g}")
-    for one in settings.platforms:
-        lines += ["", "[[platforms]]", f"name = {_text(one.name)}", f"issuer = {_text(one.issuer)}"]
-        lines += [f"client_id = {_text(one.client_id)}", f"deployments = {_list(one.deployments)}"]
-        lines += [f"{key} = {_text(getattr(one, key))}" for key in ("auth_url", "token_url", "jwks_url")]
-        lines += [f"origins = {_list(one.origins)}"] if one.origins else []
-        lines += [f"audience = {_text(one.audience)}"] if one.audience else []
-        lines += ["emails_verified = true"] if one.emails_verified else []
+    for entry in settings.platforms:
+        lines += ["", "[[platforms]]", f"name = {_text(entry.name)}", f"issuer = {_text(entry.issuer)}"]
+        lines += [f"client_id = {_text(entry.client_id)}", f"deployments = {_list(entry.deployments)}"]
+        lines += [f"{key} = {_text(getattr(entry, key))}" for key in ("auth_url", "token_url", "jwks_url")]
+        lines += [f"origins = {_list(entry.origins)}"] if entry.origins else []
+        lines += [f"audience = {_text(entry.audience)}"] if entry.audience else []
+        lines += ["emails_verified = true"] if entry.emails_verified else []
     return "\n".join(lines) + "\n"
 
 

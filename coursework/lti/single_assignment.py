@@ -26,33 +26,41 @@ def own_records(
 ) -> list[Record]:
     """Return the records of a person's variants, one per exercise.
 
-    A code is a function of the secret, issuer, link and person; the secret of the assignment's file wins. Where that variant is somebody's in this link already, as ``issued``
-    says, the next one is drawn, while variants last.
+    The draw depends on the secret, the issuer, the link and the person; a secret in the assignment's file
+    takes precedence. If ``issued``, the records of others in this link, contains the variant already, the
+    next one is drawn, while variants last.
 
     Raises
     ------
     Starved
-        An exercise has no variant that is worth issuing.
+        An exercise has no variant worth issuing.
     """
     key = keyed(assignment.secret or secret, assignment)
-    stream, who = f"lti/{launch.issuer}/{launch.link}", _who(assignment, launch, key)
-    found = []
-    for number, asked in enumerate(assignment.exercises):
-        exercise = course[asked.name]
+    stream, person = f"lti/{launch.issuer}/{launch.link}", _who(assignment, launch, key)
+    result = []
+    for number, asked_exercise in enumerate(assignment.exercises):
+        exercise = course[asked_exercise.name]
         spoken = lang if lang in exercise.languages else exercise.languages[0]
-        if asked.seed is not None:
-            variant = exercise.variant(asked.seed, spoken, asked.parts, key)
+        if asked_exercise.seed is not None:
+            variant = exercise.variant(asked_exercise.seed, spoken, asked_exercise.parts, key)
         else:
             shared = assignment.versions is not None
-            stood = [records[number] for records in issued if len(records) > number]
-            known = {int(record["seed"]): _given(record) for record in stood}
-            taken = set() if shared else set(known.values())
+            earlier = [records[number] for records in issued if len(records) > number]
+            issued_values = {int(record["seed"]): _given(record) for record in earlier}
+            used_values = set() if shared else set(issued_values.values())
             drawn, _ = drawn_by(
-                stream, exercise, [who], spoken, asked.parts, taken, secret=key, issued_values=known
+                stream,
+                exercise,
+                [person],
+                spoken,
+                asked_exercise.parts,
+                used_values,
+                secret=key,
+                issued_values=issued_values,
             )
-            variant = drawn[who]
-        found.append(with_points(variant, asked).record)
-    return found
+            variant = drawn[person]
+        result.append(with_points(variant, asked_exercise).record)
+    return result
 
 
 def _who(assignment: Assignment, launch: Launch, key: Secret) -> str:
@@ -69,14 +77,14 @@ def _who(assignment: Assignment, launch: Launch, key: Secret) -> str:
 
 def _given(record: Record) -> tuple[Any, ...]:
     """Return the given values of a record in the form in which draws compare them."""
-    return tuple(one["value"] for one in record["given"].values())
+    return tuple(quantity["value"] for quantity in record["given"].values())
 
 
 def variants(course: Course[Any], records: Sequence[Record], lang: str) -> list[Variant]:
     """Return the variants of records, in a language that they support."""
-    found = []
+    result = []
     for record in records:
         exercise = course[str(record["exercise"])]
         spoken = lang if lang in exercise.languages else exercise.languages[0]
-        found.append(exercise.from_record({**record, "lang": spoken}))
-    return found
+        result.append(exercise.from_record({**record, "lang": spoken}))
+    return result

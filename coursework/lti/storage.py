@@ -18,13 +18,13 @@ from typing import Any
 from coursework.course.secrecy import Secret
 from coursework.errors import BadInput
 from coursework.lti.launch import Launch
-from coursework.lti.refusal import Refused
+from coursework.lti.refusal import LTIRefusal
 from coursework.lti.roles import Role
 from coursework.system.sqlite_files import scrub
 
 FILE = "lti.sqlite"
 _WAIT = 10.0  #: seconds for another writer
-_TAKEN = 180.0  #: seconds for which a score that a process is sending is not due for another
+_TAKEN = 180.0  #: seconds for which a score in transmission is not due for another process
 
 _TABLES = """
 CREATE TABLE IF NOT EXISTS used (nonce TEXT PRIMARY KEY, until REAL NOT NULL) WITHOUT ROWID;
@@ -52,18 +52,18 @@ CREATE TABLE IF NOT EXISTS courses (
 
 
 @dataclass(frozen=True)
-class Paper:
+class LTIPaper:
     """Variants issued to a person in a link."""
 
     person: str
     name: str
-    asked: Mapping[str, Any]  #: what the link asked for when it was issued
+    settings: Mapping[str, Any]  #: settings of the link at the time of issue
     records: Sequence[Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
-class Try:
-    """One time that a person handed in."""
+class LTIAttempt:
+    """One submission of a person."""
 
     person: str
     number: int
@@ -71,7 +71,7 @@ class Try:
     answers: Sequence[Mapping[str, str]]  #: by part, for each exercise in order
     points: float
     out_of: float
-    waits: bool  #: a person has to look at some of it
+    waits: bool  #: a person has to mark a part
     comment: str
 
 
@@ -87,9 +87,9 @@ class Score:
 
 @dataclass(frozen=True)
 class Waiting:
-    """A score and where it stands on its way; ``due`` is none once it has arrived."""
+    """Score with the state of its delivery; ``due`` is None once it has arrived."""
 
-    place: str
+    link_key: str
     person: str
     line: str
     lines: str
@@ -99,16 +99,16 @@ class Waiting:
     stamp: float  #: seconds; no two of one person in one link are alike, and later ones are larger
     due: float | None
     failures: int
-    said: str
+    problem: str
 
     @property
     def link(self) -> str:
-        """The platform's own identifier of the link."""
-        return str(json.loads(self.place)[-1])
+        """Return the platform's own identifier of the link."""
+        return str(json.loads(self.link_key)[-1])
 
 
 class Storage:
-    """The file, opened for each job; writers wait for one another."""
+    """Database file, opened for each operation; writers wait for each other."""
 
     def __init__(self, folder: Path, clock: Callable[[], float] = time.time):
         self.path, self._clock = folder / FILE, clock
@@ -167,11 +167,12 @@ class Storage:
             if launch.link and launch.role is Role.STUDENT:
                 lasting = replace(launch, email="", number="").as_json()
                 file.execute(
-                    "INSERT OR REPLACE INTO opened VALUES (?, ?, ?)", [launch.place, launch.person, lasting]
+                    "INSERT OR REPLACE INTO opened VALUES (?, ?, ?)",
+                    [launch.link_key, launch.person, lasting],
                 )
             if launch.context and launch.memberships:
-                told = [launch.course, launch.context_title, launch.memberships, now]
-                file.execute("INSERT OR REPLACE INTO courses VALUES (?, ?, ?, ?)", told)
+                values = [launch.course, launch.context_title, launch.memberships, now]
+                file.execute("INSERT OR REPLACE INTO courses VALUES (?, ?, ?, ?)", values)
         return name, token
 
     def launch(self, name: str, token: str | None) -> Launch:
@@ -179,17 +180,17 @@ class Storage:
 
         Raises
         ------
-        Refused
-            It has ended, or the browser is another.
+        LTIRefusal
+            The session has ended, or belongs to another browser.
         """
         with self._open() as file:
             row = file.execute("SELECT * FROM sessions WHERE id = ?", [name]).fetchone()
         if row is None or row["until"] < self._clock():
-            raise Refused("session", 403, "no such session")
+            raise LTIRefusal("session", 403, "no such session")
         if token is None:
-            raise Refused("cookie", 403, "no cookie of a session")
+            raise LTIRefusal("cookie", 403, "no cookie of a session")
         if not secrets.compare_digest(row["token"], _digest(token)):
-            raise Refused("browser", 403, "the cookie of another session")
+            raise LTIRefusal("browser", 403, "the cookie of another session")
         return Launch.from_json(row["launch"])
 
     def opened(self) -> list[Launch]:
@@ -204,68 +205,68 @@ class Storage:
 
     # --------------------------------------------------------- papers and tries
 
-    def paper(self, place: str, person: str) -> Paper | None:
+    def paper(self, link: str, person: str) -> LTIPaper | None:
         with self._open() as file:
             row = file.execute(
-                "SELECT * FROM papers WHERE place = ? AND person = ?", [place, person]
+                "SELECT * FROM papers WHERE place = ? AND person = ?", [link, person]
             ).fetchone()
         return row and _paper(row)
 
-    def papers(self, place: str) -> list[Paper]:
+    def papers(self, link: str) -> list[LTIPaper]:
         with self._open() as file:
-            rows = file.execute("SELECT * FROM papers WHERE place = ? ORDER BY name, person", [place])
+            rows = file.execute("SELECT * FROM papers WHERE place = ? ORDER BY name, person", [link])
             return [_paper(row) for row in rows]
 
-    def issue(self, place: str, paper: Paper) -> Paper:
-        """Keep what is issued; what was issued before stays, and is given back."""
-        told = [place, paper.person, paper.name, _json(paper.asked), _json(paper.records)]
+    def issue(self, link: str, paper: LTIPaper) -> LTIPaper:
+        """Store a paper and return it; an earlier paper of the person stays and is returned instead."""
+        values = [link, paper.person, paper.name, _json(paper.settings), _json(paper.records)]
         with self._writing() as file:
-            file.execute("INSERT OR IGNORE INTO papers VALUES (?, ?, ?, ?, ?)", told)
-            row = file.execute("SELECT * FROM papers WHERE place = ? AND person = ?", told[:2]).fetchone()
+            file.execute("INSERT OR IGNORE INTO papers VALUES (?, ?, ?, ?, ?)", values)
+            row = file.execute("SELECT * FROM papers WHERE place = ? AND person = ?", values[:2]).fetchone()
             return _paper(row)
 
-    def hand_in(self, place: str, made: Try) -> bool:
-        """Keep a try; whether it is new, since a form may be sent twice."""
-        told = [
-            place,
-            made.person,
-            made.number,
-            made.at,
-            _json(made.answers),
-            made.points,
-            made.out_of,
-            made.waits,
-            made.comment,
+    def submit(self, link: str, attempt: LTIAttempt) -> bool:
+        """Store an attempt; return whether it is new, since a form may be sent twice."""
+        values = [
+            link,
+            attempt.person,
+            attempt.number,
+            attempt.at,
+            _json(attempt.answers),
+            attempt.points,
+            attempt.out_of,
+            attempt.waits,
+            attempt.comment,
         ]
         with self._writing() as file:
-            done = file.execute("INSERT OR IGNORE INTO tries VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", told)
+            done = file.execute("INSERT OR IGNORE INTO tries VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", values)
             return done.rowcount == 1
 
-    def tries(self, place: str, person: str = "") -> list[Try]:
+    def tries(self, link: str, person: str = "") -> list[LTIAttempt]:
         """Return the attempts in a link, of one person or of everybody, the earliest first."""
         with self._open() as file:
             rows = file.execute(
                 "SELECT * FROM tries WHERE place = ? AND (? = '' OR person = ?) ORDER BY person, number",
-                [place, person, person],
+                [link, person, person],
             )
             return [_try(row) for row in rows]
 
     # ------------------------------------------------------------------ scores
 
     def put_score(self, launch: Launch, score: Score) -> bool:
-        """Put a score on its way to the platform in the place of one that is older; whether it says something new."""
-        place, person = launch.place, launch.person
+        """Queue a score for the platform in place of an older one; return whether it differs."""
+        link, person = launch.link_key, launch.person
         with self._writing() as file:
             row = file.execute(
-                "SELECT * FROM scores WHERE place = ? AND person = ?", [place, person]
+                "SELECT * FROM scores WHERE place = ? AND person = ?", [link, person]
             ).fetchone()
-            known = row and _waiting(row)
-            if known and known.score == score and known.line == launch.line:
+            previous = row and _waiting(row)
+            if previous and previous.score == score and previous.line == launch.line:
                 return False
-            stamp = max(self._clock(), known.stamp + 0.001 if known else 0.0)
+            stamp = max(self._clock(), previous.stamp + 0.001 if previous else 0.0)
             platform = json.dumps([launch.issuer, launch.client_id])
-            told: list[Any] = [
-                place,
+            values: list[Any] = [
+                link,
                 person,
                 platform,
                 launch.line,
@@ -273,9 +274,9 @@ class Storage:
                 launch.link_title,
                 _json(launch.scopes),
             ]
-            told += [score.given, score.maximum, score.waits, score.comment, stamp, self._clock()]
-            marks = ", ".join("?" * len(told))
-            file.execute(f"INSERT OR REPLACE INTO scores VALUES ({marks}, 0, '')", told)
+            values += [score.given, score.maximum, score.waits, score.comment, stamp, self._clock()]
+            marks = ", ".join("?" * len(values))
+            file.execute(f"INSERT OR REPLACE INTO scores VALUES ({marks}, 0, '')", values)
         return True
 
     def due(self, count: int = 50) -> list[tuple[tuple[str, str], Waiting]]:
@@ -288,55 +289,58 @@ class Storage:
                 return []
         with self._writing() as file:
             rows = file.execute("SELECT * FROM scores WHERE due <= ? ORDER BY due LIMIT ?", [now, count])
-            found = [(json.loads(row["platform"]), _waiting(row)) for row in rows]
-            taken = [[now + _TAKEN, one.place, one.person] for _, one in found]
-            file.executemany("UPDATE scores SET due = ? WHERE place = ? AND person = ?", taken)
-        return [((issuer, client_id), waiting) for (issuer, client_id), waiting in found]
+            scores = [(json.loads(row["platform"]), _waiting(row)) for row in rows]
+            postponed = [
+                [now + _TAKEN, waiting_score.link_key, waiting_score.person] for _, waiting_score in scores
+            ]
+            file.executemany("UPDATE scores SET due = ? WHERE place = ? AND person = ?", postponed)
+        return [((issuer, client_id), waiting) for (issuer, client_id), waiting in scores]
 
     def arrived(self, sent: Waiting) -> None:
-        """Note that a score has arrived; one that was put on its way meanwhile is still to go."""
+        """Record that a score has arrived; a newer score stays queued."""
         self._settle(sent, None, 0, "")
 
-    def put_off(self, sent: Waiting, seconds: float, said: str) -> None:
+    def put_off(self, sent: Waiting, seconds: float, message: str) -> None:
         """Note why a score did not arrive, and when to try again."""
-        self._settle(sent, self._clock() + seconds, sent.failures + 1, said)
+        self._settle(sent, self._clock() + seconds, sent.failures + 1, message)
 
-    def _settle(self, sent: Waiting, due: float | None, failures: int, said: str) -> None:
+    def _settle(self, sent: Waiting, due: float | None, failures: int, message: str) -> None:
         with self._writing() as file:
-            told = [due, failures, said[:300], sent.place, sent.person, sent.stamp]
+            values = [due, failures, message[:300], sent.link_key, sent.person, sent.stamp]
             file.execute(
                 "UPDATE scores SET due = ?, failures = ?, said = ? WHERE place = ? AND person = ? AND stamp = ?",
-                told,
+                values,
             )
 
     def newer_stamp(self, sent: Waiting) -> None:
-        """Date a score anew, for a platform that says it has a later one."""
+        """Give a score a newer time stamp, for a platform that claims to have a later one."""
         with self._writing() as file:
-            told = [max(self._clock(), sent.stamp + 1.0), sent.place, sent.person, sent.stamp]
-            file.execute("UPDATE scores SET stamp = ? WHERE place = ? AND person = ? AND stamp = ?", told)
+            values = [max(self._clock(), sent.stamp + 1.0), sent.link_key, sent.person, sent.stamp]
+            file.execute("UPDATE scores SET stamp = ? WHERE place = ? AND person = ? AND stamp = ?", values)
 
-    def scores(self, place: str = "") -> dict[tuple[str, str], Waiting]:
+    def scores(self, link: str = "") -> dict[tuple[str, str], Waiting]:
         """Return the scores by link and person."""
         with self._open() as file:
             rows = file.execute(
-                "SELECT * FROM scores WHERE ? = '' OR place = ? ORDER BY place, person", [place, place]
+                "SELECT * FROM scores WHERE ? = '' OR place = ? ORDER BY place, person", [link, link]
             )
             return {(row["place"], row["person"]): _waiting(row) for row in rows}
 
     def hurry(self) -> int:
-        """Make all that waits due now; how many that are."""
+        """Make all waiting scores due now; return their number."""
         with self._writing() as file:
             return file.execute("UPDATE scores SET due = ? WHERE due IS NOT NULL", [self._clock()]).rowcount
 
-    # ------------------------------------------------------- what was looked at
+    # -------------------------------------------------------- secret and checks
 
     def secret(self) -> Secret:
-        """Return what keys the draws of exercises, and of assignments whose file has no secret: created once.
+        """Return the secret that keys the draws of exercises, and of assignments without a secret; create it
+        at the first use.
 
         Raises
         ------
         BadInput
-            What is kept is no secret.
+            The stored text is no secret.
         """
         with self._writing() as file:
             file.execute("INSERT OR IGNORE INTO secrets VALUES ('draws', ?)", [Secret.new().text])
@@ -346,16 +350,16 @@ class Storage:
         except ValueError as fault:
             raise BadInput(f"{self.path}: {fault}; restore a backup") from None
 
-    def stood(self, what: str) -> str:
+    def checked_state(self, subject: str) -> str:
         """Return the state of something when it was last checked; empty if it never was."""
         with self._open() as file:
-            row = file.execute("SELECT stood FROM looked WHERE what = ?", [what]).fetchone()
+            row = file.execute("SELECT stood FROM looked WHERE what = ?", [subject]).fetchone()
         return str(row["stood"]) if row else ""
 
-    def looked(self, what: str, stood: str) -> None:
-        """Note how something stands."""
+    def record_check(self, subject: str, stood: str) -> None:
+        """Record the state of a subject at its check."""
         with self._writing() as file:
-            file.execute("INSERT OR REPLACE INTO looked VALUES (?, ?)", [what, stood])
+            file.execute("INSERT OR REPLACE INTO looked VALUES (?, ?)", [subject, stood])
 
     # ----------------------------------------------------------------- courses
 
@@ -385,7 +389,7 @@ class Storage:
             return gone + _end_sessions(file, person, issuer)
 
     def end_sessions(self, person: str, issuer: str) -> int:
-        """End the sessions of a person of a platform; returns how many there were."""
+        """End the sessions of a person of a platform; return their number."""
         with self._writing() as file:
             return _end_sessions(file, person, issuer)
 
@@ -407,12 +411,12 @@ def _json(data: Any) -> str:
     return json.dumps(data, ensure_ascii=False)
 
 
-def _paper(row: sqlite3.Row) -> Paper:
-    return Paper(row["person"], row["name"], json.loads(row["asked"]), json.loads(row["records"]))
+def _paper(row: sqlite3.Row) -> LTIPaper:
+    return LTIPaper(row["person"], row["name"], json.loads(row["asked"]), json.loads(row["records"]))
 
 
-def _try(row: sqlite3.Row) -> Try:
-    return Try(
+def _try(row: sqlite3.Row) -> LTIAttempt:
+    return LTIAttempt(
         row["person"],
         row["number"],
         row["at"],

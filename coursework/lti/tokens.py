@@ -8,15 +8,15 @@ from typing import Any
 import jwt
 
 from coursework.lti.key_sets import KeySets
-from coursework.lti.refusal import Refused
-from coursework.lti.settings import Platform, Settings
+from coursework.lti.refusal import LTIRefusal
+from coursework.lti.settings import LTIPlatform, Settings
 
 _DEPLOYMENT = "https://purl.imsglobal.org/spec/lti/claim/deployment_id"
 _SLACK = 60  #: seconds that clocks may differ
 _NEEDED = ["iss", "sub", "aud", "exp", "iat", "nonce"]
 _LONGEST = 64 * 1024
 
-#: The sentence for each fault, and its status, the first that fits.
+#: Sentence and status for each error; the first match counts.
 _FAULTS: tuple[tuple[type[Exception], str, int], ...] = (
     (jwt.ExpiredSignatureError, "expired", 401),
     (jwt.ImmatureSignatureError, "not_yet", 401),
@@ -28,22 +28,22 @@ _FAULTS: tuple[tuple[type[Exception], str, int], ...] = (
 )
 
 
-def verified(token: str, settings: Settings, keys: KeySets, expected: Platform) -> Mapping[str, Any]:
+def verified(token: str, settings: Settings, keys: KeySets, expected: LTIPlatform) -> Mapping[str, Any]:
     """Return the claims of a token from the ``expected`` platform, with ``client_id`` among them.
 
-    Only RS256 is taken: a token without a signature, or sealed with what everybody may read, is none.
+    Only RS256 is accepted; a token without a signature, or signed with a public value, is refused.
 
     Raises
     ------
-    Refused
-        It is forged, of another time, for somebody else, or from a deployment that is not known.
+    LTIRefusal
+        The token is forged, expired, for another client, or from an unknown deployment.
     """
     if len(token) > _LONGEST:
-        raise Refused("too_large", 413, "token")
+        raise LTIRefusal("too_large", 413, "token")
     try:
         header = jwt.get_unverified_header(token)
         if header.get("alg") != "RS256":
-            raise Refused("signature", 401, f"signed by {str(header.get('alg'))[:20]!r}")
+            raise LTIRefusal("signature", 401, f"signed by {str(header.get('alg'))[:20]!r}")
         key = keys.key(expected, str(header.get("kid", "")))
         claims = jwt.decode(
             token, key, algorithms=["RS256"], audience=expected.client_id, issuer=expected.issuer, leeway=_SLACK,
@@ -51,16 +51,18 @@ def verified(token: str, settings: Settings, keys: KeySets, expected: Platform) 
         )  # fmt: skip
     except jwt.PyJWTError as fault:
         why, status = next((why, status) for kind, why, status in _FAULTS if isinstance(fault, kind))
-        raise Refused(why, status, f"{expected.name}: {type(fault).__name__}") from None
+        raise LTIRefusal(why, status, f"{expected.name}: {type(fault).__name__}") from None
     _check_party(claims, expected)
     if str(claims.get(_DEPLOYMENT, "")) not in expected.deployments:
-        raise Refused("deployment", 403, f"{expected.name}: deployment {str(claims.get(_DEPLOYMENT))[:60]!r}")
+        raise LTIRefusal(
+            "deployment", 403, f"{expected.name}: deployment {str(claims.get(_DEPLOYMENT))[:60]!r}"
+        )
     return {**claims, "client_id": expected.client_id}
 
 
-def _check_party(claims: Mapping[str, Any], expected: Platform) -> None:
+def _check_party(claims: Mapping[str, Any], expected: LTIPlatform) -> None:
     """Check that a token for several tools was issued to this one."""
     party, audience = claims.get("azp"), claims["aud"]
     several = isinstance(audience, list) and len(audience) > 1
     if (party is not None or several) and party != expected.client_id:
-        raise Refused("audience", 403, f"{expected.name}: asked for by another party")
+        raise LTIRefusal("audience", 403, f"{expected.name}: asked for by another party")

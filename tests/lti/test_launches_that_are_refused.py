@@ -11,7 +11,7 @@ from cryptography.hazmat.primitives import serialization
 from lti_platform import CLIENT, DEEP, LTI, MEMBER, SITE, TOOL, field, seal
 
 from coursework.language.words import words
-from coursework.lti.key_sets import AGAIN_SECONDS, KEPT_SECONDS
+from coursework.lti.key_sets import AGAIN_SECONDS, CACHE_SECONDS
 from coursework.lti.login import session_cookie
 
 SAID = words("en")["lti"]["refused"]
@@ -271,31 +271,31 @@ def test_an_unknown_key_is_refused_and_asked_for_once_in_a_while(tool, visitor):
 
 def test_a_platform_that_rotates_its_key_is_followed(tool):
     from coursework.lti.key_sets import KeySets
-    from coursework.lti.refusal import Refused
+    from coursework.lti.refusal import LTIRefusal
 
     now = [0.0]
     sets = KeySets(tool.platform.client, lambda: now[0])
     platform = tool.settings.platforms[0]
     assert sets.key(platform, "one")
     tool.platform.rotate()
-    with pytest.raises(Refused, match="has no key"):
+    with pytest.raises(LTIRefusal, match="has no key"):
         sets.key(platform, "key-1")  # asked for a moment ago
     now[0] += AGAIN_SECONDS + 1
     assert sets.key(platform, "key-1")
-    with pytest.raises(Refused, match="has no key"):
+    with pytest.raises(LTIRefusal, match="has no key"):
         sets.key(platform, "one")  # what the platform took back is gone
 
 
 def test_a_key_that_was_taken_back_is_not_kept_for_ever(tool):
     from coursework.lti.key_sets import KeySets
-    from coursework.lti.refusal import Refused
+    from coursework.lti.refusal import LTIRefusal
 
     now = [0.0]
     sets, platform = KeySets(tool.platform.client, lambda: now[0]), tool.settings.platforms[0]
     assert sets.key(platform, "one")
     tool.platform.rotate()
-    now[0] += KEPT_SECONDS + 1
-    with pytest.raises(Refused, match="has no key"):
+    now[0] += CACHE_SECONDS + 1
+    with pytest.raises(LTIRefusal, match="has no key"):
         sets.key(platform, "one")
 
 
@@ -306,7 +306,7 @@ def test_keys_that_are_known_serve_while_the_platform_is_down(tool):
     sets, platform = KeySets(tool.platform.client, lambda: now[0]), tool.settings.platforms[0]
     assert sets.key(platform, "one")
     tool.platform.down = -1
-    now[0] += KEPT_SECONDS + 1
+    now[0] += CACHE_SECONDS + 1
     assert sets.key(platform, "one")
 
 

@@ -274,7 +274,7 @@ def test_every_refusal_has_its_sentence():
     used = {
         why
         for file in home.glob("*.py")
-        for why in re.findall(r'Refused\(\s*"(\w+)"', file.read_text("utf-8"))
+        for why in re.findall(r'LTIRefusal\(\s*"(\w+)"', file.read_text("utf-8"))
     }
     used |= {"expired", "not_yet", "audience", "issuer", "claim", "signature", "method", "page"}
     for lang in ("en", "fr"):

@@ -688,7 +688,7 @@ def test_no_launch_says_where_the_server_sends_a_token_or_asks(elsewhere, tool):
     with pytest.raises(NotServed, match="origins"):
         services.roster(PLATFORM, elsewhere)
     with pytest.raises(NotServed, match="origins"):
-        services._asked(PLATFORM, [], "POST", elsewhere, json={})
+        services._request(PLATFORM, [], "POST", elsewhere, json={})
     assert not asked
     assert services.roster(PLATFORM, "https://frames.example.org/members") == [], (
         "an origin that the settings name"

@@ -14,7 +14,7 @@ from coursework.database.store import Store
 from coursework.database.tables import METADATA, CompressedText, SafeText, UTCDateTime, person
 from coursework.lti.launch import Launch
 from coursework.lti.roles import Role
-from coursework.lti.storage import Paper, Score, Storage, Try
+from coursework.lti.storage import LTIAttempt, LTIPaper, Score, Storage
 from coursework.site.people import scrubbing
 from coursework.system import sqlite_files
 
@@ -185,9 +185,9 @@ def test_what_links_of_platforms_keep_is_erased_to_the_byte(tmp_path, with_reade
     )  # fmt: skip
     storage.begin(launch, 1000)
     answers = [{"rA": "answer-unmistakable" * 50}]
-    storage.issue(launch.place, Paper(launch.person, launch.name, {}, []))
-    storage.hand_in(
-        launch.place, Try(launch.person, 1, 0.0, answers, 1.0, 1.0, False, "comment-unmistakable")
+    storage.issue(launch.link_key, LTIPaper(launch.person, launch.name, {}, []))
+    storage.submit(
+        launch.link_key, LTIAttempt(launch.person, 1, 0.0, answers, 1.0, 1.0, False, "comment-unmistakable")
     )
     storage.put_score(launch, Score(1.0, 1.0, "comment-unmistakable"))
     told = (launch.person, launch.name, MAIL, "answer-unmistakable", "comment-unmistakable")

@@ -11,7 +11,7 @@ from coursework.database.instructor_queries import people_of
 from coursework.database.publication import CHARGE, Publication
 from coursework.database.tables import identity
 from coursework.language.words import words
-from coursework.lti.host import Visit
+from coursework.lti.host import LTIRequest
 from coursework.lti.storage import Waiting
 from coursework.site.desk import class_page
 from coursework.site.desk.class_cache import CachedClass
@@ -34,7 +34,7 @@ class LaunchClassRow(NamedTuple):
 
 
 def class_rows(
-    connection: Connection, site: Site, now: CachedClass, visit: Visit, here: set[str]
+    connection: Connection, site: Site, now: CachedClass, visit: LTIRequest, here: set[str]
 ) -> list[LaunchClassRow]:
     """Return the students of the platform's course, in the order of the desk's table.
 
@@ -93,10 +93,12 @@ def _score_state(waiting: Waiting | None, subject: str, lang: str) -> str:
         return str(site_texts["kept_back"] if subject else site_texts["never_came"])
     if waiting.due is None:
         return str(link_texts["waits_person"] if waiting.score.waits else link_texts["arrived"])
-    return str(link_texts["waits_because"].format(waiting.said) if waiting.said else link_texts["on_its_way"])
+    return str(
+        link_texts["waits_because"].format(waiting.problem) if waiting.problem else link_texts["on_its_way"]
+    )
 
 
-def rules_rows(visit: Visit, now: CachedClass, publication: Publication | None) -> list[tuple[str, str]]:
+def rules_rows(visit: LTIRequest, now: CachedClass, publication: Publication | None) -> list[tuple[str, str]]:
     """Return the rules with which the assignment is published, each with its label."""
     link, site_texts = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
     if publication is None:

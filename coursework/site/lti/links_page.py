@@ -26,7 +26,7 @@ def waiting(request: Request) -> Response:
             "name": names.get(entry.person, entry.person),
             "points": f"{number_text(entry.score.given, request.lang)} / {number_text(entry.score.maximum, request.lang)}",
             "failures": entry.failures,
-            "why": entry.said,
+            "why": entry.problem,
         }
         for entry in every
         if entry.due is not None

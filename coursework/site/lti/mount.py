@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coursework.errors import BadInput
-from coursework.lti.pages import Pages
+from coursework.lti.pages import LTIPages
 from coursework.lti.service import service
 from coursework.lti.settings import Settings, checked_url, read_settings
 from coursework.lti.storage import Storage
@@ -45,7 +45,7 @@ def mounted(site: Site, folder: Path, client: Any = None, settings: Settings | N
     scores."""
     storage = Storage(folder)
     app = service(
-        settings or settings_of(folder, site.url), SiteHost(site, storage), Pages(site.course.folder), storage=storage,
+        settings or settings_of(folder, site.url), SiteHost(site, storage), LTIPages(site.course.folder), storage=storage,
         client=client,
     )  # fmt: skip
     app.state.watch = ScoreWatch(site, storage, app.state.sender.wake)

@@ -29,9 +29,9 @@ from coursework.gradebook.graded import Graded
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.launch import Launch
-from coursework.lti.refusal import Refused as LtiRefused
+from coursework.lti.link_settings import LinkSettings
+from coursework.lti.refusal import LTIRefusal
 from coursework.lti.storage import Score, Storage
-from coursework.lti.wanted import Wanted
 from coursework.making.issued import Issued
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import CachedClass, class_now
@@ -118,8 +118,8 @@ def assignment_number(site: Site, launch: Launch) -> int | None:
     """Return the number of the assignment that a link opens; None if it opens an exercise, or nothing that
     exists."""
     try:
-        name = Wanted.of(launch.custom).assignment
-    except LtiRefused:
+        name = LinkSettings.of(launch.custom).assignment
+    except LTIRefusal:
         return None
     with site.store.reading() as connection:
         return names(connection).get(name)
@@ -181,11 +181,11 @@ class ScoreWatch:
     def _look(self, number: int, launches: Sequence[Launch]) -> int:
         pass_dates(self._site, number, self._site.clock())
         key, state = f"assignment {number}", f"{self._state_text(number)} {len(launches)}"
-        if self._storage.stood(key) == state:
+        if self._storage.checked_state(key) == state:
             return 0
         now = class_now(self._site, number)
         new = sum(self._queue_score(launch, now) for launch in launches)
-        self._storage.looked(key, state)
+        self._storage.record_check(key, state)
         if new:
             self._wake()
         return new

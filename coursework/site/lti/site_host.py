@@ -20,15 +20,14 @@ from coursework.gradebook.rows import Row
 from coursework.language.words import words
 from coursework.lti.class_list import students
 from coursework.lti.course_host import CourseHost
-from coursework.lti.host import Form, Offer, Reply, Shelf, Visit
+from coursework.lti.host import Form, LTIRequest, LTIResponse, Offer, OfferGroup
 from coursework.lti.launch import Launch
-from coursework.lti.pages import Form as Surrounding
-from coursework.lti.pages import Pages
-from coursework.lti.refusal import Refused as LtiRefused
+from coursework.lti.link_settings import LinkSettings
+from coursework.lti.pages import LTIPages, SheetForm
+from coursework.lti.refusal import LTIRefusal
 from coursework.lti.roles import Role
 from coursework.lti.services import Member, NotServed
 from coursework.lti.storage import Score, Storage
-from coursework.lti.wanted import Wanted
 from coursework.making.students import folded
 from coursework.messages import as_message
 from coursework.site.desk.class_cache import assignment_title, class_now
@@ -73,12 +72,12 @@ class SiteHost:
         return self._practice
 
     @property
-    def pages(self) -> Pages:
-        return Pages(self._site.course.folder)
+    def pages(self) -> LTIPages:
+        return LTIPages(self._site.course.folder)
 
     # -------------------------------------------------------------------- offers
 
-    def shelves(self, lang: str) -> Sequence[Shelf]:
+    def offer_groups(self, lang: str) -> Sequence[OfferGroup]:
         """Return the published assignments, then the exercises by chapter."""
         with self._site.store.reading() as connection:
             assignments = [
@@ -93,35 +92,35 @@ class SiteHost:
                 )
                 for assignment in assignments
             ]  # fmt: skip
-        site_groups = [Shelf(words(lang, "site")["lti"]["shelf"], tuple(offers))] if offers else []
-        return [*site_groups, *self.practice.shelves(lang)]
+        site_groups = [OfferGroup(words(lang, "site")["lti"]["shelf"], tuple(offers))] if offers else []
+        return [*site_groups, *self.practice.offer_groups(lang)]
 
     # ---------------------------------------------------------------------- pages
 
-    def show(self, visit: Visit) -> Reply:
-        if not Wanted.of(visit.launch.custom).assignment:
+    def show(self, visit: LTIRequest) -> LTIResponse:
+        if not LinkSettings.of(visit.launch.custom).assignment:
             return self.practice.show(visit)
         return self._answered(visit, lambda number: self._student_page(visit, number))
 
-    def take(self, visit: Visit, form: Form) -> Reply:
-        if not Wanted.of(visit.launch.custom).assignment:
+    def take(self, visit: LTIRequest, form: Form) -> LTIResponse:
+        if not LinkSettings.of(visit.launch.custom).assignment:
             return self.practice.take(visit, form)
         return self._answered(visit, lambda number: self._submit(visit, number, form))
 
-    def score(self, visit: Visit) -> Score | None:
+    def score(self, visit: LTIRequest) -> Score | None:
         try:
-            wanted = Wanted.of(visit.launch.custom)
-        except LtiRefused:
+            wanted = LinkSettings.of(visit.launch.custom)
+        except LTIRefusal:
             return None
         return score_of(self._site, visit.launch) if wanted.assignment else self.practice.score(visit)
 
-    def _answered(self, visit: Visit, work: Callable[[int], Reply]) -> Reply:
+    def _answered(self, visit: LTIRequest, work: Callable[[int], LTIResponse]) -> LTIResponse:
         """Return the response for the assignment of a link; a refusal of the site becomes a page."""
         if visit.launch.role is not Role.STUDENT and not visit.launch.role.sees_class:
-            raise LtiRefused("nobody", 403, f"role {visit.launch.role}")
+            raise LTIRefusal("nobody", 403, f"role {visit.launch.role}")
         number = assignment_number(self._site, visit.launch)
         if number is None:
-            raise LtiRefused("unknown_choice", 404, "no such assignment")
+            raise LTIRefusal("unknown_choice", 404, "no such assignment")
         try:
             return work(number)
         except HTTPException as why:
@@ -129,7 +128,7 @@ class SiteHost:
         except BadInput as fault:
             return self._refused(visit, HTTPException("mistaken", 422, as_message(fault)))
 
-    def _refused(self, visit: Visit, why: HTTPException) -> Reply:
+    def _refused(self, visit: LTIRequest, why: HTTPException) -> LTIResponse:
         texts = words(visit.lang, "site")
         sentence = texts["lti"]["refused"].get(why.sentence) or texts["refused"][why.sentence]
         names = {
@@ -138,13 +137,13 @@ class SiteHost:
         }  # fmt: skip
         if why.sentence == "connect":
             names |= {"connect": str(why.parts[0]), "connect_word": texts["connect"]["title"]}
-        return Reply(self.pages.page("lti_message", visit.lang, names), why.status_code)
+        return LTIResponse(self.pages.page("lti_message", visit.lang, names), why.status_code)
 
-    def _student_page(self, visit: Visit, number: int) -> Reply:
+    def _student_page(self, visit: LTIRequest, number: int) -> LTIResponse:
         if visit.launch.role is not Role.STUDENT:
             return self._class(visit, number)
         if visit.path:
-            raise LtiRefused("page", 404, "a student")
+            raise LTIRefusal("page", 404, "a student")
         site_request = self._site_request(visit, number, FormData())
         state, paper = state_and_paper(site_request)
         if state.done and not ("again" in visit.query and state.may_hand_in):
@@ -152,11 +151,11 @@ class SiteHost:
         if not state.may_hand_in:
             raise HTTPException("closed", 409)
         texts = self._handed_in(state, paper) if state.done else {}
-        return Reply(self._sheet(visit, state, paper, texts))
+        return LTIResponse(self._sheet(visit, state, paper, texts))
 
     # ------------------------------------------------------------------- a student
 
-    def _site_request(self, visit: Visit, number: int, form: FormData) -> SiteRequest:
+    def _site_request(self, visit: LTIRequest, number: int, form: FormData) -> SiteRequest:
         """Return the site's request of the launch's person, after a paper has been assigned to them.
 
         Raises
@@ -182,7 +181,7 @@ class SiteHost:
             is_post=bool(form.texts),
         )
 
-    def _assign(self, visit: Visit, number: int, person: Any) -> None:
+    def _assign(self, visit: LTIRequest, number: int, person: Any) -> None:
         with self._site.store.reading() as connection:
             publication = published(connection, number)
             if publication is None or student_assignments(connection, person.id, number):
@@ -197,7 +196,7 @@ class SiteHost:
         launch_persons.assign_paper(self._site, number, person, visit.launch, visit.lang)
 
     def _sheet(
-        self, visit: Visit, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
+        self, visit: LTIRequest, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
         unread: Sequence[str] = (),
     ) -> str:  # fmt: skip
         filled = {
@@ -206,8 +205,8 @@ class SiteHost:
             if text
         }
         more = [(visit.home, words(visit.lang)["lti"]["see_again"])] if state.done else []
-        form = Surrounding(
-            visit.home, visit.seal, len(state.done) + 1, filled, (*notes, *self._rules(visit, state)), tuple(unread),
+        form = SheetForm(
+            visit.home, visit.csrf_token, len(state.done) + 1, filled, (*notes, *self._rules(visit, state)), tuple(unread),
             bool(unread), tuple(more), visit.launch.return_url,
         )  # fmt: skip
         return self.pages.sheet(paper.paper, form, alone=False)
@@ -226,7 +225,7 @@ class SiteHost:
             for name, box in paper.boxes.items()
         }
 
-    def _rules(self, visit: Visit, state: AssignmentState) -> list[str]:
+    def _rules(self, visit: LTIRequest, state: AssignmentState) -> list[str]:
         """Return the rules of the assignment: closing time, remaining attempts, and the attempt that
         counts."""
         texts, site_texts = words(visit.lang)["lti"], words(visit.lang, "site")["lti"]
@@ -253,8 +252,8 @@ class SiteHost:
         return [" ".join(rules)]
 
     def _after_submission(
-        self, visit: Visit, site_request: SiteRequest, state: AssignmentState, paper: StudentPaper
-    ) -> Reply:
+        self, visit: LTIRequest, site_request: SiteRequest, state: AssignmentState, paper: StudentPaper
+    ) -> LTIResponse:
         """Return the feedback on the last submission if it is released; otherwise a confirmation."""
         texts, last = words(visit.lang)["lti"], state.done[-1]
         arrival = texts["try_number"].format(last.number, exact_text(last.received_at, visit.lang))
@@ -264,8 +263,8 @@ class SiteHost:
         if state.releases("feedback") and waits is None:
             document, notes = feedback_of(site_request, state, paper, last)
             notes = [f"{arrival}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
-            form = Surrounding("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
-            return Reply(self.pages.feedback(document, form, alone=False))
+            form = SheetForm("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
+            return LTIResponse(self.pages.feedback(document, form, alone=False))
         notes = [
             f"{arrival}.",
             receipt,
@@ -277,9 +276,9 @@ class SiteHost:
             "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": visit.launch.return_url,
             "handed_in": site_request.words["lti"]["handed_in"],
         }  # fmt: skip
-        return Reply(self.pages.page("lti_site_handed_in", visit.lang, names))
+        return LTIResponse(self.pages.page("lti_site_handed_in", visit.lang, names))
 
-    def _sent(self, visit: Visit, state: AssignmentState | None = None) -> str:
+    def _sent(self, visit: LTIRequest, state: AssignmentState | None = None) -> str:
         """Return the state of the score on its way to the platform."""
         texts, launch = words(visit.lang)["lti"], visit.launch
         if not (launch.line or launch.lines):
@@ -292,21 +291,21 @@ class SiteHost:
             return str(words(visit.lang, "site")["lti"][kept_back])
         return str(texts["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
 
-    def _submit(self, visit: Visit, number: int, form: Form) -> Reply:
+    def _submit(self, visit: LTIRequest, number: int, form: Form) -> LTIResponse:
         """Submit the answers of a form; a repeated form has no effect."""
         if visit.launch.role is not Role.STUDENT or visit.path:
-            raise LtiRefused("page", 404, "nothing is handed in there")
+            raise LTIRefusal("page", 404, "nothing is handed in there")
         site_request = self._site_request(visit, number, FormData(form))
         state, paper = state_and_paper(site_request)
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):
-            return Reply(goto=visit.home)  # repeated form
+            return LTIResponse(goto=visit.home)  # repeated form
         if not any(text.strip() for text in texts.values()):
             empty = words(visit.lang)["lti"]["empty"]
-            return Reply(self._sheet(visit, state, paper, texts, notes=[empty]), 422)
+            return LTIResponse(self._sheet(visit, state, paper, texts, notes=[empty]), 422)
         unread = _unread(visit, paper, texts)
         if unread and not form.get("_as_it_is"):
-            return Reply(self._sheet(visit, state, paper, texts, unread=unread), 422)
+            return LTIResponse(self._sheet(visit, state, paper, texts, unread=unread), 422)
         submit(
             self._site,
             state.assignment,
@@ -317,21 +316,21 @@ class SiteHost:
             site_request.received_at,
             FROM_A_PLATFORM,
         )
-        return Reply(goto=visit.home)
+        return LTIResponse(goto=visit.home)
 
     # ------------------------------------------------------------------------ class
 
     def _opened_by_course(self, launch: Launch) -> set[str]:
         """Return the platform identifiers of the people who opened the assignment from the launch's
         course."""
-        named = Wanted.of(launch.custom).assignment
+        named = LinkSettings.of(launch.custom).assignment
         opened = (other for other in self._storage.opened() if other.course == launch.course)
         return {other.person for other in opened if other.custom.get("assignment", "").strip() == named}
 
-    def _class(self, visit: Visit, number: int) -> Reply:
+    def _class(self, visit: LTIRequest, number: int) -> LTIResponse:
         """Return the class table, read-only; decisions are made on the site, with an account there."""
         if visit.path:
-            raise LtiRefused("page", 404, "no such page")
+            raise LTIRefusal("page", 404, "no such page")
         now, lang = class_now(self._site, number), visit.lang
         members, note = _members(visit, lang)
         with self._site.store.reading() as connection:
@@ -343,7 +342,7 @@ class SiteHost:
             "desk": f"{self._site.url}/desk/{number}", "rules": rules_rows(visit, now, publication), "rows": rows, "missing": missing,
             "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
         }  # fmt: skip
-        return Reply(self.pages.page("lti_site_class", lang, names))
+        return LTIResponse(self.pages.page("lti_site_class", lang, names))
 
 
 def _worth(connection: Connection, number: int) -> float:
@@ -355,7 +354,7 @@ def _worth(connection: Connection, number: int) -> float:
     return sum(float(part["points"]) for record in records for part in record["parts"]) or 1.0
 
 
-def _unread(visit: Visit, paper: StudentPaper, texts: Mapping[str, str]) -> list[str]:
+def _unread(visit: LTIRequest, paper: StudentPaper, texts: Mapping[str, str]) -> list[str]:
     """Return a sentence for each answer that could not be read."""
     form = str(words(visit.lang)["lti"]["unread_line"])
     return [
@@ -368,11 +367,11 @@ def _unread(visit: Visit, paper: StudentPaper, texts: Mapping[str, str]) -> list
 def _number(form: Form) -> int:
     text = next(iter(form.get("_number", ())), "")
     if not text.isdecimal() or not 1 <= len(text) <= 6 or int(text) < 1:
-        raise LtiRefused("answer", 400, "no number of a try")
+        raise LTIRefusal("answer", 400, "no number of a try")
     return int(text)
 
 
-def _members(visit: Visit, lang: str) -> tuple[Sequence[Member] | None, str]:
+def _members(visit: LTIRequest, lang: str) -> tuple[Sequence[Member] | None, str]:
     """Return the platform's roster, and the sentence to show if there is none."""
     texts = words(lang)["lti"]["class"]
     if visit.roster is None:

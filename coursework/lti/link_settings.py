@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
-from coursework.lti.refusal import Refused
+from coursework.lti.refusal import LTIRefusal
 
 BEST, LAST = "best", "last"
 NEVER, AFTER = "never", "after"
@@ -15,15 +15,15 @@ _MOST_TRIES = 1000
 
 
 @dataclass(frozen=True)
-class Wanted:
+class LinkSettings:
     """Content of a link and its rules."""
 
     exercise: str = ""
     assignment: str = ""
-    parts: tuple[str, ...] = ()  #: of the exercise; the usual ones where none is named
-    tries: int | None = None  #: as many as one likes unless told
+    parts: tuple[str, ...] = ()  #: of the exercise; empty: the usual ones
+    tries: int | None = None  #: None: unlimited
     counts: str = BEST
-    answers: str = NEVER  #: whether right answers are shown after the last try
+    answers: str = NEVER  #: whether right answers are shown after the last attempt
 
     @property
     def key(self) -> str:
@@ -45,13 +45,13 @@ class Wanted:
 
     def custom(self) -> dict[str, str]:
         """Return the custom parameters that state these settings, without those at their defaults."""
-        told = {
+        parameters = {
             "exercise": self.exercise, "assignment": self.assignment, "parts": ",".join(self.parts),
             "tries": "" if self.tries is None else str(self.tries),
             "counts": "" if self.counts == BEST else self.counts,
             "answers": "" if self.answers == NEVER else self.answers,
         }  # fmt: skip
-        return {name: text for name, text in told.items() if text}
+        return {name: text for name, text in parameters.items() if text}
 
     def as_plain(self) -> dict[str, Any]:
         return asdict(self)
@@ -62,19 +62,26 @@ class Wanted:
 
         Raises
         ------
-        Refused
-            They name nothing to open, or a rule that there is not.
+        LTIRefusal
+            They name no content, or an unknown rule.
         """
-        told = {str(name).strip().casefold(): text.strip() for name, text in custom.items()}
-        exercise, assignment = told.get("exercise", ""), told.get("assignment", "")
+        parameters = {str(name).strip().casefold(): text.strip() for name, text in custom.items()}
+        exercise, assignment = parameters.get("exercise", ""), parameters.get("assignment", "")
         if not exercise and not assignment:
-            raise Refused("nothing_chosen", 404, "neither exercise nor assignment in the custom parameters")
-        counts, answers = told.get("counts") or BEST, told.get("answers") or NEVER
+            raise LTIRefusal(
+                "nothing_chosen", 404, "neither exercise nor assignment in the custom parameters"
+            )
+        counts, answers = parameters.get("counts") or BEST, parameters.get("answers") or NEVER
         if counts not in (BEST, LAST) or answers not in (NEVER, AFTER):
-            raise Refused("unknown_choice", 404, f"counts {counts[:20]!r}, answers {answers[:20]!r}")
-        parts = tuple(filter(None, (one.strip() for one in told.get("parts", "").split(","))))
+            raise LTIRefusal("unknown_choice", 404, f"counts {counts[:20]!r}, answers {answers[:20]!r}")
+        parts = tuple(filter(None, (part.strip() for part in parameters.get("parts", "").split(","))))
         return cls(
-            exercise, "" if exercise else assignment, parts, tries_of(told.get("tries", "")), counts, answers
+            exercise,
+            "" if exercise else assignment,
+            parts,
+            tries_of(parameters.get("tries", "")),
+            counts,
+            answers,
         )
 
 
@@ -83,5 +90,5 @@ def tries_of(text: str) -> int | None:
     if not text.strip():
         return None
     if not text.strip().isdecimal() or len(text) > 20 or not 1 <= int(text) <= _MOST_TRIES:
-        raise Refused("no_question", 400, "tries are no whole number")
+        raise LTIRefusal("no_question", 400, "tries are no whole number")
     return int(text)
