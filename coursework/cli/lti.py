@@ -239,7 +239,7 @@ def _checked(settings: Settings, registered: LTIPlatform) -> str:
 
 
 @lti.command(cls=NeedingExtra, ready=_ready)
-@click.argument("what", default="list", metavar="[list|new|rotate|retire]")
+@click.argument("action", default="list", metavar="[list|new|rotate|retire]")
 @click.argument("kid", required=False)
 @folder_option
 @json_option
