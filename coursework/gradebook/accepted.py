@@ -49,9 +49,9 @@ class Accepted:
         ):
             if not self.lines:
                 self._headings = [f"{path}, line 1: {wrong}" for wrong in _misspelt(row)]
-            one = _acceptance(f"{path}, line {number}", number, row, more)
-            self.lines.append(one)
-            self._by_place.setdefault(_key(*one.named), []).append(one)
+            acceptance = _acceptance(f"{path}, line {number}", number, row, more)
+            self.lines.append(acceptance)
+            self._by_place.setdefault(_key(*acceptance.named), []).append(acceptance)
 
     def apply(self, graded: Graded, lang: str) -> Graded:
         """The sheet with its accepted answers marked so, those too that no row gave.
@@ -66,9 +66,11 @@ class Accepted:
         lines = dict(graded.lines)
         unanswered = [*graded.unanswered]
         for part, line in graded.lines.items():
-            for found in self._named(graded, part):
-                self._used.add(found)
-                lines[part] = accepted_mark(line, found.points, found.reason, lang, found.place)
+            for acceptance in self._named(graded, part):
+                self._used.add(acceptance)
+                lines[part] = accepted_mark(
+                    line, acceptance.points, acceptance.reason, lang, acceptance.place
+                )
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
@@ -76,34 +78,39 @@ class Accepted:
     def _named(self, graded: Graded, part: str) -> list[Acceptance]:
         """The lines on an answer, in the order of the file."""
         keys = (_key(graded.student, graded.exercise, seed, part) for seed in (graded.seed, ""))
-        return sorted((one for key in keys for one in self._by_place.get(key, ())), key=lambda one: one.line)
+        return sorted(
+            (acceptance for key in keys for acceptance in self._by_place.get(key, ())),
+            key=lambda acceptance: acceptance.line,
+        )
 
     def unfollowed(self, issued: Issued, students: Iterable[str]) -> tuple[list[str], list[str]]:
         """What somebody must mend in the file (headings and names that are not there, lines that contradict one another),
         and the answers named that were issued and that nobody gave. ``students`` are those who answered.
         """
         faults, notes = list(self._headings), []
-        asked = _Asked(issued, tuple(students)) if self.lines else None
-        for one in self.lines:
-            if asked is not None and one not in self._used:
-                told = f"accepted by hand, but never answered: {one.says}"
-                why = asked.why_not(one)
-                faults += [f"{one.place}: {told}; {why}"] if why else []
-                notes += [] if why else [told]
-        faults += [] if asked is None else self._contradictions(asked)
+        issued_parts = _Asked(issued, tuple(students)) if self.lines else None
+        for acceptance in self.lines:
+            if issued_parts is not None and acceptance not in self._used:
+                note = f"accepted by hand, but never answered: {acceptance.says}"
+                why = issued_parts.why_not(acceptance)
+                faults += [f"{acceptance.place}: {note}; {why}"] if why else []
+                notes += [] if why else [note]
+        faults += [] if issued_parts is None else self._contradictions(issued_parts)
         return faults, notes
 
-    def _contradictions(self, asked: _Asked) -> Iterator[str]:
+    def _contradictions(self, issued_parts: _Asked) -> Iterator[str]:
         """The lines on one answer that give other points than the last one before."""
         groups: dict[tuple[str, ...], list[Acceptance]] = {}
-        for one in self.lines:
-            groups.setdefault((folded(one.student), one.exercise, one.part), []).append(one)
+        for acceptance in self.lines:
+            groups.setdefault((folded(acceptance.student), acceptance.exercise, acceptance.part), []).append(
+                acceptance
+            )
         for group in groups.values():
-            for before, one in _in_turn(group):
-                if asked.points(before) != asked.points(one):
+            for before, acceptance in _in_turn(group):
+                if issued_parts.points(before) != issued_parts.points(acceptance):
                     yield (
-                        f"{one.place}: {one.gives} for {one.says}, and line {before.line} says {before.gives}; "
-                        f"line {one.line} counts: take one of them away"
+                        f"{acceptance.place}: {acceptance.gives} for {acceptance.says}, and line {before.line} says {before.gives}; "
+                        f"line {acceptance.line} counts: take one of them away"
                     )
 
 
@@ -136,12 +143,14 @@ def _in_turn(lines: Iterable[Acceptance]) -> Iterator[tuple[Acceptance, Acceptan
     """The lines on one part of a student, each with the last one before it that names the same variant, or one of the two none."""
     last: dict[str, Acceptance] = {}  #: by seed
     latest: Acceptance | None = None
-    for one in lines:
-        before = [last[seed] for seed in {one.seed, ""} if seed in last] if one.seed else [latest]
-        found = max(filter(None, before), key=lambda other: other.line, default=None)
-        if found is not None:
-            yield found, one
-        last[one.seed] = latest = one
+    for acceptance in lines:
+        before = (
+            [last[seed] for seed in {acceptance.seed, ""} if seed in last] if acceptance.seed else [latest]
+        )
+        earlier = max(filter(None, before), key=lambda other: other.line, default=None)
+        if earlier is not None:
+            yield earlier, acceptance
+        last[acceptance.seed] = latest = acceptance
 
 
 def _key(student: str, exercise: str, seed: Any, part: str) -> tuple[str, str, str, str]:
@@ -151,19 +160,19 @@ def _key(student: str, exercise: str, seed: Any, part: str) -> tuple[str, str, s
 # ---------------------------------------------------------------------- reading
 
 
-def _acceptance(place: str, number: int, row: dict[str, str], more: Sequence[str]) -> Acceptance:
+def _acceptance(location: str, number: int, row: dict[str, str], more: Sequence[str]) -> Acceptance:
     missing = [c for c in _NEEDED if not row.get(c)]
     if missing:
-        raise BadInput(f"{place}: {', '.join(missing)} missing; name the answer to accept")
+        raise BadInput(f"{location}: {', '.join(missing)} missing; name the answer to accept")
     if any(cell.strip() for cell in more):
         raise BadInput(
-            f"{place}: {counted(len(more), 'cell')} more than there are headings, {', '.join(more)[:40]!r}; put a text with a comma, or a "
+            f"{location}: {counted(len(more), 'cell')} more than there are headings, {', '.join(more)[:40]!r}; put a text with a comma, or a "
             "number with one, between quotation marks"
         )
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))  # as spreadsheets write whole numbers
-    points = points_of(row.get("points", ""), place)
+    points = points_of(row.get("points", ""), location)
     named = (row["student"], row["exercise"], seed, row["part"])
-    return Acceptance(place, number, *named, points, row.get("reason", ""))
+    return Acceptance(location, number, *named, points, row.get("reason", ""))
 
 
 def _misspelt(columns: Iterable[str]) -> Iterator[str]:
@@ -177,7 +186,7 @@ def _misspelt(columns: Iterable[str]) -> Iterator[str]:
             yield f"no column {column!r} is read; did you mean {meant[0]!r}?"
 
 
-def points_of(text: str, place: str) -> float | None:
+def points_of(text: str, location: str) -> float | None:
     """The points that a cell holds; None where it holds nothing."""
     if not text:
         return None
@@ -186,15 +195,15 @@ def points_of(text: str, place: str) -> float | None:
     except ValueError:
         points = math.nan
     if not 0 <= points < math.inf:
-        raise BadInput(f"{place}: points are a number, 0 or more; found {text[:40]!r}")
+        raise BadInput(f"{location}: points are a number, 0 or more; found {text[:40]!r}")
     return points
 
 
 # -------------------------------------------------------------------- following
 
 
-def accepted_mark(line: Mark, points: float | None, reason: str, lang: str, place: str) -> Mark:
-    """The mark of an answer that a person accepts, with all its points where none are said; ``place`` is where it is said.
+def accepted_mark(line: Mark, points: float | None, reason: str, lang: str, location: str) -> Mark:
+    """The mark of an answer that a person accepts, with all its points where none are said; ``location`` is where it is said.
 
     Raises
     ------
@@ -202,15 +211,15 @@ def accepted_mark(line: Mark, points: float | None, reason: str, lang: str, plac
         The part has fewer points.
     """
     points = line.out_of if points is None else points
-    check_points(points, line.part, line.out_of, place)
-    says = f"{words(lang)['marking']['accepted']} {reason}".strip()
-    return line._replace(verdict=ACCEPTED, points=points, told=(Told(says, says),))
+    check_points(points, line.part, line.out_of, location)
+    message = f"{words(lang)['marking']['accepted']} {reason}".strip()
+    return line._replace(verdict=ACCEPTED, points=points, told=(Told(message, message),))
 
 
-def check_points(points: float, part: str, out_of: float, place: str) -> None:
+def check_points(points: float, part: str, out_of: float, location: str) -> None:
     """Refuse more points than a part has."""
     if points > out_of:
-        raise BadInput(f"{place}: {points:g} points for {part}, which has {out_of:g}; give that or fewer")
+        raise BadInput(f"{location}: {points:g} points for {part}, which has {out_of:g}; give that or fewer")
 
 
 class _Asked:
@@ -223,26 +232,28 @@ class _Asked:
             tuple[str, str], dict[str, float]
         ] = {}  #: points, by exercise and seed; of any seed by ""
         for (exercise, seed), record in issued.records.items():
-            own = {str(part["id"]): float(part["points"]) for part in record["parts"]}
-            self._parts[exercise, str(seed)] = own
-            self._parts.setdefault((exercise, ""), {}).update(own)
+            points = {str(part["id"]): float(part["points"]) for part in record["parts"]}
+            self._parts[exercise, str(seed)] = points
+            self._parts.setdefault((exercise, ""), {}).update(points)
 
-    def why_not(self, one: Acceptance) -> str:
+    def why_not(self, acceptance: Acceptance) -> str:
         """Why a line names no answer that was issued; nothing where it does."""
-        issued, parts = self._issued, self._parts.get((one.exercise, one.seed))
-        if not issued.has_roster and folded(one.student) not in self._answered:
-            return f"no student {one.student!r} among those who answered{near(one.student, self._students)}"
+        issued, parts = self._issued, self._parts.get((acceptance.exercise, acceptance.seed))
+        if not issued.has_roster and folded(acceptance.student) not in self._answered:
+            return f"no student {acceptance.student!r} among those who answered{near(acceptance.student, self._students)}"
         if issued.has_roster or parts is None:
             try:
-                _, exercise, seed = place_of(issued, Row(*one.named, None, one.place))
+                _, exercise, seed = place_of(issued, Row(*acceptance.named, None, acceptance.place))
             except Refused as why:
                 return str(why)
             parts = self._parts[exercise, str(seed)]
         return (
-            "" if one.part in parts else f"{one.exercise} has no part {one.part!r}{nearest(one.part, parts)}"
+            ""
+            if acceptance.part in parts
+            else f"{acceptance.exercise} has no part {acceptance.part!r}{nearest(acceptance.part, parts)}"
         )
 
-    def points(self, one: Acceptance) -> float | None:
+    def points(self, acceptance: Acceptance) -> float | None:
         """The points that a line gives; None for all of a part that is not there."""
-        parts = self._parts.get((one.exercise, one.seed), {})
-        return parts.get(one.part) if one.points is None else one.points
+        parts = self._parts.get((acceptance.exercise, acceptance.seed), {})
+        return parts.get(acceptance.part) if acceptance.points is None else acceptance.points

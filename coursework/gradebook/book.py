@@ -61,12 +61,12 @@ def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
 
 def rejected_rows(rejected: Iterable[Rejected]) -> Iterator[dict[str, Any]]:
     """The lines of ``rejected.csv``."""
-    for one in rejected:
+    for row in rejected:
         yield {
             **dict.fromkeys(REJECTED_COLUMNS, ""),
-            **one.row,
-            "source": one.source,
-            "reason": localised(one.reason),
+            **row.row,
+            "source": row.source,
+            "reason": localised(row.reason),
         }
 
 
@@ -132,8 +132,8 @@ class Gradebook:
             self.asked_apart.setdefault((sitting, graded.exercise), set()).update(graded.lines)
         else:
             self.complete.add(graded.exercise)
-        own = student.by_exercise
-        own[graded.exercise] = own.get(graded.exercise, 0.0) + graded.points
+        points = student.by_exercise
+        points[graded.exercise] = points.get(graded.exercise, 0.0) + graded.points
         if graded.student in self._rejected_of:
             blank = {line.part for line in graded.lines.values() if line.verdict == "missing"}
             self.blank[sitting, graded.exercise] = blank
@@ -155,8 +155,8 @@ class Gradebook:
     def unread(self) -> dict[Sitting, dict[tuple[str, int], set[str]]]:
         """What came in rejected rows alone: by student and sitting, the parts of exercise and seed."""
         issued = self.issued
-        found: dict[Sitting, dict[tuple[str, int], set[str]]] = {}
-        for row in (one.row for one in self.rejected):
+        unread: dict[Sitting, dict[tuple[str, int], set[str]]] = {}
+        for row in (rejected.row for rejected in self.rejected):
             student, exercise = issued.student(row.get("student", "")), row.get("exercise", "")
             if not student or not row.get("answer", "").strip():
                 continue
@@ -170,17 +170,17 @@ class Gradebook:
             if exercise in self.handed_in(sitting):
                 parts &= self.blank.get((sitting, exercise), set())
             if parts:
-                found.setdefault(sitting, {}).setdefault(sheet, set()).update(parts)
-        return found
+                unread.setdefault(sitting, {}).setdefault(sheet, set()).update(parts)
+        return unread
 
     def _seed_of(self, student: str, exercise: str, written: str) -> int:
         """The variant that a rejected row is of: the student's own, where there is a roster."""
         issued = self.issued
         seed = int(written) if re.fullmatch("[0-9]{1,30}", written) else -1
-        own = issued.seeds_of(student, exercise)
+        seeds = issued.seeds_of(student, exercise)
         return (
             seed
-            if seed in own or issued.is_pool or not (own or issued.has_roster)
+            if seed in seeds or issued.is_pool or not (seeds or issued.has_roster)
             else issued.seeds.get((student, exercise), -1)
         )
 
@@ -226,47 +226,51 @@ def results(book: Gradebook) -> Iterator[tuple[str, Result]]:
     assignment out of all of it. What came in rejected rows alone is unreadable, and not missing.
     """
     unread = book.unread()
-    came: dict[str, set[int]] = {}
+    sittings: dict[str, set[int]] = {}
     for student, sitting in (*book.students, *unread):
-        came.setdefault(student, set()).add(sitting)
-    for student in dict.fromkeys((*book.issued.students, *came)):
-        sat = sorted(came.get(student, {1}))
-        found = [_result(book, (student, n), unread.get((student, n), {})) for n in sat]
-        yield student, counted_one(book.issued, found)
+        sittings.setdefault(student, set()).add(sitting)
+    for student in dict.fromkeys((*book.issued.students, *sittings)):
+        sat = sorted(sittings.get(student, {1}))
+        sat_results = [_result(book, (student, n), unread.get((student, n), {})) for n in sat]
+        yield student, counted_one(book.issued, sat_results)
 
 
-def counted_one(issued: Issued, found: Sequence[Result]) -> Result:
+def counted_one(issued: Issued, results_of_student: Sequence[Result]) -> Result:
     """Which of the sittings counts: the best, or as the assignment says the last; of two as good the later."""
     if (issued.assignment or {}).get("sittings", BEST) != BEST:
-        return found[-1]
-    return max(found, key=lambda r: (exact(r.counts) / exact(r.out_of) if r.out_of else 0, r.sitting))
+        return results_of_student[-1]
+    return max(
+        results_of_student, key=lambda r: (exact(r.counts) / exact(r.out_of) if r.out_of else 0, r.sitting)
+    )
 
 
-def _result(book: Gradebook, place: Sitting, own: Mapping[tuple[str, int], set[str]]) -> Result:
-    total = book.students.get(place, Total())
-    lost = [part for key in _owed(book, place, own) for part in _lost(book, place, key)]
-    waiting = sum(map(len, own.values()))
+def _result(book: Gradebook, sitting: Sitting, unread_parts: Mapping[tuple[str, int], set[str]]) -> Result:
+    total = book.students.get(sitting, Total())
+    lost = [part for key in _owed(book, sitting, unread_parts) for part in _lost(book, sitting, key)]
+    waiting = sum(map(len, unread_parts.values()))
     verdicts = Counter(total.verdicts)
     verdicts["unreadable"] += waiting
     verdicts["missing"] += len(lost) - waiting
     out_of = total.out_of + sum(part["points"] for part in lost)
-    late = float(exact(total.points * book.charged.get(place, 0.0)))
-    return Result(place[1], total.points, out_of, total.by_exercise, verdicts, late)
+    late = float(exact(total.points * book.charged.get(sitting, 0.0)))
+    return Result(sitting[1], total.points, out_of, total.by_exercise, verdicts, late)
 
 
-def _lost(book: Gradebook, place: Sitting, key: tuple[str, int]) -> list[Mapping[str, Any]]:
+def _lost(book: Gradebook, sitting: Sitting, key: tuple[str, int]) -> list[Mapping[str, Any]]:
     """The parts of a variant of which nothing came; where a platform asks part by part, those that it asked of others."""
     parts = book.issued.records[key]["parts"]
     apart = book.apart.get(key[0])
     if apart is None or key[0] in book.complete:
         return list(parts)
-    return [p for p in parts if p["id"] in apart - book.asked_apart.get((place, key[0]), set())]
+    return [p for p in parts if p["id"] in apart - book.asked_apart.get((sitting, key[0]), set())]
 
 
-def _owed(book: Gradebook, place: Sitting, own: Iterable[tuple[str, int]]) -> set[tuple[str, int]]:
+def _owed(
+    book: Gradebook, sitting: Sitting, unread_sheets: Iterable[tuple[str, int]]
+) -> set[tuple[str, int]]:
     """The variants of which nothing could be marked."""
-    issued, done = book.issued, set(book.handed_in(place))
-    owed = {(e, seed) for e, seed in (*issued.issued_to(*place).items(), *own) if e not in done}
+    issued, done = book.issued, set(book.handed_in(sitting))
+    owed = {(e, seed) for e, seed in (*issued.issued_to(*sitting).items(), *unread_sheets) if e not in done}
     met = {e for e, _ in owed} | (done - (book.apart.keys() - book.complete))
     # Nobody's paper asks all the exercises too; which variant was theirs bears on no points.
     return owed | {next(k for k in issued.records if k[0] == e) for e in _asked_of_all(book) if e not in met}
@@ -283,20 +287,20 @@ def _asked_of_all(book: Gradebook) -> tuple[str, ...]:
 
 def _number(points: float) -> float:
     """Points as tables print them, whole where they are: a number, which a decimal comma may print."""
-    shown = float(f"{points:g}")
-    return int(shown) if shown.is_integer() else shown
+    rounded = float(f"{points:g}")
+    return int(rounded) if rounded.is_integer() else rounded
 
 
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     """The lines of ``summary.csv``."""
     issued = book.issued
-    own, exercises, carried = identity(issued), exercise_columns(issued), carried_columns(issued)
+    identity_columns, exercises, carried = identity(issued), exercise_columns(issued), carried_columns(issued)
     for student, result in results(book):
-        told = own_columns(issued, student)
+        roster_cells = own_columns(issued, student)
         points, out_of = result.points, result.out_of
         yield {
-            **{column: told.get(title, "") for title, column in carried.items()},
-            **{column: told.get(folded(title), "") for title, column in own.items()},
+            **{column: roster_cells.get(title, "") for title, column in carried.items()},
+            **{column: roster_cells.get(folded(title), "") for title, column in identity_columns.items()},
             **{column: _number(result.by_exercise.get(e, 0.0)) for e, column in exercises.items()},
             "student": student,
             SITTING: result.sitting,

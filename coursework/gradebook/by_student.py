@@ -39,11 +39,11 @@ def marks_of_student(
     """
     notes: list[str] = []
     sheets = placed(course, issued, as_students(issued, student, rows, notes))
-    found: dict[str, Graded] = {}
+    by_exercise: dict[str, Graded] = {}
     for graded in marked(course, issued, sheets):
-        found.setdefault(graded.exercise, graded)
-    whole = [found.get(e) or _blank(course, issued, student, e) for e in issued.exercises]
-    return OwnMarks(tuple(whole), tuple(sheets.rejected), (*notes, *sheets.warnings))
+        by_exercise.setdefault(graded.exercise, graded)
+    all_sheets = [by_exercise.get(e) or _blank(course, issued, student, e) for e in issued.exercises]
+    return OwnMarks(tuple(all_sheets), tuple(sheets.rejected), (*notes, *sheets.warnings))
 
 
 def as_students(
@@ -57,18 +57,18 @@ def as_students(
             yield row
             continue
         named = issued.student(row.student) if issued.has_roster and row.student else None
-        if named not in (None, student) and (told := f"the answers bear the name of {named}") not in notes:
-            notes.append(told)
+        if named not in (None, student) and (note := f"the answers bear the name of {named}") not in notes:
+            notes.append(note)
         warning = row.warning.replace(NO_NAME, "").strip("; ")
         yield row._replace(student=student, warning=warning, origin=None)
 
 
 def _blank(course: Course, issued: Issued, student: str, exercise: str) -> Graded:
     """The marks of nothing, on the student's variant; on the first where none is theirs."""
-    own = issued.student(student) or student
-    seeds = issued.seeds_of(own, exercise) or [s for e, s in issued.records if e == exercise][:1]
-    record = issued.record_of(own, exercise, seeds[-1])
-    return Graded(own, exercise, seeds[-1], dict(mark(course[exercise].from_record(record), {})), (), record)
+    name = issued.student(student) or student
+    seeds = issued.seeds_of(name, exercise) or [s for e, s in issued.records if e == exercise][:1]
+    record = issued.record_of(name, exercise, seeds[-1])
+    return Graded(name, exercise, seeds[-1], dict(mark(course[exercise].from_record(record), {})), (), record)
 
 
 _NAMES = re.compile(r"(has no part '[^']*').*", re.DOTALL)

@@ -32,9 +32,9 @@ def columns_of(header: Sequence[str]) -> AnalysisColumns | None:
     questions = tuple(k for k, title in enumerate(header) if _QUESTION.match(title))
     if not questions or not {"name", "id", "attempt"} <= set(titles):
         return None
-    place = {title: k for k, title in reversed([*enumerate(titles)])}
-    ids = tuple(place[title] for title in _IDS if title in place)
-    return AnalysisColumns(place["name"], ids, place.get("submitted"), place.get("attempt"), questions)
+    indices = {title: k for k, title in reversed([*enumerate(titles)])}
+    ids = tuple(indices[title] for title in _IDS if title in indices)
+    return AnalysisColumns(indices["name"], ids, indices.get("submitted"), indices.get("attempt"), questions)
 
 
 def is_another(header: Sequence[str]) -> str:
@@ -53,13 +53,13 @@ def read_answers(
     assert columns is not None, "only a header that has them comes here"
     labels = {k: label_in(header[k]) for k in columns.questions}
     attempts: Counter[str] = Counter()
-    for place, cells in rows:
+    for location, cells in rows:
         cells = [*map(as_written, cells), *[""] * (len(header) - len(cells))]
         student, origin = cells[columns.name].strip(), _origin(header, columns, cells)
         attempts[student] += 1
         for k in columns.questions:
             label, answer = labels[k], cells[k].strip()
-            where = f"{place}, {header[k].partition(':')[0].strip()}"
+            where = f"{location}, {header[k].partition(':')[0].strip()}"
             if not answer:
                 continue  # a question that a group did not draw for this student is as blank as one that waits
             if label is None:
@@ -71,8 +71,8 @@ def read_answers(
                 )
             else:
                 names = student, label.exercise, label.seed, label.part
-                own = origin._replace(version=label.version, apart=True)
-                yield Row(*names, label.answer(answer), where, warning, label.lang, own)
+                row_origin = origin._replace(version=label.version, apart=True)
+                yield Row(*names, label.answer(answer), where, warning, label.lang, row_origin)
     yield Seen(
         source, f"{WHAT}, {counted(sum(attempts.values()), 'attempt')} of {counted(len(attempts), 'student')}"
     )

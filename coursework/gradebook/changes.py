@@ -71,18 +71,18 @@ class Before:
         """Whether the marks are no longer those of the summary that was written with them."""
         if not (self.exists and summary.exists()):
             return False
-        told: Counter[str] = Counter()
-        found: Counter[str] = Counter()
+        in_summary: Counter[str] = Counter()
+        in_marks: Counter[str] = Counter()
         others = {name for name, sitting in self._points if not sitting}
         for row in rows_of(summary):
             sitting = folded(row.get("student", "")), row.get("sitting", "")
             others.discard(sitting[0])
             points = self._points.get(sitting, 0.0)
-            found.update(self._verdicts.get(sitting, ()))
+            in_marks.update(self._verdicts.get(sitting, ()))
             if not abs(_number(row.get("points", "")) - points) < _ROUNDING * max(1.0, points):
                 return True
-            told.update({v: _count(row[v]) for v in _IN_BOTH if row.get(v, "").isdecimal()})
-        return bool(others) or any(told[verdict] != found[verdict] for verdict in _IN_BOTH)
+            in_summary.update({v: _count(row[v]) for v in _IN_BOTH if row.get(v, "").isdecimal()})
+        return bool(others) or any(in_summary[verdict] != in_marks[verdict] for verdict in _IN_BOTH)
 
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
         """What changed in a row of the new marks; None when nothing did."""
@@ -92,8 +92,8 @@ class Before:
 
     def gone(self) -> Iterator[dict[str, Any]]:
         """Marks that are no more."""
-        for place, before in self._marks.items():
-            row = dict(zip((*_PLACE, "sitting"), place.split("\0"), strict=False))
+        for key, before in self._marks.items():
+            row = dict(zip((*_PLACE, "sitting"), key.split("\0"), strict=False))
             yield _change({**row, "student": self._names[row["student"]], "answer": ""}, before, ("", ""))
 
 
@@ -122,28 +122,28 @@ class History:
         marks = _marks_in(summary)
         yield from self._earlier
         for change in self._new:
-            who = folded(change["student"])
-            told = {"mark_before": self._marks.get(who, ""), "mark_now": marks.get(who, "")}
-            yield {"date": self._day, **change, **told}
+            student = folded(change["student"])
+            marks_columns = {"mark_before": self._marks.get(student, ""), "mark_now": marks.get(student, "")}
+            yield {"date": self._day, **change, **marks_columns}
 
 
 def _plain_row(row: Mapping[str, str]) -> dict[str, str]:
     """An earlier row, its numbers with a decimal point; a table of before there were dates and marks has none."""
-    found = {column: row.get(column, "") for column in CHANGES_COLUMNS}
+    plain = {column: row.get(column, "") for column in CHANGES_COLUMNS}
     for column in ("points_before", "points_now", "mark_before", "mark_now"):
-        found[column] = found[column].replace(",", ".")
-    return found
+        plain[column] = plain[column].replace(",", ".")
+    return plain
 
 
 def _marks_in(summary: Iterable[Mapping[str, Any]]) -> dict[str, str]:
     """The marks of a summary by student."""
-    found = {}
+    marks = {}
     for row in summary:
         if not (mark := str(row.get("mark", "")).replace(",", ".")):
             points, out_of = _number(str(row.get("points", ""))), _number(str(row.get("out_of", "")))
             mark = f"{_USUAL_MARK * points / out_of:.4g}" if out_of > 0 and math.isfinite(points) else ""
-        found[folded(str(row.get("student", "")))] = mark
-    return found
+        marks[folded(str(row.get("student", "")))] = mark
+    return marks
 
 
 def _place(row: Mapping[str, Any]) -> str:

@@ -77,7 +77,7 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
 
 def rejecting(sheets: Sheets, results: Iterable[tuple[SheetPlace, Graded | str]]) -> Iterator[Graded]:
     """The sheets that could be marked; the rows of the others are rejected with what is said of them."""
-    return _rejecting(sheets, ((sheets, *told) for told in results))
+    return _rejecting(sheets, ((sheets, *result) for result in results))
 
 
 _Told = tuple[Sheets, SheetPlace, Graded | str]  #: a sheet, among which it is, and what became of it
@@ -85,17 +85,19 @@ _Told = tuple[Sheets, SheetPlace, Graded | str]  #: a sheet, among which it is, 
 
 def _rejecting(sheets: Sheets, results: Iterable[_Told]) -> Iterator[Graded]:
     unmarked: Counter[tuple[str, str]] = Counter()
-    for among, place, result in results:
+    for among, sheet, result in results:
         if not isinstance(result, str):
             yield result
             continue
-        unmarked[place[1], result] += 1
+        unmarked[sheet[1], result] += 1
         reason = f"cannot be marked, somebody must look at it ({result})"
-        rows = among.sheets[place].values()
+        rows = among.sheets[sheet].values()
         sheets.rejected += [Rejected(row.source, reason, as_texts(row)) for row in rows]
     for (exercise, why), count in unmarked.items():
-        what = "1 sheet" if count == 1 else f"{count} sheets"
-        sheets.warnings.append(f"{what} of {exercise} cannot be marked, see the rejected rows: {why}")
+        counted_sheets = "1 sheet" if count == 1 else f"{count} sheets"
+        sheets.warnings.append(
+            f"{counted_sheets} of {exercise} cannot be marked, see the rejected rows: {why}"
+        )
 
 
 def judged(
@@ -108,7 +110,7 @@ def judged(
     NoSolution
         The course cannot mark.
     """
-    return ((place, result) for _, place, result in _judged(course, issued, sheets, printed))
+    return ((sheet, result) for _, sheet, result in _judged(course, issued, sheets, printed))
 
 
 def _judged(course: Course, issued: Issued, sheets: Sheets, printed: bool) -> Iterator[_Told]:
@@ -120,35 +122,35 @@ def _judged(course: Course, issued: Issued, sheets: Sheets, printed: bool) -> It
             for start in range(0, len(places), CHUNK):
                 chunk = places[start : start + CHUNK]
                 sent.append((among, chunk))
-                yield [_job(issued, among, place) for place in chunk]
+                yield [_job(issued, among, sheet) for sheet in chunk]
 
     how = _How(printed, rules_of(course, issued))
     for results in _marked_chunks(course, chunks(), sheets.answers, how):
         among, chunk = sent.popleft()
-        for place, result in zip(chunk, results, strict=True):
-            yield among, place, result if isinstance(result, str) else _graded(issued, among, place, result)
+        for sheet, result in zip(chunk, results, strict=True):
+            yield among, sheet, result if isinstance(result, str) else _graded(issued, among, sheet, result)
 
 
-def _job(issued: Issued, sheets: Sheets, place: SheetPlace) -> _Job:
-    answers = {part: row.answer for part, row in sheets.sheets[place].items()}
-    return _Job(record_of(issued, sheets, place), answers)
+def _job(issued: Issued, sheets: Sheets, sheet: SheetPlace) -> _Job:
+    answers = {part: row.answer for part, row in sheets.sheets[sheet].items()}
+    return _Job(record_of(issued, sheets, sheet), answers)
 
 
-def record_of(issued: Issued, sheets: Sheets, place: SheetPlace) -> Mapping[str, Any]:
+def record_of(issued: Issued, sheets: Sheets, sheet: SheetPlace) -> Mapping[str, Any]:
     """The record that a sheet is marked against: in the language that it came back in; of the parts that a platform asked,
     where it asks them apart."""
-    record = issued.record_of(*place[:3])
-    if place in sheets.apart:
-        record = {**record, "parts": [p for p in record["parts"] if p["id"] in sheets.sheets[place]]}
-    return {**record, "lang": sheets.langs[place]} if place in sheets.langs else record
+    record = issued.record_of(*sheet[:3])
+    if sheet in sheets.apart:
+        record = {**record, "parts": [p for p in record["parts"] if p["id"] in sheets.sheets[sheet]]}
+    return {**record, "lang": sheets.langs[sheet]} if sheet in sheets.langs else record
 
 
-def _graded(issued: Issued, sheets: Sheets, place: SheetPlace, sent: Sequence[tuple[Any, ...]]) -> Graded:
+def _graded(issued: Issued, sheets: Sheets, sheet: SheetPlace, sent: Sequence[tuple[Any, ...]]) -> Graded:
     lines = {line.part: line for line in map(Mark.received, sent)}
-    sitting = place[3] or issued.sitting_of(*place[:3])
-    record = record_of(issued, sheets, place)
-    graded = Graded(*place[:3], lines, tuple(sheets.sheets[place]), record, sitting=sitting)
-    return graded._replace(submitted=sheets.submitted.get(place, ""), apart=place in sheets.apart)
+    sitting = sheet[3] or issued.sitting_of(*sheet[:3])
+    record = record_of(issued, sheets, sheet)
+    graded = Graded(*sheet[:3], lines, tuple(sheets.sheets[sheet]), record, sitting=sitting)
+    return graded._replace(submitted=sheets.submitted.get(sheet, ""), apart=sheet in sheets.apart)
 
 
 def _marked_chunks(
@@ -179,12 +181,12 @@ def _mark_chunk(course: Course, chunk: Sequence[_Job], how: _How) -> list[list[t
     right: list[dict[str, str]] = [{} for _ in chunk]
     for name, places in by_exercise.items():
         batch = keys_of(course[name], [variants[i] for i in places], how.rules)
-        found = plainly_right(course[name], batch, [chunk[i].answers for i in places])
-        for i, digits in zip(places, found, strict=True):
+        readings = plainly_right(course[name], batch, [chunk[i].answers for i in places])
+        for i, digits in zip(places, readings, strict=True):
             right[i] = digits
     return [
-        _mark_sheet(variant, job.answers, own, how.printed)
-        for variant, job, own in zip(variants, chunk, right, strict=True)
+        _mark_sheet(variant, job.answers, readings_of_sheet, how.printed)
+        for variant, job, readings_of_sheet in zip(variants, chunk, right, strict=True)
     ]
 
 
@@ -212,9 +214,9 @@ def _mark_sheet(
 def _right(variant: Variant, part: Part, answer: str, read_as: str, *, printed: bool) -> tuple[Any, ...]:
     """The mark of an answer that is plainly right, as it is sent."""
     points = float(part.points)
-    says = right_says(variant, part, read_as) if printed else ""
-    told = says, right_feedback(variant, part, read_as)
-    return (part.id, answer, read_as, "correct", points, points, variant.lang, (), False, *told)
+    message = right_says(variant, part, read_as) if printed else ""
+    texts = message, right_feedback(variant, part, read_as)
+    return (part.id, answer, read_as, "correct", points, points, variant.lang, (), False, *texts)
 
 
 def _waiting(mark: Mark) -> Mark:

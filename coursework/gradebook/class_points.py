@@ -53,26 +53,26 @@ def class_points(marks: Path, score: str) -> list[Scored]:
         check_inside(path, marks)
     if not path.is_file():
         raise BadInput(f"no {path}: name the folder of marks that 'coursework grade' wrote")
-    found = list(_scored(path, score))
-    if not found:
+    scored = list(_scored(path, score))
+    if not scored:
         raise BadInput(f"{path} has no student")
-    return found
+    return scored
 
 
 def _scored(path: Path, score: str) -> Iterator[Scored]:
     for number, row in enumerate(rows_of(path), start=2):
         if score not in row or "student" not in row or "out_of" not in row:
-            told = [name for name in SCORES if name in row]
+            columns = [name for name in SCORES if name in row]
             raise BadInput(
-                f"{path} has no column {score!r}{nearest(score, told)}; 'coursework grade' writes it"
+                f"{path} has no column {score!r}{nearest(score, columns)}; 'coursework grade' writes it"
             )
-        points, out_of, taken = (row.get(c, "").replace(",", ".") for c in (score, "out_of", LATE))
-        for column, text in ((score, points), ("out_of", out_of), (LATE, taken)):
+        points, out_of, cells = (row.get(c, "").replace(",", ".") for c in (score, "out_of", LATE))
+        for column, text in ((score, points), ("out_of", out_of), (LATE, cells)):
             if text and not math.isfinite(_number(text)):
                 raise BadInput(
                     f"{path}, line {number}: {column} of {row['student']} are a number; found {text[:40]!r}"
                 )
-        if score == "points" and (late := _number(taken or "0")):
+        if score == "points" and (late := _number(cells or "0")):
             points = f"{float(exact(_number(points)) - exact(late)):.10g}"
         if not points and score != "points":
             points = "0"

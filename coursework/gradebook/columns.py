@@ -37,10 +37,10 @@ def summary_columns(issued: Issued, *, late: bool = False) -> tuple[str, ...]:
     if issued.assignment is None:
         return (student, points, out_of, *others, *sitting, *carried_columns(issued).values())
     mark = (MARK,) if issued.assignment.get("mark") else ()
-    own = identity(issued)
-    rest = (c for title, c in carried_columns(issued).items() if title not in map(folded, own))
+    identity_columns = identity(issued)
+    rest = (c for title, c in carried_columns(issued).items() if title not in map(folded, identity_columns))
     exercises = exercise_columns(issued).values()
-    return (student, *own.values(), *sitting, *exercises, points, out_of, *mark, *others, *rest)
+    return (student, *identity_columns.values(), *sitting, *exercises, points, out_of, *mark, *others, *rest)
 
 
 def identity(issued: Issued) -> dict[str, str]:
@@ -51,13 +51,13 @@ def identity(issued: Issued) -> dict[str, str]:
 
 def exercise_columns(issued: Issued) -> dict[str, str]:
     """The column of each exercise of an assignment."""
-    asked = map(str, (issued.assignment or {}).get("exercises", ()))
-    return {e: f"{e} points" if e in (*SUMMARY_COLUMNS, MARK, LATE, SITTING) else e for e in asked}
+    exercises = map(str, (issued.assignment or {}).get("exercises", ()))
+    return {e: f"{e} points" if e in (*SUMMARY_COLUMNS, MARK, LATE, SITTING) else e for e in exercises}
 
 
 def carried_columns(issued: Issued) -> dict[str, str]:
     """The columns of the roster: folded title -> name in the summary."""
-    titles = {folded(title): title for own in issued.columns.values() for title in own}
+    titles = {folded(title): title for cells in issued.columns.values() for title in cells}
     return {f: _apart(title, _taken(issued)) for f, title in titles.items() if f}
 
 
@@ -65,9 +65,9 @@ def _taken(issued: Issued) -> frozenset[str]:
     return frozenset(map(folded, (*SUMMARY_COLUMNS, MARK, LATE, SITTING, *exercise_columns(issued).values())))
 
 
-def _apart(title: str, taken: frozenset[str]) -> str:
+def _apart(title: str, reserved: frozenset[str]) -> str:
     """A roster's title that is no name of another column."""
-    return f"{title} (roster)" if folded(title) in taken else title
+    return f"{title} (roster)" if folded(title) in reserved else title
 
 
 def own_columns(issued: Issued, student: str) -> dict[str, str]:

@@ -26,8 +26,8 @@ _AGAIN = re.compile(r"\s*\([0-9]+\)$")  #: what browsers add to the name of a fi
 
 def file_of(row: Row) -> str:
     """The file of a student's own that a row came from; nothing where it is of a table, or a platform says whose it is."""
-    found = _OWN.match(row.source) if row.origin is None else None
-    return found[0] if found else ""
+    match = _OWN.match(row.source) if row.origin is None else None
+    return match[0] if match else ""
 
 
 def doubts(issued: Issued, rows: Iterable[tuple[Row, Callable[[], Sheet | None]]]) -> Doubts:
@@ -40,12 +40,12 @@ def doubts(issued: Issued, rows: Iterable[tuple[Row, Callable[[], Sheet | None]]
         people.setdefault(file, set()).add(row.student)
         if (sheet := sheet_of()) is not None and (text := _text(row)):
             sheets.setdefault(sheet, {}).setdefault(file, {}).setdefault(row.part, text)
-    found: dict[tuple[Sheet, str], str] = {}
+    waiting: dict[tuple[Sheet, str], str] = {}
     for sheet, files in sheets.items():
-        own = {file: answers for file, answers in files.items() if len(people[file]) == 1}
-        if _differ(list(own.values())):
-            found |= {(sheet, file): why for file, why in _told(issued, sheet, list(own)).items()}
-    return found
+        single_author = {file: answers for file, answers in files.items() if len(people[file]) == 1}
+        if _differ(list(single_author.values())):
+            waiting |= {(sheet, file): why for file, why in _told(issued, sheet, list(single_author)).items()}
+    return waiting
 
 
 def _text(row: Row) -> str:
@@ -55,7 +55,7 @@ def _text(row: Row) -> str:
 def _differ(answers: Sequence[Mapping[str, str]]) -> bool:
     """Whether two of them answer one question differently."""
     met: dict[str, str] = {}
-    return any(met.setdefault(part, text) != text for one in answers for part, text in one.items())
+    return any(met.setdefault(part, text) != text for sheet in answers for part, text in sheet.items())
 
 
 def _told(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict[str, str]:
@@ -85,11 +85,13 @@ def _stems(students: tuple[str, ...]) -> Mapping[str, str]:
 def _called(issued: Issued, file: str, student: str) -> str | None:
     """Whom the name of a file, or of its folder, names."""
     stems = _stems(issued.students or (student,))
-    place = Path(file)
-    for name in (place.name.partition(".")[0], place.stem, place.parent.name):
+    path = Path(file)
+    for name in (path.name.partition(".")[0], path.stem, path.parent.name):
         name = _AGAIN.sub("", name)
         if (
-            told := stems.get(name) or issued.account((name,)) or (student if name == student else None)
+            student_of_file := stems.get(name)
+            or issued.account((name,))
+            or (student if name == student else None)
         ) is not None:
-            return told
+            return student_of_file
     return None

@@ -75,13 +75,13 @@ def feedback_sheet(
 
 def _line(variant: Variant, question: Question, line: Mark, right: str) -> FeedbackLine:
     """What became of one answer; what its quantity follows from where it has not all its points."""
-    told = localised(line.read_as, variant.lang), line.verdict, line.points, line.out_of, line.says
+    values = localised(line.read_as, variant.lang), line.verdict, line.points, line.out_of, line.says
     part = next(p for p in variant.parts if p.id == question.id)
     lost = line.points < line.out_of and line.verdict not in _NOT_ABOUT_IT and not part.sort.is_open
     return FeedbackLine(
         question,
         line.answer,
-        *told,
+        *values,
         right=right,
         hint=follows_from(variant, part.quantity) if lost else "",
         read=_with_formulas(question, line.read_as, variant.lang),
@@ -133,12 +133,12 @@ def feedback_paper(
     blank = _blank(course, issued, student, sitting, lang)
     sheets, left_out = [], 0.0
     for exercise in map(str, stated.get("exercises", issued.exercises)):
-        own = by_exercise.get(exercise) or (None if exercise in waiting else blank(exercise))
-        if own is None:
+        graded_sheet = by_exercise.get(exercise) or (None if exercise in waiting else blank(exercise))
+        if graded_sheet is None:
             left_out += _worth(issued, exercise)
         else:
-            shown = stated.get("answers") != "never"
-            sheets.append(feedback_sheet(course, own, answers=shown, telling=telling))
+            shows_answers = stated.get("answers") != "never"
+            sheets.append(feedback_sheet(course, graded_sheet, answers=shows_answers, telling=telling))
     points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets) + left_out
     return FeedbackPaper(
         heading_of(course, issued, student, sitting, lang),
@@ -158,8 +158,8 @@ def feedback_collection(
     the sheet of each."""
     lang = str(graded[0].record.get("lang", "fr"))
     sheets = tuple(
-        feedback_sheet(course, one._replace(record={**one.record, "lang": lang}), telling=telling)
-        for one in graded
+        feedback_sheet(course, sheet._replace(record={**sheet.record, "lang": lang}), telling=telling)
+        for sheet in graded
     )
     heading = Heading(lang=lang, title=course.folder.title(lang), course="", student=student)
     points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets)
@@ -175,10 +175,10 @@ def _blank(
     def sheet(exercise: str) -> Graded | None:
         if exercise not in seeds:
             return None
-        place = student, exercise, seeds[exercise]
-        record = {**issued.record_of(*place), "lang": lang}
+        key = student, exercise, seeds[exercise]
+        record = {**issued.record_of(*key), "lang": lang}
         lines = mark(course[exercise].from_record(record), {})
-        return Graded(*place, dict(lines), (), record, sitting=sitting)
+        return Graded(*key, dict(lines), (), record, sitting=sitting)
 
     return sheet
 
@@ -192,7 +192,7 @@ def _worth(issued: Issued, exercise: str) -> float:
 def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang: str) -> Heading:
     """What stands above a student's paper, from what was issued."""
     stated = issued.assignment or {}
-    own = own_columns(issued, student)
+    roster_cells = own_columns(issued, student)
     versions = (issued.versions.get(key) for key in issued.issued_to(student, sitting).items())
     scale = stated.get("mark")
     date = str(stated.get("date") or "")
@@ -201,7 +201,7 @@ def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang:
         title=text_in(stated.get("title") or {}, lang) or str(stated.get("name", "")),
         course=text_in(stated.get("course") or {}, lang) or course.folder.title(lang),
         student=student,
-        identity=printed_columns(stated.get("identity") or (), own, lang),
+        identity=printed_columns(stated.get("identity") or (), roster_cells, lang),
         date=date_text(datetime.date.fromisoformat(date) if date else None, lang),
         duration=text_in(stated.get("duration") or {}, lang),
         version=next(filter(None, versions), ""),
@@ -211,19 +211,19 @@ def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang:
 
 def _advice(sheets: Sequence[FeedbackSheet], handed_in: Collection[str], lang: str) -> Iterator[str]:
     """Where most points are left to gain: questions, and exercises that were not handed in."""
-    said = words(lang)["feedback"]
+    texts = words(lang)["feedback"]
     places: list[tuple[float, float, str]] = []
-    for place, sheet in enumerate(sheets, start=1):
+    for position, sheet in enumerate(sheets, start=1):
         if sheet.handout.exercise not in handed_in:
             places.append((0.0, sheet.out_of, sheet.handout.title))
             continue
         for line in sheet.lines:
             if line.verdict not in _WAIT:
-                number = f"{place}.{line.question.number}"  # as papers number their questions
-                name = said["advised"].format(exercise=sheet.handout.title, number=number)
+                number = f"{position}.{line.question.number}"  # as papers number their questions
+                name = texts["advised"].format(exercise=sheet.handout.title, number=number)
                 symbol = f", ${line.question.symbol}$" if line.question.symbol else ""
                 places.append((line.points, line.out_of, name + symbol))
-    places.sort(key=lambda one: one[0] - one[1])
+    places.sort(key=lambda candidate: candidate[0] - candidate[1])
     for points, out_of, name in places[:_ADVISED]:
         if points < out_of:
             got, most = (localise(f"{n:g}", lang) for n in (points, out_of))
@@ -236,7 +236,7 @@ def _advice(sheets: Sequence[FeedbackSheet], handed_in: Collection[str], lang: s
 def write_feedback(
     course: Course,
     book: Gradebook,
-    shown: Sequence[Graded],
+    sheets: Sequence[Graded],
     folder: Path,
     progress: Progress,
     form: Form = USUAL,
@@ -246,9 +246,9 @@ def write_feedback(
     A sheet that cannot be printed is a warning, and costs no other.
     """
     by_student: dict[str, dict[int, list[Graded]]] = {student: {} for student in book.issued.students}
-    for graded in shown:
+    for graded in sheets:
         by_student.setdefault(graded.student, {}).setdefault(graded.sitting, []).append(graded)
-    unread = {place: {e for e, _ in own} for place, own in book.unread().items()}
+    unread = {sitting: {e for e, _ in unread_sheets} for sitting, unread_sheets in book.unread().items()}
     practice, solutions = PracticeOf(course, book.issued), shows_solutions(book.issued, form)
     stems = file_stems(by_student)
     places = [
@@ -262,9 +262,9 @@ def write_feedback(
     for student, mine, name, waiting in places:
         issued = book.issued.of_student(student)
         telling = Telling(practice.of_student(issued), solutions)
-        told = _Told(course, issued, student, tuple(mine), waiting, telling)
+        content = _Told(course, issued, student, tuple(mine), waiting, telling)
         for end in form.formats:
-            make = partial(_printed, renderer, told, end)
+            make = partial(_printed, renderer, content, end)
             failed = partial(_warn, book, student)
             files.append(File(Path(f"{name}.{end}"), make, anywhere=True, failed=failed))
     done = iter(range(1, len(files) + 1))
@@ -302,7 +302,7 @@ class _Told:
 def renew_feedback(
     course: Course,
     book: Gradebook,
-    shown: Sequence[Graded],
+    sheets: Sequence[Graded],
     out: Path,
     progress: Progress,
     form: Form = USUAL,
@@ -318,7 +318,7 @@ def renew_feedback(
     try:
         with writing(out):
             printing.mkdir(parents=True)
-        write_feedback(course, book, shown, printing, progress, form)
+        write_feedback(course, book, sheets, printing, progress, form)
         ready()
         with writing(out / "feedback"):
             book.warnings += renew(printing, out / "feedback", out / ".feedback.json")
@@ -328,9 +328,9 @@ def renew_feedback(
 
 def _printed(renderer: Renderer, content: _Told, end: str) -> bytes:
     """What a student is told, in a format."""
-    told = content.sheet
+    sheet = content.sheet
     if end == "ipynb":
-        return renderer.feedback_notebook(told).encode("utf-8")
-    if isinstance(told, FeedbackPaper):
-        return renderer.paper_pdf(told) if end == "pdf" else renderer.paper_html(told).encode("utf-8")
-    return renderer.pdf(told) if end == "pdf" else renderer.html(told).encode("utf-8")
+        return renderer.feedback_notebook(sheet).encode("utf-8")
+    if isinstance(sheet, FeedbackPaper):
+        return renderer.paper_pdf(sheet) if end == "pdf" else renderer.paper_html(sheet).encode("utf-8")
+    return renderer.pdf(sheet) if end == "pdf" else renderer.html(sheet).encode("utf-8")

@@ -66,17 +66,17 @@ def fill(
         _check_alike(scored, platform, item)
     sign = decimal or platform.decimal or _sign_in(sheet) or "."
     theirs = _matched(sheet, scored, result)
-    for row, one, name in zip(sheet.rows, theirs, sheet.called, strict=True):
-        if one is None or not (one.has_answered or zeros):
+    for row, student, name in zip(sheet.rows, theirs, sheet.called, strict=True):
+        if student is None or not (student.has_answered or zeros):
             result.absent.append(name)
         elif sheet.column >= len(row):
             raise BadInput(
                 f"{template}: the line of {name} has {len(row)} cells, and {sheet.title} is further on"
             )
-        elif (stands := _cell(row, sheet.column)) in platform.keeps:
-            result.kept.append(f"{name}: {stands}")
+        elif (content := _cell(row, sheet.column)) in platform.keeps:
+            result.kept.append(f"{name}: {content}")
         else:
-            table.write(row[sheet.column], _points(one, result).replace(".", sign))
+            table.write(row[sheet.column], _points(student, result).replace(".", sign))
             result.written += 1
     result.data = table.data()
     return result
@@ -97,7 +97,10 @@ class _Sheet(NamedTuple):
         names = [first_name_first(_name(row, self.people)) for row in self.rows]
         ids = [_first_of(row, self.people.ids) for row in self.rows]
         often = Counter(names)
-        return [f"{n} ({own})" if often[n] > 1 and own else n for n, own in zip(names, ids, strict=True)]
+        return [
+            f"{n} ({identifier})" if often[n] > 1 and identifier else n
+            for n, identifier in zip(names, ids, strict=True)
+        ]
 
 
 def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Path) -> _Sheet:
@@ -105,9 +108,9 @@ def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Pat
     titles = [cell.text for cell in header]
     people = people_in(titles)
     if not (people.names or people.ids):
-        found = ", ".join(title.strip() for title in titles if title.strip())[:200] or "nothing"
+        titles_text = ", ".join(title.strip() for title in titles if title.strip())[:200] or "nothing"
         raise BadInput(
-            f"{source} names nobody: a gradebook of {platform.called} has columns for names or e-mails; found {found}; "
+            f"{source} names nobody: a gradebook of {platform.called} has columns for names or e-mails; found {titles_text}; "
             f"download it by {platform.download}"
         )
     column = column_of(platform, titles, people, item, source)
@@ -129,8 +132,8 @@ def _first(row: Sequence[PositionedCell]) -> str:
     return row[0].text.strip().casefold()
 
 
-def _cell(row: Sequence[PositionedCell], place: int) -> str:
-    return row[place].text.strip() if place < len(row) else ""
+def _cell(row: Sequence[PositionedCell], index: int) -> str:
+    return row[index].text.strip() if index < len(row) else ""
 
 
 def _is_somebody(row: Sequence[PositionedCell], people: People) -> bool:
@@ -160,14 +163,14 @@ def column_of(
         There is none, or there are several.
     """
     places = [k for k in range(len(titles)) if k not in (*people.names, *people.ids)]
-    for called in (str.strip, platform.item_in):
-        found = [k for k in places if folded(called(titles[k])) == folded(item)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            named = ", ".join(repr(titles[k].strip()) for k in found)
+    for name_of in (str.strip, platform.item_in):
+        columns = [k for k in places if folded(name_of(titles[k])) == folded(item)]
+        if len(columns) == 1:
+            return columns[0]
+        if columns:
+            named = ", ".join(repr(titles[k].strip()) for k in columns)
             raise BadInput(
-                f"{source} has several columns of {item!r}: {named}; name one whole, --item {titles[found[0]].strip()!r}"
+                f"{source} has several columns of {item!r}: {named}; name one whole, --item {titles[columns[0]].strip()!r}"
             )
     names = list(
         dict.fromkeys(name for k in places if k > people.last and (name := platform.item_in(titles[k])))
@@ -177,22 +180,22 @@ def column_of(
     )
 
 
-def _most(platform: PlatformGradebook, sheet: _Sheet, told: float | None, source: Path) -> float | None:
+def _most(platform: PlatformGradebook, sheet: _Sheet, stated: float | None, source: Path) -> float | None:
     """The item's maximum: as the file tells it, which must agree with what is told."""
     text = platform.most_in(sheet.title) if sheet.maxima is None else _cell(sheet.maxima, sheet.column)
     try:
-        found = float(text.replace(",", ".")) if text else None
+        in_file = float(text.replace(",", ".")) if text else None
     except ValueError:
-        found = None
-    if found is not None and told is not None and found != told:
+        in_file = None
+    if in_file is not None and stated is not None and in_file != stated:
         raise BadInput(
-            f"{source} says that {sheet.title} is out of {found:g}; --out-of says {told:g}: leave it away, or change the item"
+            f"{source} says that {sheet.title} is out of {in_file:g}; --out-of says {stated:g}: leave it away, or change the item"
         )
-    return told if found is None else found
+    return stated if in_file is None else in_file
 
 
 def _check_alike(scored: Iterable[Scored], platform: PlatformGradebook, item: str) -> None:
-    totals = sorted({one.out_of for one in scored if one.out_of})
+    totals = sorted({student.out_of for student in scored if student.out_of})
     if len(totals) > 1:
         raise BadInput(
             f"the class has points out of {' and '.join(totals[:3])}, and {platform.called}'s export does not tell what {item!r} is out of: "
@@ -200,12 +203,12 @@ def _check_alike(scored: Iterable[Scored], platform: PlatformGradebook, item: st
         )
 
 
-def _points(one: Scored, filled: Filled) -> str:
-    points = one.of(filled.most)
-    limit = filled.most if filled.most is not None else float(one.out_of or "inf")
+def _points(student: Scored, filled: Filled) -> str:
+    points = student.of(filled.most)
+    limit = filled.most if filled.most is not None else float(student.out_of or "inf")
     if not 0 <= float(points) <= limit:
         raise BadInput(
-            f"{one.name} has {points}, and {filled.column} is out of {limit:g}: the platform would refuse the file, and nothing "
+            f"{student.name} has {points}, and {filled.column} is out of {limit:g}: the platform would refuse the file, and nothing "
             "is written"
         )
     return points
@@ -214,7 +217,7 @@ def _points(one: Scored, filled: Filled) -> str:
 def _sign_in(sheet: _Sheet) -> str:
     """The decimal sign of the marks that stand in a file; nothing where none has decimals."""
     texts = (cell.text for row in sheet.rows for cell in row[sheet.people.last + 1 :])
-    signs = [found["sign"] for text in texts if (found := _NUMBER.fullmatch(text))]
+    signs = [match["sign"] for text in texts if (match := _NUMBER.fullmatch(text))]
     return max("".join(dict.fromkeys(signs)), key=signs.count, default="")
 
 
@@ -225,37 +228,37 @@ def _matched(sheet: _Sheet, scored: Sequence[Scored], filled: Filled) -> list[Sc
     """By line, whom it is of: by e-mail or number, else by a name that one line and one student alone have."""
     ids = _only((same_id(_cell(row, k)), n) for n, row in enumerate(sheet.rows) for k in sheet.people.ids)
     names = _only((words_of(_name(row, sheet.people)), n) for n, row in enumerate(sheet.rows))
-    found: dict[int, Scored] = {}
+    by_line: dict[int, Scored] = {}
     by_name = []
-    for one in scored:
-        lines = {line for _, value in one.ids if (line := ids.get(same_id(value))) is not None}
-        if len(lines) == 1 and not lines & found.keys():
-            found[lines.pop()] = one
+    for student in scored:
+        lines = {line for _, value in student.ids if (line := ids.get(same_id(value))) is not None}
+        if len(lines) == 1 and not lines & by_line.keys():
+            by_line[lines.pop()] = student
         elif lines:
-            filled.unclear.append(one.name)
+            filled.unclear.append(student.name)
         else:
-            by_name.append(one)
-    for one in by_name:
-        words = words_of(one.name)
+            by_name.append(student)
+    for student in by_name:
+        words = words_of(student.name)
         line = names.get(words)
-        if line is not None and line not in found and not _differs(sheet.rows[line], sheet.people, one):
-            found[line] = one
+        if line is not None and line not in by_line and not _differs(sheet.rows[line], sheet.people, student):
+            by_line[line] = student
         else:
-            (filled.unclear if words in names and line is None else filled.strangers).append(one.name)
-    return [found.get(n) for n in range(len(sheet.rows))]
+            (filled.unclear if words in names and line is None else filled.strangers).append(student.name)
+    return [by_line.get(n) for n in range(len(sheet.rows))]
 
 
-def _differs(row: Sequence[PositionedCell], people: People, one: Scored) -> bool:
+def _differs(row: Sequence[PositionedCell], people: People, student: Scored) -> bool:
     """Whether both have an e-mail, and these are of two people: a name alone does not make them one."""
     there = {same_id(_cell(row, k)) for k in people.ids if "@" in _cell(row, k)}
-    told = {same_id(value) for _, value in one.ids if "@" in value}
-    return bool(there and told and not there & told)
+    stated = {same_id(value) for _, value in student.ids if "@" in value}
+    return bool(there and stated and not there & stated)
 
 
 def _only(pairs: Iterable[tuple[object, int]]) -> dict[object, int | None]:
     """By key, the one line that has it; None where several do."""
-    found: dict[object, int | None] = {}
+    lines: dict[object, int | None] = {}
     for key, line in pairs:
         if key:
-            found[key] = line if found.get(key, line) == line else None
-    return found
+            lines[key] = line if lines.get(key, line) == line else None
+    return lines

@@ -65,13 +65,15 @@ def grade_files(
     """
     issued = Issued.read(issued_path)
     shows_solutions(issued, form)
-    kept = out / "accepted.csv"
-    by_hand = Accepted(accepted if accepted is not None else kept if kept.exists() else None)
+    default_accepted = out / "accepted.csv"
+    by_hand = Accepted(
+        accepted if accepted is not None else default_accepted if default_accepted.exists() else None
+    )
     by_person = ToMark(out / "to_mark.csv")
 
     def rows() -> Iterator[Row | Rejected | Seen]:
-        for found in find(submissions):
-            yield from [found] if isinstance(found, (Rejected, Seen)) else read_file(found, submissions)
+        for file in find(submissions):
+            yield from [file] if isinstance(file, (Rejected, Seen)) else read_file(file, submissions)
 
     with placed_beside(course, issued, rows(), out) as sheets:
         if not sheets.count:
@@ -116,7 +118,7 @@ def write_marks(
     history = History(out, _day(form))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     book.seen, book.charged = told_seen(sheets.seen), charged or {}
-    shown: list[Graded] = []
+    sheets_shown: list[Graded] = []
     with Tables(out, spreadsheet) as tables:
         marks = tables.open("marks.csv", marks_columns(issued, submitted=sheets.is_dated))
         summary = tables.open("summary.csv", summary_columns(issued, late=bool(charged)))
@@ -132,7 +134,7 @@ def write_marks(
                     history.add(change)
                     book.changes += 1
             if feedback:
-                shown.append(graded)
+                sheets_shown.append(graded)
             progress(done, sheets.count)
         for change in before.gone():
             history.add(change)
@@ -147,7 +149,7 @@ def write_marks(
         if book.changes and (stood or edited):
             book.warnings.insert(0, _kept(out / "marks.csv"))
         if feedback:
-            renew_feedback(course, book, shown, out, progress, form, tables.check)
+            renew_feedback(course, book, sheets_shown, out, progress, form, tables.check)
         tables.check()
         # Stopped halfway, these are no marks that a hand changed.
         write_down(out / _WRITTEN, marks.path, marks.part, *([] if edited else [marks.path]))
@@ -196,8 +198,11 @@ def grade_standing(
     """
     issued = Issued.read(issued_path)
     shows_solutions(issued, form)
-    kept = marks.with_name("accepted.csv")
-    accepted, by_person = Accepted(kept if kept.exists() else None), ToMark(marks.with_name("to_mark.csv"))
+    default_accepted = marks.with_name("accepted.csv")
+    accepted, by_person = (
+        Accepted(default_accepted if default_accepted.exists() else None),
+        ToMark(marks.with_name("to_mark.csv")),
+    )
     standing = Standing(course, issued, marks)
     sheets = standing.sheets
     feedback = usual_feedback(sheets) if feedback is None else feedback
@@ -205,7 +210,7 @@ def grade_standing(
     machine = list(marked(course, issued, sheets, printed=feedback))
     standing.refuse(sheets.rejected[earlier:])
     book = Gradebook(issued, sheets.rows_in, 0, sheets.rejected, sheets.warnings)
-    shown = []
+    sheets_shown = []
     history = History(out, _day(form))
     with Tables(out, spreadsheet) as tables:
         summary = tables.open("summary.csv", summary_columns(issued))
@@ -215,17 +220,19 @@ def grade_standing(
             BY_HAND, [c for c in CHANGES_COLUMNS if c not in ("date", "mark_before", "mark_now")]
         )
         for graded in machine:
-            shown.append(standing.of(graded))
-            book.add(shown[-1])
+            sheets_shown.append(standing.of(graded))
+            book.add(sheets_shown[-1])
             lang = str(graded.record.get("lang", "fr"))
-            for change in differs(accepted.apply(by_person.apply(graded, lang), lang), shown[-1]):
+            for change in differs(accepted.apply(by_person.apply(graded, lang), lang), sheets_shown[-1]):
                 history.add(change)
                 by_hand.write(change)
         book.changes = by_hand.rows
-        book.waiting = sum(line.verdict == TO_MARK for one in shown for line in one.lines.values())
+        book.waiting = sum(
+            line.verdict == TO_MARK for graded_sheet in sheets_shown for line in graded_sheet.lines.values()
+        )
         _write_counts(book, summary, rejected, changes, history)
         if feedback:
-            renew_feedback(course, book, shown, out, progress, form, tables.check)
+            renew_feedback(course, book, sheets_shown, out, progress, form, tables.check)
         tables.commit()
     if not book.changes:
         (out / BY_HAND).unlink()
@@ -238,11 +245,11 @@ def _list_to_mark(by_person: ToMark, tables: Tables, book: Gradebook) -> None:
     """Write what a person marks; points for what nobody answered, or answered anew, stay in a copy, and are told."""
     path = by_person.path
     if by_person.loses:
-        kept = free_name(path)
-        write_whole(kept, path.read_bytes())
-        changed = [f"marked by a person, but answered anew since: {place}" for place in by_person.changed]
-        unused = [f"marked by a person, but never answered: {place}" for place in by_person.unused]
-        book.warnings += [*changed, *unused, f"{path.name} as it was is kept as {kept}"]
+        copy = free_name(path)
+        write_whole(copy, path.read_bytes())
+        changed = [f"marked by a person, but answered anew since: {answer}" for answer in by_person.changed]
+        unused = [f"marked by a person, but never answered: {answer}" for answer in by_person.unused]
+        book.warnings += [*changed, *unused, f"{path.name} as it was is kept as {copy}"]
     if by_person.rows or path.exists():
         table = tables.open(path.name, TO_MARK_COLUMNS)
         for row in sorted_rows(by_person.rows):
@@ -251,10 +258,10 @@ def _list_to_mark(by_person: ToMark, tables: Tables, book: Gradebook) -> None:
 
 def _kept(marks: Path) -> str:
     """Keep marks that were edited, beside those that take their place; says so."""
-    kept = free_name(marks)
-    write_whole(kept, marks.read_bytes())
+    copy = free_name(marks)
+    write_whole(copy, marks.read_bytes())
     return (
-        f"{marks.name} had been edited, and is written anew: the edited one is kept as {kept}; a mark that is to last is "
+        f"{marks.name} had been edited, and is written anew: the edited one is kept as {copy}; a mark that is to last is "
         f"named in {marks.with_name('accepted.csv')}"
     )
 
@@ -262,8 +269,8 @@ def _kept(marks: Path) -> str:
 def nothing_in(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
     """That nothing can be marked, and why."""
     where = ", ".join(map(str, submissions[:3])) + (", …" if len(submissions) > 3 else "")
-    told = f"nothing in {where} can be marked, so nothing is written"
+    message = f"nothing in {where} can be marked, so nothing is written"
     if not rejected:
-        return f"{told}; a file of answers has a line of headings, then a line an answer"
+        return f"{message}; a file of answers has a line of headings, then a line an answer"
     count = "" if len(rejected) == 1 else f" ({len(rejected)} rows rejected; the first is told)"
-    return f"{told}{count}: {rejected[0].source}: {rejected[0].reason}"
+    return f"{message}{count}: {rejected[0].source}: {rejected[0].reason}"

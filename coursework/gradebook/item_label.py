@@ -36,5 +36,5 @@ NO_LABEL = "the question's text has no label as [slotted_mechanism · 4 · v1 ·
 
 def label_in(text: str) -> ItemLabel | None:
     """The label of a question's text, the last where figures or data look alike; None where it has none."""
-    found = [*_LABEL.finditer(text)]
-    return ItemLabel(*(group or "" for group in found[-1].groups())) if found else None
+    matches = [*_LABEL.finditer(text)]
+    return ItemLabel(*(group or "" for group in matches[-1].groups())) if matches else None

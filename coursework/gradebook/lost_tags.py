@@ -35,7 +35,9 @@ def printed_identity(cells: Sequence[dict[str, Any]]) -> dict[str, Any] | None:
     variants = list(dict.fromkeys(_VARIANT.findall(text)))
     if not variants:
         return None
-    lang = next((one for one in languages() if f"# {words(one)['notebook']['answers']}" in text), "")
+    lang = next(
+        (language for language in languages() if f"# {words(language)['notebook']['answers']}" in text), ""
+    )
     name = _name_in(text)
     commented = any(re.search(r"answers = \{[ \t]*#[ \t]*\w+[ \t]+[0-9]", source_of(c)) for c in cells)
     if len(variants) > 1 or commented:
@@ -45,29 +47,29 @@ def printed_identity(cells: Sequence[dict[str, Any]]) -> dict[str, Any] | None:
 
 
 def _name_in(text: str) -> str:
-    called = "|".join(re.escape(str(words(lang)["sheet"]["name"])) for lang in languages())
-    found = re.search(rf"\*\*(?:{called})\s*:\*\*[^\S\n]*(\S.*)", text)
-    return found[1].strip() if found else ""
+    labels = "|".join(re.escape(str(words(lang)["sheet"]["name"])) for lang in languages())
+    match = re.search(rf"\*\*(?:{labels})\s*:\*\*[^\S\n]*(\S.*)", text)
+    return match[1].strip() if match else ""
 
 
 def answers_texts(cells: Sequence[dict[str, Any]]) -> Iterator[tuple[int, str]]:
     """The cells that assign a dict to ``answers``, each with its place; one that was cut is put together again."""
-    for place, cell in enumerate(cells):
+    for position, cell in enumerate(cells):
         if cell.get("cell_type") == "code" and BEGINS.search(source_of(cell)):
-            yield place, joined(cells, place)
+            yield position, joined(cells, position)
 
 
-def joined(cells: Sequence[dict[str, Any]], place: int) -> str:
+def joined(cells: Sequence[dict[str, Any]], position: int) -> str:
     """A cell of code, with as many of those behind it as close what it opens; alone where none does."""
-    text = source_of(cells[place])
-    whole = text
-    for behind in cells[place + 1 : place + _PIECES]:
-        if _closes(whole):
-            return whole
+    text = source_of(cells[position])
+    code = text
+    for behind in cells[position + 1 : position + _PIECES]:
+        if _closes(code):
+            return code
         if behind.get("cell_type") != "code":
             break
-        whole += "\n" + source_of(behind)
-    return whole if _closes(whole) else text
+        code += "\n" + source_of(behind)
+    return code if _closes(code) else text
 
 
 def _closes(text: str) -> bool:
@@ -82,22 +84,24 @@ def alone(code: str) -> str:
     if start is None:
         return code
     try:
-        found = [
-            one
-            for one in python_code.parse(code).body
-            if isinstance(one, ast.Assign) and isinstance(one.value, ast.Dict) and _is_answers(one.targets)
+        assignments = [
+            statement
+            for statement in python_code.parse(code).body
+            if isinstance(statement, ast.Assign)
+            and isinstance(statement.value, ast.Dict)
+            and _is_answers(statement.targets)
         ]
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         end = re.compile(r"^\}[ \t]*(?:#[^\n]*)?$", re.MULTILINE).search(code, start.start())
-        own = (start.start(), end.end()) if end else (0, len(code))
+        span = (start.start(), end.end()) if end else (0, len(code))
     else:
-        if len(found) != 1:
+        if len(assignments) != 1:
             return code
         lines = code.split("\n")
-        first, last = found[0].lineno - 1, found[0].end_lineno or len(lines)
-        own = (sum(len(line) + 1 for line in lines[:first]), sum(len(line) + 1 for line in lines[:last]) - 1)
-    rest = _SHOWN.sub("()", code[: own[0]] + code[own[1] :])
-    return code if re.search(r"\banswers\b", re.sub(r"#[^\n]*", "", rest)) else code[own[0] : own[1]]
+        first, last = assignments[0].lineno - 1, assignments[0].end_lineno or len(lines)
+        span = (sum(len(line) + 1 for line in lines[:first]), sum(len(line) + 1 for line in lines[:last]) - 1)
+    rest = _SHOWN.sub("()", code[: span[0]] + code[span[1] :])
+    return code if re.search(r"\banswers\b", re.sub(r"#[^\n]*", "", rest)) else code[span[0] : span[1]]
 
 
 def _is_answers(targets: Sequence[ast.expr]) -> bool:

@@ -44,8 +44,10 @@ class ResponseColumns(NamedTuple):
 
 def columns_of(header: Sequence[str]) -> ResponseColumns | None:
     """The places of the columns; None where this is no Responses report."""
-    found = [_NUMBERED.fullmatch(title.strip()) for title in header]
-    numbers = [one["number"] if one and not _is_grade(header, k) else "" for k, one in enumerate(found)]
+    matches = [_NUMBERED.fullmatch(title.strip()) for title in header]
+    numbers = [
+        match["number"] if match and not _is_grade(header, k) else "" for k, match in enumerate(matches)
+    ]
     first = next((k for k, (a, b) in enumerate(itertools.pairwise(numbers)) if a and a == b), None)
     if first is None or first < 6:
         return None
@@ -53,26 +55,30 @@ def columns_of(header: Sequence[str]) -> ResponseColumns | None:
     starts = {number: k for k, number in reversed([*enumerate(numbers)]) if number and k >= first}
     questions = tuple(
         (k, k + 1)
-        for number, k in sorted(starts.items(), key=lambda one: one[1])
+        for number, k in sorted(starts.items(), key=lambda match: match[1])
         if numbers[k + 1 : k + 2] == [number]
     )
-    who = header[:about]
+    identity_titles = header[:about]
     return ResponseColumns(
-        _name(who), tuple(k for k, title in enumerate(who) if identifies(title)), about, about + 2, questions
+        _name(identity_titles),
+        tuple(k for k, title in enumerate(identity_titles) if identifies(title)),
+        about,
+        about + 2,
+        questions,
     )
 
 
-def _is_grade(header: Sequence[str], place: int) -> bool:
-    return "/" in header[place]
+def _is_grade(header: Sequence[str], index: int) -> bool:
+    return "/" in header[index]
 
 
-def _name(who: Sequence[str]) -> tuple[int, ...]:
+def _name(titles: Sequence[str]) -> tuple[int, ...]:
     """The columns of first name and surname, or of the whole name."""
-    for known in (WHOLE, (*FIRST_NAME, *SURNAME)):
-        named = [k for k, title in enumerate(who) if is_called(title, known)]
+    for names in (WHOLE, (*FIRST_NAME, *SURNAME)):
+        named = [k for k, title in enumerate(titles) if is_called(title, names)]
         if named:
-            return tuple(sorted(named, key=lambda k: not is_called(who[k], FIRST_NAME)))[:2]
-    return tuple(k for k in range(min(2, len(who))))
+            return tuple(sorted(named, key=lambda k: not is_called(titles[k], FIRST_NAME)))[:2]
+    return tuple(k for k in range(min(2, len(titles))))
 
 
 def is_another(header: Sequence[str]) -> str:
@@ -81,7 +87,7 @@ def is_another(header: Sequence[str]) -> str:
         is_called(title, EMAIL) for title in header
     ):
         return "this is the Grades report of a Moodle quiz, which holds no answers: download the Responses report"
-    singles = [one["number"] for one in map(_NUMBERED.fullmatch, map(str.strip, header)) if one]
+    singles = [match["number"] for match in map(_NUMBERED.fullmatch, map(str.strip, header)) if match]
     if (
         singles
         and singles[0] == "1"
@@ -100,37 +106,37 @@ def read_responses(
     assert columns is not None, "only a header that has them comes here"
     attempts: Counter[tuple[str, ...]] = Counter()
     absent = 0
-    who: tuple[str, tuple[tuple[str, str], ...]] = ("", ())
-    for place, cells in rows:
+    student: tuple[str, tuple[tuple[str, str], ...]] = ("", ())
+    for location, cells in rows:
         cells = [*map(as_written, cells), *[""] * (len(header) - len(cells))]
         if _is_average(header, columns, cells):
             continue
         # Of a question tried several times the name stands once.
-        who = _who(header, columns, cells) or who
+        student = _who(header, columns, cells) or student
         if all(cells[k].strip() in _NONE for pair in columns.questions for k in pair):
             absent += 1
             continue
         if cells[columns.completed].strip() in _NONE:
-            yield from _unfinished(columns, cells, who[0], place)
+            yield from _unfinished(columns, cells, student[0], location)
             continue
-        attempts[(who[0], *map(str, who[1]))] += 1
+        attempts[(student[0], *map(str, student[1]))] += 1
         origin = Collected(
-            who[1], (), attempts[(who[0], *map(str, who[1]))], cells[columns.completed].strip()
+            student[1], (), attempts[(student[0], *map(str, student[1]))], cells[columns.completed].strip()
         )
         for question, response in columns.questions:
-            where = f"{place}, {header[response].strip()}"
-            yield from _response(cells[question], cells[response], who[0], origin, where, warning)
-    told = f"{counted(sum(attempts.values()), 'finished attempt')} of {counted(len(attempts), 'student')}"
-    told += f", {counted(absent, 'student')} without an attempt" if absent else ""
-    yield Seen(source, f"{WHAT}, {told}")
+            where = f"{location}, {header[response].strip()}"
+            yield from _response(cells[question], cells[response], student[0], origin, where, warning)
+    summary = f"{counted(sum(attempts.values()), 'finished attempt')} of {counted(len(attempts), 'student')}"
+    summary += f", {counted(absent, 'student')} without an attempt" if absent else ""
+    yield Seen(source, f"{WHAT}, {summary}")
 
 
 def _is_average(header: Sequence[str], columns: ResponseColumns, cells: Sequence[str]) -> bool:
     """The last line: an average in the column of names, nobody's e-mail, nothing in the columns of answers."""
     if any(cells[k].strip() not in _NONE for pair in columns.questions for k in pair):
         return False
-    said = " ".join(cells[k] for k in columns.name).casefold()
-    return not any(cells[k].strip() for k in columns.ids) and any(word in said for word in _AVERAGE)
+    name = " ".join(cells[k] for k in columns.name).casefold()
+    return not any(cells[k].strip() for k in columns.ids) and any(word in name for word in _AVERAGE)
 
 
 def _who(
@@ -142,34 +148,42 @@ def _who(
 
 
 def _unfinished(
-    columns: ResponseColumns, cells: Sequence[str], student: str, place: str
+    columns: ResponseColumns, cells: Sequence[str], student: str, location: str
 ) -> Iterator[Rejected]:
     """The responses of an attempt that was not handed in, which has no end."""
     state = cells[columns.state].strip()
     reason = f"the attempt is not finished, it is {state!r}: close it in Moodle, or let it be handed in, and download again"
     answered = [pair for pair in columns.questions if cells[pair[1]].strip() not in _NONE]
     if not answered:
-        yield Rejected(place, reason, {"student": student})
+        yield Rejected(location, reason, {"student": student})
     for question, response in answered:
         label = label_in(cells[question]) or ItemLabel("", "", "")
         row = {"student": student, "exercise": label.exercise, "seed": label.seed, "part": label.part}
-        yield Rejected(place, reason, row | {"answer": cells[response].strip()})
+        yield Rejected(location, reason, row | {"answer": cells[response].strip()})
 
 
 def _response(
-    question: str, response: str, student: str, origin: Collected, place: str, warning: str
+    question: str, response: str, student: str, origin: Collected, location: str, warning: str
 ) -> Iterator[Row | Rejected]:
     """The answers of one response: all parts of a question with several gaps, or the one that its label names."""
     label, text = label_in(question), response.strip()
     if label is None:
         if text not in _NONE:
-            yield Rejected(place, NO_LABEL, {"student": student, "answer": text})
+            yield Rejected(location, NO_LABEL, {"student": student, "answer": text})
         return
     origin = origin._replace(version=label.version, apart=bool(label.part))
 
     def row(part: str, answer: str) -> Row:
         return Row(
-            student, label.exercise, label.seed, part, answer, f"{place}, {part}", warning, label.lang, origin
+            student,
+            label.exercise,
+            label.seed,
+            part,
+            answer,
+            f"{location}, {part}",
+            warning,
+            label.lang,
+            origin,
         )
 
     if label.part:
@@ -181,11 +195,11 @@ def _response(
     elif answers := parts_of(text):
         yield from (row(f"question_{number}", answer) for number, answer in enumerate(answers, start=1))
     else:
-        own = {"student": student, "exercise": label.exercise, "seed": label.seed, "answer": text}
+        columns = {"student": student, "exercise": label.exercise, "seed": label.seed, "answer": text}
         reason = (
             "a response of several parts is written 'part 1: …; part 2: …', each once: a person must look"
         )
-        yield Rejected(place, reason, own)
+        yield Rejected(location, reason, columns)
 
 
 _FIRST = re.compile(r"(?P<before>[^\d:;]{1,30}?)1(?P<colon>\s*[:：])")
@@ -201,8 +215,8 @@ def parts_of(text: str) -> list[str]:
         return []
     before, colon = re.escape(first["before"].strip()), re.escape(first["colon"].strip())
     begins = re.compile(rf"(?:\A|;\s){before}\s*([0-9]{{1,3}})\s*{colon}\s?")
-    found = [*begins.finditer(text)]
-    if [int(one[1]) for one in found] != [*range(1, len(found) + 1)]:
+    matches = [*begins.finditer(text)]
+    if [int(match[1]) for match in matches] != [*range(1, len(matches) + 1)]:
         return []
-    ends = [*(one.start() for one in found[1:]), len(text)]
-    return [text[one.end() : end].strip() for one, end in zip(found, ends, strict=True)]
+    ends = [*(match.start() for match in matches[1:]), len(text)]
+    return [text[match.end() : end].strip() for match, end in zip(matches, ends, strict=True)]

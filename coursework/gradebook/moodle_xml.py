@@ -12,10 +12,10 @@ from coursework.making.identity import NUMBER, plain
 _NUMBERS = ("id number", plain("numéro d'identification"), *NUMBER)
 
 
-def number_of(one: Scored) -> str:
+def number_of(student: Scored) -> str:
     """A student's number; nothing where there is none."""
-    own = {plain(title): value for title, value in one.ids}
-    return next((own[title] for title in _NUMBERS if title in own), "")
+    identifiers = {plain(title): value for title, value in student.ids}
+    return next((identifiers[title] for title in _NUMBERS if title in identifiers), "")
 
 
 def moodle_xml(
@@ -29,19 +29,19 @@ def moodle_xml(
         Nobody has a number, or somebody more than the maximum.
     """
     root = ET.Element("results", batch=batch)
-    left = [one.name for one in scored if not number_of(one)]
+    left = [student.name for student in scored if not number_of(student)]
     if len(left) == len(scored):
         raise BadInput(
             "Moodle's XML names students by their ID number, and the class has none: give a roster with a column 'ID number' when "
             "exporting, or fill a --template"
         )
-    for one in scored:
-        if number := number_of(one):
-            points = one.of(most)
-            limit = most if most is not None else float(one.out_of or "inf")
+    for student in scored:
+        if number := number_of(student):
+            points = student.of(most)
+            limit = most if most is not None else float(student.out_of or "inf")
             if not 0 <= float(points) <= limit:
                 raise BadInput(
-                    f"{one.name} has {points} of {limit:g}: Moodle would refuse it, and nothing is written"
+                    f"{student.name} has {points} of {limit:g}: Moodle would refuse it, and nothing is written"
                 )
             result = ET.SubElement(root, "result")
             for tag, text in (("state", "new"), ("assignment", item), ("student", number), ("score", points)):

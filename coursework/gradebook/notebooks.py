@@ -67,15 +67,15 @@ def _read(data: bytes, source: str, by: str) -> Iterator[Row | Rejected]:
         return
     code, note = _answers_code(cells)
     if code is None:
-        found = "\n".join(source_of(c) for c in cells if c.get("cell_type") == "code")
-        row = _about(about, source) | {"answer": quoted(found)}
+        code_text = "\n".join(source_of(c) for c in cells if c.get("cell_type") == "code")
+        row = _about(about, source) | {"answer": quoted(code_text)}
         yield Rejected(source, note, row)
         return
     answers, more = _answers_in(code)
     if isinstance(answers, str):
         yield Rejected(source, answers, _about(about, source) | {"answer": quoted(code)})
         return
-    notes += [f"{source}: {told}" for told in (note, more) if told]
+    notes += [f"{source}: {text_of_note}" for text_of_note in (note, more) if text_of_note]
     about, warning = _with_name(about, answers, source, "; ".join(notes))
     yield from sheet_rows(about, answers, source, warning)
 
@@ -89,15 +89,15 @@ _CUT = "the answers cell was cut in pieces; they are put together"
 
 def _answers_code(cells: list[dict[str, Any]]) -> tuple[str | None, str]:
     """The code of the answers cell of one exercise and what is to be told of it; None and why where it cannot be told which it is."""
-    tagged = [place for place, cell in enumerate(cells) if "answers" in _tags(cell)]
+    tagged = [position for position, cell in enumerate(cells) if "answers" in _tags(cell)]
     named = dict(answers_texts(cells))
-    own = _filled(joined(cells, p) for p in tagged if len(tagged) == 1 or p in named)
-    others = _filled(text for place, text in named.items() if place not in tagged)
-    if len(own) == 1 and (_has_answer(own[0]) or not any(map(_has_answer, others))):
-        return own[0], "" if own[0] in map(source_of, cells) else _CUT
+    tagged_texts = _filled(joined(cells, p) for p in tagged if len(tagged) == 1 or p in named)
+    others = _filled(text for position, text in named.items() if position not in tagged)
+    if len(tagged_texts) == 1 and (_has_answer(tagged_texts[0]) or not any(map(_has_answer, others))):
+        return tagged_texts[0], "" if tagged_texts[0] in map(source_of, cells) else _CUT
     if len(others) == 1:
         return others[0], _OTHER if tagged else _NO_TAG
-    count = len(tagged) if len(own) != 1 else len(tagged) + len(others)
+    count = len(tagged) if len(tagged_texts) != 1 else len(tagged) + len(others)
     return None, f"one cell must be tagged 'answers'; found {count}"
 
 
@@ -119,10 +119,10 @@ def _has_answer(code: str) -> bool:
 def _answers_in(code: str) -> tuple[dict[Any, Any] | str, str]:
     """The dict of an answers cell, or what is wrong with it; and what is to be told where the cell holds more."""
     answers = literal_answers(code)
-    if isinstance(answers, str) and len(code) <= _LONGEST and (own := alone(code)) != code:
-        found = literal_answers(own)
-        if not isinstance(found, str):
-            return found, "the answers cell holds more than the answers; that is neither read nor run"
+    if isinstance(answers, str) and len(code) <= _LONGEST and (bare := alone(code)) != code:
+        bare_answers = literal_answers(bare)
+        if not isinstance(bare_answers, str):
+            return bare_answers, "the answers cell holds more than the answers; that is neither read nor run"
     return answers, ""
 
 
@@ -136,42 +136,48 @@ def _read_paper(
     sheets = [
         (name_in(s.get("exercise")), name_in(s.get("seed"))) for s in about["sheets"] if isinstance(s, dict)
     ]
-    tagged = {place: _sheet_of(cell, sheets) for place, cell in enumerate(cells) if "answers" in _tags(cell)}
-    taken = {*tagged.values()}
-    codes = [(sheet, joined(cells, place)) for place, sheet in tagged.items()]
+    tagged = {
+        location: _sheet_of(cell, sheets) for location, cell in enumerate(cells) if "answers" in _tags(cell)
+    }
+    sheets_tagged = {*tagged.values()}
+    codes = [(sheet, joined(cells, location)) for location, sheet in tagged.items()]
     lost = [
-        (_sheet_of(cells[place], sheets), text) for place, text in answers_texts(cells) if place not in tagged
+        (_sheet_of(cells[location], sheets), text)
+        for location, text in answers_texts(cells)
+        if location not in tagged
     ]
-    lost = [(sheet, text) for sheet, text in lost if sheet[0] and sheet not in taken]
+    lost = [(sheet, text) for sheet, text in lost if sheet[0] and sheet not in sheets_tagged]
     notes += [f"{source}, {exercise}: {_NO_TAG}" for (exercise, _), _ in lost]
     read = [(sheet, _answers_in(code)[0], code) for sheet, code in (*codes, *lost)]
-    name, warning = _name_in_paper(about, [found for _, found, _ in read], source, "; ".join(notes))
-    for (exercise, seed), found, code in read:
-        own = {
+    name, warning = _name_in_paper(
+        about, [cell_answers for _, cell_answers, _ in read], source, "; ".join(notes)
+    )
+    for (exercise, seed), cell_answers, code in read:
+        identity = {
             "student": name,
             "exercise": exercise,
             "seed": seed,
             "lang": about.get("lang"),
             _BY: about[_BY],
         }
-        place = f"{source}, {exercise}" if exercise else source
-        if isinstance(found, str):
-            yield Rejected(place, found, _about(own, source) | {"answer": quoted(code)})
+        location = f"{source}, {exercise}" if exercise else source
+        if isinstance(cell_answers, str):
+            yield Rejected(location, cell_answers, _about(identity, source) | {"answer": quoted(code)})
         elif not exercise:
             which = (
                 f"which exercise an answers cell is of cannot be told: write {_example(sheets)} after its {{"
             )
-            yield Rejected(place, which, _about(own, source) | {"answer": quoted(code)})
+            yield Rejected(location, which, _about(identity, source) | {"answer": quoted(code)})
         else:
-            yield from sheet_rows(own, found, place, warning)
+            yield from sheet_rows(identity, cell_answers, location, warning)
     there = {sheet for sheet, _, _ in read}
-    others = (c for place, c in enumerate(cells) if place not in tagged)
+    others = (c for location, c in enumerate(cells) if location not in tagged)
     code = quoted("\n".join(source_of(c) for c in others if c.get("cell_type") == "code"))
     for exercise, seed in sheets:
         if (exercise, seed) not in there:
-            own = {"student": name, "exercise": exercise, "seed": seed}
+            identity = {"student": name, "exercise": exercise, "seed": seed}
             reason = f"no cell tagged 'answers' is of {exercise}, seed {seed}"
-            yield Rejected(f"{source}, {exercise}", reason, _about(own, source) | {"answer": code})
+            yield Rejected(f"{source}, {exercise}", reason, _about(identity, source) | {"answer": code})
     if not sheets and not tagged:
         yield Rejected(source, "the notebook holds no answers", _about({"student": name}, source))
 
@@ -182,12 +188,12 @@ _OF = re.compile(r"#[ \t]*(\w+)[ \t]+([0-9]{1,30})[ \t]*$", re.MULTILINE)
 def _sheet_of(cell: dict[str, Any], sheets: list[tuple[str, str]]) -> tuple[str, str]:
     """Exercise and seed of an answers cell: by its metadata, else by the comment at its head, else the only ones."""
     metadata = cell.get("metadata")
-    own = metadata.get("coursework") if isinstance(metadata, dict) else None
-    if isinstance(own, dict) and name_in(own.get("exercise")):
-        return name_in(own["exercise"]), name_in(own.get("seed"))
-    for told in _OF.findall(re.sub(r"\r\n?", "\n", source_of(cell))):
-        if told in sheets:
-            return told
+    own_metadata = metadata.get("coursework") if isinstance(metadata, dict) else None
+    if isinstance(own_metadata, dict) and name_in(own_metadata.get("exercise")):
+        return name_in(own_metadata["exercise"]), name_in(own_metadata.get("seed"))
+    for stated in _OF.findall(re.sub(r"\r\n?", "\n", source_of(cell))):
+        if stated in sheets:
+            return stated
     return sheets[0] if len(sheets) == 1 else ("", "")
 
 
@@ -240,8 +246,8 @@ def literal_answers(code: str) -> dict[Any, Any] | str:
     if len(code) > _LONGEST:
         return "the answers cell is too long to be read"
     code = re.sub(r"\r\n?", "\n", code)
-    found = _literal_answers(code)
-    return found if isinstance(found, str) else _with_hidden(found, code)
+    answers = _literal_answers(code)
+    return answers if isinstance(answers, str) else _with_hidden(answers, code)
 
 
 def _literal_answers(code: str) -> dict[Any, Any] | str:
@@ -264,22 +270,22 @@ def _literal_answers(code: str) -> dict[Any, Any] | str:
 _NO_PYTHON = (SyntaxError, ValueError, TypeError, RecursionError, MemoryError)
 
 
-def _pairs(found: ast.Dict, code: str) -> list[tuple[Any, Any]]:
+def _pairs(literal: ast.Dict, code: str) -> list[tuple[Any, Any]]:
     lines = [line.encode("utf-8", "replace") for line in code.split("\n")]
 
     def value(node: ast.expr) -> Any:
         try:
             return ast.literal_eval(node)
         except _NO_PYTHON:
-            taken = lines[node.lineno - 1 : node.end_lineno]
-            taken[-1] = taken[-1][: node.end_col_offset]
-            taken[0] = taken[0][node.col_offset :]
-            return b"\n".join(taken).decode("utf-8", "replace")
+            source_lines = lines[node.lineno - 1 : node.end_lineno]
+            source_lines[-1] = source_lines[-1][: node.end_col_offset]
+            source_lines[0] = source_lines[0][node.col_offset :]
+            return b"\n".join(source_lines).decode("utf-8", "replace")
 
-    keys = [key for key in found.keys if key is not None]
-    if len(keys) < len(found.keys):
+    keys = [key for key in literal.keys if key is not None]
+    if len(keys) < len(literal.keys):
         raise ValueError("** is code")
-    return [(value(key), value(item)) for key, item in zip(keys, found.values, strict=True)]
+    return [(value(key), value(item)) for key, item in zip(keys, literal.values, strict=True)]
 
 
 # ----------------------------------------------------------------- behind a hash
@@ -293,19 +299,19 @@ _ENDS_IN_TEXT = re.compile(r"""(?:^|[{,])\s*(["'])([^"']+)\1\s*$""")
 _ENDS_IN_KEY = re.compile(r"""(["'])([^"']+)\1\s*:\s*([^"'\s,{}][^"'{}]*)?$""")
 
 
-def _with_hidden(found: dict[Any, Any], code: str) -> dict[Any, Any]:
+def _with_hidden(answers: dict[Any, Any], code: str) -> dict[Any, Any]:
     """The answers, and those that a # has cut off or hides, unless the same is answered elsewhere: ``"rA": 319#.8``,
     ``"rA": "1",  # mm "b": "2",``."""
     unread: list[tuple[Any, str, str]] = []
     for line in code.split("\n"):
         read, comment = _parted(line)
         for key, text, is_cut in _behind(read, comment):
-            if is_cut or found.get(key) in (None, ""):
+            if is_cut or answers.get(key) in (None, ""):
                 unread.append((key, text, _HIDDEN))
     if not unread:
-        return found
+        return answers
     gone = {key for key, _, _ in unread}
-    return with_unread(found, unread, gone)
+    return with_unread(answers, unread, gone)
 
 
 def _behind(read: str, comment: str) -> Iterator[tuple[str, str, bool]]:
@@ -362,13 +368,13 @@ def _answers_by_line(code: str) -> dict[Any, Any] | str:
             is_open, text = True, text[opening.end() :]
         if not text or text.startswith("#"):
             continue
-        found = None if is_closed or not is_open else _pairs_of_line(text)
-        if found is None and is_open and not is_closed and text.endswith("}"):
+        line_pairs = None if is_closed or not is_open else _pairs_of_line(text)
+        if line_pairs is None and is_open and not is_closed and text.endswith("}"):
             is_closed, text = True, text[:-1].rstrip()
-            found = _pairs_of_line(text) if text else []
-        if found is None:
+            line_pairs = _pairs_of_line(text) if text else []
+        if line_pairs is None:
             return _not_as_written(number, line)
-        pairs += found
+        pairs += line_pairs
     return object_once(pairs) if pairs else _not_as_written(number, line)
 
 
@@ -376,8 +382,8 @@ def _pairs_of_line(line: str) -> list[tuple[Any, Any]] | None:
     """The answers of a line; None where they cannot be told apart."""
     code = f"{{{line}\n}}"
     with suppress(*_NO_PYTHON):
-        found = python_code.parse(code, mode="eval").body
-        return _pairs(found, code) if isinstance(found, ast.Dict) else None
+        literal = python_code.parse(code, mode="eval").body
+        return _pairs(literal, code) if isinstance(literal, ast.Dict) else None
     key = _KEY.match(line)
     if key is None:
         return None

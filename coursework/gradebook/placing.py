@@ -48,7 +48,7 @@ class Sheets:
     @property
     def students(self) -> int:
         """How many students they are of."""
-        return len({place[0] for place in self.sheets})
+        return len({sheet[0] for sheet in self.sheets})
 
     @property
     def answers(self) -> int:
@@ -65,7 +65,7 @@ class Sheets:
 
     def drop_empty(self) -> None:
         """Forget sheets of which nothing came that could be put there."""
-        self.sheets = {place: sheet for place, sheet in self.sheets.items() if sheet}
+        self.sheets = {key: sheet for key, sheet in self.sheets.items() if sheet}
 
 
 # ------------------------------------------------------------------------ placing
@@ -166,16 +166,16 @@ def _who_is_meant(name: str, students: Sequence[str]) -> str:
     return f"; which of {', '.join(map(repr, several))}?" if len(several) > 1 else near(name, students)
 
 
-def near(name: str, known: Iterable[str]) -> str:
+def near(name: str, names: Iterable[str]) -> str:
     """``"; did you mean 'x'?"``, or nothing: a class is not listed."""
-    hint = nearest(name[:60], known)
+    hint = nearest(name[:60], names)
     return hint if "did you mean" in hint else ""
 
 
-def _near_or_all(name: str, known: Sequence[str]) -> str:
-    if hint := near(name, known):
+def _near_or_all(name: str, names: Sequence[str]) -> str:
+    if hint := near(name, names):
         return hint
-    return f"; issued: {', '.join(known[:_LISTED])}{', …' if len(known) > _LISTED else ''}"
+    return f"; issued: {', '.join(names[:_LISTED])}{', …' if len(names) > _LISTED else ''}"
 
 
 def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen]) -> Sheets:
@@ -186,18 +186,18 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen]
     CourseworkError
         The course cannot mark: no solutions, an exercise that the records do not fit.
     """
-    found = Sheets()
-    fill(course, issued, found, told_places(course, issued, list(rows), found))
-    return found
+    sheets = Sheets()
+    fill(course, issued, sheets, told_places(course, issued, list(rows), sheets))
+    return sheets
 
 
 Told = tuple[SheetPlace, Row] | Rejected  #: a row with its place, or why it has none
 
 
 def told_places(
-    course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen], found: Sheets
+    course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen], sheets: Sheets
 ) -> Iterator[Told]:
-    """Row by row its place, or why it has none; what is told of all together is noted in ``found``. The rows are read twice:
+    """Row by row its place, or why it has none; what is told of all together is noted in ``sheets``. The rows are read twice:
     once for those that wait since others contradict them, then as they are asked for.
 
     Raises
@@ -207,54 +207,49 @@ def told_places(
     """
     _check_records(course, issued)
     waits = doubts(issued, ((row, partial(_sheet_of, issued, row)) for row in rows if isinstance(row, Row)))
-    return _told_in_turn(issued, rows, found, waits)
+    return _told_in_turn(issued, rows, sheets, waits)
 
 
 def _told_in_turn(
-    issued: Issued, rows: Iterable[Row | Rejected | Seen], found: Sheets, waits: Doubts
+    issued: Issued, rows: Iterable[Row | Rejected | Seen], sheets: Sheets, waits: Doubts
 ) -> Iterator[Told]:
     place_told = _memory_of_places(issued)
     unsaid: set[SheetPlace] = set()  #: sheets of several sittings, whose answers do not say which
     for row in rows:
         if isinstance(row, Seen):
-            found.seen[row] += 1
+            sheets.seen[row] += 1
             continue
-        found.rows_in += 1
+        sheets.rows_in += 1
         if isinstance(row, Rejected):
             yield row
             continue
-        if row.warning and row.warning not in found.warnings:
-            found.warnings.append(row.warning)
-        place = place_told(row)
-        if isinstance(place, str):
-            yield Rejected(row.source, place, as_texts(row))
+        if row.warning and row.warning not in sheets.warnings:
+            sheets.warnings.append(row.warning)
+        key = place_told(row)
+        if isinstance(key, str):
+            yield Rejected(row.source, key, as_texts(row))
             continue
-        if waits and (doubt := waits.get((place[:3], file_of(row)))):
+        if waits and (doubt := waits.get((key[:3], file_of(row)))):
             yield Rejected(row.source, doubt, as_texts(row))
             continue
-        if (
-            issued.has_sittings
-            and not row.seed
-            and place not in unsaid
-            and len(issued.seeds_of(*place[:2])) > 1
-        ):
-            unsaid.add(place)
-            found.warnings.append(_latest(issued, place))
+        if issued.has_sittings and not row.seed and key not in unsaid and len(issued.seeds_of(*key[:2])) > 1:
+            unsaid.add(key)
+            sheets.warnings.append(_latest(issued, key))
         if row.origin is not None:
             issued.has_sittings = issued.has_sittings or row.origin.sitting > 1
-        yield place, row
+        yield key, row
 
 
 def _check_records(course: Course, issued: Issued) -> None:
     """The course has what was issued, and can mark it."""
-    for exercise, one in {key[0]: record for key, record in issued.records.items()}.items():
+    for exercise, record_of_exercise in {key[0]: record for key, record in issued.records.items()}.items():
         if exercise not in course:
             raise UnknownName(
                 f"no exercise {exercise!r} in {course.folder.label}, though it was issued: name the course that it was built "
                 "from, coursework --course FOLDER grade …"
             )
         _ = course[exercise].solution
-        course[exercise].from_record(one)
+        course[exercise].from_record(record_of_exercise)
 
 
 def _memory_of_places(issued: Issued) -> Callable[[Row], SheetPlace | str]:
@@ -264,64 +259,64 @@ def _memory_of_places(issued: Issued) -> Callable[[Row], SheetPlace | str]:
 
     def place_told(row: Row) -> SheetPlace | str:
         # Whom a platform names and no roster is who they were when first met; others are found again as they were.
-        known = lasting if row.origin is not None and not issued.has_roster else passing
+        memory = lasting if row.origin is not None and not issued.has_roster else passing
         named = row.student, row.exercise, row.seed, row.origin
-        if (place := known.get(named)) is None:
+        if (key := memory.get(named)) is None:
             if len(passing) >= _REMEMBERED:
                 passing.clear()
             try:
-                place = (*place_of(issued, row), 0 if row.origin is None else row.origin.sitting)
+                key = (*place_of(issued, row), 0 if row.origin is None else row.origin.sitting)
             except Refused as why:
-                place = str(why)
-            known[named] = place
-        return place
+                key = str(why)
+            memory[named] = key
+        return key
 
     return place_told
 
 
-def fill(course: Course, issued: Issued, found: Sheets, told: Iterable[Told]) -> None:
+def fill(course: Course, issued: Issued, sheets: Sheets, placed_rows: Iterable[Told]) -> None:
     """Put rows on their sheets."""
-    put = putting(course, issued, found)
-    for one in told:
-        refused = one if isinstance(one, Rejected) else put(*one)
+    put_row = putting(course, issued, sheets)
+    for placed_row in placed_rows:
+        refused = placed_row if isinstance(placed_row, Rejected) else put_row(*placed_row)
         if refused is not None:
-            found.rejected.append(refused)
-    found.drop_empty()
+            sheets.rejected.append(refused)
+    sheets.drop_empty()
 
 
-def putting(course: Course, issued: Issued, found: Sheets) -> Callable[[SheetPlace, Row], Rejected | None]:
+def putting(course: Course, issued: Issued, sheets: Sheets) -> Callable[[SheetPlace, Row], Rejected | None]:
     """What puts a row on its sheet, or says why not; rows of a sheet come in their order."""
-    asked: dict[tuple[str, int], tuple[str, ...]] = {}
+    parts_of_variant: dict[tuple[str, int], tuple[str, ...]] = {}
 
-    def put(place: SheetPlace, row: Row) -> Rejected | None:
-        key, reason = place[1:3], ""
-        if key not in asked:
-            asked[key] = tuple(str(part["id"]) for part in issued.records[key]["parts"])
-        sheet = found.sheets.setdefault(place, {})
+    def put(key_of_sheet: SheetPlace, row: Row) -> Rejected | None:
+        key, reason = key_of_sheet[1:3], ""
+        if key not in parts_of_variant:
+            parts_of_variant[key] = tuple(str(part["id"]) for part in issued.records[key]["parts"])
+        sheet = sheets.sheets.setdefault(key_of_sheet, {})
         if row.origin is not None:
-            _note(found, place, row.origin)
+            _note(sheets, key_of_sheet, row.origin)
         if not row.part and row.origin is not None and _is_blank(row):
-            _leave_blank(found, place, asked[key], row)
+            _leave_blank(sheets, key_of_sheet, parts_of_variant[key], row)
             return None
-        if row.part not in asked[key]:
-            row = row._replace(part=part_called(row.part, asked[key]))
-        if row.part not in asked[key]:
-            near = nearest(row.part[:60], sorted(asked[key]))
+        if row.part not in parts_of_variant[key]:
+            row = row._replace(part=part_called(row.part, parts_of_variant[key]))
+        if row.part not in parts_of_variant[key]:
+            near = nearest(row.part[:60], sorted(parts_of_variant[key]))
             reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"
         elif row.part in sheet:
             before = sheet[row.part]
             if _is_blank(row):
-                found.blanks += 1
+                sheets.blanks += 1
                 return None
             if _is_blank(before):
-                found.blanks += 1
+                sheets.blanks += 1
             else:
                 reason = f"repeats {before.source}, which is marked"
         if reason:
             return Rejected(row.source, reason, as_texts(row))
         sheet[row.part] = row
-        if row.lang and place not in found.langs and row.lang in course[place[1]].languages:
-            found.langs[place] = row.lang
+        if row.lang and key_of_sheet not in sheets.langs and row.lang in course[key_of_sheet[1]].languages:
+            sheets.langs[key_of_sheet] = row.lang
         return None
 
     return put
@@ -333,28 +328,28 @@ def _sheet_of(issued: Issued, row: Row) -> tuple[str, str, int] | None:
     return None
 
 
-def _leave_blank(found: Sheets, place: SheetPlace, asked: Sequence[str], row: Row) -> None:
+def _leave_blank(sheets: Sheets, key: SheetPlace, parts: Sequence[str], row: Row) -> None:
     """A sheet that came back without a word: each of its questions is a row."""
-    sheet = found.sheets[place]
-    found.rows_in += len(asked) - 1
-    found.blanks += len(asked) - sum(part not in sheet for part in asked)
-    for part in asked:
+    sheet = sheets.sheets[key]
+    sheets.rows_in += len(parts) - 1
+    sheets.blanks += len(parts) - sum(part not in sheet for part in parts)
+    for part in parts:
         sheet.setdefault(part, row._replace(part=part))
 
 
-def _note(found: Sheets, place: SheetPlace, origin: Collected) -> None:
+def _note(sheets: Sheets, key: SheetPlace, origin: Collected) -> None:
     """Keep when a sheet was handed in, and whether it was asked part by part."""
     if origin.submitted:
-        found.submitted.setdefault(place, origin.submitted)
+        sheets.submitted.setdefault(key, origin.submitted)
     if origin.apart:
-        found.apart.add(place)
+        sheets.apart.add(key)
 
 
-def _latest(issued: Issued, place: SheetPlace) -> str:
+def _latest(issued: Issued, key: SheetPlace) -> str:
     """That answers without a seed are taken for those of the latest sitting."""
-    sitting = issued.sitting_of(*place[:3])
+    sitting = issued.sitting_of(*key[:3])
     return (
-        f"{place[0]}, {place[1]}: answers without a seed are taken for sitting {sitting}, seed {place[2]}, the latest; "
+        f"{key[0]}, {key[1]}: answers without a seed are taken for sitting {sitting}, seed {key[2]}, the latest; "
         "write the seed of the other sitting where they are of that one"
     )
 

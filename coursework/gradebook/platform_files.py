@@ -82,6 +82,6 @@ def read_records(content: Any, source: str, warning: str) -> Iterator[Row | Reje
 def told_seen(seen: Mapping[Seen, int]) -> tuple[str, ...]:
     """What was seen, a line each."""
     return tuple(
-        f"{one.source} is {one.what}" + (f", {counted(count, 'file')}" if one.is_tree else "")
-        for one, count in seen.items()
+        f"{file.source} is {file.what}" + (f", {counted(count, 'file')}" if file.is_tree else "")
+        for file, count in seen.items()
     )

@@ -23,13 +23,13 @@ class PlatformGradebook(NamedTuple):
 
     def item_in(self, title: str) -> str:
         """The item's own name in a column's title."""
-        found = re.fullmatch(self.title, title.strip())
-        return found["item"].strip() if found else title.strip()
+        match = re.fullmatch(self.title, title.strip())
+        return match["item"].strip() if match else title.strip()
 
     def most_in(self, title: str) -> str:
         """The maximum that a column's title tells; nothing where it tells none."""
-        found = re.fullmatch(self.title, title.strip())
-        return (found.groupdict().get("most") or "") if found else ""
+        match = re.fullmatch(self.title, title.strip())
+        return (match.groupdict().get("most") or "") if match else ""
 
 
 PLATFORMS = {
@@ -80,7 +80,9 @@ class People(NamedTuple):
 
 def people_in(header: Sequence[str]) -> People:
     """The columns that say who."""
-    whole = [k for k, title in enumerate(header) if plain(title) in WHOLE]
+    full_names = [k for k, title in enumerate(header) if plain(title) in WHOLE]
     apart = [k for k, title in enumerate(header) if is_called(title, (*FIRST_NAME, *SURNAME))]
-    names = tuple(whole[:1]) or tuple(sorted(apart, key=lambda k: not is_called(header[k], FIRST_NAME)))[:2]
+    names = (
+        tuple(full_names[:1]) or tuple(sorted(apart, key=lambda k: not is_called(header[k], FIRST_NAME)))[:2]
+    )
     return People(names, tuple(k for k, title in enumerate(header) if identifies(title) and k not in names))

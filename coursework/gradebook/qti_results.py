@@ -28,11 +28,11 @@ def read_results(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
     except (ET.ParseError, LookupError, ValueError) as fault:
         yield Rejected(source, f"not XML: {short_fault(fault)}")
         return
-    results = [one for one in root.iter() if _tag(one) == "assessmentResult"]
+    results = [element for element in root.iter() if _tag(element) == "assessmentResult"]
     items = 0
     for result in results:
         student = _student(result)
-        for item in (one for one in result if _tag(one) == "itemResult"):
+        for item in (element for element in result if _tag(element) == "itemResult"):
             items += 1
             yield from _item(item, student, source, warning)
     if items:
@@ -56,35 +56,40 @@ def _named(element: ET.Element, name: str) -> str:
 
 
 def _student(result: ET.Element) -> str:
-    context = next((one for one in result if _tag(one) == "context"), None)
+    context = next((element for element in result if _tag(element) == "context"), None)
     return "" if context is None else _named(context, "sourcedId").strip()
 
 
 def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator[Row | Rejected]:
     identifier = _named(item, "identifier")
-    place, told = f"{source}, {identifier}", _ITEM.fullmatch(identifier)
-    answers = [one for one in item if _tag(one) == "responseVariable"]
-    own = [one for one in answers if _named(one, "identifier").casefold() not in _NO_ANSWERS]
-    if told is None:
+    location, match = f"{source}, {identifier}", _ITEM.fullmatch(identifier)
+    answers = [answer for answer in item if _tag(answer) == "responseVariable"]
+    item_answers = [
+        answer for answer in answers if _named(answer, "identifier").casefold() not in _NO_ANSWERS
+    ]
+    if match is None:
         reason = (
             "an item is called as exported, set-exercise-v1-4-en: which variant this one is cannot be told"
         )
-        yield from (Rejected(place, reason, {"student": student, "answer": _values(one)}) for one in own)
+        yield from (
+            Rejected(location, reason, {"student": student, "answer": _values(answer)})
+            for answer in item_answers
+        )
         return
     origin = Collected(
-        (("login", student),) if student else (), (), 0, _named(item, "datestamp"), told["version"]
+        (("login", student),) if student else (), (), 0, _named(item, "datestamp"), match["version"]
     )
-    for one in own:
-        part = _part(_named(one, "identifier"))
+    for answer in item_answers:
+        part = _part(_named(answer, "identifier"))
         yield Row(
             student,
-            told["exercise"],
-            told["seed"],
+            match["exercise"],
+            match["seed"],
             part,
-            _values(one),
-            f"{place}, {part}",
+            _values(answer),
+            f"{location}, {part}",
             warning,
-            told["lang"],
+            match["lang"],
             origin,
         )
 
@@ -98,6 +103,6 @@ def _part(identifier: str) -> str:
 
 def _values(variable: ET.Element) -> str:
     """What was answered; several values parted by semicolons."""
-    given = [one for one in variable if _tag(one) == "candidateResponse"]
-    values = [value.text or "" for one in given for value in one if _tag(value) == "value"]
+    given = [element for element in variable if _tag(element) == "candidateResponse"]
+    values = [value.text or "" for element in given for value in element if _tag(value) == "value"]
     return "; ".join(values)

@@ -105,33 +105,33 @@ def object_once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
             first[key] = value
     if not repeats:
         return first
-    found = _Repeated(first)
-    found.repeats = tuple(repeats)
-    return found
+    merged = _Repeated(first)
+    merged.repeats = tuple(repeats)
+    return merged
 
 
 def with_unread(
     pairs: dict[Any, Any], unread: list[tuple[Any, str, str]], instead: Collection[Any]
 ) -> dict[Any, Any]:
     """The same answers but those of some keys, ``instead`` of which there are others where nothing is read: key, text, why."""
-    found = _Repeated({key: value for key, value in pairs.items() if key not in instead})
-    found.repeats, found.unread = getattr(pairs, "repeats", ()), tuple(unread)
-    return found
+    merged = _Repeated({key: value for key, value in pairs.items() if key not in instead})
+    merged.repeats, merged.unread = getattr(pairs, "repeats", ()), tuple(unread)
+    return merged
 
 
 def sheet_rows(
-    about: dict[str, Any], answers: dict[Any, Any], place: str, warning: str
+    about: dict[str, Any], answers: dict[Any, Any], location: str, warning: str
 ) -> Iterator[Row | Rejected]:
     names = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
     if not answers and not getattr(answers, "unread", ()):
-        yield Rejected(place, "the sheet holds no answer", {**names, "part": "", "answer": ""})
+        yield Rejected(location, "the sheet holds no answer", {**names, "part": "", "answer": ""})
     for key, text, why in getattr(answers, "unread", ()):
         row = {**names, "part": name_in(key), "answer": quoted(text)}
-        where = f"{place}, part {name_in(key)[:40]}" if key else place
+        where = f"{location}, part {name_in(key)[:40]}" if key else location
         yield Rejected(where, why, row)
     for key, value in [*answers.items(), *getattr(answers, "repeats", ())]:
         part, answer = name_in(key), as_answer(value)
-        where = f"{place}, part {part[:40]}"
+        where = f"{location}, part {part[:40]}"
         if isinstance(answer, (dict, set, bytes)):
             row = {**names, "part": part, "answer": quoted(_text_of(answer))}
             yield Rejected(where, "an answer is a text or a number", row)

@@ -45,22 +45,22 @@ def placed_beside(
     BadInput
         The disk cannot be written.
     """
-    found = Sheets()
-    folder = next(place for place in (out, *out.absolute().parents) if place.is_dir())
+    sheets_read = Sheets()
+    folder = next(directory for directory in (out, *out.absolute().parents) if directory.is_dir())
     with ExitStack() as stack:
         with _Blocks(folder) as by_part:
             with _Blocks(folder) as read:
                 again = _Again(rows, read)
-                told = told_places(course, issued, again, found)
+                placed_rows = told_places(course, issued, again, sheets_read)
                 if not again.are_many:
-                    fill(course, issued, found, told)
-                    yield found
+                    fill(course, issued, sheets_read, placed_rows)
+                    yield sheets_read
                     return
-                rejected = _parted(told, by_part)
-            sheets = _SheetsOnDisk(found, stack.enter_context(_Blocks(folder)))
+                rejected = _parted(placed_rows, by_part)
+            sheets = _SheetsOnDisk(sheets_read, stack.enter_context(_Blocks(folder)))
             for part in range(PARTS):
                 rejected += sheets.take(course, issued, by_part.of(part), part)
-        sheets.rejected = [one for _, one in sorted(rejected, key=itemgetter(0))]
+        sheets.rejected = [row for _, row in sorted(rejected, key=itemgetter(0))]
         yield sheets
 
 
@@ -94,19 +94,19 @@ class _Again:
 _Numbered = tuple[int, Rejected]  #: by the number of the row
 
 
-def _parted(told: Iterator[Told], by_part: _Blocks) -> list[_Numbered]:
+def _parted(placed_rows: Iterator[Told], by_part: _Blocks) -> list[_Numbered]:
     """Put rows into the parts of their sheets; gives those that have no place."""
     rejected: list[_Numbered] = []
-    numbered = enumerate(told)
+    numbered = enumerate(placed_rows)
     while some := list(islice(numbered, AT_ONCE)):
         parts: dict[int, list[tuple[int, SheetPlace, Row]]] = {}
-        for number, one in some:
-            if isinstance(one, Rejected):
-                rejected.append((number, one))
+        for number, placed_row in some:
+            if isinstance(placed_row, Rejected):
+                rejected.append((number, placed_row))
             else:
-                parts.setdefault(hash(one[0]) % PARTS, []).append((number, *one))
-        for part, own in parts.items():
-            by_part.add(part, own)
+                parts.setdefault(hash(placed_row[0]) % PARTS, []).append((number, *placed_row))
+        for part, rows in parts.items():
+            by_part.add(part, rows)
     return rejected
 
 
@@ -124,8 +124,8 @@ class _Stored(NamedTuple):
 class _SheetsOnDisk(Sheets):
     """Sheets that are read as they are asked for."""
 
-    def __init__(self, found: Sheets, stored: _Blocks) -> None:
-        super().__init__(warnings=found.warnings, rows_in=found.rows_in, seen=found.seen)
+    def __init__(self, sheets: Sheets, stored: _Blocks) -> None:
+        super().__init__(warnings=sheets.warnings, rows_in=sheets.rows_in, seen=sheets.seen)
         self._stored = stored
         self._count = self._answers = 0
         self._names: set[str] = set()
@@ -155,21 +155,21 @@ class _SheetsOnDisk(Sheets):
         part: int,
     ) -> list[_Numbered]:
         """Put the rows of a part on their sheets, and these on disk; gives the rows that are refused."""
-        own, rejected = Sheets(), []
-        put = putting(course, issued, own)
+        sheets_of_part, rejected = Sheets(), []
+        put_row = putting(course, issued, sheets_of_part)
         numbers: dict[SheetPlace, int] = {}
-        for number, place, row in chain.from_iterable(blocks):
-            numbers.setdefault(place, number)
-            if (refused := put(place, row)) is not None:
+        for number, key, row in chain.from_iterable(blocks):
+            numbers.setdefault(key, number)
+            if (refused := put_row(key, row)) is not None:
                 rejected.append((number, refused))
-        self._is_dated = self._is_dated or own.is_dated
-        own.drop_empty()
-        self.rows_in += own.rows_in
-        self.blanks += own.blanks
-        self._count += own.count
-        self._answers += own.answers
-        self._names.update(place[0] for place in own.sheets)
-        sheets = (_stored(own, place, numbers[place]) for place in own.sheets)
+        self._is_dated = self._is_dated or sheets_of_part.is_dated
+        sheets_of_part.drop_empty()
+        self.rows_in += sheets_of_part.rows_in
+        self.blanks += sheets_of_part.blanks
+        self._count += sheets_of_part.count
+        self._answers += sheets_of_part.answers
+        self._names.update(key[0] for key in sheets_of_part.sheets)
+        sheets = (_stored(sheets_of_part, key, numbers[key]) for key in sheets_of_part.sheets)
         while some := list(islice(sheets, _BLOCK)):
             self._stored.add(part, some)
         return rejected
@@ -181,22 +181,22 @@ class _SheetsOnDisk(Sheets):
             yield _together(some)
 
 
-def _stored(sheets: Sheets, place: SheetPlace, number: int) -> _Stored:
-    told = sheets.langs.get(place), sheets.submitted.get(place), place in sheets.apart
-    return _Stored(number, place, sheets.sheets[place], *told)
+def _stored(sheets: Sheets, key: SheetPlace, number: int) -> _Stored:
+    values = sheets.langs.get(key), sheets.submitted.get(key), key in sheets.apart
+    return _Stored(number, key, sheets.sheets[key], *values)
 
 
 def _together(some: Iterable[_Stored]) -> Sheets:
-    found = Sheets()
-    for one in some:
-        found.sheets[one.place] = one.rows
-        if one.lang is not None:
-            found.langs[one.place] = one.lang
-        if one.submitted is not None:
-            found.submitted[one.place] = one.submitted
-        if one.apart:
-            found.apart.add(one.place)
-    return found
+    sheets = Sheets()
+    for stored in some:
+        sheets.sheets[stored.place] = stored.rows
+        if stored.lang is not None:
+            sheets.langs[stored.place] = stored.lang
+        if stored.submitted is not None:
+            sheets.submitted[stored.place] = stored.submitted
+        if stored.apart:
+            sheets.apart.add(stored.place)
+    return sheets
 
 
 class _Blocks:
@@ -219,9 +219,9 @@ class _Blocks:
             with suppress(OSError):  # a full disk has been told already
                 self._file.close()
 
-    def add(self, number: int, things: Sequence[Any]) -> None:
+    def add(self, number: int, items: Sequence[Any]) -> None:
         """Add a block; none has been read yet."""
-        data = pickle.dumps(things, 5)
+        data = pickle.dumps(items, 5)
         self._at.setdefault(number, array("Q")).extend((self._end, len(data)))
         with writing(self._folder):
             if self._file is None:

@@ -23,14 +23,14 @@ def stack_answers(text: str) -> dict[int, str] | None:
     begins = _BEGINS.match(text)
     if begins is None:
         return None
-    place, found = begins.end(), dict[int, str]()
-    while one := _ANSWER.match(text, place):
-        number = int(one["number"])
-        if found and number <= max(found):
+    position, answers = begins.end(), dict[int, str]()
+    while match := _ANSWER.match(text, position):
+        number = int(match["number"])
+        if answers and number <= max(answers):
             return None
-        found[number] = _plain(one["typed"])
-        place = one.end()
-    return found if not text[place:] or text.startswith("prt", place) else None
+        answers[number] = _plain(match["typed"])
+        position = match.end()
+    return answers if not text[position:] or text.startswith("prt", position) else None
 
 
 def _plain(typed: str) -> str:

@@ -73,19 +73,19 @@ class Standing:
     def _rows(self) -> Iterator[Row]:
         met: dict[tuple[str, ...], str] = {}
         for number, row in _table(self.path):
-            place = f"{self.path}, line {number}"
+            location = f"{self.path}, line {number}"
             sitting = row.get(SITTING, "")
             named = folded(row["student"]), row["exercise"], row["seed"], row["part"], sitting
             if named in met:
-                raise BadInput(f"{place}: repeats {met[named]}; leave one mark an answer")
+                raise BadInput(f"{location}: repeats {met[named]}; leave one mark an answer")
             met[named] = f"line {number}"
-            _check_verdict(place, row["verdict"])
-            self._lines[place] = _Line(
-                place, row["verdict"], row["points"], row["out_of"], row.get("feedback")
+            _check_verdict(location, row["verdict"])
+            self._lines[location] = _Line(
+                location, row["verdict"], row["points"], row["out_of"], row.get("feedback")
             )
             origin = Collected(sitting=int(sitting) if sitting.isdecimal() and len(sitting) < 10 else 0)
             names = row["student"], row["exercise"], row["seed"], row["part"]
-            yield Row(*names, row["answer"], place, origin=origin if self._is_pool else None)
+            yield Row(*names, row["answer"], location, origin=origin if self._is_pool else None)
 
     def of(self, graded: Graded) -> Graded:
         """The sheet with the marks of the file.
@@ -95,19 +95,19 @@ class Standing:
         BadInput
             Points that are no number from 0 to those of the part, or another number to have than was issued.
         """
-        sheets, place = self.sheets.sheets, graded[:3]
-        rows = sheets[(*place, graded.sitting)] if (*place, graded.sitting) in sheets else sheets[(*place, 0)]
-        own = {part: _stood(graded.lines[part], self._lines[row.source]) for part, row in rows.items()}
-        return graded._replace(lines={**graded.lines, **own})
+        sheets, key = self.sheets.sheets, graded[:3]
+        rows = sheets[(*key, graded.sitting)] if (*key, graded.sitting) in sheets else sheets[(*key, 0)]
+        changed = {part: _stood(graded.lines[part], self._lines[row.source]) for part, row in rows.items()}
+        return graded._replace(lines={**graded.lines, **changed})
 
 
 def _collected(issued: Issued, rows: Sequence[Row]) -> list[Row]:
     """The rows of a pool; a sheet of which fewer came than its variant asks is of a platform that asks part by part."""
-    came = Counter(_sheet_of(row) for row in rows)
-    asked = {(e, str(seed)): len(record["parts"]) for (e, seed), record in issued.records.items()}
+    counts = Counter(_sheet_of(row) for row in rows)
+    part_counts = {(e, str(seed)): len(record["parts"]) for (e, seed), record in issued.records.items()}
 
     def origin(row: Row) -> Collected | None:
-        is_apart = came[_sheet_of(row)] < asked.get((row.exercise, row.seed), 0)
+        is_apart = counts[_sheet_of(row)] < part_counts.get((row.exercise, row.seed), 0)
         return row.origin and row.origin._replace(apart=is_apart)
 
     return [row._replace(origin=origin(row)) for row in rows]
@@ -124,9 +124,9 @@ def _know(issued: Issued, summary: Path) -> None:
             delimiter = delimiter_of(file.readline())
             file.seek(0)
             for row in csv.DictReader(file, delimiter=delimiter):
-                told = {as_written(title): as_written(cell) for title, cell in row.items() if title and cell}
-                own = {title: cell for title, cell in told.items() if identifies(title)}
-                issued.columns.setdefault(told.get("student", ""), own)
+                cells = {as_written(title): as_written(cell) for title, cell in row.items() if title and cell}
+                identifiers = {title: cell for title, cell in cells.items() if identifies(title)}
+                issued.columns.setdefault(cells.get("student", ""), identifiers)
 
 
 def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
@@ -138,9 +138,9 @@ def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
             reader = csv.reader(file, delimiter=delimiter)
             header = [title.strip().casefold() for title in next(reader, [])]
             if missing := [c for c in _NEEDED if c not in header]:
-                found = ", ".join(filter(None, header)) or "nothing"
+                titles = ", ".join(filter(None, header)) or "nothing"
                 raise BadInput(
-                    f"{path} needs the columns {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {found[:200]}"
+                    f"{path} needs the columns {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {titles[:200]}"
                 )
             if twice := duplicate_column(header, MARKS_COLUMNS):
                 raise BadInput(f"{path}: {twice}")
@@ -158,10 +158,10 @@ def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
         raise BadInput(f"{path} is not CSV: {fault}") from fault
 
 
-def _check_verdict(place: str, verdict: str) -> None:
+def _check_verdict(location: str, verdict: str) -> None:
     family = verdict.partition(":")[0]
     if family not in VERDICTS:
-        raise BadInput(f"{place}: no verdict {verdict[:40]!r}{nearest(family, VERDICTS)}")
+        raise BadInput(f"{location}: no verdict {verdict[:40]!r}{nearest(family, VERDICTS)}")
 
 
 def _stood(mark: Mark, line: _Line) -> Mark:
@@ -177,10 +177,10 @@ def _stood(mark: Mark, line: _Line) -> Mark:
             raise BadInput(
                 f"{line.place}: points of {mark.part} are a number from 0 to {mark.out_of:g}; found {line.points[:40]!r}"
             )
-    told = mark.told
+    messages = mark.told
     if line.feedback is not None and line.feedback != " ".join(mark.feedback.split()):
-        told = (Told(_verbatim(line.feedback), line.feedback),)
-    return mark._replace(verdict=line.verdict, points=points, told=told)
+        messages = (Told(_verbatim(line.feedback), line.feedback),)
+    return mark._replace(verdict=line.verdict, points=points, told=messages)
 
 
 def _number(text: str) -> float:
@@ -199,25 +199,25 @@ def _rejected_before(path: Path) -> list[Rejected]:
     """The rows that could not be marked, as they were told."""
     if not path.exists():
         return []
-    own = [c for c in REJECTED_COLUMNS if c not in ("source", "reason")]
+    columns = [c for c in REJECTED_COLUMNS if c not in ("source", "reason")]
     return [
-        Rejected(row.get("source", ""), row.get("reason", ""), {c: row.get(c, "") for c in own})
+        Rejected(row.get("source", ""), row.get("reason", ""), {c: row.get(c, "") for c in columns})
         for row in rows_of(path)
     ]
 
 
-def differs(machine: Graded, stands: Graded) -> Iterator[dict[str, Any]]:
+def differs(machine: Graded, changed: Graded) -> Iterator[dict[str, Any]]:
     """The lines of ``changes.csv``: what a hand changed."""
-    for part in stands.answered:
-        before, now = machine.lines[part], stands.lines[part]
+    for part in changed.answered:
+        before, now = machine.lines[part], changed.lines[part]
         was, is_now = (before.verdict, f"{before.points:g}"), (now.verdict, f"{now.points:g}")
         if was != is_now:
             yield {
-                "student": stands.student,
-                "exercise": stands.exercise,
-                "seed": stands.seed,
+                "student": changed.student,
+                "exercise": changed.exercise,
+                "seed": changed.seed,
                 "part": part,
-                "sitting": stands.sitting,
+                "sitting": changed.sitting,
                 "answer": now.answer,
                 "verdict_before": was[0],
                 "verdict_now": is_now[0],

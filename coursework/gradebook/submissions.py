@@ -70,9 +70,9 @@ def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
 
 
 def _below(folder: Path) -> Iterator[Path | Rejected]:
-    found = walked(folder)
-    files = latest_first(p for p in found.files if not _is_hidden(p, folder))
-    refused = [p for p in found.refused if not _is_hidden(p, folder)]
+    walked_files = walked(folder)
+    files = latest_first(p for p in walked_files.files if not _is_hidden(p, folder))
+    refused = [p for p in walked_files.refused if not _is_hidden(p, folder)]
     yield from (Rejected(path_text(p), LEADS_OUT) for p in refused)
     yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in BESIDE)
     if not files and not refused:
@@ -111,13 +111,13 @@ def read_file(path: Path, given: Iterable[Path] = ()) -> Iterator[Row | Rejected
     ``given`` is what somebody named, a folder of which may hold the file: nothing outside of that folder is read.
     """
     folder = folder_of(path, given)
-    place = handed_in(path) if path.suffix.lower() == ".ipynb" else None
-    if place is None:
+    handed = handed_in(path) if path.suffix.lower() == ".ipynb" else None
+    if handed is None:
         yield from _read(path, None, folder)
         return
-    yield place.seen
-    for row in _read(path, place, folder):
-        yield row._replace(origin=place.origin) if isinstance(row, Row) else row
+    yield handed.seen
+    for row in _read(path, handed, folder):
+        yield row._replace(origin=handed.origin) if isinstance(row, Row) else row
 
 
 def read_rows(path: Path, most: int) -> list[Row | Rejected | Seen] | None:
@@ -126,7 +126,7 @@ def read_rows(path: Path, most: int) -> list[Row | Rejected | Seen] | None:
     return rows if len(rows) <= most else None
 
 
-def _read(path: Path, place: HandedIn | None, folder: Path | None) -> Iterator[Row | Rejected | Seen]:
+def _read(path: Path, handed: HandedIn | None, folder: Path | None) -> Iterator[Row | Rejected | Seen]:
     try:
         file = path.open("rb") if folder is None else open_inside(path, folder)
     except OSError as fault:
@@ -137,10 +137,10 @@ def _read(path: Path, place: HandedIn | None, folder: Path | None) -> Iterator[R
         if path.suffix.lower() == ".parquet":
             yield from _read_parquet(path, file)
         else:
-            yield from _read_whole(path, file, place)
+            yield from _read_whole(path, file, handed)
 
 
-def _read_whole(path: Path, file: BinaryIO, place: HandedIn | None) -> Iterator[Row | Rejected | Seen]:
+def _read_whole(path: Path, file: BinaryIO, handed: HandedIn | None) -> Iterator[Row | Rejected | Seen]:
     reader = _READERS[path.suffix.lower()]
     try:
         size = os.fstat(file.fileno()).st_size
@@ -153,7 +153,7 @@ def _read_whole(path: Path, file: BinaryIO, place: HandedIn | None) -> Iterator[
         yield Rejected(path_text(path), f"cannot be read: {fault.strerror}")
         return
     rows = (
-        reader(data, path_text(path)) if place is None else read_notebook(data, path_text(path), place.name)
+        reader(data, path_text(path)) if handed is None else read_notebook(data, path_text(path), handed.name)
     )
     del data  # a reader lets go of it, too
     yield from rows
@@ -184,14 +184,14 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
     named: Callable[[list[str]], Sequence[str]] = tuple
     number, has_rows = 0, False
     while number < len(lines):
-        place = f"{source}, line {number + 1}"
-        cells, taken = record(lines, number, delimiter, len(header))
-        number += taken
+        location = f"{source}, line {number + 1}"
+        cells, row_record = record(lines, number, delimiter, len(header))
+        number += row_record
         if not any(c.strip() for c in cells):
             continue  # a blank line is no row
         if header:
             has_rows = True
-            yield from _csv_row(header, cells, delimiter, place, warning)
+            yield from _csv_row(header, cells, delimiter, location, warning)
             # Lines that are plain, as nearly all are, without more ado.
             while number < len(lines) and '"' not in lines[number]:
                 cells = lines[number].split(delimiter)
@@ -208,19 +208,21 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
             yield from read_table(table, "\n".join(lines), delimiter, source, warning)
             return
         if missing:
-            found = ", ".join(c for c in header if c) or "nothing"
-            wanted = f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {found}"
-            yield Rejected(place, fault_of(cells) or wanted)
+            titles = ", ".join(c for c in header if c) or "nothing"
+            wanted = (
+                f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {titles}"
+            )
+            yield Rejected(location, fault_of(cells) or wanted)
             return
         if twice := duplicate_column(header, COLUMNS):
-            yield Rejected(place, twice)
+            yield Rejected(location, twice)
             return
         named = itemgetter(*(header.index(c) for c in COLUMNS))
     if not has_rows:
         yield Rejected(source, NO_ANSWERS)
 
 
-def _row_of(cells: Sequence[str], place: str, warning: str) -> Row:
+def _row_of(cells: Sequence[str], location: str, warning: str) -> Row:
     """The row of the cells of :data:`COLUMNS`, in their order."""
     student, exercise, seed, part, answer = cells
     if "'" in student or "'" in answer:
@@ -232,7 +234,7 @@ def _row_of(cells: Sequence[str], place: str, warning: str) -> Row:
         _kept(seed.strip()),
         _kept(part.strip()),
         answer,
-        place,
+        location,
         warning,
     )
 
@@ -267,12 +269,12 @@ def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[Row | Rejected]:
             for cells in zip(*(_cells_of(batch.column(c), c) for c in COLUMNS), strict=True):
                 student, exercise, seed, part, answer = cells
                 number += 1
-                place = f"{source}, row {number}"
+                location = f"{source}, row {number}"
                 if isinstance(answer, str) and len(answer) > MOST_CELL:
                     row = {**dict(zip(COLUMNS, cells, strict=True)), "answer": answer[:200]}
-                    yield Rejected(place, beyond("an answer", len(answer), MOST_CELL, "characters"), row)
+                    yield Rejected(location, beyond("an answer", len(answer), MOST_CELL, "characters"), row)
                     continue
-                yield Row(student, exercise, seed, part, answer, place)
+                yield Row(student, exercise, seed, part, answer, location)
         if not number:
             yield Rejected(source, NO_ANSWERS)
     # What is damaged, pyarrow tells in one of many ways: by a column that is not there, too.
@@ -318,33 +320,31 @@ def _odd_columns(types: Any, schema: Any) -> str:
 
 
 def _csv_row(
-    header: list[str], cells: list[str], delimiter: str, place: str, warning: str
+    header: list[str], cells: list[str], delimiter: str, location: str, warning: str
 ) -> Iterator[Row | Rejected]:
     if len(cells) > len(header) and delimiter == ",":
         joined = _with_commas(header, cells)
         if header[-1] == "answer" and cells[header.index("seed")].strip().isdigit():
-            note = (
-                f"{place}: an answer with a comma and no quotation marks was read up to the end of its line"
-            )
-            yield _row_of([joined[c] for c in COLUMNS], place, warning or note)
+            note = f"{location}: an answer with a comma and no quotation marks was read up to the end of its line"
+            yield _row_of([joined[c] for c in COLUMNS], location, warning or note)
             return
     row = dict(zip(header, cells, strict=False))
     if len(cells) != len(header):
-        kept = {c: row.get(c, "") for c in COLUMNS}
+        cells_read = {c: row.get(c, "") for c in COLUMNS}
         reason = f"{len(cells)} cells where the header has {len(header)}"
         if delimiter == "," and len(cells) > len(header):
-            kept["answer"] = joined["answer"]
+            cells_read["answer"] = joined["answer"]
             reason += "; put an answer with a comma between quotation marks, or semicolons between all cells"
-        yield Rejected(place, reason, kept)
+        yield Rejected(location, reason, cells_read)
         return
-    yield _row_of([row[c] for c in COLUMNS], place, warning)
+    yield _row_of([row[c] for c in COLUMNS], location, warning)
 
 
 def _with_commas(header: list[str], cells: list[str]) -> dict[str, str]:
     """A row of too many cells whose answer is all that may belong to it: ``12`` and ``5`` are ``12,5``."""
-    place, more = header.index("answer"), len(cells) - len(header)
-    answer = ",".join(cells[place : place + more + 1])
-    return dict(zip(header, [*cells[:place], answer, *cells[place + more + 1 :]], strict=True))
+    index, more = header.index("answer"), len(cells) - len(header)
+    answer = ",".join(cells[index : index + more + 1])
+    return dict(zip(header, [*cells[:index], answer, *cells[index + more + 1 :]], strict=True))
 
 
 # ------------------------------------------------------------------------- JSON
@@ -364,11 +364,11 @@ def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
     if not sheets:
         yield Rejected(source, NO_ANSWERS)
     for number, sheet in enumerate(sheets, start=1):
-        place = f"{source}, item {number}" if isinstance(content, list) else source
+        location = f"{source}, item {number}" if isinstance(content, list) else source
         if not isinstance(sheet, dict) or not isinstance(sheet.get("answers"), dict):
-            yield Rejected(place, 'an item is {"student", "exercise", "seed", "answers": {part: text}}')
+            yield Rejected(location, 'an item is {"student", "exercise", "seed", "answers": {part: text}}')
             continue
-        yield from sheet_rows(sheet, sheet["answers"], place, warning)
+        yield from sheet_rows(sheet, sheet["answers"], location, warning)
 
 
 _READERS: Mapping[str, Callable[[bytes, str], Iterator[Row | Rejected | Seen]]] = {

@@ -49,11 +49,11 @@ class ToMark:
         self._used: set[tuple[str, ...]] = set()
         for number, row in enumerate(rows_of(path) if path.exists() else (), start=2):
             _check_columns(path, row)
-            place = f"{path}, line {number}"
-            points = points_of(row["points"], place)
+            location = f"{path}, line {number}"
+            points = points_of(row["points"], location)
             if points is not None:
                 named = tuple(row[c] for c in ("student", "exercise", "seed", "part"))
-                given = Given(place, named, row.get("answer", ""), points, row.get("reason", ""))
+                given = Given(location, named, row.get("answer", ""), points, row.get("reason", ""))
                 self.given[_key(*named)] = given
 
     def apply(self, graded: Graded, lang: str) -> Graded:
@@ -68,31 +68,31 @@ class ToMark:
         for part, line in graded.lines.items():
             if line.verdict != TO_MARK:
                 continue
-            found = self.given_for(graded, part, line)
-            if found is not None:
-                lines[part] = given_mark(line, found.points, found.reason, lang, found.place)
+            given = self.given_for(graded, part, line)
+            if given is not None:
+                lines[part] = given_mark(line, given.points, given.reason, lang, given.place)
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
-            self.waiting += found is None
-            self.rows.append(_row(graded, line, found))
+            self.waiting += given is None
+            self.rows.append(_row(graded, line, given))
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
     def given_for(self, graded: Graded, part: str, line: Mark) -> Given | None:
         """The points that the file gives to an answer; None where it has none, or gives them to another answer."""
         key = _key(graded.student, graded.exercise, str(graded.seed), part)
-        found = self.given.get(key)
-        if found is None:
+        given = self.given.get(key)
+        if given is None:
             return None
         self._used.add(key)
-        if not same_answer(found.answer, line.answer):
-            self.changed.append(", ".join(found.named))
+        if not same_answer(given.answer, line.answer):
+            self.changed.append(", ".join(given.named))
             return None
-        return found
+        return given
 
     @property
     def unused(self) -> list[str]:
         """The marked answers that nobody gave."""
-        return [", ".join(one.named) for key, one in self.given.items() if key not in self._used]
+        return [", ".join(given.named) for key, given in self.given.items() if key not in self._used]
 
     @property
     def loses(self) -> bool:
@@ -103,16 +103,16 @@ class ToMark:
 def _check_columns(path: Path, row: dict[str, str]) -> None:
     for column in (*TO_MARK_COLUMNS[:4], "points"):
         if column not in row:
-            found = ", ".join(filter(None, row)) or "nothing"
-            raise BadInput(f"{path} lacks the column {column!r}; found {found}{nearest(column, row)}")
+            titles = ", ".join(filter(None, row)) or "nothing"
+            raise BadInput(f"{path} lacks the column {column!r}; found {titles}{nearest(column, row)}")
 
 
 def _key(student: str, exercise: str, seed: str, part: str) -> tuple[str, ...]:
     return folded(student), exercise, seed, part
 
 
-def given_mark(line: Mark, points: float, reason: str, lang: str, place: str) -> Mark:
-    """The mark that a person gave: accepted for all the points, partly right for some, wrong for none; ``place`` is where
+def given_mark(line: Mark, points: float, reason: str, lang: str, location: str) -> Mark:
+    """The mark that a person gave: accepted for all the points, partly right for some, wrong for none; ``location`` is where
     it is said.
 
     Raises
@@ -120,27 +120,27 @@ def given_mark(line: Mark, points: float, reason: str, lang: str, place: str) ->
     BadInput
         The part has fewer points.
     """
-    check_points(points, line.part, line.out_of, place)
+    check_points(points, line.part, line.out_of, location)
     verdict = ACCEPTED if points >= line.out_of else "partial" if points > 0 else "wrong"
-    says = f"{words(lang)['marking']['by_hand']} {reason}".strip()
-    return line._replace(verdict=verdict, points=points, told=(Told(says, says),))
+    message = f"{words(lang)['marking']['by_hand']} {reason}".strip()
+    return line._replace(verdict=verdict, points=points, told=(Told(message, message),))
 
 
-def same_answer(one: str, other: str) -> bool:
+def same_answer(text: str, other: str) -> bool:
     """Whether two texts are one answer, however they are spaced."""
-    return " ".join(one.split()) == " ".join(other.split())
+    return " ".join(text.split()) == " ".join(other.split())
 
 
-def _row(graded: Graded, line: Mark, found: Given | None) -> dict[str, Any]:
+def _row(graded: Graded, line: Mark, given: Given | None) -> dict[str, Any]:
     return {
         "student": graded.student,
         "exercise": graded.exercise,
         "seed": graded.seed,
         "part": line.part,
         "answer": line.answer,
-        "points": "" if found is None else f"{found.points:g}",
+        "points": "" if given is None else f"{given.points:g}",
         "out_of": f"{line.out_of:g}",
-        "reason": "" if found is None else found.reason,
+        "reason": "" if given is None else given.reason,
     }
 
 

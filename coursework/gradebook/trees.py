@@ -34,34 +34,34 @@ class HandedIn(NamedTuple):
 
 def handed_in(path: Path) -> HandedIn | None:
     """Who handed a file in, by the folders that it lies in, else by its name; None where they say nothing."""
-    beside = path.resolve().parent
-    whole = Path(path_text(path.resolve()))
-    for place, folder in reversed([*enumerate(whole.parts[:-1])]):
-        root = str(Path(*whole.parts[:place]))
-        if found := _EXCHANGE.fullmatch(folder):
-            return _handed((found["student"],), found["time"], root, "nbgrader's exchange", beside)
-        if found := _MOODLE.fullmatch(folder):
-            return _handed((found["student"],), "", root, "Moodle's submissions of an assignment", beside)
-        if folder == "submitted" and len(whole.parts) - place > 3:
+    directory = path.resolve().parent
+    full_path = Path(path_text(path.resolve()))
+    for position, folder in reversed([*enumerate(full_path.parts[:-1])]):
+        root = str(Path(*full_path.parts[:position]))
+        if match := _EXCHANGE.fullmatch(folder):
+            return _handed((match["student"],), match["time"], root, "nbgrader's exchange", directory)
+        if match := _MOODLE.fullmatch(folder):
+            return _handed((match["student"],), "", root, "Moodle's submissions of an assignment", directory)
+        if folder == "submitted" and len(full_path.parts) - position > 3:
             return _handed(
-                (whole.parts[place + 1],),
+                (full_path.parts[position + 1],),
                 "",
                 str(Path(root, folder)),
                 "nbgrader's tree of submissions",
-                beside,
+                directory,
             )
-    if found := _CANVAS.fullmatch(Path(path_text(path)).name):
-        who, root = (found["id"], found["student"]), path_text(path.parent)
-        return _handed(who, "", root, "Canvas's submissions", beside)
+    if match := _CANVAS.fullmatch(Path(path_text(path)).name):
+        people, root = (match["id"], match["student"]), path_text(path.parent)
+        return _handed(people, "", root, "Canvas's submissions", directory)
     return None
 
 
-def _handed(by: tuple[str, ...], time: str, root: str, what: str, folder: Path) -> HandedIn:
-    beside = folder / "timestamp.txt"
+def _handed(by: tuple[str, ...], time: str, root: str, platform: str, folder: Path) -> HandedIn:
+    timestamp = folder / "timestamp.txt"
     if not time:
-        with suppress(OSError), open_inside(beside, folder) as file:
+        with suppress(OSError), open_inside(timestamp, folder) as file:
             time = file.read(_LONGEST_TIME).decode("utf-8", "replace").strip()[:60]
-    return HandedIn(Collected(by=by, submitted=time), Seen(root, what, is_tree=True))
+    return HandedIn(Collected(by=by, submitted=time), Seen(root, platform, is_tree=True))
 
 
 def latest_first(files: Iterable[Path]) -> list[Path]:
@@ -71,7 +71,7 @@ def latest_first(files: Iterable[Path]) -> list[Path]:
 
 
 def _turned(folder: str) -> tuple[str, tuple[int, ...], str]:
-    found = _EXCHANGE.fullmatch(folder)
-    if found is None:
+    match = _EXCHANGE.fullmatch(folder)
+    if match is None:
         return folder, (), ""
-    return f"{found['student']}+{found['assignment']}+", tuple(-ord(c) for c in found["time"]), folder
+    return f"{match['student']}+{match['assignment']}+", tuple(-ord(c) for c in match["time"]), folder

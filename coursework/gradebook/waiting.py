@@ -71,20 +71,20 @@ _MEASURED = frozenset(("correct", "wrong", "missing_unit"))
 
 def measures(course: Course, issued: Issued, graded: Sequence[Graded]) -> Iterator[Measure]:
     """What the answers of sheets are compared by, those that are read and may be near their margin."""
-    variants = [course[one.exercise].from_record(one.record) for one in graded]
-    for name in dict.fromkeys(one.exercise for one in graded):
+    variants = [course[graded_sheet.exercise].from_record(graded_sheet.record) for graded_sheet in graded]
+    for name in dict.fromkeys(graded_sheet.exercise for graded_sheet in graded):
         keys_of(course[name], [v for v in variants if v.exercise.name == name], rules_of(course, issued))
-    for one, variant in zip(graded, variants, strict=True):
-        lines = {p: m for p, m in one.lines.items() if m.verdict in _MEASURED}
-        asked = [part for part in variant.parts if part.id in lines]
-        margins = {part.id: half_widths_off(variant, part, lines[part.id].answer) for part in asked}
-        told = {p: gap for p, gap in margins.items() if gap is not None}
+    for graded_sheet, variant in zip(graded, variants, strict=True):
+        lines = {p: m for p, m in graded_sheet.lines.items() if m.verdict in _MEASURED}
+        parts = [part for part in variant.parts if part.id in lines]
+        margins = {part.id: half_widths_off(variant, part, lines[part.id].answer) for part in parts}
+        known_margins = {p: gap for p, gap in margins.items() if gap is not None}
         references = {
             part.id: repr(variant.key.reference.get(part.quantity))
-            for part in asked
+            for part in parts
             if lines[part.id].verdict != "correct"
         }
-        yield Measure(told, references)
+        yield Measure(known_margins, references)
 
 
 def groups(
@@ -96,31 +96,40 @@ def groups(
 
     ``measured`` is by student, exercise, seed and sitting; ``drawn`` are the questions that are answered by a drawing.
     """
-    found: dict[tuple[str, ...], list[Waits]] = {}
+    members_by_key: dict[tuple[str, ...], list[Waits]] = {}
     answered: dict[tuple[str, str], set[str]] = {}
-    for one in graded:
-        measure = measured.get((*one[:3], one.sitting), NOTHING)
-        for part, mark in one.lines.items():
+    for graded_sheet in graded:
+        measure = measured.get((*graded_sheet[:3], graded_sheet.sitting), NOTHING)
+        for part, mark in graded_sheet.lines.items():
             if mark.verdict == "missing":
                 continue
-            answered.setdefault((one.exercise, part), set()).add(one.student)
-            if (key := key_of(one, mark, measure, drawn)) is not None:
-                found.setdefault(key, []).append(Waits(one, mark, measure.margins.get(part)))
-    place = {question: number for number, question in enumerate(order)}
-    made = [_group(key, members) for key, members in found.items() if _waits(key, members, answered)]
+            answered.setdefault((graded_sheet.exercise, part), set()).add(graded_sheet.student)
+            if (key := key_of(graded_sheet, mark, measure, drawn)) is not None:
+                members_by_key.setdefault(key, []).append(
+                    Waits(graded_sheet, mark, measure.margins.get(part))
+                )
+    positions = {question: number for number, question in enumerate(order)}
+    answer_groups = [
+        _group(key, members) for key, members in members_by_key.items() if _waits(key, members, answered)
+    ]
     return sorted(
-        made, key=lambda g: (place.get((g.exercise, g.part), len(place)), WHY.index(g.why), -len(g.members))
+        answer_groups,
+        key=lambda g: (
+            positions.get((g.exercise, g.part), len(positions)),
+            WHY.index(g.why),
+            -len(g.members),
+        ),
     )
 
 
 def key_of(
-    one: Graded, mark: Mark, measure: Measure, drawn: frozenset[tuple[str, str]]
+    graded: Graded, mark: Mark, measure: Measure, drawn: frozenset[tuple[str, str]]
 ) -> tuple[str, ...] | None:
     """Return what answers of one group have in common, first why they may be looked at; None of what nobody looks at."""
     margin = measure.margins.get(mark.part)
-    if (why := _why(mark, margin, is_drawn=(one.exercise, mark.part) in drawn)) is None:
+    if (why := _why(mark, margin, is_drawn=(graded.exercise, mark.part) in drawn)) is None:
         return None
-    return why, one.exercise, mark.part, mark.verdict, written(mark), measure.references.get(mark.part, "")
+    return why, graded.exercise, mark.part, mark.verdict, written(mark), measure.references.get(mark.part, "")
 
 
 def _why(mark: Mark, margin: float | None, *, is_drawn: bool) -> str | None:
@@ -143,7 +152,7 @@ def _waits(
     """A wrong answer that nothing explains waits where many wrote it; whatever else is here, waits."""
     if key[0] != "often":
         return True
-    students = len({one.student for one in members})
+    students = len({answer.student for answer in members})
     return students >= max(OFTEN, OFTEN_SHARE * len(answered[key[1], key[2]]))
 
 
