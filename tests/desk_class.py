@@ -9,7 +9,7 @@ from coursework.database.assignments import put_issued
 from coursework.database.marking import mark_new
 from coursework.database.people import put_account, put_person
 from coursework.database.submissions import insert_submission
-from coursework.gradebook.rows import Collected, Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected, RowOrigin
 
 EXERCISE, SEED = "slotted_mechanism", 42
 STUDENTS = ("Ada", "Bo", "Cy", "Di", "Ed", "Flo")
@@ -49,9 +49,9 @@ class DeskClass(Class):
 
     def hand_in(self, written, *more, sitting=0):
         """Answers come in, and are marked."""
-        origin = Collected(sitting=sitting) if sitting else None
+        origin = RowOrigin(sitting=sitting) if sitting else None
         rows = [
-            Row(name, EXERCISE, str(SEED), part, text, f"answers.csv, line {k}", origin=origin)
+            AnswerRow(name, EXERCISE, str(SEED), part, text, f"answers.csv, line {k}", origin=origin)
             for name, own in written.items()
             for k, (part, text) in enumerate(own.items(), 2)
         ]

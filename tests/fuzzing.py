@@ -181,13 +181,13 @@ class Reader:
 
 
 def _checked_rows(path: Path) -> None:
-    from coursework.gradebook.rows import Rejected, Row, Seen
+    from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
     from coursework.gradebook.submissions import read_file
 
     rows = list(read_file(path))
     assert rows, "a file of no rows is told"
     for row in rows:
-        assert isinstance(row, (Row, Rejected, Seen))
+        assert isinstance(row, (AnswerRow, Rejected, PlatformFile))
         if isinstance(row, Rejected):
             assert row.reason
             assert path.name in row.source

@@ -21,7 +21,7 @@ from coursework.database.marking import mark_new
 from coursework.database.publication import AT_ONCE, CLOSED, Publication, publish
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import person
-from coursework.gradebook.rows import Collected, Row
+from coursework.gradebook.rows import AnswerRow, RowOrigin
 from coursework.site.frame.limits import Limits
 from coursework.site.people import accounts
 
@@ -103,9 +103,9 @@ class Filled(Class):
     def rows(self, name):
         told = {part.id: "1" for part in self.variants[name].parts}
         told[next(iter(told))] = PLANTED[name]
-        origin = Collected(sitting=1, submitted="2026-11-23T07:00:00+00:00")
+        origin = RowOrigin(sitting=1, submitted="2026-11-23T07:00:00+00:00")
         return [
-            Row(name, EXERCISE, str(SEEDS[name]), part, text, "the site", origin=origin)
+            AnswerRow(name, EXERCISE, str(SEEDS[name]), part, text, "the site", origin=origin)
             for part, text in told.items()
         ]
 

@@ -8,7 +8,7 @@ from small_assignment import STATED, item
 
 from coursework.database.assignments import put_issued
 from coursework.database.submissions import insert_submission
-from coursework.gradebook.rows import Collected, Row
+from coursework.gradebook.rows import AnswerRow, RowOrigin
 
 CAME = datetime(2026, 11, 23, 9, tzinfo=UTC)
 ANA, BEN, CLEO = STUDENTS = ("Ana", "Ben", "Cléo")
@@ -28,10 +28,10 @@ def content(course, students=STUDENTS, **stated):
 def rows(course, student, seed, sitting=0, written=True, **changed):
     """Answers to a variant, right but those that are changed."""
     solution = {**course["crank_pin"].variant(seed, "en").solution(), **changed}
-    origin = Collected(sitting=sitting, submitted=f"2026-11-23T09:0{sitting}:00") if sitting else None
+    origin = RowOrigin(sitting=sitting, submitted=f"2026-11-23T09:0{sitting}:00") if sitting else None
     shown = str(seed) if written else ""
     return [
-        Row(
+        AnswerRow(
             student,
             "crank_pin",
             shown,

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from coursework.database.marking import Change
     from coursework.database.store import Store
     from coursework.gradebook.book import Gradebook
-    from coursework.gradebook.feedback_form import Form
+    from coursework.gradebook.feedback_form import FeedbackForm
 
 _TOLD = 10  #: lines that are told, of however many
 
@@ -91,7 +91,7 @@ def grade_stored(
     feedback: bool | None,
     accepted: Path | None,
     decimal: str,
-    form: Form,
+    form: FeedbackForm,
     replaces: bool,
     writer: Callable[[Gradebook, Path], int],
 ) -> int:

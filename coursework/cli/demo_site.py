@@ -23,7 +23,7 @@ from coursework.database.permissions import ADMINISTRATOR, STUDENT
 from coursework.database.publication import AT_ONCE, CLOSED, Publication, publish
 from coursework.database.store import Store
 from coursework.database.submissions import insert_submission
-from coursework.gradebook.rows import Collected, Row
+from coursework.gradebook.rows import AnswerRow, RowOrigin
 from coursework.making.assignment import Assignment, read_assignment
 from coursework.making.issued import Issued, issued_content
 from coursework.making.roster import Student, read_roster
@@ -116,16 +116,18 @@ def _hand_in(course: Course[Any], store: Store, number: int, issued: Issued) -> 
             )
 
 
-def _rows(course: Course[Any], issued: Issued, student: str, k: int, received_at: datetime) -> Iterator[Row]:
+def _rows(
+    course: Course[Any], issued: Issued, student: str, k: int, received_at: datetime
+) -> Iterator[AnswerRow]:
     habit = HABITS[k % len(HABITS)]
-    origin = Collected(sitting=1, submitted=received_at.isoformat())
+    origin = RowOrigin(sitting=1, submitted=received_at.isoformat())
     for exercise in issued.exercises:
         seed = issued.seeds[student, exercise]
         variant = course[exercise].from_record(issued.records[exercise, seed])
         for index, part in enumerate(variant.parts):
             answer = habit(variant, variant.key, part, index)
             text = answer if isinstance(answer, str) else str(answer)
-            yield Row(student, exercise, str(seed), part.id, text, "site", "", variant.lang, origin)
+            yield AnswerRow(student, exercise, str(seed), part.id, text, "site", "", variant.lang, origin)
 
 
 def _sign_up(store: Store, students: list[Student]) -> None:

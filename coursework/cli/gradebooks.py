@@ -75,7 +75,9 @@ def gradebook(
     scored = class_points(marks, score)
     if template is None:
         if platform != "moodle":
-            raise BadInput(f"--template takes the gradebook as {chosen.called} exports it: {chosen.download}")
+            raise BadInput(
+                f"--template takes the gradebook as {chosen.title_of_platform} exports it: {chosen.download}"
+            )
         return _write_xml(out, item, [entry for entry in scored if entry.has_answered or zeros], out_of)
     from coursework.gradebook.filling import fill
     from coursework.system.writing import write_whole
@@ -111,7 +113,7 @@ def _told(filled: Filled, out: Path) -> int:
         ("marks, but no line in the export, and not written", filled.strangers),
         ("marks, but several lines or none that is surely theirs, and not written", filled.unclear),
         ("no marks, and left as they were", filled.absent),
-        ("what stays as the platform has it", filled.kept),
+        ("what stays as the platform has it", filled.unchanged),
     ):
         if names:
             listed = ", ".join(names[:10]) + (f", and {len(names) - 10} more" if len(names) > 10 else "")

@@ -34,7 +34,7 @@ from coursework.system.visible import one_line
 if TYPE_CHECKING:
     from coursework.course.course import Course
     from coursework.gradebook.book import Gradebook
-    from coursework.gradebook.feedback_form import Form
+    from coursework.gradebook.feedback_form import FeedbackForm
 
 
 # ------------------------------------------------------------------------ grade
@@ -135,9 +135,9 @@ def grade(
     if db is None and (assignment or replace):
         raise BadInput(f"{'--assignment' if assignment else '--replace'} is of a database: --db URL")
     _check_source(submissions, marks, accepted, in_database=db is not None)
-    from coursework.gradebook.feedback_form import Form
+    from coursework.gradebook.feedback_form import FeedbackForm
 
-    form = Form(formats, with_solutions, today.date() if today else None)
+    form = FeedbackForm(formats, with_solutions, today.date() if today else None)
     shared_by_cluster(context, cluster)
     if db is not None:
         from coursework.cli.database import grade_stored
@@ -214,7 +214,7 @@ def _told(book: Gradebook, out: Path) -> int:
     if len(book.rejected) > 10:
         more = len(book.rejected) - 10
         click.echo(f"coursework: and {more} more in {out / 'rejected.csv'}", err=True)
-    return FOUND if book.needs_a_look else DONE
+    return FOUND if book.review_count else DONE
 
 
 def _check_source(
@@ -240,13 +240,19 @@ def _check_source(
 
 
 def _grade_standing(
-    course: Course, marks: Path, issued: Path, out: Path, feedback: bool | None, decimal: str, form: Form
+    course: Course,
+    marks: Path,
+    issued: Path,
+    out: Path,
+    feedback: bool | None,
+    decimal: str,
+    form: FeedbackForm,
 ) -> Gradebook:
-    from coursework.gradebook.grading import grade_standing
+    from coursework.gradebook.grading import grade_edited_marks
     from coursework.system.tables import SPREADSHEETS
 
     with progress_bar("marking", None) as advance:
-        return grade_standing(
+        return grade_edited_marks(
             course,
             marks,
             issued,
@@ -265,7 +271,7 @@ def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
         click.echo(f"{changed} changed by hand; see {out / 'changes.csv'}")
     for warning in book.warnings:
         click.echo(f"coursework: note: {one_line(warning)}", err=True)
-    return FOUND if book.needs_a_look else DONE
+    return FOUND if book.review_count else DONE
 
 
 def grade_with_bar(
@@ -277,10 +283,10 @@ def grade_with_bar(
     feedback: bool | None = True,
     accepted: Path | None = None,
     decimal: str = "point",
-    form: Form | None = None,
+    form: FeedbackForm | None = None,
 ) -> Gradebook:
     """Mark files and write the tables, with a bar on a terminal."""
-    from coursework.gradebook.feedback_form import Form
+    from coursework.gradebook.feedback_form import FeedbackForm
     from coursework.gradebook.grading import grade_files
     from coursework.system.tables import SPREADSHEETS
 
@@ -294,7 +300,7 @@ def grade_with_bar(
             accepted=accepted,
             spreadsheet=SPREADSHEETS[decimal],
             progress=advance,
-            form=form or Form(),
+            form=form or FeedbackForm(),
         )
 
 

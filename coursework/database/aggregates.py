@@ -34,7 +34,7 @@ from coursework.database.tables import (
     variant,
 )
 from coursework.gradebook.columns import own_columns
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import mark_of
 from coursework.gradebook.waiting import (

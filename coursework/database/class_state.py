@@ -30,10 +30,17 @@ from coursework.database.submissions import rows_of
 from coursework.errors import closest
 from coursework.gradebook.book import Gradebook, Result, Sitting, Total, results
 from coursework.gradebook.class_marking import rejecting
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import SheetPlace, Sheets, placed
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.placing import SheetKey, Sheets, placed_sheets
 from coursework.gradebook.rows import Rejected
-from coursework.gradebook.waiting import SHOWN_ON_REQUEST, Group, Measure, Waits, groups, measures
+from coursework.gradebook.waiting import (
+    SHOWN_ON_REQUEST,
+    AnswerGroup,
+    AnswerToReview,
+    Measure,
+    groups,
+    measures,
+)
 from coursework.making.issued import Issued
 from coursework.making.students import namesakes
 
@@ -58,8 +65,8 @@ class UnplacedRow:
 class OpenGroup:
     """Group of answers, with those of its members that still wait for a person."""
 
-    group: Group
-    members: tuple[Waits, ...]
+    group: AnswerGroup
+    members: tuple[AnswerToReview, ...]
 
     @property
     def why(self) -> str:
@@ -96,12 +103,12 @@ class ClassState:
     about: ListedAssignment
     issued: Issued
     stamp: Stamp
-    machine: Mapping[SheetPlace, Graded]  #: as the marking gave them
-    numbers: Mapping[SheetPlace, int]  #: of the markings
-    firsts: Mapping[SheetPlace, int]  #: first markings of the sheets
+    machine: Mapping[SheetKey, Graded]  #: as the marking gave them
+    numbers: Mapping[SheetKey, int]  #: of the markings
+    firsts: Mapping[SheetKey, int]  #: first markings of the sheets
     measured: Mapping[int, Measure]  #: by marking
     sheets: Sheets
-    faults: Mapping[SheetPlace, str]
+    faults: Mapping[SheetKey, str]
     decisions: Decisions
     placings: Mapping[str, Placing]
     site_submissions: Mapping[str, SiteSubmissions]
@@ -115,7 +122,7 @@ class ClassState:
         return self.sheets.sheets.keys() <= self.machine.keys() | self.faults.keys()
 
     @cached_property
-    def graded(self) -> dict[SheetPlace, Graded]:
+    def graded(self) -> dict[SheetKey, Graded]:
         """As they stand: what people decided counts."""
         return {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
 
@@ -133,7 +140,7 @@ class ClassState:
             for graded in self.graded.values():
                 book.add(graded)
             return book
-        both: dict[SheetPlace, Graded | str] = {**self.graded, **self.faults}
+        both: dict[SheetKey, Graded | str] = {**self.graded, **self.faults}
         for graded in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
             book.add(graded)
         return book
@@ -203,19 +210,19 @@ class ClassState:
     # ------------------------------------------------------------------- waiting
 
     @property
-    def groups(self) -> list[Group]:
+    def groups(self) -> list[AnswerGroup]:
         """All that a person may look at, decided or not."""
         return self._groups_of_all if self.one_sitting else self._groups_that_matter
 
     @cached_property
-    def _groups_of_all(self) -> list[Group]:
+    def _groups_of_all(self) -> list[AnswerGroup]:
         return self._grouped(self.machine.values())
 
     @cached_property
-    def _groups_that_matter(self) -> list[Group]:
+    def _groups_that_matter(self) -> list[AnswerGroup]:
         return self._grouped(graded for graded in self.machine.values() if self.matters(graded))
 
-    def _grouped(self, sheets: Iterable[Graded]) -> list[Group]:
+    def _grouped(self, sheets: Iterable[Graded]) -> list[AnswerGroup]:
         return groups(sheets, self.measures, self.questions, self.drawn)
 
     @cached_property
@@ -237,7 +244,7 @@ class ClassState:
                 open_groups[group.id] = OpenGroup(group, members)
         return open_groups
 
-    def is_decided(self, answer: Waits) -> bool:
+    def is_decided(self, answer: AnswerToReview) -> bool:
         return self.decisions.standing(answer.sheet, answer.mark) is not None
 
     @property
@@ -296,7 +303,7 @@ def read_class(connection: Connection, course: Course, about: ListedAssignment) 
         The course cannot mark what was issued.
     """
     issued = issued_of(connection, about.id)
-    sheets = placed(course, issued, rows_of(connection, about.id))
+    sheets = placed_sheets(course, issued, rows_of(connection, about.id))
     return _read(connection, course, about, issued, sheets, None)
 
 
@@ -331,7 +338,7 @@ def read_rows(
         The course cannot mark what was issued.
     """
     issued = issued_of(connection, about.id)
-    sheets = placed(course, issued, rows_of(connection, about.id))
+    sheets = placed_sheets(course, issued, rows_of(connection, about.id))
     faults = {sheet: last.fault for sheet, last in last_markings(connection, about.id).items() if last.fault}
     list(rejecting(sheets, ((p, why) for p, why in faults.items() if p in sheets.sheets)))
     return tuple((row_id(row), row, *named_by(issued, row)) for row in sheets.rejected)

@@ -15,9 +15,9 @@ from coursework.database.submissions import rows_of
 from coursework.database.tables import mark, marking
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.class_marking import rejecting
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import SheetPlace, placed
-from coursework.gradebook.platform_files import told_seen
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.placing import SheetKey, placed_sheets
+from coursework.gradebook.platform_files import platform_file_lines
 from coursework.gradebook.to_mark import TO_MARK
 from coursework.making.issued import Issued
 from coursework.marking.mark import Mark
@@ -35,7 +35,7 @@ class LastMarking(NamedTuple):
     """A sheet as it was last marked."""
 
     id: int
-    key: SheetPlace
+    key: SheetKey
     sitting: int
     state: str
     lang: str
@@ -51,7 +51,7 @@ Whom = str | Collection[str] | None
 
 def last_markings(
     connection: Connection, assignment_id: int, student: Whom = None
-) -> dict[SheetPlace, LastMarking]:
+) -> dict[SheetKey, LastMarking]:
     """Return the last marking of each sheet, in the order of the first marking of each; including sheets
     without any current answer."""
     last = _last(assignment_id, student).subquery()
@@ -106,7 +106,7 @@ def _line(sent: Sequence[Any]) -> Mark:
 
 def machine_marks(
     issued: Issued, sheets: Iterable[LastMarking], lines: Mapping[int, _SheetMarks]
-) -> Iterator[tuple[SheetPlace, Graded | str]]:
+) -> Iterator[tuple[SheetKey, Graded | str]]:
     """Yield each sheet as marked by the machine, or the reason for which it cannot be marked; skip sheets
     without any current answer."""
     for sheet in sheets:
@@ -147,7 +147,7 @@ def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gra
         The course cannot mark what was issued.
     """
     issued = issued_of(connection, assignment_id)
-    sheets = placed(course, issued, rows_of(connection, assignment_id))
+    sheets = placed_sheets(course, issued, rows_of(connection, assignment_id))
     standing = last_markings(connection, assignment_id)
     marked = [standing[key] for key in sheets.sheets if key in standing]
     results = machine_marks(issued, marked, lines_of(connection, marked))
@@ -156,7 +156,7 @@ def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gra
     for sheet in map(decisions.apply, rejecting(sheets, results)):
         book.add(sheet)
         book.waiting += sum(line.verdict == TO_MARK for line in sheet.lines.values())
-    book.seen, book.charged = told_seen(sheets.seen), late_penalties(connection, assignment_id)
+    book.seen, book.charged = platform_file_lines(sheets.seen), late_penalties(connection, assignment_id)
     return book
 
 

@@ -18,8 +18,8 @@ from coursework.database.decisions import ACCEPTED, GIVEN, WITHDRAWN, DecidedAns
 from coursework.database.tables import worksheet
 from coursework.errors import UnknownName
 from coursework.gradebook.accepted import Accepted
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.to_mark import Given, ToMark
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.to_mark import GivenPoints, ToMark
 from coursework.making.students import folded
 from coursework.marking.mark import Mark
 
@@ -115,7 +115,8 @@ def _accepted_decisions(by_hand: Accepted) -> list[_StatedDecision]:
     assert by_hand.path is not None
     name = by_hand.path.name
     return [
-        _StatedDecision(*line.named, ACCEPTED, line.points, line.reason, None, name) for line in by_hand.lines
+        _StatedDecision(*line.answer_key, ACCEPTED, line.points, line.reason, None, name)
+        for line in by_hand.lines
     ]
 
 
@@ -153,14 +154,14 @@ class DecidedToMark(ToMark):
         super().__init__(path)
         self.decisions = decisions
 
-    def given_for(self, graded: Graded, part: str, line: Mark) -> Given | None:
+    def given_for(self, graded: Graded, part: str, line: Mark) -> GivenPoints | None:
         """Return the points decided for an answer; the file itself is only checked, for its warnings."""
         super().given_for(graded, part, line)
         decided = self.decisions.given(graded, line)
         if decided is None:
             return None
         named = graded.student, graded.exercise, str(graded.seed), part
-        return Given(decided.by, named, line.answer, decided.points or 0.0, decided.reason)
+        return GivenPoints(decided.by, named, line.answer, decided.points or 0.0, decided.reason)
 
 
 class DecidedAccepted(Accepted):

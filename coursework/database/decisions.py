@@ -13,7 +13,7 @@ from coursework.database.outdated import outdate
 from coursework.database.tables import decision, mark, marking, student_total, variant
 from coursework.errors import BadInput, UnknownName, nearest
 from coursework.gradebook.accepted import accepted_mark, check_points
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.to_mark import given_mark, same_answer
 from coursework.making.students import folded
 from coursework.marking.feedback import Told

@@ -28,9 +28,9 @@ from coursework.errors import BadInput
 from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.class_marking import rejecting
-from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
+from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.grading import nothing_in, usual_feedback, write_marks
-from coursework.gradebook.placing import placed
+from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import Rejected, path_text
 from coursework.gradebook.submissions import find, read_file
 from coursework.gradebook.to_mark import ToMark
@@ -60,7 +60,7 @@ def grade_new(
     *,
     accepted: Path | None = None,
     out: Path | None = None,
-    form: Form = USUAL,
+    form: FeedbackForm = USUAL,
     replaces: bool = False,
 ) -> GradedNow:
     """Store new files and new decisions, and mark the sheets that changed.
@@ -82,7 +82,7 @@ def grade_new(
         shows_solutions(issued, form)
         submitted = _deliver(connection, assignment_id, submissions, replaces=replaces)
         if not last_markings(connection, assignment_id):
-            sheets = placed(course, issued, rows_of(connection, assignment_id))
+            sheets = placed_sheets(course, issued, rows_of(connection, assignment_id))
             if not sheets.sheets:
                 raise BadInput(nothing_in(submissions, sheets.rejected))
         decided = store_new_decisions(connection, assignment_id, by_person, by_hand)
@@ -127,7 +127,7 @@ def write_standing(
     feedback: bool | None = None,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
-    form: Form = USUAL,
+    form: FeedbackForm = USUAL,
 ) -> Gradebook:
     """Write the files that :func:`coursework.gradebook.grading.grade_files` would write for all submissions
     so far."""

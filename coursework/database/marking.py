@@ -20,13 +20,13 @@ from coursework.database.tables import assignment, delivery, mark, marking
 from coursework.errors import BadInput
 from coursework.gradebook.book import marks_rows
 from coursework.gradebook.class_marking import judged, record_of, rules_of
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import SheetPlace, Sheets, placed
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.placing import SheetKey, Sheets, placed_sheets
 from coursework.making.issued import Issued
 
 _CHUNK = 5000  #: rows that are written at once
 
-Judged = tuple[SheetPlace, Graded | str]
+Judged = tuple[SheetKey, Graded | str]
 
 
 class Change(NamedTuple):
@@ -62,7 +62,7 @@ class Work:
 
     def __init__(self, course: Course, store: Store, assignment_id: int, delivery_id: int | None = None):
         self.course, self.store, self.assignment_id = course, store, assignment_id
-        self.now: dict[SheetPlace, Graded | str] = {}
+        self.now: dict[SheetKey, Graded | str] = {}
         with store.reading() as connection:
             self._read(connection, delivery_id)
 
@@ -74,22 +74,22 @@ class Work:
             exercise_state(course, exercise)  # before it is loaded
         only = delivery_id if person_id is not None else None
         rows = list(rows_of(connection, assignment_id, only))
-        self.sheets: Sheets = placed(course, self.issued, rows)
-        self.places: Collection[SheetPlace] = self.sheets.sheets
+        self.sheets: Sheets = placed_sheets(course, self.issued, rows)
+        self.places: Collection[SheetKey] = self.sheets.sheets
         if delivery_id is not None and person_id is None:
-            own_sheets = placed(
+            own_sheets = placed_sheets(
                 course, issued_of(connection, assignment_id), rows_of(connection, assignment_id, delivery_id)
             )
             self.places = [sheet for sheet in self.sheets.sheets if sheet in own_sheets.sheets]
         students = {sheet[0] for sheet in self.places}
         student = self._student = students.pop() if len(students) == 1 and delivery_id is not None else None
-        self.last: dict[SheetPlace, LastMarking] = last_markings(connection, assignment_id, student)
+        self.last: dict[SheetKey, LastMarking] = last_markings(connection, assignment_id, student)
         self.decisions = Decisions.read(connection, assignment_id, student)
         self.is_whole = delivery_id is None
         rules = rules_of(course, self.issued)
         self.states = {sheet: self._state(sheet, rules) for sheet in self.places}
 
-    def _state(self, sheet: SheetPlace, rules: Any) -> str:
+    def _state(self, sheet: SheetKey, rules: Any) -> str:
         sheets = self.sheets
         record = record_of(self.issued, sheets, sheet)
         answers = {part: row.answer for part, row in sheets.sheets[sheet].items()}
@@ -98,7 +98,7 @@ class Work:
         )
 
     @property
-    def changed(self) -> list[SheetPlace]:
+    def changed(self) -> list[SheetKey]:
         """The sheets that are not in the state by which they were marked."""
         return [p for p in self.places if p not in self.last or self.last[p].state != self.states[p]]
 
@@ -129,7 +129,7 @@ class Work:
         for sheet, was in self._before([*marked, *self.gone]).items():
             yield from _changes(self._rows(was), self._rows(self.now.get(sheet, "")))
 
-    def _before(self, sheets: Iterable[LastMarking]) -> dict[SheetPlace, Graded | str]:
+    def _before(self, sheets: Iterable[LastMarking]) -> dict[SheetKey, Graded | str]:
         """Return the sheets as they were marked before."""
         sheets = list(sheets)
         with self.store.reading() as connection:
@@ -179,7 +179,7 @@ class Work:
         if any(isinstance(self.now[sheet], str) or self.was_at_fault(sheet) for sheet in free) or gone:
             outdate_rows(connection, self.assignment_id)
 
-    def was_at_fault(self, sheet: SheetPlace) -> bool:
+    def was_at_fault(self, sheet: SheetKey) -> bool:
         """Tell whether a sheet could not be marked before."""
         return sheet in self.last and bool(self.last[sheet].fault)
 
@@ -240,7 +240,7 @@ def _person_of(connection: Connection, delivery_id: int) -> int | None:
     return connection.execute(select(delivery.c.person_id).where(delivery.c.id == delivery_id)).scalar()
 
 
-def _only(sheets: Sheets, places: Iterable[SheetPlace]) -> Sheets:
+def _only(sheets: Sheets, places: Iterable[SheetKey]) -> Sheets:
     """Some of the sheets, by themselves."""
     selected = {sheet: sheets.sheets[sheet] for sheet in places}
     return Sheets(selected, langs=sheets.langs, submitted=sheets.submitted, apart=sheets.apart)
@@ -269,13 +269,13 @@ def _verdict(row: Mapping[str, Any] | None) -> tuple[str, str]:
 _EMPTY_COLUMNS = {"lang": "", "apart": False, "submitted": "", "fault": ""}
 
 
-def _sheet_columns(assignment_id: int, sheet: SheetPlace) -> dict[str, Any]:
+def _sheet_columns(assignment_id: int, sheet: SheetKey) -> dict[str, Any]:
     student, exercise, seed, attempt = sheet
     named = {"student": student, "exercise": exercise, "seed": str(seed), "attempt": attempt}
     return {"assignment_id": assignment_id, **named}
 
 
-def _marking(work: Work, sheet: SheetPlace, marked_at: datetime) -> dict[str, Any]:
+def _marking(work: Work, sheet: SheetKey, marked_at: datetime) -> dict[str, Any]:
     result = work.now[sheet]
     columns = {
         "sitting": sheet[3] or work.issued.sitting_of(*sheet[:3]),

@@ -33,12 +33,12 @@ from coursework.database.assignments import issued_of
 from coursework.database.outdated import outdate, outdate_rows
 from coursework.database.store import insert_unless_there
 from coursework.database.tables import answer, dealt, delivery, marking, rejected, seen, variant
-from coursework.gradebook.placing import Refused, student_of
-from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.gradebook.placing import UnplacedError, student_of
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.making.issued import Issued
 
 _CHUNK = 5000  #: rows that are written at once
-_PlacedRow = tuple[tuple[Any, ...], Row | Rejected | Seen]  #: delivery and place in it
+_PlacedRow = tuple[tuple[Any, ...], AnswerRow | Rejected | PlatformFile]  #: delivery and place in it
 
 
 class Submission(NamedTuple):
@@ -59,7 +59,7 @@ class Submission(NamedTuple):
 def insert_submission(
     connection: Connection,
     assignment_id: int,
-    rows: Iterable[Row | Rejected | Seen],
+    rows: Iterable[AnswerRow | Rejected | PlatformFile],
     *,
     source: str,
     received_at: datetime,
@@ -96,13 +96,13 @@ def insert_submission(
     if person_id is None:
         outdate_rows(connection, assignment_id)
     else:
-        outdate(connection, assignment_id, [row.student for row in came_rows if isinstance(row, Row)])
+        outdate(connection, assignment_id, [row.student for row in came_rows if isinstance(row, AnswerRow)])
     return Submission(number_added, True, source, number, receipt, late, received_at)
 
 
 def _after_attempts_on_site(
-    connection: Connection, assignment_id: int, rows: list[Row | Rejected | Seen]
-) -> list[Row | Rejected | Seen]:
+    connection: Connection, assignment_id: int, rows: list[AnswerRow | Rejected | PlatformFile]
+) -> list[AnswerRow | Rejected | PlatformFile]:
     """Return the rows of a file; those of students who submitted on the site get a later attempt number, so
     that two submissions are never merged."""
     on_site = delivery.c.assignment_id == assignment_id, delivery.c.number > 0
@@ -112,17 +112,19 @@ def _after_attempts_on_site(
         return rows
     issued = issued_of(connection, assignment_id)
 
-    def moved(row: Row | Rejected | Seen) -> Row | Rejected | Seen:
-        if not isinstance(row, Row) or not (before := tries.get(_student_or_none(issued, row) or "", 0)):
+    def moved(row: AnswerRow | Rejected | PlatformFile) -> AnswerRow | Rejected | PlatformFile:
+        if not isinstance(row, AnswerRow) or not (
+            before := tries.get(_student_or_none(issued, row) or "", 0)
+        ):
             return row
-        origin = row.origin or Collected()
+        origin = row.origin or RowOrigin()
         return row._replace(origin=origin._replace(sitting=before + max(1, origin.sitting)))
 
     return [moved(row) for row in rows]
 
 
-def _student_or_none(issued: Issued, row: Row) -> str | None:
-    with suppress(Refused):
+def _student_or_none(issued: Issued, row: AnswerRow) -> str | None:
+    with suppress(UnplacedError):
         return student_of(issued, row) if row.student else None
     return None
 
@@ -178,12 +180,14 @@ def _submission(row: Any, *, is_new: bool) -> Submission:
     return Submission(row.id, is_new, row.source, row.number, row.receipt, row.late, row.came)
 
 
-def _put_rows(connection: Connection, number: int, rows: Sequence[Row | Rejected | Seen]) -> None:
+def _put_rows(
+    connection: Connection, number: int, rows: Sequence[AnswerRow | Rejected | PlatformFile]
+) -> None:
     by_table: dict[Any, list[dict[str, Any]]] = {answer: [], rejected: [], seen: []}
-    origins: dict[Collected, dict[str, Any]] = {}
+    origins: dict[RowOrigin, dict[str, Any]] = {}
     for position, row in enumerate(rows):
         key = {"delivery_id": number, "place": position}
-        if isinstance(row, Row):
+        if isinstance(row, AnswerRow):
             columns = {**row._asdict(), "answer": _as_json(row.answer)}
             if row.origin is not None:
                 columns["origin"] = origins.setdefault(row.origin, _origin_as_json(row.origin))
@@ -267,7 +271,7 @@ def attempts_used(
 
 def rows_of(
     connection: Connection, assignment_id: int, delivery_id: int | None = None
-) -> Iterator[Row | Rejected | Seen]:
+) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     """Yield the rows that count, in the order of arrival; if a submission is given, all of its rows and no
     others.
 
@@ -284,11 +288,13 @@ def rows_of(
         )
         return query.order_by(table.c.delivery_id, table.c.place)
 
-    met: dict[str, Collected] = {}
+    met: dict[str, RowOrigin] = {}
     refused: list[_PlacedRow] = [
         (tuple(row[:2]), Rejected(*row[2:])) for row in connection.execute(of(rejected))
     ]
-    seen_rows: list[_PlacedRow] = [(tuple(row[:2]), Seen(*row[2:])) for row in connection.execute(of(seen))]
+    seen_rows: list[_PlacedRow] = [
+        (tuple(row[:2]), PlatformFile(*row[2:])) for row in connection.execute(of(seen))
+    ]
     answers: Iterator[_PlacedRow] = (
         (tuple(row[:2]), _as_row(row, met)) for row in connection.execute(of(answer))
     )
@@ -299,18 +305,18 @@ def rows_of(
             yield row
 
 
-def _content(row: Row | Rejected | Seen) -> tuple[Any, ...] | None:
+def _content(row: AnswerRow | Rejected | PlatformFile) -> tuple[Any, ...] | None:
     """Return the content of a row, wherever it stood in its file; None if it states no answer."""
-    if isinstance(row, Row):
+    if isinstance(row, AnswerRow):
         return (*row[:4], type(row.answer), row.answer, row.lang, row.origin)
     if isinstance(row, Rejected) and row.row:
         return row.reason, *row.row.items()
     return None
 
 
-def _as_row(row: Sequence[Any], met: dict[str, Collected]) -> Row:
+def _as_row(row: Sequence[Any], met: dict[str, RowOrigin]) -> AnswerRow:
     student, exercise, seed, part, value, source, warning, lang, origin = row[2:]
-    return Row(
+    return AnswerRow(
         student,
         exercise,
         seed,
@@ -345,26 +351,26 @@ def _from_json(value: Any) -> Any:
     return _NUMBERS[kind](digits)
 
 
-def _origin_as_json(origin: Collected) -> dict[str, Any]:
+def _origin_as_json(origin: RowOrigin) -> dict[str, Any]:
     """Return the fields that differ from their defaults."""
-    usual = Collected._field_defaults
+    usual = RowOrigin._field_defaults
     return {name: value for name, value in origin._asdict().items() if value != usual[name]}
 
 
-def _origin_from_json(stored: Mapping[str, Any] | None, met: dict[str, Collected]) -> Collected | None:
+def _origin_from_json(stored: Mapping[str, Any] | None, met: dict[str, RowOrigin]) -> RowOrigin | None:
     if stored is None:
         return None
     key = repr(stored)
     if key not in met:
         ids = tuple((str(title), str(value)) for title, value in stored.get("ids", ()))
-        met[key] = Collected(**{**stored, "ids": ids, "by": tuple(stored.get("by", ()))})
+        met[key] = RowOrigin(**{**stored, "ids": ids, "by": tuple(stored.get("by", ()))})
     return met[key]
 
 
 # ---------------------------------------------------------------------- digests
 
 
-def _digest(rows: Sequence[Row | Rejected | Seen], person_id: int | None) -> str:
+def _digest(rows: Sequence[AnswerRow | Rejected | PlatformFile], person_id: int | None) -> str:
     """Of what rows say, wherever they stood; of what says nobody's name, where as well."""
     digest = sha256(b"" if person_id is None else str(person_id).encode())
     for row in rows:
@@ -372,8 +378,8 @@ def _digest(rows: Sequence[Row | Rejected | Seen], person_id: int | None) -> str
     return digest.hexdigest()
 
 
-def _digest_content(row: Row | Rejected | Seen) -> tuple[Any, ...]:
-    if isinstance(row, Row):
+def _digest_content(row: AnswerRow | Rejected | PlatformFile) -> tuple[Any, ...]:
+    if isinstance(row, AnswerRow):
         content = (*row[:5], row.lang, row.origin)
         return content if row.student else (*content, _name(row.source))
     if isinstance(row, Rejected):

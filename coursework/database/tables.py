@@ -255,7 +255,7 @@ answer = Table(
     Column("source", SafeText, nullable=False),
     Column("warning", SafeText, nullable=False, default=""),
     Column("lang", SafeText, nullable=False, default=""),
-    Column("origin", Json),  #: what a platform tells of it (:class:`coursework.gradebook.rows.Collected`)
+    Column("origin", Json),  #: what a platform tells of it (:class:`coursework.gradebook.rows.RowOrigin`)
 )
 
 #: What came and could not be placed or read, with its reason.
@@ -270,7 +270,7 @@ rejected = Table(
     Column("row", Json, nullable=False, default=dict),
 )
 
-#: What a platform wrote of what came (:class:`coursework.gradebook.rows.Seen`).
+#: What a platform wrote of what came (:class:`coursework.gradebook.rows.PlatformFile`).
 seen = Table(
     "seen",
     METADATA,

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 from coursework.errors import BadInput, counted, nearest
 from coursework.gradebook.changes import lines_of
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import Refused, near, place_of
-from coursework.gradebook.rows import Row
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.placing import UnplacedError, name_hint, sheet_of_row
+from coursework.gradebook.rows import AnswerRow
 from coursework.language.words import words
 from coursework.making.issued import Issued
 from coursework.making.students import folded
@@ -51,7 +51,7 @@ class Accepted:
                 self._headings = [f"{path}, line 1: {wrong}" for wrong in _misspelt(row)]
             acceptance = _acceptance(f"{path}, line {number}", number, row, more)
             self.lines.append(acceptance)
-            self._by_place.setdefault(_key(*acceptance.named), []).append(acceptance)
+            self._by_place.setdefault(_key(*acceptance.answer_key), []).append(acceptance)
 
     def apply(self, graded: Graded, lang: str) -> Graded:
         """The sheet with its accepted answers marked so, those too that no row gave.
@@ -69,7 +69,7 @@ class Accepted:
             for acceptance in self._named(graded, part):
                 self._used.add(acceptance)
                 lines[part] = accepted_mark(
-                    line, acceptance.points, acceptance.reason, lang, acceptance.place
+                    line, acceptance.points, acceptance.reason, lang, acceptance.location
                 )
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
@@ -88,17 +88,17 @@ class Accepted:
         and the answers named that were issued and that nobody gave. ``students`` are those who answered.
         """
         faults, notes = list(self._headings), []
-        issued_parts = _Asked(issued, tuple(students)) if self.lines else None
+        issued_parts = _IssuedParts(issued, tuple(students)) if self.lines else None
         for acceptance in self.lines:
             if issued_parts is not None and acceptance not in self._used:
-                note = f"accepted by hand, but never answered: {acceptance.says}"
+                note = f"accepted by hand, but never answered: {acceptance.answer_text}"
                 why = issued_parts.why_not(acceptance)
-                faults += [f"{acceptance.place}: {note}; {why}"] if why else []
+                faults += [f"{acceptance.location}: {note}; {why}"] if why else []
                 notes += [] if why else [note]
         faults += [] if issued_parts is None else self._contradictions(issued_parts)
         return faults, notes
 
-    def _contradictions(self, issued_parts: _Asked) -> Iterator[str]:
+    def _contradictions(self, issued_parts: _IssuedParts) -> Iterator[str]:
         """The lines on one answer that give other points than the last one before."""
         groups: dict[tuple[str, ...], list[Acceptance]] = {}
         for acceptance in self.lines:
@@ -109,7 +109,7 @@ class Accepted:
             for before, acceptance in _in_turn(group):
                 if issued_parts.points(before) != issued_parts.points(acceptance):
                     yield (
-                        f"{acceptance.place}: {acceptance.gives} for {acceptance.says}, and line {before.line} says {before.gives}; "
+                        f"{acceptance.location}: {acceptance.gives} for {acceptance.answer_text}, and line {before.line} says {before.gives}; "
                         f"line {acceptance.line} counts: take one of them away"
                     )
 
@@ -117,7 +117,7 @@ class Accepted:
 class Acceptance(NamedTuple):
     """A line of the file."""
 
-    place: str
+    location: str
     line: int
     student: str  #: as it is written, and so are the others
     exercise: str
@@ -127,12 +127,12 @@ class Acceptance(NamedTuple):
     reason: str
 
     @property
-    def named(self) -> tuple[str, str, str, str]:
+    def answer_key(self) -> tuple[str, str, str, str]:
         return self.student, self.exercise, self.seed, self.part
 
     @property
-    def says(self) -> str:
-        return ", ".join(filter(None, self.named))
+    def answer_text(self) -> str:
+        return ", ".join(filter(None, self.answer_key))
 
     @property
     def gives(self) -> str:
@@ -222,7 +222,7 @@ def check_points(points: float, part: str, out_of: float, location: str) -> None
         raise BadInput(f"{location}: {points:g} points for {part}, which has {out_of:g}; give that or fewer")
 
 
-class _Asked:
+class _IssuedParts:
     """The parts that were asked, as lines of the file name them."""
 
     def __init__(self, issued: Issued, students: Sequence[str]) -> None:
@@ -240,11 +240,13 @@ class _Asked:
         """Why a line names no answer that was issued; nothing where it does."""
         issued, parts = self._issued, self._parts.get((acceptance.exercise, acceptance.seed))
         if not issued.has_roster and folded(acceptance.student) not in self._answered:
-            return f"no student {acceptance.student!r} among those who answered{near(acceptance.student, self._students)}"
+            return f"no student {acceptance.student!r} among those who answered{name_hint(acceptance.student, self._students)}"
         if issued.has_roster or parts is None:
             try:
-                _, exercise, seed = place_of(issued, Row(*acceptance.named, None, acceptance.place))
-            except Refused as why:
+                _, exercise, seed = sheet_of_row(
+                    issued, AnswerRow(*acceptance.answer_key, None, acceptance.location)
+                )
+            except UnplacedError as why:
                 return str(why)
             parts = self._parts[exercise, str(seed)]
         return (

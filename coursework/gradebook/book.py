@@ -28,7 +28,7 @@ from coursework.gradebook.columns import MARKS_COLUMNS as MARKS_COLUMNS
 from coursework.gradebook.columns import REJECTED_COLUMNS as REJECTED_COLUMNS
 from coursework.gradebook.columns import SUMMARY_COLUMNS as SUMMARY_COLUMNS
 from coursework.gradebook.columns import VERDICTS as VERDICTS
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import exact, mark_of
 from coursework.making.issued import Issued
@@ -190,7 +190,7 @@ class Gradebook:
         return sum(total.verdicts["unreadable"] for total in self.exercises.values())
 
     @property
-    def needs_a_look(self) -> int:
+    def review_count(self) -> int:
         """How many rows somebody must look at: rejected or unreadable, accepted by hand and at fault, or for a person to mark."""
         return len(self.rejected) + self.unreadable + len(self.faults) + self.waiting
 
@@ -232,10 +232,10 @@ def results(book: Gradebook) -> Iterator[tuple[str, Result]]:
     for student in dict.fromkeys((*book.issued.students, *sittings)):
         sat = sorted(sittings.get(student, {1}))
         sat_results = [_result(book, (student, n), unread.get((student, n), {})) for n in sat]
-        yield student, counted_one(book.issued, sat_results)
+        yield student, counting_result(book.issued, sat_results)
 
 
-def counted_one(issued: Issued, results_of_student: Sequence[Result]) -> Result:
+def counting_result(issued: Issued, results_of_student: Sequence[Result]) -> Result:
     """Which of the sittings counts: the best, or as the assignment says the last; of two as good the later."""
     if (issued.assignment or {}).get("sittings", BEST) != BEST:
         return results_of_student[-1]
@@ -246,7 +246,11 @@ def counted_one(issued: Issued, results_of_student: Sequence[Result]) -> Result:
 
 def _result(book: Gradebook, sitting: Sitting, unread_parts: Mapping[tuple[str, int], set[str]]) -> Result:
     total = book.students.get(sitting, Total())
-    lost = [part for key in _owed(book, sitting, unread_parts) for part in _lost(book, sitting, key)]
+    lost = [
+        part
+        for key in _missing_sheets(book, sitting, unread_parts)
+        for part in _missing_parts(book, sitting, key)
+    ]
     waiting = sum(map(len, unread_parts.values()))
     verdicts = Counter(total.verdicts)
     verdicts["unreadable"] += waiting
@@ -256,7 +260,7 @@ def _result(book: Gradebook, sitting: Sitting, unread_parts: Mapping[tuple[str, 
     return Result(sitting[1], total.points, out_of, total.by_exercise, verdicts, late)
 
 
-def _lost(book: Gradebook, sitting: Sitting, key: tuple[str, int]) -> list[Mapping[str, Any]]:
+def _missing_parts(book: Gradebook, sitting: Sitting, key: tuple[str, int]) -> list[Mapping[str, Any]]:
     """The parts of a variant of which nothing came; where a platform asks part by part, those that it asked of others."""
     parts = book.issued.records[key]["parts"]
     apart = book.apart.get(key[0])
@@ -265,7 +269,7 @@ def _lost(book: Gradebook, sitting: Sitting, key: tuple[str, int]) -> list[Mappi
     return [p for p in parts if p["id"] in apart - book.asked_apart.get((sitting, key[0]), set())]
 
 
-def _owed(
+def _missing_sheets(
     book: Gradebook, sitting: Sitting, unread_sheets: Iterable[tuple[str, int]]
 ) -> set[tuple[str, int]]:
     """The variants of which nothing could be marked."""

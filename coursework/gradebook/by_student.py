@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 from coursework.course.course import Course
 from coursework.gradebook.class_marking import marked
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.notebooks import NO_NAME
-from coursework.gradebook.placing import placed
-from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.gradebook.placing import placed_sheets
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.making.issued import Issued
 from coursework.marking.marking import mark
 
@@ -25,7 +25,7 @@ class OwnMarks(NamedTuple):
 
 
 def marks_of_student(
-    course: Course, issued: Issued, student: str, rows: Iterable[Row | Rejected | Seen]
+    course: Course, issued: Issued, student: str, rows: Iterable[AnswerRow | Rejected | PlatformFile]
 ) -> OwnMarks:
     """The marks of a student whom the platform names, whatever name the answers bear.
 
@@ -38,7 +38,7 @@ def marks_of_student(
         The course cannot mark: no solutions, an exercise that the records do not fit.
     """
     notes: list[str] = []
-    sheets = placed(course, issued, as_students(issued, student, rows, notes))
+    sheets = placed_sheets(course, issued, as_students(issued, student, rows, notes))
     by_exercise: dict[str, Graded] = {}
     for graded in marked(course, issued, sheets):
         by_exercise.setdefault(graded.exercise, graded)
@@ -47,11 +47,11 @@ def marks_of_student(
 
 
 def as_students(
-    issued: Issued, student: str, rows: Iterable[Row | Rejected | Seen], notes: list[str]
-) -> Iterator[Row | Rejected]:
+    issued: Issued, student: str, rows: Iterable[AnswerRow | Rejected | PlatformFile], notes: list[str]
+) -> Iterator[AnswerRow | Rejected]:
     """The rows as the student's own; another name in them is told once."""
     for row in rows:
-        if isinstance(row, Seen):
+        if isinstance(row, PlatformFile):
             continue
         if isinstance(row, Rejected):
             yield row

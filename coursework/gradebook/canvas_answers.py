@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from coursework.errors import counted
 from coursework.gradebook.item_label import NO_LABEL, label_in
-from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.system.tables import as_written
 
 WHAT = "Canvas's Student Analysis"
@@ -47,7 +47,7 @@ def is_another(header: Sequence[str]) -> str:
 
 def read_answers(
     header: Sequence[str], rows: Iterable[tuple[str, Sequence[str]]], source: str, warning: str
-) -> Iterator[Row | Rejected | Seen]:
+) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     """The answers of the report, question by question: each names its variant and its part in its text."""
     columns = columns_of(header)
     assert columns is not None, "only a header that has them comes here"
@@ -72,19 +72,19 @@ def read_answers(
             else:
                 names = student, label.exercise, label.seed, label.part
                 row_origin = origin._replace(version=label.version, apart=True)
-                yield Row(*names, label.answer(answer), where, warning, label.lang, row_origin)
-    yield Seen(
+                yield AnswerRow(*names, label.answer(answer), where, warning, label.lang, row_origin)
+    yield PlatformFile(
         source, f"{WHAT}, {counted(sum(attempts.values()), 'attempt')} of {counted(len(attempts), 'student')}"
     )
 
 
-def _origin(header: Sequence[str], columns: AnalysisColumns, cells: Sequence[str]) -> Collected:
+def _origin(header: Sequence[str], columns: AnalysisColumns, cells: Sequence[str]) -> RowOrigin:
     attempt = cells[columns.attempt].strip() if columns.attempt is not None else ""
     submitted = cells[columns.submitted].strip() if columns.submitted is not None else ""
     ids = tuple(
         (_TITLES[header[k].strip().casefold()], cells[k].strip()) for k in columns.ids if cells[k].strip()
     )
-    return Collected(ids, (), int(attempt) if _ATTEMPT.fullmatch(attempt) else 0, submitted)
+    return RowOrigin(ids, (), int(attempt) if _ATTEMPT.fullmatch(attempt) else 0, submitted)
 
 
 _TITLES = {"sis_id": "SIS User ID", "id": "ID"}  #: as Canvas's gradebook calls them

@@ -42,7 +42,7 @@ def _count(digits: str) -> int:
     return int(digits) if len(digits) < 10 else -1
 
 
-class Before:
+class EarlierMarks:
     """The marks that were there before."""
 
     def __init__(self, path: Path) -> None:
@@ -60,7 +60,7 @@ class Before:
                 sitting = name, row.get("sitting", "")
                 self._points[sitting] = self._points.get(sitting, 0.0) + _number(mark[1])
                 self._verdicts.setdefault(sitting, Counter())[mark[0].partition(":")[0]] += 1
-                self._marks[_place(row)] = alike.setdefault(mark, mark)
+                self._marks[_answer_key(row)] = alike.setdefault(mark, mark)
 
     @property
     def students(self) -> tuple[str, ...]:
@@ -87,7 +87,7 @@ class Before:
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
         """What changed in a row of the new marks; None when nothing did."""
         now = (row["verdict"], row["points"])
-        before = self._marks.pop(_place(row), ("", ""))
+        before = self._marks.pop(_answer_key(row), ("", ""))
         return None if before == now else _change(row, before, now)
 
     def gone(self) -> Iterator[dict[str, Any]]:
@@ -107,13 +107,13 @@ class History:
         path, summary = folder / "changes.csv", folder / "summary.csv"
         self._day = day
         self._earlier = [_plain_row(row) for row in rows_of(path)] if path.exists() else []
-        self._last = {_place(row): row for row in self._earlier}
+        self._last = {_answer_key(row): row for row in self._earlier}
         self._marks = _marks_in(rows_of(summary)) if summary.exists() else {}
         self._new: list[dict[str, Any]] = []
 
     def add(self, change: dict[str, Any]) -> None:
         """Add a change, but where the last of that answer is the same: a marking that was stopped wrote it already."""
-        last = self._last.get(_place(change))
+        last = self._last.get(_answer_key(change))
         if last is None or any(last[column] != str(change[column]) for column in _TURN):
             self._new.append(change)
 
@@ -146,7 +146,7 @@ def _marks_in(summary: Iterable[Mapping[str, Any]]) -> dict[str, str]:
     return marks
 
 
-def _place(row: Mapping[str, Any]) -> str:
+def _answer_key(row: Mapping[str, Any]) -> str:
     """Which answer a row of marks is of; one text, of which a large class has many."""
     student, *rest = (str(row.get(c, "")) for c in _PLACE)
     sitting = str(row.get("sitting", ""))

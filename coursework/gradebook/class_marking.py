@@ -12,8 +12,8 @@ from coursework.course.key_batch import keys_of
 from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, BadInput, CourseworkError, NoSolution
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import SheetPlace, Sheets, as_texts
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.placing import SheetKey, Sheets, as_texts
 from coursework.gradebook.rows import Rejected
 from coursework.language.words import words
 from coursework.making.issued import Issued
@@ -31,14 +31,14 @@ WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has star
 # ------------------------------------------------------------------------ marking
 
 
-class _Job(NamedTuple):
+class _SheetJob(NamedTuple):
     """A sheet to mark: the record it was issued by, and its answers by part."""
 
     record: Mapping[str, Any]
     answers: Mapping[str, Any]
 
 
-class _How(NamedTuple):
+class _MarkingOptions(NamedTuple):
     """How sheets are marked, here and in other processes."""
 
     printed: bool  #: feedback sheets are to be made of them
@@ -75,15 +75,15 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
     return _rejecting(sheets, _judged(course, issued, sheets, printed))
 
 
-def rejecting(sheets: Sheets, results: Iterable[tuple[SheetPlace, Graded | str]]) -> Iterator[Graded]:
+def rejecting(sheets: Sheets, results: Iterable[tuple[SheetKey, Graded | str]]) -> Iterator[Graded]:
     """The sheets that could be marked; the rows of the others are rejected with what is said of them."""
     return _rejecting(sheets, ((sheets, *result) for result in results))
 
 
-_Told = tuple[Sheets, SheetPlace, Graded | str]  #: a sheet, among which it is, and what became of it
+_MarkedSheet = tuple[Sheets, SheetKey, Graded | str]  #: a sheet, among which it is, and what became of it
 
 
-def _rejecting(sheets: Sheets, results: Iterable[_Told]) -> Iterator[Graded]:
+def _rejecting(sheets: Sheets, results: Iterable[_MarkedSheet]) -> Iterator[Graded]:
     unmarked: Counter[tuple[str, str]] = Counter()
     for among, sheet, result in results:
         if not isinstance(result, str):
@@ -102,7 +102,7 @@ def _rejecting(sheets: Sheets, results: Iterable[_Told]) -> Iterator[Graded]:
 
 def judged(
     course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True
-) -> Iterator[tuple[SheetPlace, Graded | str]]:
+) -> Iterator[tuple[SheetKey, Graded | str]]:
     """Every sheet with its marks, or why it cannot be marked, in their order.
 
     Raises
@@ -113,30 +113,30 @@ def judged(
     return ((sheet, result) for _, sheet, result in _judged(course, issued, sheets, printed))
 
 
-def _judged(course: Course, issued: Issued, sheets: Sheets, printed: bool) -> Iterator[_Told]:
-    sent: deque[tuple[Sheets, list[SheetPlace]]] = deque()  #: chunks that are being marked
+def _judged(course: Course, issued: Issued, sheets: Sheets, printed: bool) -> Iterator[_MarkedSheet]:
+    sent: deque[tuple[Sheets, list[SheetKey]]] = deque()  #: chunks that are being marked
 
-    def chunks() -> Iterator[list[_Job]]:
+    def chunks() -> Iterator[list[_SheetJob]]:
         for among in sheets.parts(CHUNK):
             places = list(among.sheets)
             for start in range(0, len(places), CHUNK):
                 chunk = places[start : start + CHUNK]
                 sent.append((among, chunk))
-                yield [_job(issued, among, sheet) for sheet in chunk]
+                yield [_sheet_job(issued, among, sheet) for sheet in chunk]
 
-    how = _How(printed, rules_of(course, issued))
+    how = _MarkingOptions(printed, rules_of(course, issued))
     for results in _marked_chunks(course, chunks(), sheets.answers, how):
         among, chunk = sent.popleft()
         for sheet, result in zip(chunk, results, strict=True):
             yield among, sheet, result if isinstance(result, str) else _graded(issued, among, sheet, result)
 
 
-def _job(issued: Issued, sheets: Sheets, sheet: SheetPlace) -> _Job:
+def _sheet_job(issued: Issued, sheets: Sheets, sheet: SheetKey) -> _SheetJob:
     answers = {part: row.answer for part, row in sheets.sheets[sheet].items()}
-    return _Job(record_of(issued, sheets, sheet), answers)
+    return _SheetJob(record_of(issued, sheets, sheet), answers)
 
 
-def record_of(issued: Issued, sheets: Sheets, sheet: SheetPlace) -> Mapping[str, Any]:
+def record_of(issued: Issued, sheets: Sheets, sheet: SheetKey) -> Mapping[str, Any]:
     """The record that a sheet is marked against: in the language that it came back in; of the parts that a platform asked,
     where it asks them apart."""
     record = issued.record_of(*sheet[:3])
@@ -145,7 +145,7 @@ def record_of(issued: Issued, sheets: Sheets, sheet: SheetPlace) -> Mapping[str,
     return {**record, "lang": sheets.langs[sheet]} if sheet in sheets.langs else record
 
 
-def _graded(issued: Issued, sheets: Sheets, sheet: SheetPlace, sent: Sequence[tuple[Any, ...]]) -> Graded:
+def _graded(issued: Issued, sheets: Sheets, sheet: SheetKey, sent: Sequence[tuple[Any, ...]]) -> Graded:
     lines = {line.part: line for line in map(Mark.received, sent)}
     sitting = sheet[3] or issued.sitting_of(*sheet[:3])
     record = record_of(issued, sheets, sheet)
@@ -154,7 +154,7 @@ def _graded(issued: Issued, sheets: Sheets, sheet: SheetPlace, sent: Sequence[tu
 
 
 def _marked_chunks(
-    course: Course, chunks: Iterator[list[_Job]], answers: int, how: _How
+    course: Course, chunks: Iterator[list[_SheetJob]], answers: int, how: _MarkingOptions
 ) -> Iterator[list[list[tuple] | str]]:
     """Each chunk marked, in order; by processes where there is much to do."""
     count = workers(answers, WORTH_PROCESSES)
@@ -168,11 +168,11 @@ def _marked_chunks(
     )
 
 
-def _mark_elsewhere(root: str, chunk: list[_Job], how: _How) -> list[list[tuple] | str]:
+def _mark_elsewhere(root: str, chunk: list[_SheetJob], how: _MarkingOptions) -> list[list[tuple] | str]:
     return _mark_chunk(opened(root, Variant), chunk, how)
 
 
-def _mark_chunk(course: Course, chunk: Sequence[_Job], how: _How) -> list[list[tuple] | str]:
+def _mark_chunk(course: Course, chunk: Sequence[_SheetJob], how: _MarkingOptions) -> list[list[tuple] | str]:
     """Lines a sheet, or why it cannot be marked."""
     variants = [course[job.record["exercise"]].from_record(job.record) for job in chunk]
     by_exercise: dict[str, list[int]] = {}

@@ -46,7 +46,7 @@ def summary_columns(issued: Issued, *, late: bool = False) -> tuple[str, ...]:
 def identity(issued: Issued) -> dict[str, str]:
     """The columns that tell a student of the assignment: title as it is stated -> name in the summary."""
     stated = (issued.assignment or {}).get("identity") or ()
-    return {str(title): _apart(str(title), _taken(issued)) for title in stated}
+    return {str(title): _distinct_title(str(title), _reserved_names(issued)) for title in stated}
 
 
 def exercise_columns(issued: Issued) -> dict[str, str]:
@@ -58,14 +58,14 @@ def exercise_columns(issued: Issued) -> dict[str, str]:
 def carried_columns(issued: Issued) -> dict[str, str]:
     """The columns of the roster: folded title -> name in the summary."""
     titles = {folded(title): title for cells in issued.columns.values() for title in cells}
-    return {f: _apart(title, _taken(issued)) for f, title in titles.items() if f}
+    return {f: _distinct_title(title, _reserved_names(issued)) for f, title in titles.items() if f}
 
 
-def _taken(issued: Issued) -> frozenset[str]:
+def _reserved_names(issued: Issued) -> frozenset[str]:
     return frozenset(map(folded, (*SUMMARY_COLUMNS, MARK, LATE, SITTING, *exercise_columns(issued).values())))
 
 
-def _apart(title: str, reserved: frozenset[str]) -> str:
+def _distinct_title(title: str, reserved: frozenset[str]) -> str:
     """A roster's title that is no name of another column."""
     return f"{title} (roster)" if folded(title) in reserved else title
 

@@ -12,7 +12,7 @@ from coursework.making.issued import Issued
 FORMATS = ("pdf", "html", "ipynb")
 
 
-class Form(NamedTuple):
+class FeedbackForm(NamedTuple):
     """How feedback is asked for: its formats, whether the worked solutions are wanted, and the day it is."""
 
     formats: Sequence[str] = ("pdf",)
@@ -20,10 +20,10 @@ class Form(NamedTuple):
     today: datetime.date | None = None  #: that of the machine unless told
 
 
-USUAL = Form()
+USUAL = FeedbackForm()
 
 
-def shows_solutions(issued: Issued, form: Form) -> bool:
+def shows_solutions(issued: Issued, form: FeedbackForm) -> bool:
     """Whether feedback has the worked solutions: where they are wanted, and of an assignment that states
     ``solutions_after`` from that day on; never before it.
 

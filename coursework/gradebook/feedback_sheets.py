@@ -15,8 +15,8 @@ from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.columns import own_columns
-from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
@@ -40,18 +40,18 @@ from coursework.system.build_folder import renew
 from coursework.system.writing import File, Progress, write, writing
 
 
-class Telling(NamedTuple):
+class FeedbackOptions(NamedTuple):
     """How feedback is told: what a student may try next, and whether the worked solutions are shown."""
 
     practice: PracticeOf | None = None
     solutions: bool = False
 
 
-MARKS_ALONE = Telling()
+MARKS_ALONE = FeedbackOptions()
 
 
 def feedback_sheet(
-    course: Course, graded: Graded, *, answers: bool = False, telling: Telling = MARKS_ALONE
+    course: Course, graded: Graded, *, answers: bool = False, telling: FeedbackOptions = MARKS_ALONE
 ) -> FeedbackSheet:
     """A student's marks on one exercise, ready to print; with the right ``answers`` where they may be shown."""
     variant = course[graded.exercise].from_record(graded.record)
@@ -120,7 +120,7 @@ def feedback_paper(
     graded: Sequence[Graded],
     lang: str,
     waiting: Collection[str] = (),
-    telling: Telling = MARKS_ALONE,
+    telling: FeedbackOptions = MARKS_ALONE,
 ) -> FeedbackPaper:
     """A student's marks on an assignment, of one sitting: one total, the mark, and what to look at next.
 
@@ -152,7 +152,7 @@ def feedback_paper(
 
 
 def feedback_collection(
-    course: Course, student: str, graded: Sequence[Graded], telling: Telling = MARKS_ALONE
+    course: Course, student: str, graded: Sequence[Graded], telling: FeedbackOptions = MARKS_ALONE
 ) -> FeedbackPaper:
     """A student's marks on exercises that were handed out one by one: under one total, their questions numbered as on
     the sheet of each."""
@@ -239,7 +239,7 @@ def write_feedback(
     sheets: Sequence[Graded],
     folder: Path,
     progress: Progress,
-    form: Form = USUAL,
+    form: FeedbackForm = USUAL,
 ) -> None:
     """A file a student and format, called as the student's handouts are; of an assignment one a sitting.
 
@@ -261,8 +261,8 @@ def write_feedback(
     files = []
     for student, mine, name, waiting in places:
         issued = book.issued.of_student(student)
-        telling = Telling(practice.of_student(issued), solutions)
-        content = _Told(course, issued, student, tuple(mine), waiting, telling)
+        telling = FeedbackOptions(practice.of_student(issued), solutions)
+        content = _FeedbackContent(course, issued, student, tuple(mine), waiting, telling)
         for end in form.formats:
             make = partial(_printed, renderer, content, end)
             failed = partial(_warn, book, student)
@@ -276,7 +276,7 @@ def _warn(book: Gradebook, student: str, fault: CourseworkError) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class _Told:
+class _FeedbackContent:
     """What a student is told of one sitting, to be made wherever it is printed."""
 
     course: Course
@@ -284,7 +284,7 @@ class _Told:
     student: str
     graded: tuple[Graded, ...]
     waiting: Collection[str]
-    telling: Telling
+    telling: FeedbackOptions
 
     @cached_property
     def sheet(self) -> FeedbackSheet | FeedbackPaper:
@@ -305,7 +305,7 @@ def renew_feedback(
     sheets: Sequence[Graded],
     out: Path,
     progress: Progress,
-    form: Form = USUAL,
+    form: FeedbackForm = USUAL,
     ready: Callable[[], None] = lambda: None,
 ) -> None:
     """Print feedback, then put it into ``out / "feedback"``: sheets of an earlier marking make way, one that somebody wrote
@@ -326,7 +326,7 @@ def renew_feedback(
         shutil.rmtree(printing, ignore_errors=True)
 
 
-def _printed(renderer: Renderer, content: _Told, end: str) -> bytes:
+def _printed(renderer: Renderer, content: _FeedbackContent, end: str) -> bytes:
     """What a student is told, in a format."""
     sheet = content.sheet
     if end == "ipynb":

@@ -29,7 +29,7 @@ class Filled:
     column: str = ""  #: its title
     most: float | None = None  #: the item's maximum, where it is known
     written: int = 0
-    kept: list[str] = field(default_factory=list)  #: who has a mark that stays, such as EX
+    unchanged: list[str] = field(default_factory=list)  #: who has a mark that stays, such as EX
     absent: list[str] = field(default_factory=list)  #: in the file, and without marks
     strangers: list[str] = field(default_factory=list)  #: with marks, and not in the file
     unclear: list[str] = field(default_factory=list)  #: of whom it cannot be told which line is theirs
@@ -66,15 +66,15 @@ def fill(
         _check_alike(scored, platform, item)
     sign = decimal or platform.decimal or _sign_in(sheet) or "."
     theirs = _matched(sheet, scored, result)
-    for row, student, name in zip(sheet.rows, theirs, sheet.called, strict=True):
+    for row, student, name in zip(sheet.rows, theirs, sheet.names, strict=True):
         if student is None or not (student.has_answered or zeros):
             result.absent.append(name)
         elif sheet.column >= len(row):
             raise BadInput(
                 f"{template}: the line of {name} has {len(row)} cells, and {sheet.title} is further on"
             )
-        elif (content := _cell(row, sheet.column)) in platform.keeps:
-            result.kept.append(f"{name}: {content}")
+        elif (content := _cell(row, sheet.column)) in platform.special_marks:
+            result.unchanged.append(f"{name}: {content}")
         else:
             table.write(row[sheet.column], _points(student, result).replace(".", sign))
             result.written += 1
@@ -92,7 +92,7 @@ class _Sheet(NamedTuple):
     maxima: Sequence[PositionedCell] | None
 
     @property
-    def called(self) -> list[str]:
+    def names(self) -> list[str]:
         """The names as they are told, each of its own."""
         names = [first_name_first(_name(row, self.people)) for row in self.rows]
         ids = [_first_of(row, self.people.ids) for row in self.rows]
@@ -110,7 +110,7 @@ def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Pat
     if not (people.names or people.ids):
         titles_text = ", ".join(title.strip() for title in titles if title.strip())[:200] or "nothing"
         raise BadInput(
-            f"{source} names nobody: a gradebook of {platform.called} has columns for names or e-mails; found {titles_text}; "
+            f"{source} names nobody: a gradebook of {platform.title_of_platform} has columns for names or e-mails; found {titles_text}; "
             f"download it by {platform.download}"
         )
     column = column_of(platform, titles, people, item, source)
@@ -176,7 +176,7 @@ def column_of(
         dict.fromkeys(name for k in places if k > people.last and (name := platform.item_in(titles[k])))
     )
     raise BadInput(
-        f"{source} has no column of {item!r}{nearest(item, names)}; make the item in {platform.called} first, then export"
+        f"{source} has no column of {item!r}{nearest(item, names)}; make the item in {platform.title_of_platform} first, then export"
     )
 
 
@@ -198,7 +198,7 @@ def _check_alike(scored: Iterable[Scored], platform: PlatformGradebook, item: st
     totals = sorted({student.out_of for student in scored if student.out_of})
     if len(totals) > 1:
         raise BadInput(
-            f"the class has points out of {' and '.join(totals[:3])}, and {platform.called}'s export does not tell what {item!r} is out of: "
+            f"the class has points out of {' and '.join(totals[:3])}, and {platform.title_of_platform}'s export does not tell what {item!r} is out of: "
             "say it, --out-of 20"
         )
 

@@ -15,17 +15,17 @@ from coursework.errors import BadInput
 from coursework.gradebook import book as gradebook
 from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.book import Gradebook, Sitting
-from coursework.gradebook.changes import CHANGES_COLUMNS, Before, History
+from coursework.gradebook.changes import CHANGES_COLUMNS, EarlierMarks, History
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
-from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
+from coursework.gradebook.edited_marks import EditedMarks, differs
+from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.feedback_sheets import renew_feedback
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import Sheets
-from coursework.gradebook.platform_files import told_seen
-from coursework.gradebook.rows import Rejected, Row, Seen
-from coursework.gradebook.sheets_on_disk import placed_beside
-from coursework.gradebook.standing import Standing, differs
+from coursework.gradebook.platform_files import platform_file_lines
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
+from coursework.gradebook.sheets_on_disk import placed_on_disk
 from coursework.gradebook.submissions import find, read_file
 from coursework.gradebook.to_mark import TO_MARK, TO_MARK_COLUMNS, ToMark, sorted_rows
 from coursework.making.issued import Issued
@@ -49,7 +49,7 @@ def grade_files(
     accepted: Path | None = None,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
-    form: Form = USUAL,
+    form: FeedbackForm = USUAL,
 ) -> Gradebook:
     """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``to_mark.csv`` where
     answers are marked by a person, whose points in an earlier one count.
@@ -71,11 +71,11 @@ def grade_files(
     )
     by_person = ToMark(out / "to_mark.csv")
 
-    def rows() -> Iterator[Row | Rejected | Seen]:
+    def rows() -> Iterator[AnswerRow | Rejected | PlatformFile]:
         for file in find(submissions):
-            yield from [file] if isinstance(file, (Rejected, Seen)) else read_file(file, submissions)
+            yield from [file] if isinstance(file, (Rejected, PlatformFile)) else read_file(file, submissions)
 
-    with placed_beside(course, issued, rows(), out) as sheets:
+    with placed_on_disk(course, issued, rows(), out) as sheets:
         if not sheets.count:
             raise BadInput(nothing_in(submissions, sheets.rejected))
         feedback = usual_feedback(sheets) if feedback is None else feedback
@@ -110,14 +110,14 @@ def write_marks(
     charged: Mapping[Sitting, float] | None = None,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
-    form: Form = USUAL,
+    form: FeedbackForm = USUAL,
 ) -> Gradebook:
     """Write the files of :func:`grade_files` of sheets that are marked as they are asked for; ``charged`` are the shares that
     are taken off of what came late."""
-    before = Before(out / "marks.csv")
+    before = EarlierMarks(out / "marks.csv")
     history = History(out, _day(form))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
-    book.seen, book.charged = told_seen(sheets.seen), charged or {}
+    book.seen, book.charged = platform_file_lines(sheets.seen), charged or {}
     sheets_shown: list[Graded] = []
     with Tables(out, spreadsheet) as tables:
         marks = tables.open("marks.csv", marks_columns(issued, submitted=sheets.is_dated))
@@ -147,7 +147,7 @@ def write_marks(
         stood = (out / BY_HAND).exists()
         edited = not is_as_written(out / _WRITTEN, marks.path) and before.edited(out / "summary.csv")
         if book.changes and (stood or edited):
-            book.warnings.insert(0, _kept(out / "marks.csv"))
+            book.warnings.insert(0, _kept_copy(out / "marks.csv"))
         if feedback:
             renew_feedback(course, book, sheets_shown, out, progress, form, tables.check)
         tables.check()
@@ -158,7 +158,7 @@ def write_marks(
     return book
 
 
-def _day(form: Form) -> str:
+def _day(form: FeedbackForm) -> str:
     return (form.today or datetime.date.today()).isoformat()
 
 
@@ -175,7 +175,7 @@ def _write_counts(
         rejected.write(row)
 
 
-def grade_standing(
+def grade_edited_marks(
     course: Course,
     marks: Path,
     issued_path: Path,
@@ -184,7 +184,7 @@ def grade_standing(
     feedback: bool | None,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
-    form: Form = USUAL,
+    form: FeedbackForm = USUAL,
 ) -> Gradebook:
     """Write ``summary.csv``, ``rejected.csv`` and feedback sheets of the marks as they stand in a file.
 
@@ -203,7 +203,7 @@ def grade_standing(
         Accepted(default_accepted if default_accepted.exists() else None),
         ToMark(marks.with_name("to_mark.csv")),
     )
-    standing = Standing(course, issued, marks)
+    standing = EditedMarks(course, issued, marks)
     sheets = standing.sheets
     feedback = usual_feedback(sheets) if feedback is None else feedback
     earlier = len(sheets.rejected)
@@ -256,7 +256,7 @@ def _list_to_mark(by_person: ToMark, tables: Tables, book: Gradebook) -> None:
             table.write(row)
 
 
-def _kept(marks: Path) -> str:
+def _kept_copy(marks: Path) -> str:
     """Keep marks that were edited, beside those that take their place; says so."""
     copy = free_name(marks)
     write_whole(copy, marks.read_bytes())

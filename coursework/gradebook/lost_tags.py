@@ -78,7 +78,7 @@ def _closes(text: str) -> bool:
     return bare.count("{") <= bare.count("}")
 
 
-def alone(code: str) -> str:
+def answers_statement(code: str) -> str:
     """The ``answers = {…}`` of a cell that holds more, where nothing else in it touches the answers; else the whole text."""
     start = BEGINS.search(code)
     if start is None:

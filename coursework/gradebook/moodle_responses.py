@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from coursework.errors import counted
 from coursework.gradebook.item_label import NO_LABEL, ItemLabel, label_in
-from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.gradebook.stack_responses import stack_answers
 from coursework.making.identity import EMAIL, FIRST_NAME, SURNAME, WHOLE, identifies, is_called
 from coursework.system.tables import as_written
@@ -100,7 +100,7 @@ def is_another(header: Sequence[str]) -> str:
 
 def read_responses(
     header: Sequence[str], rows: Iterable[tuple[str, Sequence[str]]], source: str, warning: str
-) -> Iterator[Row | Rejected | Seen]:
+) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     """The answers of a report, by attempt; each row is given with its place."""
     columns = columns_of(header)
     assert columns is not None, "only a header that has them comes here"
@@ -112,7 +112,7 @@ def read_responses(
         if _is_average(header, columns, cells):
             continue
         # Of a question tried several times the name stands once.
-        student = _who(header, columns, cells) or student
+        student = _student_of(header, columns, cells) or student
         if all(cells[k].strip() in _NONE for pair in columns.questions for k in pair):
             absent += 1
             continue
@@ -120,7 +120,7 @@ def read_responses(
             yield from _unfinished(columns, cells, student[0], location)
             continue
         attempts[(student[0], *map(str, student[1]))] += 1
-        origin = Collected(
+        origin = RowOrigin(
             student[1], (), attempts[(student[0], *map(str, student[1]))], cells[columns.completed].strip()
         )
         for question, response in columns.questions:
@@ -128,7 +128,7 @@ def read_responses(
             yield from _response(cells[question], cells[response], student[0], origin, where, warning)
     summary = f"{counted(sum(attempts.values()), 'finished attempt')} of {counted(len(attempts), 'student')}"
     summary += f", {counted(absent, 'student')} without an attempt" if absent else ""
-    yield Seen(source, f"{WHAT}, {summary}")
+    yield PlatformFile(source, f"{WHAT}, {summary}")
 
 
 def _is_average(header: Sequence[str], columns: ResponseColumns, cells: Sequence[str]) -> bool:
@@ -139,7 +139,7 @@ def _is_average(header: Sequence[str], columns: ResponseColumns, cells: Sequence
     return not any(cells[k].strip() for k in columns.ids) and any(word in name for word in _AVERAGE)
 
 
-def _who(
+def _student_of(
     header: Sequence[str], columns: ResponseColumns, cells: Sequence[str]
 ) -> tuple[str, tuple[tuple[str, str], ...]] | None:
     name = " ".join(" ".join(cells[k] for k in columns.name).split())
@@ -163,8 +163,8 @@ def _unfinished(
 
 
 def _response(
-    question: str, response: str, student: str, origin: Collected, location: str, warning: str
-) -> Iterator[Row | Rejected]:
+    question: str, response: str, student: str, origin: RowOrigin, location: str, warning: str
+) -> Iterator[AnswerRow | Rejected]:
     """The answers of one response: all parts of a question with several gaps, or the one that its label names."""
     label, text = label_in(question), response.strip()
     if label is None:
@@ -173,8 +173,8 @@ def _response(
         return
     origin = origin._replace(version=label.version, apart=bool(label.part))
 
-    def row(part: str, answer: str) -> Row:
-        return Row(
+    def row(part: str, answer: str) -> AnswerRow:
+        return AnswerRow(
             student,
             label.exercise,
             label.seed,

@@ -10,10 +10,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from coursework.gradebook.lost_tags import alone, answers_texts, joined, printed_identity, source_of
+from coursework.gradebook.lost_tags import (
+    answers_statement,
+    answers_texts,
+    joined,
+    printed_identity,
+    source_of,
+)
 from coursework.gradebook.rows import (
+    AnswerRow,
     Rejected,
-    Row,
     decoded_text,
     load_json,
     name_in,
@@ -27,10 +33,10 @@ from coursework.system import python_code
 
 # --------------------------------------------------------------------- notebook
 
-_BY = "handed in by"  #: among what a notebook says of itself: who its folder says
+_SUBMITTED_BY = "handed in by"  #: among what a notebook says of itself: who its folder says
 
 
-def read_notebook(data: bytes, source: str, by: str = "") -> Iterator[Row | Rejected]:
+def read_notebook(data: bytes, source: str, by: str = "") -> Iterator[AnswerRow | Rejected]:
     """The rows of a notebook; ``by`` is who handed it in, as its folder says."""
     for row in _read(data, source, by):
         if by and isinstance(row, Rejected) and not row.row.get("student"):
@@ -38,7 +44,7 @@ def read_notebook(data: bytes, source: str, by: str = "") -> Iterator[Row | Reje
         yield row
 
 
-def _read(data: bytes, source: str, by: str) -> Iterator[Row | Rejected]:
+def _read(data: bytes, source: str, by: str) -> Iterator[AnswerRow | Rejected]:
     text, warning = decoded_text(data, source)
     try:
         notebook = load_json(text)
@@ -61,7 +67,7 @@ def _read(data: bytes, source: str, by: str) -> Iterator[Row | Rejected]:
             )
             return
         notes.append(f"{source}: its metadata is gone; whose it is, and of which variant, is as it prints it")
-    about = {**about, _BY: by}
+    about = {**about, _SUBMITTED_BY: by}
     if isinstance(about.get("sheets"), list):
         yield from _read_paper(about, cells, source, notes)
         return
@@ -119,7 +125,7 @@ def _has_answer(code: str) -> bool:
 def _answers_in(code: str) -> tuple[dict[Any, Any] | str, str]:
     """The dict of an answers cell, or what is wrong with it; and what is to be told where the cell holds more."""
     answers = literal_answers(code)
-    if isinstance(answers, str) and len(code) <= _LONGEST and (bare := alone(code)) != code:
+    if isinstance(answers, str) and len(code) <= _LONGEST and (bare := answers_statement(code)) != code:
         bare_answers = literal_answers(bare)
         if not isinstance(bare_answers, str):
             return bare_answers, "the answers cell holds more than the answers; that is neither read nor run"
@@ -131,7 +137,7 @@ def _answers_in(code: str) -> tuple[dict[Any, Any] | str, str]:
 
 def _read_paper(
     about: dict[str, Any], cells: list[dict[str, Any]], source: str, notes: list[str]
-) -> Iterator[Row | Rejected]:
+) -> Iterator[AnswerRow | Rejected]:
     """A notebook of several exercises: an answers cell each, which says whose answers it holds."""
     sheets = [
         (name_in(s.get("exercise")), name_in(s.get("seed"))) for s in about["sheets"] if isinstance(s, dict)
@@ -158,7 +164,7 @@ def _read_paper(
             "exercise": exercise,
             "seed": seed,
             "lang": about.get("lang"),
-            _BY: about[_BY],
+            _SUBMITTED_BY: about[_SUBMITTED_BY],
         }
         location = f"{source}, {exercise}" if exercise else source
         if isinstance(cell_answers, str):
@@ -219,15 +225,15 @@ def _with_name(
         return about, warning
     if written:
         return {**about, "student": written}, warning
-    if about[_BY]:
-        return {**about, "student": about[_BY]}, warning
+    if about[_SUBMITTED_BY]:
+        return {**about, "student": about[_SUBMITTED_BY]}, warning
     return {**about, "student": Path(source).stem}, "; ".join(filter(None, (warning, NO_NAME)))
 
 
 def _about(about: dict[str, Any], source: str) -> dict[str, str]:
     """What a notebook says of itself; one that was nobody's is called as its file."""
     named = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
-    name = named["student"] or about.get(_BY) or Path(source).stem
+    name = named["student"] or about.get(_SUBMITTED_BY) or Path(source).stem
     return {**named, "student": name, "part": "", "answer": ""}
 
 

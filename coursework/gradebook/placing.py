@@ -13,14 +13,14 @@ from typing import Any
 from coursework.course.answer_keys import part_called
 from coursework.course.course import Course
 from coursework.errors import UnknownName, nearest
-from coursework.gradebook.doubtful import Doubts, doubts, file_of
-from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.gradebook.conflicting_sheets import Doubts, doubts, file_of
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.making.issued import Issued
 from coursework.making.students import namesakes
 
 _LISTED = 8  #: names that a message lists
 _REMEMBERED = 10_000  #: places of rows, while the next rows are read
-SheetPlace = tuple[
+SheetKey = tuple[
     str, str, int, int
 ]  #: student, exercise, seed, and the attempt where a platform tells it, else 0
 
@@ -29,15 +29,15 @@ SheetPlace = tuple[
 class Sheets:
     """Rows of answers in their places, before they are marked."""
 
-    sheets: dict[SheetPlace, dict[str, Row]] = field(default_factory=dict)
+    sheets: dict[SheetKey, dict[str, AnswerRow]] = field(default_factory=dict)
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     rows_in: int = 0
     blanks: int = 0  #: rows without an answer where another row answers to the same part, or is blank too
-    langs: dict[SheetPlace, str] = field(default_factory=dict)  #: of the sheets that tell theirs
-    seen: Counter[Seen] = field(default_factory=Counter)  #: what platforms wrote
-    submitted: dict[SheetPlace, str] = field(default_factory=dict)  #: when, where that is told
-    apart: set[SheetPlace] = field(
+    langs: dict[SheetKey, str] = field(default_factory=dict)  #: of the sheets that tell theirs
+    seen: Counter[PlatformFile] = field(default_factory=Counter)  #: what platforms wrote
+    submitted: dict[SheetKey, str] = field(default_factory=dict)  #: when, where that is told
+    apart: set[SheetKey] = field(
         default_factory=set
     )  #: of which the platform asked those parts alone that came
 
@@ -71,11 +71,11 @@ class Sheets:
 # ------------------------------------------------------------------------ placing
 
 
-class Refused(Exception):
+class UnplacedError(Exception):
     """Why a row cannot be marked."""
 
 
-def place_of(issued: Issued, row: Row) -> tuple[str, str, int]:
+def sheet_of_row(issued: Issued, row: AnswerRow) -> tuple[str, str, int]:
     """Student, exercise and seed of a row.
 
     Raises
@@ -85,34 +85,38 @@ def place_of(issued: Issued, row: Row) -> tuple[str, str, int]:
     """
     student = student_of(issued, row)
     if not row.student:
-        raise Refused("no student's name")
+        raise UnplacedError("no student's name")
     if student is None:
-        raise Refused(
-            f"no student {row.student!r} on the roster{_who_is_meant(row.student, issued.students)}"
+        raise UnplacedError(
+            f"no student {row.student!r} on the roster{_student_hint(row.student, issued.students)}"
         )
     if row.exercise not in issued.exercises:
-        raise Refused(
+        raise UnplacedError(
             f"no exercise {row.exercise!r} was issued{_near_or_all(row.exercise, issued.exercises)}"
         )
     mine = issued.seeds_of(student, row.exercise)
     if not row.seed and mine:
         return student, row.exercise, mine[-1]
     if not row.seed and issued.has_roster and not issued.is_pool:
-        raise Refused(f"{student} was issued no {row.exercise}")
+        raise UnplacedError(f"{student} was issued no {row.exercise}")
     if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
-        raise Refused(f"a seed is a whole number; found {row.seed[:40]!r}")
+        raise UnplacedError(f"a seed is a whole number; found {row.seed[:40]!r}")
     seed = int(row.seed.removesuffix(".0"))
-    theirs = _theirs(issued, student, row.exercise, mine) if issued.has_roster and not issued.is_pool else ""
+    theirs = (
+        _seeds_hint(issued, student, row.exercise, mine) if issued.has_roster and not issued.is_pool else ""
+    )
     if (row.exercise, seed) not in issued.records:
-        raise Refused(f"seed {seed} of {row.exercise} was not issued{theirs}")
+        raise UnplacedError(f"seed {seed} of {row.exercise} was not issued{theirs}")
     if row.origin is not None:
         _check_version(issued.records[row.exercise, seed], row.origin.version)
     if issued.has_roster and seed not in mine and not issued.is_pool:
-        raise Refused(f"seed {seed} of {row.exercise} is {_whose(issued, row.exercise, seed)}{theirs}")
+        raise UnplacedError(
+            f"seed {seed} of {row.exercise} is {_owner_of_seed(issued, row.exercise, seed)}{theirs}"
+        )
     return student, row.exercise, seed
 
 
-def student_of(issued: Issued, row: Row) -> str | None:
+def student_of(issued: Issued, row: AnswerRow) -> str | None:
     """Whose a row is, by the name as issued; None for a stranger.
 
     Raises
@@ -121,18 +125,20 @@ def student_of(issued: Issued, row: Row) -> str | None:
         It names another than who handed it in.
     """
     return (
-        issued.student(row.student) if row.origin is None else _told_student(issued, row.student, row.origin)
+        issued.student(row.student)
+        if row.origin is None
+        else _stated_student(issued, row.student, row.origin)
     )
 
 
-def _told_student(issued: Issued, name: str, origin: Collected) -> str | None:
+def _stated_student(issued: Issued, name: str, origin: RowOrigin) -> str | None:
     """The student whom a platform tells; an answer that names another than who handed it in is nobody's."""
     by = issued.account(origin.by)
     if by is not None and name in origin.by:
         return by
     student = issued.student(name, origin.ids)
     if None not in (by, student) and by != student:
-        raise Refused(
+        raise UnplacedError(
             f"handed in by {by} ({origin.by[0]}), but it names {student}: a person must say whose it is"
         )
     return student
@@ -140,18 +146,18 @@ def _told_student(issued: Issued, name: str, origin: Collected) -> str | None:
 
 def _check_version(record: Mapping[str, Any], version: str) -> None:
     if version and version != str(record["version"]):
-        raise Refused(
+        raise UnplacedError(
             f"version {version} of {record['exercise']} was answered, and version {record['version']} is issued: name the "
             "issued.json of the export that the platform had"
         )
 
 
-def _whose(issued: Issued, exercise: str, seed: int) -> str:
+def _owner_of_seed(issued: Issued, exercise: str, seed: int) -> str:
     version = issued.versions.get((exercise, seed))
     return f"version {version}'s" if version else "another student's"
 
 
-def _theirs(issued: Issued, student: str, exercise: str, mine: Sequence[int]) -> str:
+def _seeds_hint(issued: Issued, student: str, exercise: str, mine: Sequence[int]) -> str:
     """What a student has, to end a refusal."""
     if not mine:
         return f"; {student} was issued none"
@@ -160,25 +166,27 @@ def _theirs(issued: Issued, student: str, exercise: str, mine: Sequence[int]) ->
     return f"; {student} has {letter}seed {' and '.join(map(str, mine))}"
 
 
-def _who_is_meant(name: str, students: Sequence[str]) -> str:
+def _student_hint(name: str, students: Sequence[str]) -> str:
     """Of namesakes, none before the others."""
     several = namesakes(name, students)
-    return f"; which of {', '.join(map(repr, several))}?" if len(several) > 1 else near(name, students)
+    return f"; which of {', '.join(map(repr, several))}?" if len(several) > 1 else name_hint(name, students)
 
 
-def near(name: str, names: Iterable[str]) -> str:
+def name_hint(name: str, names: Iterable[str]) -> str:
     """``"; did you mean 'x'?"``, or nothing: a class is not listed."""
     hint = nearest(name[:60], names)
     return hint if "did you mean" in hint else ""
 
 
 def _near_or_all(name: str, names: Sequence[str]) -> str:
-    if hint := near(name, names):
+    if hint := name_hint(name, names):
         return hint
     return f"; issued: {', '.join(names[:_LISTED])}{', …' if len(names) > _LISTED else ''}"
 
 
-def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen]) -> Sheets:
+def placed_sheets(
+    course: Course, issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile]
+) -> Sheets:
     """Rows by sheet; those that belong nowhere are rejected with their reason.
 
     Raises
@@ -187,36 +195,38 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen]
         The course cannot mark: no solutions, an exercise that the records do not fit.
     """
     sheets = Sheets()
-    fill(course, issued, sheets, told_places(course, issued, list(rows), sheets))
+    fill(course, issued, sheets, placed_rows(course, issued, list(rows), sheets))
     return sheets
 
 
-Told = tuple[SheetPlace, Row] | Rejected  #: a row with its place, or why it has none
+PlacedRow = tuple[SheetKey, AnswerRow] | Rejected  #: a row with its place, or why it has none
 
 
-def told_places(
-    course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen], sheets: Sheets
-) -> Iterator[Told]:
+def placed_rows(
+    course: Course, issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], sheets: Sheets
+) -> Iterator[PlacedRow]:
     """Row by row its place, or why it has none; what is told of all together is noted in ``sheets``. The rows are read twice:
     once for those that wait since others contradict them, then as they are asked for.
 
     Raises
     ------
     CourseworkError
-        As for :func:`placed`, before the first row is read.
+        As for :func:`placed_sheets`, before the first row is read.
     """
     _check_records(course, issued)
-    waits = doubts(issued, ((row, partial(_sheet_of, issued, row)) for row in rows if isinstance(row, Row)))
-    return _told_in_turn(issued, rows, sheets, waits)
+    waits = doubts(
+        issued, ((row, partial(_sheet_of, issued, row)) for row in rows if isinstance(row, AnswerRow))
+    )
+    return _placed_in_order(issued, rows, sheets, waits)
 
 
-def _told_in_turn(
-    issued: Issued, rows: Iterable[Row | Rejected | Seen], sheets: Sheets, waits: Doubts
-) -> Iterator[Told]:
-    place_told = _memory_of_places(issued)
-    unsaid: set[SheetPlace] = set()  #: sheets of several sittings, whose answers do not say which
+def _placed_in_order(
+    issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], sheets: Sheets, waits: Doubts
+) -> Iterator[PlacedRow]:
+    place_told = _place_cache(issued)
+    unsaid: set[SheetKey] = set()  #: sheets of several sittings, whose answers do not say which
     for row in rows:
-        if isinstance(row, Seen):
+        if isinstance(row, PlatformFile):
             sheets.seen[row] += 1
             continue
         sheets.rows_in += 1
@@ -234,7 +244,7 @@ def _told_in_turn(
             continue
         if issued.has_sittings and not row.seed and key not in unsaid and len(issued.seeds_of(*key[:2])) > 1:
             unsaid.add(key)
-            sheets.warnings.append(_latest(issued, key))
+            sheets.warnings.append(_latest_warning(issued, key))
         if row.origin is not None:
             issued.has_sittings = issued.has_sittings or row.origin.sitting > 1
         yield key, row
@@ -252,12 +262,12 @@ def _check_records(course: Course, issued: Issued) -> None:
         course[exercise].from_record(record_of_exercise)
 
 
-def _memory_of_places(issued: Issued) -> Callable[[Row], SheetPlace | str]:
+def _place_cache(issued: Issued) -> Callable[[AnswerRow], SheetKey | str]:
     """The place of a row, or why it has none; looked for once for rows of one sheet that are near each other."""
-    passing: dict[tuple[str, str, str, Collected | None], SheetPlace | str] = {}
+    passing: dict[tuple[str, str, str, RowOrigin | None], SheetKey | str] = {}
     lasting = passing.copy()
 
-    def place_told(row: Row) -> SheetPlace | str:
+    def place_told(row: AnswerRow) -> SheetKey | str:
         # Whom a platform names and no roster is who they were when first met; others are found again as they were.
         memory = lasting if row.origin is not None and not issued.has_roster else passing
         named = row.student, row.exercise, row.seed, row.origin
@@ -265,8 +275,8 @@ def _memory_of_places(issued: Issued) -> Callable[[Row], SheetPlace | str]:
             if len(passing) >= _REMEMBERED:
                 passing.clear()
             try:
-                key = (*place_of(issued, row), 0 if row.origin is None else row.origin.sitting)
-            except Refused as why:
+                key = (*sheet_of_row(issued, row), 0 if row.origin is None else row.origin.sitting)
+            except UnplacedError as why:
                 key = str(why)
             memory[named] = key
         return key
@@ -274,21 +284,23 @@ def _memory_of_places(issued: Issued) -> Callable[[Row], SheetPlace | str]:
     return place_told
 
 
-def fill(course: Course, issued: Issued, sheets: Sheets, placed_rows: Iterable[Told]) -> None:
+def fill(course: Course, issued: Issued, sheets: Sheets, placements: Iterable[PlacedRow]) -> None:
     """Put rows on their sheets."""
-    put_row = putting(course, issued, sheets)
-    for placed_row in placed_rows:
+    put_row = row_placer(course, issued, sheets)
+    for placed_row in placements:
         refused = placed_row if isinstance(placed_row, Rejected) else put_row(*placed_row)
         if refused is not None:
             sheets.rejected.append(refused)
     sheets.drop_empty()
 
 
-def putting(course: Course, issued: Issued, sheets: Sheets) -> Callable[[SheetPlace, Row], Rejected | None]:
+def row_placer(
+    course: Course, issued: Issued, sheets: Sheets
+) -> Callable[[SheetKey, AnswerRow], Rejected | None]:
     """What puts a row on its sheet, or says why not; rows of a sheet come in their order."""
     parts_of_variant: dict[tuple[str, int], tuple[str, ...]] = {}
 
-    def put(key_of_sheet: SheetPlace, row: Row) -> Rejected | None:
+    def put(key_of_sheet: SheetKey, row: AnswerRow) -> Rejected | None:
         key, reason = key_of_sheet[1:3], ""
         if key not in parts_of_variant:
             parts_of_variant[key] = tuple(str(part["id"]) for part in issued.records[key]["parts"])
@@ -301,8 +313,8 @@ def putting(course: Course, issued: Issued, sheets: Sheets) -> Callable[[SheetPl
         if row.part not in parts_of_variant[key]:
             row = row._replace(part=part_called(row.part, parts_of_variant[key]))
         if row.part not in parts_of_variant[key]:
-            near = nearest(row.part[:60], sorted(parts_of_variant[key]))
-            reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"
+            name_hint = nearest(row.part[:60], sorted(parts_of_variant[key]))
+            reason = f"{row.exercise} has no part {row.part[:60]!r}{name_hint}"
         elif row.part in sheet:
             before = sheet[row.part]
             if _is_blank(row):
@@ -322,13 +334,13 @@ def putting(course: Course, issued: Issued, sheets: Sheets) -> Callable[[SheetPl
     return put
 
 
-def _sheet_of(issued: Issued, row: Row) -> tuple[str, str, int] | None:
-    with suppress(Refused):
-        return place_of(issued, row)
+def _sheet_of(issued: Issued, row: AnswerRow) -> tuple[str, str, int] | None:
+    with suppress(UnplacedError):
+        return sheet_of_row(issued, row)
     return None
 
 
-def _leave_blank(sheets: Sheets, key: SheetPlace, parts: Sequence[str], row: Row) -> None:
+def _leave_blank(sheets: Sheets, key: SheetKey, parts: Sequence[str], row: AnswerRow) -> None:
     """A sheet that came back without a word: each of its questions is a row."""
     sheet = sheets.sheets[key]
     sheets.rows_in += len(parts) - 1
@@ -337,7 +349,7 @@ def _leave_blank(sheets: Sheets, key: SheetPlace, parts: Sequence[str], row: Row
         sheet.setdefault(part, row._replace(part=part))
 
 
-def _note(sheets: Sheets, key: SheetPlace, origin: Collected) -> None:
+def _note(sheets: Sheets, key: SheetKey, origin: RowOrigin) -> None:
     """Keep when a sheet was handed in, and whether it was asked part by part."""
     if origin.submitted:
         sheets.submitted.setdefault(key, origin.submitted)
@@ -345,7 +357,7 @@ def _note(sheets: Sheets, key: SheetPlace, origin: Collected) -> None:
         sheets.apart.add(key)
 
 
-def _latest(issued: Issued, key: SheetPlace) -> str:
+def _latest_warning(issued: Issued, key: SheetKey) -> str:
     """That answers without a seed are taken for those of the latest sitting."""
     sitting = issued.sitting_of(*key[:3])
     return (
@@ -354,11 +366,11 @@ def _latest(issued: Issued, key: SheetPlace) -> str:
     )
 
 
-def _is_blank(row: Row) -> bool:
+def _is_blank(row: AnswerRow) -> bool:
     return row.answer is None or (isinstance(row.answer, str) and not row.answer.strip())
 
 
-def as_texts(row: Row) -> dict[str, str]:
+def as_texts(row: AnswerRow) -> dict[str, str]:
     answer = "" if row.answer is None else str(row.answer)
     return {
         "student": row.student,

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from coursework.errors import counted
 from coursework.gradebook import canvas_answers, moodle_responses
-from coursework.gradebook.rows import Rejected, Row, Seen, name_in
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, name_in
 
 Rows = Iterator[tuple[str, Sequence[str]]]
 
@@ -18,7 +18,7 @@ class PlatformTable(NamedTuple):
     """A table that a platform writes."""
 
     is_this: Callable[[Sequence[str]], object]  #: by its header
-    read: Callable[[Sequence[str], Rows, str, str], Iterator[Row | Rejected | Seen]]
+    read: Callable[[Sequence[str], Rows, str, str], Iterator[AnswerRow | Rejected | PlatformFile]]
 
 
 TABLES = (
@@ -40,7 +40,7 @@ def fault_of(header: Sequence[str]) -> str:
 
 def read_table(
     table: PlatformTable, text: str, delimiter: str, source: str, warning: str
-) -> Iterator[Row | Rejected | Seen]:
+) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     """The rows of a platform's CSV; a cell may run over any number of lines."""
     before = csv.field_size_limit(2**31 - 1)
     try:
@@ -59,7 +59,9 @@ def read_table(
     yield from table.read(records[0][1], iter(records[1:]), source, warning)
 
 
-def read_records(content: Any, source: str, warning: str) -> Iterator[Row | Rejected | Seen] | None:
+def read_records(
+    content: Any, source: str, warning: str
+) -> Iterator[AnswerRow | Rejected | PlatformFile] | None:
     """The rows of a platform's table as JSON, lists of objects; None where it is none."""
     sheets = content if isinstance(content, list) and content and isinstance(content[0], list) else [content]
     items = [item for sheet in sheets if isinstance(sheet, list) for item in sheet]
@@ -79,7 +81,7 @@ def read_records(content: Any, source: str, warning: str) -> Iterator[Row | Reje
     return table.read(header, rows, source, warning)
 
 
-def told_seen(seen: Mapping[Seen, int]) -> tuple[str, ...]:
+def platform_file_lines(seen: Mapping[PlatformFile, int]) -> tuple[str, ...]:
     """What was seen, a line each."""
     return tuple(
         f"{file.source} is {file.what}" + (f", {counted(count, 'file')}" if file.is_tree else "")

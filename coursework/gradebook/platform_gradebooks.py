@@ -14,10 +14,10 @@ class PlatformGradebook(NamedTuple):
     """One platform's table of marks."""
 
     name: str
-    called: str  #: as people call it
+    title_of_platform: str  #: as people call it
     title: str  #: a pattern of a column's title with ``item`` in it, and ``most`` where it tells the maximum
     download: str  #: how its export is had
-    keeps: tuple[str, ...] = ()  #: what a cell may hold that is no mark and stays
+    special_marks: tuple[str, ...] = ()  #: what a cell may hold that is no mark and stays
     maxima: str = ""  #: what a line of maxima begins with
     decimal: str = ""  #: the decimal sign that it reads in every language; empty where it is that of the file
 

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
 from coursework.errors import counted
-from coursework.gradebook.rows import Collected, Rejected, Row, Seen, decoded_text, short_fault
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin, decoded_text, short_fault
 
 WHAT = "a result of QTI"
 _ITEM = re.compile(
@@ -17,7 +17,7 @@ _NUMBERED = re.compile(r"(?:RESPONSE|R|PART)[_-]?(?P<number>[1-9][0-9]*)", re.I)
 _NO_ANSWERS = ("numattempts", "duration", "completionstatus")
 
 
-def read_results(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
+def read_results(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     """The answers of a file of results; entities that a file declares are never followed."""
     text, warning = decoded_text(data, source)
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
@@ -36,7 +36,7 @@ def read_results(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
             items += 1
             yield from _item(item, student, source, warning)
     if items:
-        yield Seen(source, f"{WHAT}, {counted(items, 'item')} of {counted(len(results), 'student')}")
+        yield PlatformFile(source, f"{WHAT}, {counted(items, 'item')} of {counted(len(results), 'student')}")
     else:
         yield Rejected(
             source, f"no answers: XML is read where it is {WHAT}, assessmentResult with itemResult in it"
@@ -60,7 +60,7 @@ def _student(result: ET.Element) -> str:
     return "" if context is None else _named(context, "sourcedId").strip()
 
 
-def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator[Row | Rejected]:
+def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator[AnswerRow | Rejected]:
     identifier = _named(item, "identifier")
     location, match = f"{source}, {identifier}", _ITEM.fullmatch(identifier)
     answers = [answer for answer in item if _tag(answer) == "responseVariable"]
@@ -76,12 +76,12 @@ def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator
             for answer in item_answers
         )
         return
-    origin = Collected(
+    origin = RowOrigin(
         (("login", student),) if student else (), (), 0, _named(item, "datestamp"), match["version"]
     )
     for answer in item_answers:
         part = _part(_named(answer, "identifier"))
-        yield Row(
+        yield AnswerRow(
             student,
             match["exercise"],
             match["seed"],

@@ -13,7 +13,7 @@ from coursework.making.identity import Ids
 from coursework.system.tables import decode
 
 
-class Collected(NamedTuple):
+class RowOrigin(NamedTuple):
     """What a platform tells of the sheet that an answer is of."""
 
     ids: Ids = ()  #: of the student: e-mail, number
@@ -24,7 +24,7 @@ class Collected(NamedTuple):
     apart: bool = False  #: the platform asks part by part, each of a variant of its own
 
 
-class Seen(NamedTuple):
+class PlatformFile(NamedTuple):
     """A file, or a tree of them, that a platform wrote."""
 
     source: str
@@ -32,7 +32,7 @@ class Seen(NamedTuple):
     is_tree: bool = False  #: told once for each file
 
 
-class Row(NamedTuple):
+class AnswerRow(NamedTuple):
     """One answer as it came."""
 
     student: str
@@ -43,7 +43,7 @@ class Row(NamedTuple):
     source: str  #: file and place, for reports
     warning: str = ""
     lang: str = ""  #: of the sheet that it was written on, where that is told
-    origin: Collected | None = None  #: where a platform collected it
+    origin: RowOrigin | None = None  #: where a platform collected it
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def decoded_text(data: bytes, source: str) -> tuple[str, str]:
     return text, f"{source}: {warning}" if warning else ""
 
 
-def _whole(text: str) -> str:
+def _storable_text(text: str) -> str:
     """The text without halves of characters and NUL, which no file or database can hold."""
     return text.encode("utf-8", "replace").decode("utf-8").replace("\0", "\ufffd")
 
@@ -76,10 +76,10 @@ _QUOTED = 200  #: characters of what is rejected
 
 def quoted(text: str) -> str:
     """The beginning of what was written where nothing is read, as a table can hold it."""
-    return _whole(text.strip()[:_QUOTED])
+    return _storable_text(text.strip()[:_QUOTED])
 
 
-class _Repeated(dict):
+class _DictWithRepeats(dict):
     """A JSON object, the pairs that repeat a key of it, and those that stand where nothing is read, with why."""
 
     repeats: tuple[tuple[Any, Any], ...] = ()
@@ -88,10 +88,10 @@ class _Repeated(dict):
 
 def load_json(text: str) -> Any:
     """JSON whose objects remember the keys that they repeat; numbers of absurd length stay texts."""
-    return json.loads(text, object_pairs_hook=object_once, parse_int=_whole_number)
+    return json.loads(text, object_pairs_hook=object_once, parse_int=_integer_or_text)
 
 
-def _whole_number(digits: str) -> Any:
+def _integer_or_text(digits: str) -> Any:
     return int(digits) if len(digits) < 400 else digits
 
 
@@ -105,7 +105,7 @@ def object_once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
             first[key] = value
     if not repeats:
         return first
-    merged = _Repeated(first)
+    merged = _DictWithRepeats(first)
     merged.repeats = tuple(repeats)
     return merged
 
@@ -114,14 +114,14 @@ def with_unread(
     pairs: dict[Any, Any], unread: list[tuple[Any, str, str]], instead: Collection[Any]
 ) -> dict[Any, Any]:
     """The same answers but those of some keys, ``instead`` of which there are others where nothing is read: key, text, why."""
-    merged = _Repeated({key: value for key, value in pairs.items() if key not in instead})
+    merged = _DictWithRepeats({key: value for key, value in pairs.items() if key not in instead})
     merged.repeats, merged.unread = getattr(pairs, "repeats", ()), tuple(unread)
     return merged
 
 
 def sheet_rows(
     about: dict[str, Any], answers: dict[Any, Any], location: str, warning: str
-) -> Iterator[Row | Rejected]:
+) -> Iterator[AnswerRow | Rejected]:
     names = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
     if not answers and not getattr(answers, "unread", ()):
         yield Rejected(location, "the sheet holds no answer", {**names, "part": "", "answer": ""})
@@ -137,7 +137,9 @@ def sheet_rows(
             yield Rejected(where, "an answer is a text or a number", row)
             continue
         lang = name_in(about.get("lang"))
-        yield Row(names["student"], names["exercise"], names["seed"], part, answer, where, warning, lang)
+        yield AnswerRow(
+            names["student"], names["exercise"], names["seed"], part, answer, where, warning, lang
+        )
 
 
 # , answer=answer, source=where, warning=warning, lang=lang)
@@ -148,7 +150,7 @@ def as_answer(answer: Any) -> Any:
     if isinstance(answer, (list, tuple)):
         return "; ".join(_text_of(a) for a in answer)
     if isinstance(answer, str):
-        return _whole(answer)
+        return _storable_text(answer)
     if isinstance(answer, int) and not isinstance(answer, bool) and abs(answer) >= 10**400:
         return _text_of(answer)
     return answer
@@ -156,7 +158,7 @@ def as_answer(answer: Any) -> Any:
 
 def _text_of(value: Any) -> str:
     try:
-        return _whole(str(value))
+        return _storable_text(str(value))
     except ValueError:  # an integer of too many digits
         return "a number of very many digits"
 

@@ -2,7 +2,7 @@
 
 Rows come in the order of their files, and those of a sheet may be far apart. They are parted by sheet, so that all of one are in
 one part, and a part is small; each part is put together, and what it gives is read back in the order in which the sheets
-first appeared. So what comes out is what :func:`coursework.gradebook.placing.placed` gives.
+first appeared. So what comes out is what :func:`coursework.gradebook.placing.placed_sheets` gives.
 
 What is written lies in files without a name, beside the result: they go with the process, however it ends.
 """
@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 from coursework.course.course import Course
-from coursework.gradebook.placing import SheetPlace, Sheets, Told, fill, putting, told_places
-from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.gradebook.placing import PlacedRow, SheetKey, Sheets, fill, placed_rows, row_placer
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.making.issued import Issued
 from coursework.system.writing import writing
 
@@ -32,10 +32,10 @@ _BLOCK = 16  #: sheets of each part that are read at once
 
 
 @contextmanager
-def placed_beside(
-    course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen], out: Path
+def placed_on_disk(
+    course: Course, issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], out: Path
 ) -> Iterator[Sheets]:
-    """Rows by sheet, as :func:`coursework.gradebook.placing.placed` gives them; where there are many, they lie on the disk of
+    """Rows by sheet, as :func:`coursework.gradebook.placing.placed_sheets` gives them; where there are many, they lie on the disk of
     ``out`` while the context lasts, and :meth:`Sheets.parts` reads them.
 
     Raises
@@ -50,13 +50,13 @@ def placed_beside(
     with ExitStack() as stack:
         with _Blocks(folder) as by_part:
             with _Blocks(folder) as read:
-                again = _Again(rows, read)
-                placed_rows = told_places(course, issued, again, sheets_read)
+                again = _RereadableRows(rows, read)
+                placements = placed_rows(course, issued, again, sheets_read)
                 if not again.are_many:
-                    fill(course, issued, sheets_read, placed_rows)
+                    fill(course, issued, sheets_read, placements)
                     yield sheets_read
                     return
-                rejected = _parted(placed_rows, by_part)
+                rejected = _split_by_sheet(placements, by_part)
             sheets = _SheetsOnDisk(sheets_read, stack.enter_context(_Blocks(folder)))
             for part in range(PARTS):
                 rejected += sheets.take(course, issued, by_part.of(part), part)
@@ -64,10 +64,10 @@ def placed_beside(
         yield sheets
 
 
-_Read = Row | Rejected | Seen
+_Read = AnswerRow | Rejected | PlatformFile
 
 
-class _Again:
+class _RereadableRows:
     """Rows that are read twice: held where they are few, on disk where they are many."""
 
     def __init__(self, rows: Iterable[_Read], blocks: _Blocks) -> None:
@@ -91,15 +91,15 @@ class _Again:
             yield row
 
 
-_Numbered = tuple[int, Rejected]  #: by the number of the row
+_NumberedRow = tuple[int, Rejected]  #: by the number of the row
 
 
-def _parted(placed_rows: Iterator[Told], by_part: _Blocks) -> list[_Numbered]:
+def _split_by_sheet(placements: Iterator[PlacedRow], by_part: _Blocks) -> list[_NumberedRow]:
     """Put rows into the parts of their sheets; gives those that have no place."""
-    rejected: list[_Numbered] = []
-    numbered = enumerate(placed_rows)
+    rejected: list[_NumberedRow] = []
+    numbered = enumerate(placements)
     while some := list(islice(numbered, AT_ONCE)):
-        parts: dict[int, list[tuple[int, SheetPlace, Row]]] = {}
+        parts: dict[int, list[tuple[int, SheetKey, AnswerRow]]] = {}
         for number, placed_row in some:
             if isinstance(placed_row, Rejected):
                 rejected.append((number, placed_row))
@@ -114,8 +114,8 @@ class _Stored(NamedTuple):
     """A sheet."""
 
     number: int  #: of the first row that came
-    place: SheetPlace
-    rows: dict[str, Row]
+    key: SheetKey
+    rows: dict[str, AnswerRow]
     lang: str | None
     submitted: str | None
     apart: bool
@@ -151,13 +151,13 @@ class _SheetsOnDisk(Sheets):
         self,
         course: Course,
         issued: Issued,
-        blocks: Iterable[Sequence[tuple[int, SheetPlace, Row]]],
+        blocks: Iterable[Sequence[tuple[int, SheetKey, AnswerRow]]],
         part: int,
-    ) -> list[_Numbered]:
+    ) -> list[_NumberedRow]:
         """Put the rows of a part on their sheets, and these on disk; gives the rows that are refused."""
         sheets_of_part, rejected = Sheets(), []
-        put_row = putting(course, issued, sheets_of_part)
-        numbers: dict[SheetPlace, int] = {}
+        put_row = row_placer(course, issued, sheets_of_part)
+        numbers: dict[SheetKey, int] = {}
         for number, key, row in chain.from_iterable(blocks):
             numbers.setdefault(key, number)
             if (refused := put_row(key, row)) is not None:
@@ -181,7 +181,7 @@ class _SheetsOnDisk(Sheets):
             yield _together(some)
 
 
-def _stored(sheets: Sheets, key: SheetPlace, number: int) -> _Stored:
+def _stored(sheets: Sheets, key: SheetKey, number: int) -> _Stored:
     values = sheets.langs.get(key), sheets.submitted.get(key), key in sheets.apart
     return _Stored(number, key, sheets.sheets[key], *values)
 
@@ -189,13 +189,13 @@ def _stored(sheets: Sheets, key: SheetPlace, number: int) -> _Stored:
 def _together(some: Iterable[_Stored]) -> Sheets:
     sheets = Sheets()
     for stored in some:
-        sheets.sheets[stored.place] = stored.rows
+        sheets.sheets[stored.key] = stored.rows
         if stored.lang is not None:
-            sheets.langs[stored.place] = stored.lang
+            sheets.langs[stored.key] = stored.lang
         if stored.submitted is not None:
-            sheets.submitted[stored.place] = stored.submitted
+            sheets.submitted[stored.key] = stored.submitted
         if stored.apart:
-            sheets.apart.add(stored.place)
+            sheets.apart.add(stored.key)
     return sheets
 
 

@@ -1,6 +1,6 @@
 """Reading what comes back: CSV, JSON and notebooks of answers, and what platforms export. Answers are data: nothing is run.
 
-Every row of every file comes out, as a :class:`Row` or as a :class:`Rejected` with its reason.
+Every row of every file comes out, as a :class:`AnswerRow` or as a :class:`Rejected` with its reason.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from coursework.gradebook.notebooks import read_notebook
 from coursework.gradebook.platform_files import fault_of, read_records, read_table, reader_of
 from coursework.gradebook.qti_results import read_results
 from coursework.gradebook.rows import (
+    AnswerRow,
+    PlatformFile,
     Rejected,
-    Row,
-    Seen,
     as_answer,
     decoded_text,
     load_json,
@@ -30,7 +30,7 @@ from coursework.gradebook.rows import (
     sheet_rows,
     short_fault,
 )
-from coursework.gradebook.trees import BESIDE, HandedIn, handed_in, latest_first
+from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, latest_first, submitted_file
 from coursework.making.issued import COLUMNS
 from coursework.system.extras import NotAtHand, library
 from coursework.system.limits import MOST_BYTES as MAX_BYTES
@@ -59,27 +59,27 @@ def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
     paths = tuple(paths)
     for path in paths:
         if not path.exists():
-            raise BadInput(f"no such file or folder: {path}{_beside(path)}")
+            raise BadInput(f"no such file or folder: {path}{_similar_file(path)}")
     for path in paths:
         if path.is_dir():
-            yield from _below(path)
+            yield from _files_below(path)
         elif path.suffix.lower() not in ENDINGS:
             yield _odd_file(path)
         else:
             yield path
 
 
-def _below(folder: Path) -> Iterator[Path | Rejected]:
+def _files_below(folder: Path) -> Iterator[Path | Rejected]:
     walked_files = walked(folder)
     files = latest_first(p for p in walked_files.files if not _is_hidden(p, folder))
     refused = [p for p in walked_files.refused if not _is_hidden(p, folder)]
     yield from (Rejected(path_text(p), LEADS_OUT) for p in refused)
-    yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in BESIDE)
+    yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in SIDE_FILES)
     if not files and not refused:
         yield Rejected(path_text(folder), "the folder holds no file")
 
 
-def _beside(path: Path) -> str:
+def _similar_file(path: Path) -> str:
     """The file or folder that may have been meant, if one of nearly that name is there."""
     names = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     near = closest(path.name, names)
@@ -105,28 +105,30 @@ def _odd_file(path: Path) -> Rejected:
     return Rejected(path_text(path), f"answers come as {', '.join(ENDINGS)}; found {ending}")
 
 
-def read_file(path: Path, given: Iterable[Path] = ()) -> Iterator[Row | Rejected | Seen]:
+def read_file(path: Path, given: Iterable[Path] = ()) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     """The rows of one file; a file that cannot be read is one rejected row.
 
     ``given`` is what somebody named, a folder of which may hold the file: nothing outside of that folder is read.
     """
     folder = folder_of(path, given)
-    handed = handed_in(path) if path.suffix.lower() == ".ipynb" else None
+    handed = submitted_file(path) if path.suffix.lower() == ".ipynb" else None
     if handed is None:
         yield from _read(path, None, folder)
         return
     yield handed.seen
     for row in _read(path, handed, folder):
-        yield row._replace(origin=handed.origin) if isinstance(row, Row) else row
+        yield row._replace(origin=handed.origin) if isinstance(row, AnswerRow) else row
 
 
-def read_rows(path: Path, most: int) -> list[Row | Rejected | Seen] | None:
+def read_rows(path: Path, most: int) -> list[AnswerRow | Rejected | PlatformFile] | None:
     """Return the rows of one file; None where it has more than ``most``."""
     rows = list(islice(read_file(path), most + 1))
     return rows if len(rows) <= most else None
 
 
-def _read(path: Path, handed: HandedIn | None, folder: Path | None) -> Iterator[Row | Rejected | Seen]:
+def _read(
+    path: Path, handed: SubmittedFile | None, folder: Path | None
+) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     try:
         file = path.open("rb") if folder is None else open_inside(path, folder)
     except OSError as fault:
@@ -140,7 +142,9 @@ def _read(path: Path, handed: HandedIn | None, folder: Path | None) -> Iterator[
             yield from _read_whole(path, file, handed)
 
 
-def _read_whole(path: Path, file: BinaryIO, handed: HandedIn | None) -> Iterator[Row | Rejected | Seen]:
+def _read_whole(
+    path: Path, file: BinaryIO, handed: SubmittedFile | None
+) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     reader = _READERS[path.suffix.lower()]
     try:
         size = os.fstat(file.fileno()).st_size
@@ -162,7 +166,7 @@ def _read_whole(path: Path, file: BinaryIO, handed: HandedIn | None) -> Iterator
 # ------------------------------------------------------------------------- text
 
 
-def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
+def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     if not data.strip():
         yield Rejected(source, "the file is empty")
         return
@@ -222,13 +226,13 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
         yield Rejected(source, NO_ANSWERS)
 
 
-def _row_of(cells: Sequence[str], location: str, warning: str) -> Row:
+def _row_of(cells: Sequence[str], location: str, warning: str) -> AnswerRow:
     """The row of the cells of :data:`COLUMNS`, in their order."""
     student, exercise, seed, part, answer = cells
     if "'" in student or "'" in answer:
         student, answer = as_written(student), as_written(answer)
     # Of a class they are a few texts, over and over: kept once.
-    return Row(
+    return AnswerRow(
         _kept(student.strip()),
         _kept(exercise.strip()),
         _kept(seed.strip()),
@@ -244,7 +248,7 @@ _kept = sys.intern
 NO_ANSWERS = "the file holds no answers"
 
 
-def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[Row | Rejected]:
+def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[AnswerRow | Rejected]:
     """The rows of a Parquet file with the columns of the CSV; the seed and the answer may be numbers."""
     try:
         pyarrow: Any = library("pyarrow", "Parquet needs", "parquet")
@@ -274,7 +278,7 @@ def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[Row | Rejected]:
                     row = {**dict(zip(COLUMNS, cells, strict=True)), "answer": answer[:200]}
                     yield Rejected(location, beyond("an answer", len(answer), MOST_CELL, "characters"), row)
                     continue
-                yield Row(student, exercise, seed, part, answer, location)
+                yield AnswerRow(student, exercise, seed, part, answer, location)
         if not number:
             yield Rejected(source, NO_ANSWERS)
     # What is damaged, pyarrow tells in one of many ways: by a column that is not there, too.
@@ -321,7 +325,7 @@ def _odd_columns(types: Any, schema: Any) -> str:
 
 def _csv_row(
     header: list[str], cells: list[str], delimiter: str, location: str, warning: str
-) -> Iterator[Row | Rejected]:
+) -> Iterator[AnswerRow | Rejected]:
     if len(cells) > len(header) and delimiter == ",":
         joined = _with_commas(header, cells)
         if header[-1] == "answer" and cells[header.index("seed")].strip().isdigit():
@@ -350,7 +354,7 @@ def _with_commas(header: list[str], cells: list[str]) -> dict[str, str]:
 # ------------------------------------------------------------------------- JSON
 
 
-def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
+def _read_json(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     text, warning = decoded_text(data, source)
     try:
         content = load_json(text)
@@ -371,7 +375,7 @@ def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
         yield from sheet_rows(sheet, sheet["answers"], location, warning)
 
 
-_READERS: Mapping[str, Callable[[bytes, str], Iterator[Row | Rejected | Seen]]] = {
+_READERS: Mapping[str, Callable[[bytes, str], Iterator[AnswerRow | Rejected | PlatformFile]]] = {
     ".csv": _read_csv,
     ".tsv": _read_csv,
     ".json": _read_json,

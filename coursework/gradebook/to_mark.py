@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.accepted import ACCEPTED, check_points, points_of
 from coursework.gradebook.changes import rows_of
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.language.words import words
 from coursework.making.students import folded
 from coursework.marking.feedback import Told
@@ -19,10 +19,10 @@ TO_MARK = "to_mark"  #: the verdict of an answer that waits
 TO_MARK_COLUMNS = ("student", "exercise", "seed", "part", "answer", "points", "out_of", "reason")
 
 
-class Given(NamedTuple):
+class GivenPoints(NamedTuple):
     """A line of the file whose points are filled in."""
 
-    place: str
+    location: str
     named: tuple[str, ...]
     answer: str
     points: float
@@ -45,7 +45,7 @@ class ToMark:
         self.rows: list[dict[str, Any]] = []
         self.waiting = 0
         self.changed: list[str] = []  #: answers that are not those that were marked
-        self.given: dict[tuple[str, ...], Given] = {}  #: the lines of the file with points
+        self.given: dict[tuple[str, ...], GivenPoints] = {}  #: the lines of the file with points
         self._used: set[tuple[str, ...]] = set()
         for number, row in enumerate(rows_of(path) if path.exists() else (), start=2):
             _check_columns(path, row)
@@ -53,7 +53,7 @@ class ToMark:
             points = points_of(row["points"], location)
             if points is not None:
                 named = tuple(row[c] for c in ("student", "exercise", "seed", "part"))
-                given = Given(location, named, row.get("answer", ""), points, row.get("reason", ""))
+                given = GivenPoints(location, named, row.get("answer", ""), points, row.get("reason", ""))
                 self.given[_key(*named)] = given
 
     def apply(self, graded: Graded, lang: str) -> Graded:
@@ -70,14 +70,14 @@ class ToMark:
                 continue
             given = self.given_for(graded, part, line)
             if given is not None:
-                lines[part] = given_mark(line, given.points, given.reason, lang, given.place)
+                lines[part] = given_mark(line, given.points, given.reason, lang, given.location)
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
             self.waiting += given is None
             self.rows.append(_row(graded, line, given))
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
-    def given_for(self, graded: Graded, part: str, line: Mark) -> Given | None:
+    def given_for(self, graded: Graded, part: str, line: Mark) -> GivenPoints | None:
         """The points that the file gives to an answer; None where it has none, or gives them to another answer."""
         key = _key(graded.student, graded.exercise, str(graded.seed), part)
         given = self.given.get(key)
@@ -131,7 +131,7 @@ def same_answer(text: str, other: str) -> bool:
     return " ".join(text.split()) == " ".join(other.split())
 
 
-def _row(graded: Graded, line: Mark, given: Given | None) -> dict[str, Any]:
+def _row(graded: Graded, line: Mark, given: GivenPoints | None) -> dict[str, Any]:
     return {
         "student": graded.student,
         "exercise": graded.exercise,

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from coursework.course.course import Course
 from coursework.course.key_batch import keys_of
 from coursework.gradebook.class_marking import rules_of
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.making.issued import Issued
 from coursework.marking.margins import half_widths_off
 from coursework.marking.mark import Mark
@@ -31,7 +31,7 @@ WHY = ("unreadable", "drawn", "open", "unit", "near", "often", "just")
 SHOWN_ON_REQUEST = ("just",)  #: these wait for nobody
 
 
-class Waits(NamedTuple):
+class AnswerToReview(NamedTuple):
     """An answer that may be looked at."""
 
     sheet: Graded
@@ -44,17 +44,17 @@ class Waits(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Group:
+class AnswerGroup:
     """Answers to one question in which the same is written, judged against the same reference."""
 
     id: str
     why: str
     exercise: str
     part: str
-    members: tuple[Waits, ...]
+    members: tuple[AnswerToReview, ...]
 
     @property
-    def first(self) -> Waits:
+    def first(self) -> AnswerToReview:
         return self.members[0]
 
 
@@ -90,13 +90,13 @@ def measures(course: Course, issued: Issued, graded: Sequence[Graded]) -> Iterat
 def groups(
     graded: Iterable[Graded], measured: Mapping[tuple[str, str, int, int], Measure], order: Sequence[tuple[str, str]],
     drawn: frozenset[tuple[str, str]] = frozenset(),
-) -> list[Group]:  # fmt: skip
+) -> list[AnswerGroup]:  # fmt: skip
     """The answers that may be looked at, question by question in ``order`` (exercise and part), and there by why, those that
     most wrote first.
 
     ``measured`` is by student, exercise, seed and sitting; ``drawn`` are the questions that are answered by a drawing.
     """
-    members_by_key: dict[tuple[str, ...], list[Waits]] = {}
+    members_by_key: dict[tuple[str, ...], list[AnswerToReview]] = {}
     answered: dict[tuple[str, str], set[str]] = {}
     for graded_sheet in graded:
         measure = measured.get((*graded_sheet[:3], graded_sheet.sitting), NOTHING)
@@ -106,7 +106,7 @@ def groups(
             answered.setdefault((graded_sheet.exercise, part), set()).add(graded_sheet.student)
             if (key := key_of(graded_sheet, mark, measure, drawn)) is not None:
                 members_by_key.setdefault(key, []).append(
-                    Waits(graded_sheet, mark, measure.margins.get(part))
+                    AnswerToReview(graded_sheet, mark, measure.margins.get(part))
                 )
     positions = {question: number for number, question in enumerate(order)}
     answer_groups = [
@@ -147,7 +147,7 @@ def _why(mark: Mark, margin: float | None, *, is_drawn: bool) -> str | None:
 
 
 def _waits(
-    key: tuple[str, ...], members: Sequence[Waits], answered: Mapping[tuple[str, str], set[str]]
+    key: tuple[str, ...], members: Sequence[AnswerToReview], answered: Mapping[tuple[str, str], set[str]]
 ) -> bool:
     """A wrong answer that nothing explains waits where many wrote it; whatever else is here, waits."""
     if key[0] != "often":
@@ -167,5 +167,5 @@ def name_of(key: Sequence[str]) -> str:
     return sha256("\0".join(key).encode("utf-8", "backslashreplace")).hexdigest()[:16]
 
 
-def _group(key: tuple[str, ...], members: Sequence[Waits]) -> Group:
-    return Group(name_of(key), key[0], key[1], key[2], tuple(members))
+def _group(key: tuple[str, ...], members: Sequence[AnswerToReview]) -> AnswerGroup:
+    return AnswerGroup(name_of(key), key[0], key[1], key[2], tuple(members))

@@ -19,7 +19,7 @@ from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
 from coursework.errors import UnknownName
 from coursework.gradebook.feedback_sheets import feedback_sheet
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.class_page import class_rows, issued_json, settings_rows, taken_csv

@@ -11,7 +11,7 @@ from coursework.course.answer_keys import answer_keys, part_called
 from coursework.course.course import Course, opened
 from coursework.course.variant import Variant
 from coursework.gradebook.by_student import OwnMarks, for_student, marks_of_student
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.notebooks import read_notebook
 from coursework.gradebook.rows import Rejected
 from coursework.making.issued import Issued

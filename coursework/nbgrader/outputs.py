@@ -7,7 +7,7 @@ from typing import Any
 
 from coursework.course.course import Course
 from coursework.gradebook.feedback_sheets import feedback_sheet
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.language.words import words
 from coursework.markup.markdown import html_text
 from coursework.rendering.environment import render

@@ -18,8 +18,8 @@ from coursework.course.variant import Variant
 from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook.by_student import OwnMarks, for_student, marks_of_student
 from coursework.gradebook.feedback_sheets import feedback_sheet
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.scale import mark_of
 from coursework.gradebook.submissions import find, read_file
 from coursework.language.numbers import localise
@@ -99,7 +99,7 @@ def _student(issued: Issued, user: Mapping[str, Any]) -> str:
     return _who(user)
 
 
-def _rows(submission: Path) -> Iterator[Row | Rejected]:
+def _rows(submission: Path) -> Iterator[AnswerRow | Rejected]:
     """The rows of what was handed in; a link out of its folder is not followed."""
     if not submission.is_dir():
         yield Rejected("submission", "the folder holds no file")
@@ -108,11 +108,11 @@ def _rows(submission: Path) -> Iterator[Row | Rejected]:
         if isinstance(found, Rejected):
             yield _below(found, submission)
         else:
-            rows = (row for row in read_file(found, [submission]) if not isinstance(row, Seen))
+            rows = (row for row in read_file(found, [submission]) if not isinstance(row, PlatformFile))
             yield from (_below(row, submission) for row in rows)
 
 
-def _below(row: Row | Rejected, submission: Path) -> Row | Rejected:
+def _below(row: AnswerRow | Rejected, submission: Path) -> AnswerRow | Rejected:
     """A row whose file is told from the submission's folder."""
     source = row.source.replace(f"{submission}{os.sep}", "").replace(str(submission), "submission")
     if isinstance(row, Rejected):

@@ -44,7 +44,7 @@ from coursework.database.store import _MIGRATIONS, Store
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import METADATA
 from coursework.gradebook.book import summary_rows
-from coursework.gradebook.rows import Collected, Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected, RowOrigin
 
 AT = datetime(2026, 3, 1, 12, tzinfo=UTC)
 DERIVED = [table.name for table in METADATA.tables.values() if table.info.get("derived")]
@@ -144,7 +144,7 @@ class Life:
         for exercise, seed in self.records.issued_to(student).items():
             for part in self.records.records[exercise, seed]["parts"]:
                 if self.random.random() < 0.8:
-                    yield Row(
+                    yield AnswerRow(
                         student, exercise, str(seed), part["id"], self.text(exercise, seed, part["id"]), "f.csv", origin=origin
                     )  # fmt: skip
 
@@ -156,7 +156,7 @@ class Life:
         number = self.tries[student]
         with self.store.begin() as connection:
             came = insert_submission(
-                connection, self.number, list(self.rows(student, Collected(sitting=number))), source="site", received_at=AT,
+                connection, self.number, list(self.rows(student, RowOrigin(sitting=number))), source="site", received_at=AT,
                 person_id=self.people[student], number=number, late=self.random.choice([0, 0, 90000]),
             )  # fmt: skip
         mark_delivery(self.course, self.store, came.id)
@@ -165,7 +165,9 @@ class Life:
         rows = [row for name in self.random.sample(NAMES, 3) for row in self.rows(name)]
         rows += [Rejected("f.csv", "no row", {"student": self.random.choice(NAMES), "answer": "4"})]
         rows += [
-            Row(self.random.choice(["Anna", "ana", "Zoé"]), rows[0].exercise, "", rows[0].part, "5", "g.csv")
+            AnswerRow(
+                self.random.choice(["Anna", "ana", "Zoé"]), rows[0].exercise, "", rows[0].part, "5", "g.csv"
+            )
         ]
         source = self.random.choice(["a.csv", "b.csv"])
         with self.store.begin() as connection:

@@ -26,7 +26,7 @@ from coursework.database.instructor_queries import (
 from coursework.database.marking import mark_new
 from coursework.database.progress import PersonProgress
 from coursework.database.submissions import insert_submission
-from coursework.gradebook.rows import Collected, Row
+from coursework.gradebook.rows import AnswerRow, RowOrigin
 
 AT = datetime(2026, 11, 23, 9, tzinfo=UTC)
 EXERCISE = "slotted_mechanism"
@@ -47,7 +47,7 @@ def number(store):
         found = put_issued(connection, content)
         person = people_of(connection, found)["Ada"]
         for n in (1, 2):
-            rows = [Row("Ada", EXERCISE, "42", "rA", f"? {n}", "the site", origin=Collected(sitting=n))]
+            rows = [AnswerRow("Ada", EXERCISE, "42", "rA", f"? {n}", "the site", origin=RowOrigin(sitting=n))]
             late = 60 if n == 2 else 0
             at = AT + timedelta(hours=n)
             insert_submission(

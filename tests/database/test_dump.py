@@ -19,7 +19,7 @@ from coursework.database.store import Store
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import METADATA
 from coursework.errors import BadInput
-from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 
 AT = datetime(2026, 1, 2, 3, 4, 5, 678901, UTC)
 ODD = 'l\'"été";\r\n\\N, \\ \u2028 ' + "☃" * 300
@@ -32,7 +32,7 @@ def full(store, small_course):
     number = put(store, content(course), rows(course, ANA, 0), rows(course, BEN, 1, x="somewhere"))
     mark_new(course, store, number)
     odd = [
-        Row(
+        AnswerRow(
             ODD,
             "crank_pin",
             "1",
@@ -41,15 +41,15 @@ def full(store, small_course):
             ODD,
             ODD,
             "fr",
-            Collected((("Email", ODD),), (ODD,), 3, "x", "y", True),
+            RowOrigin((("Email", ODD),), (ODD,), 3, "x", "y", True),
         ),
-        Row(BEN, "crank_pin", "1", "x", None, "\\"),
-        Row(BEN, "crank_pin", "1", "x", "", ""),
-        Row(BEN, "crank_pin", "1", "x", True, ""),
-        Row(BEN, "crank_pin", "1", "x", "half a character: \ud800", ""),
-        Row(BEN, "crank_pin", "1", "x", "7", ""),
+        AnswerRow(BEN, "crank_pin", "1", "x", None, "\\"),
+        AnswerRow(BEN, "crank_pin", "1", "x", "", ""),
+        AnswerRow(BEN, "crank_pin", "1", "x", True, ""),
+        AnswerRow(BEN, "crank_pin", "1", "x", "half a character: \ud800", ""),
+        AnswerRow(BEN, "crank_pin", "1", "x", "7", ""),
         Rejected(ODD, ODD, {ODD: "\0"}),
-        Seen(ODD, "", True),
+        PlatformFile(ODD, "", True),
     ]
     with store.begin() as connection:
         insert_submission(connection, number, odd, source=ODD, received_at=AT)

@@ -22,7 +22,7 @@ from coursework.database.tables import mark, marking, person
 from coursework.gradebook.book import marks_rows, summary_rows
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.feedback_sheets import feedback_sheet
-from coursework.gradebook.placing import placed
+from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import Rejected
 from coursework.making.issued import Issued
 from coursework.rendering.renderer import renderer_of
@@ -57,7 +57,7 @@ def number(store, told, three):
 
 def plain(course, told, some):
     issued = Issued(told, "test")
-    sheets = placed(course, issued, [row for each in some for row in each])
+    sheets = placed_sheets(course, issued, [row for each in some for row in each])
     return list(marked(course, issued, sheets))
 
 
@@ -281,7 +281,7 @@ def test_a_sheet_that_cannot_be_marked_says_so_each_time(store, number, course, 
 
     monkeypatch.setattr(class_marking, "_mark_sheet", broken)
     issued = Issued(told, "test")
-    sheets = placed(course, issued, [row for each in three for row in each])
+    sheets = placed_sheets(course, issued, [row for each in three for row in each])
     list(marked(course, issued, sheets))
     mark_new(course, store, number)
     for _ in range(2):

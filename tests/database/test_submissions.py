@@ -13,21 +13,21 @@ import coursework
 from coursework.database.marking import mark_new
 from coursework.database.submissions import insert_submission, next_number, rows_of, submissions_of
 from coursework.database.tables import answer, person
-from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 
-ODD = Collected((("Email", "a@b.c"), ("ID", "7")), ("ana", "x"), 2, "2026-01-02", "3", True)
+ODD = RowOrigin((("Email", "a@b.c"), ("ID", "7")), ("ana", "x"), 2, "2026-01-02", "3", True)
 CAME_ROWS = [
     Rejected("a.csv, line 2", "no student's name", {"student": "", "answer": "a\0b"}),
-    Row(ANA, "crank_pin", "0", "x", "319,8 mm", "a.csv, line 3", "a.csv: odd encoding", "fr", ODD),
-    Seen("tree/", "an nbgrader tree", True),
-    Row(ANA, "crank_pin", "", "y", None, "a.csv, line 4"),
-    Row(ANA, "crank_pin", "0", "z", "l'é\0 " + "x" * 5000, "a.csv, line 5", origin=ODD),
-    Row(ANA, "crank_pin", "0", "t", True, "a.csv, line 6"),
-    Row(ANA, "crank_pin", "0", "u", 10**399, "a.csv, line 7"),
-    Row(ANA, "crank_pin", "0", "v", 1e22, "a.csv, line 8"),
-    Row(ANA, "crank_pin", "0", "w", math.inf, "a.csv, line 9"),
-    Row(ANA, "crank_pin", "0", "w", 3 + 4j, "a.csv, line 10"),
-    Row(ANA, "crank_pin", "0", "w", -0.0, "a.csv, line 11"),
+    AnswerRow(ANA, "crank_pin", "0", "x", "319,8 mm", "a.csv, line 3", "a.csv: odd encoding", "fr", ODD),
+    PlatformFile("tree/", "an nbgrader tree", True),
+    AnswerRow(ANA, "crank_pin", "", "y", None, "a.csv, line 4"),
+    AnswerRow(ANA, "crank_pin", "0", "z", "l'é\0 " + "x" * 5000, "a.csv, line 5", origin=ODD),
+    AnswerRow(ANA, "crank_pin", "0", "t", True, "a.csv, line 6"),
+    AnswerRow(ANA, "crank_pin", "0", "u", 10**399, "a.csv, line 7"),
+    AnswerRow(ANA, "crank_pin", "0", "v", 1e22, "a.csv, line 8"),
+    AnswerRow(ANA, "crank_pin", "0", "w", math.inf, "a.csv, line 9"),
+    AnswerRow(ANA, "crank_pin", "0", "w", 3 + 4j, "a.csv, line 10"),
+    AnswerRow(ANA, "crank_pin", "0", "w", -0.0, "a.csv, line 11"),
     Rejected("b.xlsx", "a spreadsheet is not read"),
 ]
 
@@ -54,10 +54,10 @@ def came(store, number, *which):
 
 def test_rows_come_back_as_they_came_in_their_order(store, number):
     first = keep(store, number, CAME_ROWS)
-    more = [Row(BEN, "crank_pin", "1", "x", "2", "b.csv, line 2"), CAME_ROWS[-1]]
+    more = [AnswerRow(BEN, "crank_pin", "1", "x", "2", "b.csv, line 2"), CAME_ROWS[-1]]
     second = keep(store, number, more)
     assert came(store, number) == [*CAME_ROWS, *more]
-    assert [type(row.answer) for row in came(store, number)[3:11] if isinstance(row, Row)] == [
+    assert [type(row.answer) for row in came(store, number)[3:11] if isinstance(row, AnswerRow)] == [
         type(row.answer) for row in CAME_ROWS[3:11]
     ]
     assert came(store, number, second.id) == more
@@ -80,7 +80,7 @@ def test_a_row_that_comes_again_is_given_once(store, number):
     """An export that grew holds what it held before, at other places."""
     keep(store, number, CAME_ROWS)
     grown = [
-        *(row._replace(source="b.csv") if isinstance(row, Row) else row for row in CAME_ROWS[:6]),
+        *(row._replace(source="b.csv") if isinstance(row, AnswerRow) else row for row in CAME_ROWS[:6]),
         CAME_ROWS[3]._replace(answer="7", source="b.csv"),
     ]
     second = keep(store, number, grown)
@@ -118,7 +118,7 @@ def test_other_content_is_another_delivery(store, number, changed):
 
 
 def test_two_files_that_name_nobody_are_two(store, number):
-    nobody = [Row("", "crank_pin", "", "x", "1", "one.ipynb")]
+    nobody = [AnswerRow("", "crank_pin", "", "x", "1", "one.ipynb")]
     assert keep(store, number, nobody).is_new
     assert keep(store, number, [nobody[0]._replace(source="two.ipynb")]).is_new
     assert not keep(store, number, [nobody[0]._replace(source="folder/two.ipynb")]).is_new
@@ -172,14 +172,14 @@ def test_whose_a_file_is_hangs_on_no_spelling_where_tries_are_counted(store, num
         assert next_number(connection, number, who, ANA) == 2
         own = rows(course, ANA, 0, 2)
         insert_submission(connection, number, own, source="site", received_at=CAME, person_id=who, number=2)
-        by_number = Collected((("number", "100"),))
+        by_number = RowOrigin((("number", "100"),))
         late = [row._replace(student="A. N. A.", origin=by_number) for row in rows(course, ANA, 0)]
         insert_submission(connection, number, late, source="moodle.csv", received_at=CAME)
     assert {row.origin.sitting for row in came(store, number) if row.student == "A. N. A."} == {3}
 
 
 def test_many_rows_are_kept(store, number):
-    many = [Row(BEN, "crank_pin", "1", f"p{n}", n, f"a.csv, line {n}") for n in range(12_000)]
+    many = [AnswerRow(BEN, "crank_pin", "1", f"p{n}", n, f"a.csv, line {n}") for n in range(12_000)]
     keep(store, number, many)
     assert came(store, number) == many
     with store.reading() as connection:

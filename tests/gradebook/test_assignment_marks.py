@@ -11,9 +11,9 @@ import pytest
 from small_assignment import grade, issue, item, right, table, write
 
 import coursework
-from coursework.gradebook.book import Result, counted_one
+from coursework.gradebook.book import Result, counting_result
 from coursework.gradebook.class_marking import marked
-from coursework.gradebook.placing import placed
+from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.scale import mark_of
 from coursework.gradebook.submissions import read_file
 from coursework.making.issued import Issued
@@ -198,7 +198,7 @@ def test_the_rules_of_the_assignment_override_those_of_the_course(course, tmp_pa
 
     def points(issued):
         file = write(tmp_path / "answers.csv", rows)
-        graded = next(iter(marked(course, issued, placed(course, issued, read_file(file)))))
+        graded = next(iter(marked(course, issued, placed_sheets(course, issued, read_file(file)))))
         return graded.lines["v"].points / graded.lines["v"].out_of
 
     assert (points(plain), points(milder)) == (0.5, 0.25)
@@ -220,7 +220,7 @@ def test_the_later_of_two_equal_sittings_counts():
     sittings = {(of, points): Result(of, points, 9.0, {}, {}) for of in (1, 2, 3) for points in (4.0, 6.0)}
     issued = SimpleNamespace(assignment={"sittings": "best"})
     for order in itertools.permutations([sittings[1, 4.0], sittings[2, 6.0], sittings[3, 6.0]]):
-        assert counted_one(issued, order).sitting == 3
+        assert counting_result(issued, order).sitting == 3
     for order in itertools.permutations([sittings[1, 6.0], sittings[2, 6.0], sittings[3, 4.0]]):
-        assert counted_one(issued, order).sitting == 2
-    assert counted_one(issued, [Result(2, 0.0, 0.0, {}, {}), Result(1, 0.0, 0.0, {}, {})]).sitting == 2
+        assert counting_result(issued, order).sitting == 2
+    assert counting_result(issued, [Result(2, 0.0, 0.0, {}, {}), Result(1, 0.0, 0.0, {}, {})]).sitting == 2

@@ -18,10 +18,10 @@ from coursework.cli import run
 from coursework.course.lessons import lesson_title, taught_by
 from coursework.errors import BadCourse, BadInput
 from coursework.gradebook.class_marking import marked
-from coursework.gradebook.feedback_form import Form, shows_solutions
-from coursework.gradebook.feedback_sheets import Telling, feedback_paper, feedback_sheet
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import placed
+from coursework.gradebook.feedback_form import FeedbackForm, shows_solutions
+from coursework.gradebook.feedback_sheets import FeedbackOptions, feedback_paper, feedback_sheet
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.submissions import read_file
 from coursework.language.typography import typeset
 from coursework.language.words import words
@@ -62,7 +62,7 @@ def issued_file(tmp_path):
 
 def paper(tmp_path, issued_path, rows, lang="en", **more):
     issued = Issued.read(issued_path)
-    sheets = placed(COURSE, issued, read_file(write(tmp_path / "answers.csv", rows)))
+    sheets = placed_sheets(COURSE, issued, read_file(write(tmp_path / "answers.csv", rows)))
     return feedback_paper(COURSE, issued, "Ada", list(marked(COURSE, issued, sheets)), lang, **more)
 
 
@@ -137,9 +137,9 @@ def test_grade_prints_a_paper_a_sitting(tmp_path, issued_file):
 
 def marked_paper(tmp_path, issued_path, rows, lang="en", **telling):
     issued = Issued.read(issued_path)
-    sheets = placed(COURSE, issued, read_file(write(tmp_path / "answers.csv", rows)))
+    sheets = placed_sheets(COURSE, issued, read_file(write(tmp_path / "answers.csv", rows)))
     graded = list(marked(COURSE, issued, sheets))
-    told = Telling(PracticeOf(COURSE, issued), **telling)
+    told = FeedbackOptions(PracticeOf(COURSE, issued), **telling)
     return feedback_paper(COURSE, issued, "Ada", graded, lang, telling=told)
 
 
@@ -216,7 +216,7 @@ def test_the_cells_of_the_notebook_open_and_check_the_variant_to_try(tmp_path, m
     )
     lines = dict(mark(COURSE[name].variant(9, "en"), {}))
     graded = Graded("Ada", name, 9, lines, (), COURSE[name].variant(9, "en").record)
-    told = feedback_sheet(COURSE, graded, telling=Telling(PracticeOf(COURSE, issued)))
+    told = feedback_sheet(COURSE, graded, telling=FeedbackOptions(PracticeOf(COURSE, issued)))
     book = json.loads(renderer_of(COURSE.folder).feedback_notebook(told))
     opens, checks = ("".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code")
     names = {}
@@ -275,12 +275,12 @@ DAY = datetime.date(2026, 12, 5)
 @pytest.mark.parametrize(
     ("stated", "form", "shown"),
     [
-        ({}, Form(), False),
-        ({}, Form(solutions=True), True),
-        ({"solutions_after": "2026-12-05"}, Form(today=DAY - datetime.timedelta(1)), False),
-        ({"solutions_after": "2026-12-05"}, Form(today=DAY), True),
-        ({"solutions_after": "2026-12-05"}, Form(solutions=True, today=DAY), True),
-        ({"answers": "never"}, Form(), False),
+        ({}, FeedbackForm(), False),
+        ({}, FeedbackForm(solutions=True), True),
+        ({"solutions_after": "2026-12-05"}, FeedbackForm(today=DAY - datetime.timedelta(1)), False),
+        ({"solutions_after": "2026-12-05"}, FeedbackForm(today=DAY), True),
+        ({"solutions_after": "2026-12-05"}, FeedbackForm(solutions=True, today=DAY), True),
+        ({"answers": "never"}, FeedbackForm(), False),
     ],
 )
 def test_solutions_are_shown_from_their_day_on_or_when_wanted(issued_file, stated, form, shown):
@@ -298,7 +298,7 @@ def test_solutions_are_shown_from_their_day_on_or_when_wanted(issued_file, state
 def test_solutions_are_never_shown_before_their_day(tmp_path, issued_file, stated, told, capsys):
     path = issued_file(**stated)
     with pytest.raises(BadInput, match=told):
-        shows_solutions(Issued.read(path), Form(solutions=True, today=DAY - datetime.timedelta(1)))
+        shows_solutions(Issued.read(path), FeedbackForm(solutions=True, today=DAY - datetime.timedelta(1)))
     file = write(tmp_path / "answers.csv", answers("Ada", NAMES[0], 5))
     asked = ["grade", str(file), "--issued", str(path), "--with-solutions", "--today", "2026-12-04"]
     assert run(asked) == 2

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from coursework.gradebook.accepted import Accepted
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import read_file
 from coursework.system import tables
 
@@ -70,7 +70,7 @@ def test_an_answer_of_a_million_characters_is_told_and_the_others_are_read(tmp_p
         pa.table({**dict.fromkeys(COLUMNS[:4], ["1"] * 3), "answer": answers}), tmp_path / "a.parquet"
     )
     found = list(read_file(tmp_path / "a.parquet"))
-    assert [type(row) for row in found] == [Row, Rejected, Row]
+    assert [type(row) for row in found] == [AnswerRow, Rejected, AnswerRow]
     assert [found[0].answer, found[2].answer] == ["12", None]
     assert "1,000,000 characters" in found[1].reason
     assert len(json.dumps(found[1].row)) < 1000

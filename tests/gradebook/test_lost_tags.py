@@ -9,7 +9,7 @@ import re
 import pytest
 
 import coursework
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import read_file
 from coursework.rendering.renderer import renderer_of
 
@@ -131,7 +131,7 @@ LOST = {
 def read(tmp_path, book, name="paper.ipynb"):
     (tmp_path / name).write_text(json.dumps(book), "utf-8")
     found = list(read_file(tmp_path / name))
-    return [r for r in found if isinstance(r, Row)], [r for r in found if isinstance(r, Rejected)]
+    return [r for r in found if isinstance(r, AnswerRow)], [r for r in found if isinstance(r, Rejected)]
 
 
 @pytest.mark.parametrize("lang", ["fr", "en"])

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import read_file
 
 SHEETS = [{"exercise": "crank_pin", "seed": 5}, {"exercise": "grashof", "seed": 12}]
@@ -27,7 +27,7 @@ def read(tmp_path, cells, student="Ada", sheets=SHEETS):
 
 
 def placed(rows):
-    return [(r.student, r.exercise, r.seed, r.part, r.answer) for r in rows if isinstance(r, Row)]
+    return [(r.student, r.exercise, r.seed, r.part, r.answer) for r in rows if isinstance(r, AnswerRow)]
 
 
 def refused(rows):

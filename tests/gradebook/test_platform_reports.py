@@ -14,7 +14,7 @@ from tables import each_row
 from coursework.cli import run
 from coursework.gradebook.item_label import label_in
 from coursework.gradebook.moodle_responses import columns_of, parts_of
-from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.submissions import find, read_file
 from coursework.making.issued import Issued
 
@@ -23,7 +23,7 @@ def rows_of(path, data=None):
     if data is not None:
         path.write_bytes(data if isinstance(data, bytes) else data.encode("utf-8"))
     found = list(read_file(path))
-    return tuple([r for r in found if isinstance(r, kind)] for kind in (Row, Rejected, Seen))
+    return tuple([r for r in found if isinstance(r, kind)] for kind in (AnswerRow, Rejected, PlatformFile))
 
 
 # ------------------------------------------------------------------------ Moodle

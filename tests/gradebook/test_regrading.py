@@ -15,7 +15,7 @@ from coursework.cli import run
 from coursework.errors import BadInput
 from coursework.gradebook.class_marking import _waiting, marked
 from coursework.gradebook.feedback_sheets import feedback_sheet
-from coursework.gradebook.placing import placed
+from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.submissions import read_file
 from coursework.making.issued import Issued
 from coursework.rendering.renderer import renderer_of
@@ -369,7 +369,7 @@ def test_who_wrote_what_cannot_be_read_is_told_that_somebody_will_look(small_cou
     assert told in said["unreadable"]
     assert told not in said["correct"]
     course, kept = coursework.open_course(small_course), Issued.read(issued / "issued.json")
-    sheets = placed(course, kept, list(read_file(issued.parent / "answers.csv")))
+    sheets = placed_sheets(course, kept, list(read_file(issued.parent / "answers.csv")))
     pages = [
         renderer_of(course.folder).html(feedback_sheet(course, graded))
         for graded in marked(course, kept, sheets)

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from coursework.api import open_course
 from coursework.errors import BadInput
 from coursework.gradebook.notebooks import literal_answers
-from coursework.gradebook.placing import Refused, place_of
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.placing import UnplacedError, sheet_of_row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import find, read_file
 from coursework.making.issued import Issued
 
@@ -25,7 +25,7 @@ def read(tmp_path: Path, name: str, data: str | bytes):
     path = tmp_path / name
     path.write_bytes(data if isinstance(data, bytes) else data.encode("utf-8"))
     rows = list(read_file(path))
-    return [r for r in rows if isinstance(r, Row)], [r for r in rows if isinstance(r, Rejected)]
+    return [r for r in rows if isinstance(r, AnswerRow)], [r for r in rows if isinstance(r, Rejected)]
 
 
 def test_a_plain_csv(tmp_path):
@@ -98,7 +98,7 @@ def test_any_bytes_are_read_without_a_traceback(tmp_path_factory, data):
     for ending in (".csv", ".json", ".ipynb"):
         path = folder / f"a{ending}"
         path.write_bytes(data)
-        assert all(isinstance(r, (Row, Rejected)) for r in read_file(path))
+        assert all(isinstance(r, (AnswerRow, Rejected)) for r in read_file(path))
 
 
 @given(
@@ -269,7 +269,7 @@ def test_stray_quotation_marks_lose_no_row(tmp_path_factory, answers):
     path = tmp_path_factory.mktemp("quotes") / "a.csv"
     lines = [f"s{i};x;{i};rA;{a.replace(';', '')}" for i, a in enumerate(answers)]
     path.write_text("student;exercise;seed;part;answer\n" + "\n".join(lines) + "\n", "utf-8")
-    rows = [r for r in read_file(path) if isinstance(r, Row)]
+    rows = [r for r in read_file(path) if isinstance(r, AnswerRow)]
     assert [r.student for r in rows] == [f"s{i}" for i in range(len(answers))]
     for row, answer in zip(rows, answers, strict=True):
         if not re.match(r'\s*"', answer):
@@ -431,6 +431,6 @@ def test_of_namesakes_none_is_meant_before_the_others():
     record, names = open_course()["grashof"].variant(1).record, ("Marie Martin (1)", "Marie Martin (2)")
     dealt = [{"student": name, "record": record} for name in names]
     issued = Issued({"format": 1, "roster": True, "issued": dealt}, "issued.json")
-    row = Row("marie martin", "grashof", "1", "s_plus_l", "2", "answers.csv, line 2")
-    with pytest.raises(Refused, match=r"which of 'Marie Martin \(1\)', 'Marie Martin \(2\)'"):
-        place_of(issued, row)
+    row = AnswerRow("marie martin", "grashof", "1", "s_plus_l", "2", "answers.csv, line 2")
+    with pytest.raises(UnplacedError, match=r"which of 'Marie Martin \(1\)', 'Marie Martin \(2\)'"):
+        sheet_of_row(issued, row)

@@ -8,9 +8,9 @@ import pytest
 from class_of_three import table
 from collected_pools import EXERCISE, graded
 
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
+from coursework.gradebook.submission_folders import submitted_file
 from coursework.gradebook.submissions import find, read_file
-from coursework.gradebook.trees import handed_in
 
 
 def notebook(student="", seed=4, **answers):
@@ -35,7 +35,7 @@ def write(folder, path, content):
 
 def rows_of(*paths):
     found = [row for one in find(paths) for row in ([one] if isinstance(one, Rejected) else read_file(one))]
-    return [r for r in found if isinstance(r, Row)], [r for r in found if isinstance(r, Rejected)]
+    return [r for r in found if isinstance(r, AnswerRow)], [r for r in found if isinstance(r, Rejected)]
 
 
 TREES = {
@@ -120,4 +120,4 @@ def test_a_notebook_that_cannot_be_read_is_told_with_its_student(tmp_path):
     "path", ["ann.ipynb", "submitted/ann.ipynb", "submitted/week3/ann.ipynb", "slotted_mechanism_4.ipynb"]
 )
 def test_another_folder_says_nobody(tmp_path, path):
-    assert handed_in(write(tmp_path, path, "")) is None
+    assert submitted_file(write(tmp_path, path, "")) is None

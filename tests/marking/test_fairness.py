@@ -395,7 +395,7 @@ def test_the_envelope_widens_and_never_narrows():
 @pytest.mark.parametrize("name", sampled(COURSE.names))
 def test_many_sheets_are_marked_as_each_alone(name):
     """By the column or one by one, the verdict, the points, what was read and what is said are the same."""
-    from coursework.gradebook.class_marking import _How, _Job, _mark_chunk, _waiting
+    from coursework.gradebook.class_marking import _mark_chunk, _MarkingOptions, _SheetJob, _waiting
     from coursework.marking.mark import Mark
 
     exercise = COURSE[name]
@@ -417,8 +417,8 @@ def test_many_sheets_are_marked_as_each_alone(name):
                 answers[part.id] = (*ways, f"{value:.7g} {part.unit}")[(i + j) % 7]
             elif isinstance(value, str):
                 answers[part.id] = value
-        jobs.append(_Job(variant.record, answers))
-    together = _mark_chunk(COURSE, jobs, _How(printed=False, rules=None))
+        jobs.append(_SheetJob(variant.record, answers))
+    together = _mark_chunk(COURSE, jobs, _MarkingOptions(printed=False, rules=None))
     for job, lines in zip(jobs, together, strict=True):
         alone = exercise.from_record(job.record).grade(job.answers)
         lines = [Mark.received(line) for line in lines]

@@ -19,7 +19,7 @@ from tables import each_row
 import coursework
 from coursework.course.secrecy import Secret
 from coursework.gradebook.qti_results import read_results
-from coursework.gradebook.rows import Row, Seen
+from coursework.gradebook.rows import AnswerRow, PlatformFile
 from coursework.making.assignment import read_assignment
 from coursework.marking.marking import mark
 from coursework.platforms._qti_item import identifier, identifier_of, item_file
@@ -362,8 +362,8 @@ def test_points_of_an_assignment_are_those_of_its_items(tmp_path):
 def test_what_a_player_reported_of_an_export_is_read_row_by_row():
     """``recorded/qti_sitting.xml`` is what the qti-sdk reported of a student who sat an exported test."""
     data = (Path(__file__).parent / "recorded" / "qti_sitting.xml").read_bytes()
-    found = [one for one in read_results(data, "sitting.xml") if not isinstance(one, Seen)]
-    assert all(isinstance(one, Row) for one in found)
+    found = [one for one in read_results(data, "sitting.xml") if not isinstance(one, PlatformFile)]
+    assert all(isinstance(one, AnswerRow) for one in found)
     asked = {"slotted_mechanism", "grashof", "velocity_polygon"}
     assert {(one.exercise, one.student) for one in found} == {(name, "s3") for name in asked}
     parts = {part.id for name in asked for part in COURSE[name].spec.parts}

@@ -19,7 +19,7 @@ import pytest
 from fuzzing import COMMON, PYTHON, READERS, TABLE, damaged, parquet, within
 
 from coursework.errors import BadInput, CourseworkError
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import read_file
 
 every_reader = pytest.mark.parametrize("name", READERS)
@@ -111,7 +111,7 @@ def test_every_row_of_a_table_comes_out_as_it_was_written(tmp_path, count):
     for data, rows in tables(count):
         (tmp_path / "a.csv").write_bytes(data)
         found = list(read_file(tmp_path / "a.csv"))
-        assert [type(row) for row in found] == [Row] * len(rows)
+        assert [type(row) for row in found] == [AnswerRow] * len(rows)
         assert [row.part for row in found] == [row[3].strip() for row in rows]
         for row, (*_, answer) in zip(found, rows, strict=True):
             assert row.answer == answer or (answer.startswith("'") and row.answer == answer[1:])
@@ -133,7 +133,7 @@ def test_every_answer_of_a_sheet_comes_out(tmp_path, count):
             f'{{"student": "Ana", "exercise": "coil", "seed": 1, "answers": {{{body}}}}}'
         )
         found = list(read_file(tmp_path / "a.json"))
-        assert sorted(row.part if isinstance(row, Row) else row.row["part"] for row in found) == sorted(
+        assert sorted(row.part if isinstance(row, AnswerRow) else row.row["part"] for row in found) == sorted(
             key for key, _ in pairs
         )
 
@@ -195,7 +195,9 @@ def test_an_attempt_of_many_digits_is_none(tmp_path):
     rows[1][rows[0].index("attempt")] = "9" * 5000
     made = io.StringIO()
     csv.writer(made).writerows(rows)
-    found = [row for row in read_all(tmp_path / "a.csv", made.getvalue().encode()) if isinstance(row, Row)]
+    found = [
+        row for row in read_all(tmp_path / "a.csv", made.getvalue().encode()) if isinstance(row, AnswerRow)
+    ]
     assert found
     assert found[0].origin.sitting == 0
 

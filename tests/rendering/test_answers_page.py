@@ -14,7 +14,7 @@ from page_scripts import runs
 from paper_samples import COURSE, NAMES, bare, heading, paper
 from tables import each_row
 
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import read_file
 from coursework.language.words import words
 from coursework.rendering.renderer import renderer_of
@@ -199,7 +199,7 @@ def test_a_file_that_was_spoilt_is_told_by_its_place(change, reason, tmp_path):
     (told,) = [row for row in rows if isinstance(row, Rejected)]
     assert reason in told.reason
     assert told.source.startswith(f"{path}, item 1")
-    assert all(isinstance(row, Row) for row in rows if row is not told)
+    assert all(isinstance(row, AnswerRow) for row in rows if row is not told)
 
 
 @pytest.mark.parametrize(

@@ -168,7 +168,7 @@ def test_sentences_are_hyphenated_by_the_rules_of_their_language(lang):
 def test_every_letter_of_the_sheets_is_drawn_with_its_arrow_and_its_dots(lang):
     """Each question of each exercise, answered by a choice with formulas in it or not at all: no square stands for a letter."""
     from coursework.gradebook.feedback_sheets import feedback_sheet as told
-    from coursework.gradebook.graded import Graded
+    from coursework.gradebook.graded_sheet import Graded
     from coursework.marking.marking import mark
 
     arrows = 0
@@ -191,7 +191,7 @@ def test_every_letter_of_the_sheets_is_drawn_with_its_arrow_and_its_dots(lang):
 @every_language
 def test_what_was_read_of_a_choice_shows_its_formulas(lang):
     from coursework.gradebook.feedback_sheets import feedback_sheet as told
-    from coursework.gradebook.graded import Graded
+    from coursework.gradebook.graded_sheet import Graded
     from coursework.marking.marking import mark
 
     parts = COURSE["ball_reducer"].spec.parts

@@ -16,7 +16,7 @@ from coursework.database.people import put_account, put_person
 from coursework.database.permissions import Area
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import person, scanned
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.site.application import ROUTES
 
 PAUL, CARA, NINA, OLAF, IVY = "Paul", "Cara", "Nina", "Olaf", "Ivy"
@@ -94,7 +94,7 @@ class Staffed(Filled):
                 put_areas(connection, self.ids[name], [Area(numbers[one], group) for one, group in areas])
             self.parts = [part.id for part in self.variants[ZOE].parts]
             rows = [
-                Row(name, EXERCISE, str(SEEDS[name]), part, SAME, "late.csv")
+                AnswerRow(name, EXERCISE, str(SEEDS[name]), part, SAME, "late.csv")
                 for name in SEEDS
                 for part in self.parts[1:3]
             ]

@@ -21,7 +21,7 @@ from coursework.database.people import put_account
 from coursework.database.publication import AT_ONCE, Publication, publish
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import person
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.site.frame.forms import clean
 
 pytestmark = pytest.mark.e2e
@@ -48,7 +48,7 @@ class Hostile(Class):
         }  # fmt: skip
         rows = []
         for name, text in zip(self.names, self.texts, strict=True):
-            rows += [Row(name, EXERCISE, str(SEED), part, text, text) for part in parts[:3]]
+            rows += [AnswerRow(name, EXERCISE, str(SEED), part, text, text) for part in parts[:3]]
             rows.append(
                 Rejected(
                     text,

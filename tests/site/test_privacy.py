@@ -22,7 +22,7 @@ from coursework.database.submissions import insert_submission
 from coursework.database.tables import METADATA, SafeText, extension, worksheet
 from coursework.database.tables import person as people
 from coursework.errors import BadCourse
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 
 LEA, NUMBER, MAIL = "Léa Quatrebarbes", "20264711", "lea.quatrebarbes@example.org"
 
@@ -84,14 +84,14 @@ def lea(site):
         content["assignment"] = {**content["assignment"], "instructions": {"": f"{LEA} has more time"}}
         put_issued(connection, content)
         rows = [
-            Row(LEA, "slotted_mechanism", "11", "rA", "1", f"{LEA}.ipynb, cell 2"),
+            AnswerRow(LEA, "slotted_mechanism", "11", "rA", "1", f"{LEA}.ipynb, cell 2"),
             Rejected(f"{LEA}.csv, line 3", "no such part", {"student": LEA, "part": "zz"}),
         ]
         insert_submission(
             connection, site.number, rows, source=f"{LEA}.zip", received_at=at, person_id=person, number=1
         )
         file = [
-            Row(LEA.upper(), "slotted_mechanism", "11", "theta4", "2", "class.csv, line 9"),
+            AnswerRow(LEA.upper(), "slotted_mechanism", "11", "theta4", "2", "class.csv, line 9"),
             *site.rows(MAX),
         ]
         insert_submission(connection, site.number, file, source=f"of {LEA} and others.csv", received_at=at)

@@ -10,7 +10,7 @@ from coursework.database.current_marks import graded
 from coursework.database.decisions import Decisions
 from coursework.database.instructor_queries import people_of
 from coursework.database.submissions import insert_submission
-from coursework.gradebook.rows import Collected, Row
+from coursework.gradebook.rows import AnswerRow, RowOrigin
 from coursework.site.desk.class_cache import class_now
 
 WRITTEN = {
@@ -193,7 +193,7 @@ def test_a_row_that_is_placed_by_hand_is_of_the_very_hand_in(desk):
     with desk.site.store.begin() as connection:
         person = people_of(connection, desk.number)["Di"]
         own = [
-            Row("Di", EXERCISE, str(SEED), part, text, "site", origin=Collected(sitting=1))
+            AnswerRow("Di", EXERCISE, str(SEED), part, text, "site", origin=RowOrigin(sitting=1))
             for part, text in (("rA", ""), ("theta4", "9"))
         ]
         insert_submission(

@@ -14,7 +14,7 @@ from coursework import cli
 from coursework.cli.options import FilePath
 from coursework.database.store import Store
 from coursework.errors import BadInput
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import find, read_file
 from coursework.scanning.sources import scans
 from coursework.system import links
@@ -197,7 +197,7 @@ def test_links_within_the_folder_are_followed(tmp_path):
     named.symlink_to(folder)
     for given in (folder, named):
         rows = [row for found in find([given]) for row in read_file(found, [given])]
-        assert [row.answer for row in rows if isinstance(row, Row)] == ["1", "1"]
+        assert [row.answer for row in rows if isinstance(row, AnswerRow)] == ["1", "1"]
 
 
 def test_what_somebody_names_is_read_though_it_is_a_link(tmp_path):

@@ -35,10 +35,17 @@ from coursework.database.submissions import rows_of
 from coursework.errors import closest
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rejecting
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import SheetPlace, Sheets, placed
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.placing import SheetKey, Sheets, placed_sheets
 from coursework.gradebook.rows import Rejected
-from coursework.gradebook.waiting import SHOWN_ON_REQUEST, Group, Measure, Waits, groups, measures
+from coursework.gradebook.waiting import (
+    SHOWN_ON_REQUEST,
+    AnswerGroup,
+    AnswerToReview,
+    Measure,
+    groups,
+    measures,
+)
 from coursework.making.assignment import text_in
 from coursework.making.issued import Issued
 from coursework.making.students import namesakes
@@ -69,8 +76,8 @@ class RejectedRow:
 class WaitingGroup:
     """Group of answers, with those of its members that still wait for a person."""
 
-    group: Group
-    members: tuple[Waits, ...]
+    group: AnswerGroup
+    members: tuple[AnswerToReview, ...]
 
     @property
     def why(self) -> str:
@@ -85,11 +92,11 @@ class CachedClass:
     about: ListedAssignment
     issued: Issued
     stamp: Stamp
-    machine: Mapping[SheetPlace, Graded]  #: results of the marking, without decisions
-    numbers: Mapping[SheetPlace, int]  #: ids of the markings
+    machine: Mapping[SheetKey, Graded]  #: results of the marking, without decisions
+    numbers: Mapping[SheetKey, int]  #: ids of the markings
     measured: Mapping[int, Measure]  #: by the id of the marking
     sheets: Sheets
-    faults: Mapping[SheetPlace, str]
+    faults: Mapping[SheetKey, str]
     decisions: Decisions
     placings: Mapping[str, Placing]
     received: Mapping[str, SiteSubmissions]
@@ -101,7 +108,7 @@ class CachedClass:
         return self.sheets.sheets.keys() <= self.machine.keys() | self.faults.keys()
 
     @cached_property
-    def graded(self) -> dict[SheetPlace, Graded]:
+    def graded(self) -> dict[SheetKey, Graded]:
         """Graded sheets with the decisions of people applied."""
         return {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
 
@@ -113,7 +120,7 @@ class CachedClass:
             self.issued, self.sheets.rows_in, self.sheets.blanks, sheets.rejected, sheets.warnings
         )
         book.charged = self.charged
-        both: dict[SheetPlace, Graded | str] = {**self.graded, **self.faults}
+        both: dict[SheetKey, Graded | str] = {**self.graded, **self.faults}
         for graded in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
             book.add(graded)
         return book
@@ -183,19 +190,19 @@ class CachedClass:
     # ------------------------------------------------------------------- waiting
 
     @property
-    def groups(self) -> list[Group]:
+    def groups(self) -> list[AnswerGroup]:
         """Groups of answers for a person to review, decided or not."""
         return self._groups_of_all if self.one_sitting else self._groups_that_matter
 
     @cached_property
-    def _groups_of_all(self) -> list[Group]:
+    def _groups_of_all(self) -> list[AnswerGroup]:
         return self._grouped(self.machine.values())
 
     @cached_property
-    def _groups_that_matter(self) -> list[Group]:
+    def _groups_that_matter(self) -> list[AnswerGroup]:
         return self._grouped(graded for graded in self.machine.values() if self.matters(graded))
 
-    def _grouped(self, graded: Iterable[Graded]) -> list[Group]:
+    def _grouped(self, graded: Iterable[Graded]) -> list[AnswerGroup]:
         measured = {
             (*sheet[:3], self.machine[sheet].sitting): self.measured[number]
             for sheet, number in self.numbers.items()
@@ -213,7 +220,7 @@ class CachedClass:
                 open_groups[group.id] = WaitingGroup(group, members)
         return open_groups
 
-    def is_decided(self, answer: Waits) -> bool:
+    def is_decided(self, answer: AnswerToReview) -> bool:
         return self.decisions.standing(answer.sheet, answer.mark) is not None
 
     @property
@@ -329,7 +336,7 @@ def _read(
         now.__dict__.update({k: before.__dict__[k] for k in _LASTING if k in before.__dict__})
         return now
     issued = issued_of(connection, about.id)
-    sheets = placed(course, issued, rows_of(connection, about.id))
+    sheets = placed_sheets(course, issued, rows_of(connection, about.id))
     last = last_markings(connection, about.id)
     unknown = [marking for marking in last.values() if marking.id not in cached.marked]
     for sheet, marked in machine_marks(issued, unknown, lines_of(connection, unknown)):

@@ -10,7 +10,7 @@ from coursework.database.instructor_queries import Stamp, students_since
 from coursework.database.permissions import Permission
 from coursework.gradebook.book import Result
 from coursework.gradebook.columns import own_columns
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise
 from coursework.making.students import folded

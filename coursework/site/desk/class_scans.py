@@ -13,7 +13,7 @@ from coursework.database.assignments import issued_content
 from coursework.database.marking import mark_new
 from coursework.database.scans import pages_scanned, typed_rows
 from coursework.database.submissions import insert_submission
-from coursework.gradebook.rows import Row
+from coursework.gradebook.rows import AnswerRow
 from coursework.scanning.gathering import Answer, Card, Gathered
 from coursework.scanning.kept import ANSWERS, LOST, REFUSED, FileKept, PageKept, Scanned, page_of, with_copies
 from coursework.scanning.page_reading import Papers
@@ -107,7 +107,7 @@ def _stamp(content: dict[str, Any]) -> int:
 def hand_over(site: Site, number: int, now: ClassScans) -> int:
     """Submit and mark the answers read so far, in place of those of earlier scans; return their number."""
     rows = [
-        Row(
+        AnswerRow(
             answer.student,
             answer.exercise,
             str(answer.seed),

@@ -24,7 +24,7 @@ from coursework.gradebook.feedback_sheets import write_feedback
 from coursework.gradebook.filling import Filled, fill
 from coursework.gradebook.placing import as_texts
 from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebook
-from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.submissions import find, read_file
 from coursework.making.issued import COLUMNS
 from coursework.making.roster import roster_and_notes
@@ -78,7 +78,7 @@ def answers_in(request: Request) -> Response:
     if not sent:
         raise BadInput(texts["none_sent"])
     rows = _rows(sent, texts["too_many"].format(MOST_ROWS), request.words["refused"]["too_much"])
-    answers = sum(isinstance(item, Row) for item in rows)
+    answers = sum(isinstance(item, AnswerRow) for item in rows)
     source = ", ".join(file_name(item) for item in sent)[:500]
     with request.site.store.begin() as connection:
         submission = insert_submission(
@@ -97,12 +97,12 @@ def answers_in(request: Request) -> Response:
         return files_page(request, [texts["again"].format(moment(submission.received_at, request.lang))])
     marked = mark_delivery(request.site.course, request.site.store, submission.id)
     now = class_now(request.site, number)
-    sources = {item.source for item in rows if not isinstance(item, Seen)}
+    sources = {item.source for item in rows if not isinstance(item, PlatformFile)}
     lost = sum(item.row.source in sources for item in now.rejected)
     return files_page(request, [texts["came"].format(answers, marked.marked, lost)])
 
 
-def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[Row | Rejected | Seen]:
+def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[AnswerRow | Rejected | PlatformFile]:
     """Return the rows of uploaded files, with the files' original names; ``too_many`` and ``too_much`` are
     the messages for too many rows and for reading that takes too long."""
     with TemporaryDirectory(prefix="coursework-") as temporary:
@@ -111,13 +111,13 @@ def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[Row | Re
             subfolder = folder / str(number)
             subfolder.mkdir()
             (subfolder / file_name(upload)).write_bytes(upload.data)
-        rows: list[Row | Rejected | Seen] = read_apart(DESK_FILES, too_much, _rows_in, folder)
+        rows: list[AnswerRow | Rejected | PlatformFile] = read_apart(DESK_FILES, too_much, _rows_in, folder)
     if len(rows) > MOST_ROWS:
         raise BadInput(too_many)
     return rows
 
 
-def _rows_in(folder: Path) -> list[Row | Rejected | Seen]:
+def _rows_in(folder: Path) -> list[AnswerRow | Rejected | PlatformFile]:
     """Return the rows of the files below a folder, archives included; one more than the limit if there are
     too many."""
     for path in sorted(folder.glob("*/*")):
@@ -136,14 +136,16 @@ def file_name(upload: Upload) -> str:
     return plain.encode("utf-8", "ignore")[-_NAME:].decode("utf-8", "ignore") or "answers"
 
 
-def _read(folder: Path) -> Iterator[Row | Rejected | Seen]:
+def _read(folder: Path) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     for item in find([folder]):
-        rows = [item] if isinstance(item, (Rejected, Seen)) else read_file(item, [folder])
+        rows = [item] if isinstance(item, (Rejected, PlatformFile)) else read_file(item, [folder])
         for row in rows:
             yield _with_short_source(row, folder)
 
 
-def _with_short_source(row: Row | Rejected | Seen, folder: Path) -> Row | Rejected | Seen:
+def _with_short_source(
+    row: AnswerRow | Rejected | PlatformFile, folder: Path
+) -> AnswerRow | Rejected | PlatformFile:
     """Return a row without the temporary folder in its source."""
 
     def shortened(text: str) -> str:
@@ -151,7 +153,7 @@ def _with_short_source(row: Row | Rejected | Seen, folder: Path) -> Row | Reject
             text = text.replace(f"{folder}/{number}/zip/", "").replace(f"{folder}/{number}/", "")
         return text.replace(str(folder), "")
 
-    if isinstance(row, Row):
+    if isinstance(row, AnswerRow):
         return row._replace(
             source=shortened(row.source), warning=shortened(row.warning) if row.warning else ""
         )
@@ -268,13 +270,13 @@ def _issued(request: Request, now: CachedClass) -> bytes:
 
 def _answers(request: Request, now: CachedClass) -> bytes:
     with request.site.store.reading() as connection:
-        rows = [row for row in rows_of(connection, now.about.id) if isinstance(row, Row)]
+        rows = [row for row in rows_of(connection, now.about.id) if isinstance(row, AnswerRow)]
     columns = (*COLUMNS, "sitting", "submitted", "source")
     answers = ({**as_texts(row), "source": row.source, **_origin(row)} for row in rows)
     return csv_file(answers, columns)
 
 
-def _origin(row: Row) -> dict[str, str]:
+def _origin(row: AnswerRow) -> dict[str, str]:
     if row.origin is None:
         return {"sitting": "", "submitted": ""}
     return {"sitting": str(row.origin.sitting or ""), "submitted": row.origin.submitted}

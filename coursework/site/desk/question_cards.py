@@ -16,7 +16,7 @@ from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.class_marking import rules_of
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.language.numbers import localise, significant, unit_text
 from coursework.language.words import quoted
 from coursework.making.issued import Issued

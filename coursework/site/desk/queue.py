@@ -20,7 +20,7 @@ from coursework.database.instructor_queries import (
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.accepted import points_of
-from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, Group, Waits, written
+from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
 from coursework.language.numbers import localise, significant
 from coursework.site.desk.class_cache import (
     CachedClass,
@@ -74,7 +74,7 @@ class QueueItem:
     exercise: str
     part: str
     count: int
-    group: Group | None = None
+    group: AnswerGroup | None = None
     row: RejectedRow | None = None
 
 
@@ -110,8 +110,8 @@ class QueueCard:
 
     item: QueueItem
     question_card: QuestionCard
-    first: Waits
-    members: tuple[Waits, ...]  #: answers that wait
+    first: AnswerToReview
+    members: tuple[AnswerToReview, ...]  #: answers that wait
     decided: tuple[tuple[str, str], ...]  #: students with the same answer, each with the decision
     number: str
     margin: str
@@ -146,7 +146,7 @@ def card_of(request: Request, now: CachedClass, item: QueueItem) -> QueueCard:
     )  # fmt: skip
 
 
-def _alike(now: CachedClass, group: Group) -> list[WaitingGroup]:
+def _alike(now: CachedClass, group: AnswerGroup) -> list[WaitingGroup]:
     """Return the groups of other questions that wait because of the same unreadable text."""
     if group.why != "unreadable":
         return []
@@ -304,7 +304,7 @@ def _by_question(now: CachedClass, filters: Filters) -> list[tuple[str, str, str
 # ------------------------------------------------------------------------ deciding
 
 
-def _decide(request: Request, now: CachedClass, group: Group, asked_for: str) -> str:
+def _decide(request: Request, now: CachedClass, group: AnswerGroup, asked_for: str) -> str:
     """Store the decision on the answers that nobody else has decided on meanwhile; return the message."""
     kind, points = _requested_decision(asked_for, request, group)
     members = list(_chosen(request, now, group))
@@ -346,11 +346,11 @@ def _decision_message(
     return f"{message} {texts['taken'].format(others[0], len(others))}".strip() if others else message
 
 
-def _key(answer: Waits) -> tuple[str, str, str, str]:
+def _key(answer: AnswerToReview) -> tuple[str, str, str, str]:
     return answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part
 
 
-def _chosen(request: Request, now: CachedClass, group: Group) -> Sequence[Waits]:
+def _chosen(request: Request, now: CachedClass, group: AnswerGroup) -> Sequence[AnswerToReview]:
     """Return the answers that a decision covers: all waiting ones with the same text, or the first alone; for
     a decided card, all of it."""
     waits = now.open[group.id].members if group.id in now.open else group.members
@@ -360,7 +360,7 @@ def _chosen(request: Request, now: CachedClass, group: Group) -> Sequence[Waits]
     return [answer for answer in waits if answer.student == student] or waits[:1]
 
 
-def _requested_decision(asked_for: str, request: Request, group: Group) -> tuple[str, float | None]:
+def _requested_decision(asked_for: str, request: Request, group: AnswerGroup) -> tuple[str, float | None]:
     """Return the kind of a decision, and its points.
 
     Raises
@@ -386,7 +386,7 @@ def _requested_decision(asked_for: str, request: Request, group: Group) -> tuple
     return GIVEN, points
 
 
-def _target(answer: Waits) -> DecidedAnswer:
+def _target(answer: AnswerToReview) -> DecidedAnswer:
     return DecidedAnswer(
         answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part, answer.mark.answer
     )
@@ -435,7 +435,7 @@ def _undone(request: Request, now: CachedClass, filters: Filters) -> Response:
     return card_response(request, later, next_filters, at, message=texts["undone"].format(len(batch)))
 
 
-def _is_of(members: Sequence[Waits], decision: NumberedDecision) -> bool:
+def _is_of(members: Sequence[AnswerToReview], decision: NumberedDecision) -> bool:
     return any(
         _key(w) == (decision.student, decision.exercise, decision.seed, decision.part) for w in members
     )

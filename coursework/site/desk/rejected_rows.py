@@ -8,7 +8,7 @@ from coursework.database.marking import mark_delivery
 from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission
 from coursework.errors import BadInput
-from coursework.gradebook.rows import Collected, Row
+from coursework.gradebook.rows import AnswerRow, RowOrigin
 from coursework.site.desk.class_cache import CachedClass, RejectedRow, assignment_of, by_whom, class_now
 from coursework.site.desk.files import files_page
 from coursework.site.desk.queue import Filters, card_response
@@ -93,7 +93,7 @@ def _decided(request: Request, now: CachedClass, row: RejectedRow) -> str:
     return str(texts["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
 
 
-def _answer(request: Request, now: CachedClass, row: RejectedRow) -> Row:
+def _answer(request: Request, now: CachedClass, row: RejectedRow) -> AnswerRow:
     """Return the answer that a person assigns to a rejected row."""
     texts, issued = request.words["files"], now.issued
     student = issued.student(request.form.text("student"))
@@ -120,8 +120,8 @@ def _answer(request: Request, now: CachedClass, row: RejectedRow) -> Row:
         else row.row.row.get("seed", "")
     )
     attempt = sheet_key[3] if sheet_key is not None else 0
-    return Row(
-        student, exercise, seed, part, text, "", origin=Collected(sitting=attempt) if attempt else None
+    return AnswerRow(
+        student, exercise, seed, part, text, "", origin=RowOrigin(sitting=attempt) if attempt else None
     )
 
 

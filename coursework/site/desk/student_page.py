@@ -28,7 +28,7 @@ from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.accepted import points_of
 from coursework.gradebook.columns import own_columns
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise
 from coursework.making.students import folded

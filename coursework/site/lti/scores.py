@@ -25,7 +25,7 @@ from coursework.database.publication import extensions, last_end, published, stu
 from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
-from coursework.gradebook.graded import Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.launch import Launch

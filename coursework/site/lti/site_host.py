@@ -16,7 +16,7 @@ from coursework.database.assignments import issued_of
 from coursework.database.publication import Phase, published, student_assignments
 from coursework.database.submissions import rows_of
 from coursework.errors import BadInput
-from coursework.gradebook.rows import Row
+from coursework.gradebook.rows import AnswerRow
 from coursework.language.words import words
 from coursework.lti.class_list import students
 from coursework.lti.course_host import CourseHost
@@ -217,7 +217,7 @@ class SiteHost:
             rows = [
                 row
                 for row in rows_of(connection, state.assignment.id, state.done[-1].id)
-                if isinstance(row, Row)
+                if isinstance(row, AnswerRow)
             ]
         answers = {(row.exercise, row.seed, row.part): str(row.answer or "") for row in rows}
         return {

@@ -18,8 +18,8 @@ from coursework.database.publication import Phase, student_assignments
 from coursework.database.submissions import Submission
 from coursework.errors import BadInput
 from coursework.gradebook.by_student import as_students, for_student
-from coursework.gradebook.placing import placed
-from coursework.gradebook.rows import Row
+from coursework.gradebook.placing import placed_sheets
+from coursework.gradebook.rows import AnswerRow
 from coursework.gradebook.submissions import read_rows
 from coursework.making.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
@@ -226,10 +226,12 @@ def _of_file(request: Request, paper: StudentPaper, sent: Upload) -> tuple[dict[
         rows = read_apart(ANSWER_FILE, request.words["refused"]["too_much"], read_rows, path, MOST_ROWS)
     if rows is None:
         raise BadInput(messages["file_too_long"].format(MOST_ROWS))
-    names = {row.student for row in rows if isinstance(row, Row) and row.student}
+    names = {row.student for row in rows if isinstance(row, AnswerRow) and row.student}
     if others := sorted(item for item in names if folded(item) != folded(paper.student)):
         warnings.append(messages["file_named"].format(", ".join(item[:60] for item in others[:3])))
-    sheets = placed(request.site.course, paper.issued, as_students(paper.issued, paper.student, rows, []))
+    sheets = placed_sheets(
+        request.site.course, paper.issued, as_students(paper.issued, paper.student, rows, [])
+    )
     texts = dict.fromkeys(paper.boxes, "")
     for name, box in paper.boxes.items():
         row = sheets.sheets.get((paper.student, box.variant.exercise.name, box.variant.seed, 0), {}).get(

@@ -9,8 +9,8 @@ from coursework.database.assignments import issued_content
 from coursework.database.current_marks import graded
 from coursework.database.marking import mark_delivery
 from coursework.database.submissions import Submission
-from coursework.gradebook.feedback_form import Form, shows_solutions
-from coursework.gradebook.feedback_sheets import Telling, feedback_paper
+from coursework.gradebook.feedback_form import FeedbackForm, shows_solutions
+from coursework.gradebook.feedback_sheets import FeedbackOptions, feedback_paper
 from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise, plain
 from coursework.making.issued import Issued
@@ -34,7 +34,7 @@ def feedback_of(
         ]
         content = issued_content(connection, state.assignment.id, request.user.id)
     issued = Issued(_allowed(content, state), state.assignment.name)
-    telling = Telling(solutions=_shows_solutions(issued, state))
+    telling = FeedbackOptions(solutions=_shows_solutions(issued, state))
     document = feedback_paper(
         request.site.course, issued, paper.student, sheets, request.lang, telling=telling
     )
@@ -60,7 +60,7 @@ def _shows_solutions(issued: Issued, state: AssignmentState) -> bool:
     if not state.releases("answers") or stated.get("answers") == "never":
         return False
     today = state.now.astimezone().date()
-    return not stated.get("solutions_after") or shows_solutions(issued, Form(today=today))
+    return not stated.get("solutions_after") or shows_solutions(issued, FeedbackForm(today=today))
 
 
 def _charged(

@@ -42,7 +42,7 @@ from coursework.database.submissions import (
 )
 from coursework.database.tables import dealt, delivery, draft, person, variant
 from coursework.errors import CourseworkError
-from coursework.gradebook.rows import Collected, Row
+from coursework.gradebook.rows import AnswerRow, RowOrigin
 from coursework.site.frame.clock import is_steady
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
@@ -201,12 +201,14 @@ def mark(site: Site, delivery_id: int) -> None:
         LOG.error("delivery %d is not marked yet: %s", delivery_id, type(fault).__name__)
 
 
-def rows_for(paper: StudentPaper, texts: Texts, number: int, received_at: datetime, source: str) -> list[Row]:
+def rows_for(
+    paper: StudentPaper, texts: Texts, number: int, received_at: datetime, source: str
+) -> list[AnswerRow]:
     """Return a row for every question, including blank ones, so that the submission records the questions
     left blank."""
-    origin = Collected(sitting=number, submitted=received_at.isoformat(timespec="seconds"))
+    origin = RowOrigin(sitting=number, submitted=received_at.isoformat(timespec="seconds"))
     return [
-        Row(
+        AnswerRow(
             paper.student, field.exercise, str(field.seed), field.part, texts.get(name, ""), source,
             lang=field.lang, origin=origin,
         )

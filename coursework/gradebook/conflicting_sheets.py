@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
-from coursework.gradebook.rows import Row
+from coursework.gradebook.rows import AnswerRow
 from coursework.making.issued import Issued
 from coursework.making.students import file_stems
 
@@ -24,13 +24,13 @@ _OWN = re.compile(
 _AGAIN = re.compile(r"\s*\([0-9]+\)$")  #: what browsers add to the name of a file that is there already
 
 
-def file_of(row: Row) -> str:
+def file_of(row: AnswerRow) -> str:
     """The file of a student's own that a row came from; nothing where it is of a table, or a platform says whose it is."""
     match = _OWN.match(row.source) if row.origin is None else None
     return match[0] if match else ""
 
 
-def doubts(issued: Issued, rows: Iterable[tuple[Row, Callable[[], Sheet | None]]]) -> Doubts:
+def doubts(issued: Issued, rows: Iterable[tuple[AnswerRow, Callable[[], Sheet | None]]]) -> Doubts:
     """The rows that wait for a person; each comes with what tells its sheet, if it has one."""
     sheets: dict[Sheet, dict[str, dict[str, str]]] = {}
     people: dict[str, set[str]] = {}
@@ -44,11 +44,14 @@ def doubts(issued: Issued, rows: Iterable[tuple[Row, Callable[[], Sheet | None]]
     for sheet, files in sheets.items():
         single_author = {file: answers for file, answers in files.items() if len(people[file]) == 1}
         if _differ(list(single_author.values())):
-            waiting |= {(sheet, file): why for file, why in _told(issued, sheet, list(single_author)).items()}
+            waiting |= {
+                (sheet, file): why
+                for file, why in _reasons_to_wait(issued, sheet, list(single_author)).items()
+            }
     return waiting
 
 
-def _text(row: Row) -> str:
+def _text(row: AnswerRow) -> str:
     return "" if row.answer is None else " ".join(str(row.answer).split())
 
 
@@ -58,10 +61,10 @@ def _differ(answers: Sequence[Mapping[str, str]]) -> bool:
     return any(met.setdefault(part, text) != text for sheet in answers for part, text in sheet.items())
 
 
-def _told(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict[str, str]:
+def _reasons_to_wait(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict[str, str]:
     """By file that waits, why; nothing where all are the student's own, of which the first counts."""
     student = sheet[0]
-    theirs = [file for file in files if _called(issued, file, student) == student]
+    theirs = [file for file in files if _student_of_file(issued, file, student) == student]
     if not theirs:
         listed = " and ".join(files[:2]) + (f" and {len(files) - 2} more" if len(files) > 2 else "")
         why = (
@@ -82,7 +85,7 @@ def _stems(students: tuple[str, ...]) -> Mapping[str, str]:
     return dict(zip(file_stems(students), students, strict=True))
 
 
-def _called(issued: Issued, file: str, student: str) -> str | None:
+def _student_of_file(issued: Issued, file: str, student: str) -> str | None:
     """Whom the name of a file, or of its folder, names."""
     stems = _stems(issued.students or (student,))
     path = Path(file)

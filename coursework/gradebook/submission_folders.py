@@ -8,11 +8,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from coursework.gradebook.rows import Collected, Seen, path_text
+from coursework.gradebook.rows import PlatformFile, RowOrigin, path_text
 from coursework.system.links import open_inside
 
 #: Files that lie in such trees and hold no answers.
-BESIDE = frozenset(("timestamp.txt", "submission_secret.txt"))
+SIDE_FILES = frozenset(("timestamp.txt", "submission_secret.txt"))
 _LONGEST_TIME = 400  #: bytes of it
 _TIME = r"[0-9]{4}-[0-9]{2}-[0-9]{2}[ T_][0-9]{2}[:_][0-9]{2}[:_][0-9]{2}[^+]*"
 _EXCHANGE = re.compile(rf"(?P<student>[^+]+)\+(?P<assignment>[^+]+)\+(?P<time>{_TIME})(?:\+.*)?")
@@ -20,11 +20,11 @@ _MOODLE = re.compile(r"(?P<student>.+)_(?P<id>[0-9]+)_assignsubmission_(?:file|o
 _CANVAS = re.compile(r"(?P<student>[^\W_]+)_(?P<late>LATE_)?(?P<id>[0-9]+)_[0-9]+_.+", re.I)
 
 
-class HandedIn(NamedTuple):
+class SubmittedFile(NamedTuple):
     """What a file's place says."""
 
-    origin: Collected
-    seen: Seen
+    origin: RowOrigin
+    seen: PlatformFile
 
     @property
     def name(self) -> str:
@@ -32,18 +32,20 @@ class HandedIn(NamedTuple):
         return self.origin.by[-1]
 
 
-def handed_in(path: Path) -> HandedIn | None:
+def submitted_file(path: Path) -> SubmittedFile | None:
     """Who handed a file in, by the folders that it lies in, else by its name; None where they say nothing."""
     directory = path.resolve().parent
     full_path = Path(path_text(path.resolve()))
     for position, folder in reversed([*enumerate(full_path.parts[:-1])]):
         root = str(Path(*full_path.parts[:position]))
         if match := _EXCHANGE.fullmatch(folder):
-            return _handed((match["student"],), match["time"], root, "nbgrader's exchange", directory)
+            return _submitted_file((match["student"],), match["time"], root, "nbgrader's exchange", directory)
         if match := _MOODLE.fullmatch(folder):
-            return _handed((match["student"],), "", root, "Moodle's submissions of an assignment", directory)
+            return _submitted_file(
+                (match["student"],), "", root, "Moodle's submissions of an assignment", directory
+            )
         if folder == "submitted" and len(full_path.parts) - position > 3:
-            return _handed(
+            return _submitted_file(
                 (full_path.parts[position + 1],),
                 "",
                 str(Path(root, folder)),
@@ -52,25 +54,25 @@ def handed_in(path: Path) -> HandedIn | None:
             )
     if match := _CANVAS.fullmatch(Path(path_text(path)).name):
         people, root = (match["id"], match["student"]), path_text(path.parent)
-        return _handed(people, "", root, "Canvas's submissions", directory)
+        return _submitted_file(people, "", root, "Canvas's submissions", directory)
     return None
 
 
-def _handed(by: tuple[str, ...], time: str, root: str, platform: str, folder: Path) -> HandedIn:
+def _submitted_file(by: tuple[str, ...], time: str, root: str, platform: str, folder: Path) -> SubmittedFile:
     timestamp = folder / "timestamp.txt"
     if not time:
         with suppress(OSError), open_inside(timestamp, folder) as file:
             time = file.read(_LONGEST_TIME).decode("utf-8", "replace").strip()[:60]
-    return HandedIn(Collected(by=by, submitted=time), Seen(root, platform, is_tree=True))
+    return SubmittedFile(RowOrigin(by=by, submitted=time), PlatformFile(root, platform, is_tree=True))
 
 
 def latest_first(files: Iterable[Path]) -> list[Path]:
     """The files in their order, but of an exchange what somebody handed in last before what they did earlier: the first that
     is read counts."""
-    return sorted(files, key=lambda path: [_turned(part) for part in path.parts])
+    return sorted(files, key=lambda path: [_sort_key(part) for part in path.parts])
 
 
-def _turned(folder: str) -> tuple[str, tuple[int, ...], str]:
+def _sort_key(folder: str) -> tuple[str, tuple[int, ...], str]:
     match = _EXCHANGE.fullmatch(folder)
     if match is None:
         return folder, (), ""

@@ -18,9 +18,9 @@ from coursework.course.course import Course
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.changes import rows_of
 from coursework.gradebook.columns import MARKS_COLUMNS, REJECTED_COLUMNS, SITTING, VERDICTS
-from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import Sheets, placed
-from coursework.gradebook.rows import Collected, Rejected, Row
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.placing import Sheets, placed_sheets
+from coursework.gradebook.rows import AnswerRow, Rejected, RowOrigin
 from coursework.making.identity import identifies
 from coursework.making.issued import Issued
 from coursework.making.students import folded
@@ -31,17 +31,17 @@ from coursework.system.tables import as_written, delimiter_of, duplicate_column,
 _NEEDED = tuple(c for c in MARKS_COLUMNS if c not in ("read_as", "feedback"))
 
 
-class _Line(NamedTuple):
+class _MarksLine(NamedTuple):
     """A mark as it stands."""
 
-    place: str  #: file and line
+    location: str  #: file and line
     verdict: str
     points: str
     out_of: str
     feedback: str | None  #: None where the file has no such column
 
 
-class Standing:
+class EditedMarks:
     """The marks of a file, each in the place that it was issued for.
 
     Raises
@@ -53,12 +53,12 @@ class Standing:
     def __init__(self, course: Course, issued: Issued, path: Path) -> None:
         self.path = path
         self._is_pool = issued.is_pool
-        self._lines: dict[str, _Line] = {}
-        rows: Iterable[Row] = self._rows()
+        self._lines: dict[str, _MarksLine] = {}
+        rows: Iterable[AnswerRow] = self._rows()
         if issued.is_pool:
-            rows = _collected(issued, list(rows))
-            _know(issued, path.with_name("summary.csv"))
-        self.sheets: Sheets = placed(course, issued, rows)
+            rows = _with_origins(issued, list(rows))
+            _add_identity(issued, path.with_name("summary.csv"))
+        self.sheets: Sheets = placed_sheets(course, issued, rows)
         self.refuse(self.sheets.rejected)
         if not self.sheets.sheets:
             raise BadInput(f"{path} holds no mark, so nothing is written; 'coursework grade' writes it")
@@ -70,7 +70,7 @@ class Standing:
             more = f" (and {len(rejected) - 1} lines more)" if len(rejected) > 1 else ""
             raise BadInput(f"{rejected[0].source}: {rejected[0].reason}{more}; nothing is written")
 
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Iterator[AnswerRow]:
         met: dict[tuple[str, ...], str] = {}
         for number, row in _table(self.path):
             location = f"{self.path}, line {number}"
@@ -80,12 +80,12 @@ class Standing:
                 raise BadInput(f"{location}: repeats {met[named]}; leave one mark an answer")
             met[named] = f"line {number}"
             _check_verdict(location, row["verdict"])
-            self._lines[location] = _Line(
+            self._lines[location] = _MarksLine(
                 location, row["verdict"], row["points"], row["out_of"], row.get("feedback")
             )
-            origin = Collected(sitting=int(sitting) if sitting.isdecimal() and len(sitting) < 10 else 0)
+            origin = RowOrigin(sitting=int(sitting) if sitting.isdecimal() and len(sitting) < 10 else 0)
             names = row["student"], row["exercise"], row["seed"], row["part"]
-            yield Row(*names, row["answer"], location, origin=origin if self._is_pool else None)
+            yield AnswerRow(*names, row["answer"], location, origin=origin if self._is_pool else None)
 
     def of(self, graded: Graded) -> Graded:
         """The sheet with the marks of the file.
@@ -97,27 +97,29 @@ class Standing:
         """
         sheets, key = self.sheets.sheets, graded[:3]
         rows = sheets[(*key, graded.sitting)] if (*key, graded.sitting) in sheets else sheets[(*key, 0)]
-        changed = {part: _stood(graded.lines[part], self._lines[row.source]) for part, row in rows.items()}
+        changed = {
+            part: _edited_mark(graded.lines[part], self._lines[row.source]) for part, row in rows.items()
+        }
         return graded._replace(lines={**graded.lines, **changed})
 
 
-def _collected(issued: Issued, rows: Sequence[Row]) -> list[Row]:
+def _with_origins(issued: Issued, rows: Sequence[AnswerRow]) -> list[AnswerRow]:
     """The rows of a pool; a sheet of which fewer came than its variant asks is of a platform that asks part by part."""
     counts = Counter(_sheet_of(row) for row in rows)
     part_counts = {(e, str(seed)): len(record["parts"]) for (e, seed), record in issued.records.items()}
 
-    def origin(row: Row) -> Collected | None:
+    def origin(row: AnswerRow) -> RowOrigin | None:
         is_apart = counts[_sheet_of(row)] < part_counts.get((row.exercise, row.seed), 0)
         return row.origin and row.origin._replace(apart=is_apart)
 
     return [row._replace(origin=origin(row)) for row in rows]
 
 
-def _sheet_of(row: Row) -> tuple[Any, ...]:
+def _sheet_of(row: AnswerRow) -> tuple[Any, ...]:
     return folded(row.student), row.exercise, row.seed, row.origin
 
 
-def _know(issued: Issued, summary: Path) -> None:
+def _add_identity(issued: Issued, summary: Path) -> None:
     """Keep what identifies the students of a pool without a roster, which the summary of the platform's report tells."""
     if not issued.has_roster and summary.exists():
         with open_csv(summary) as file:
@@ -164,18 +166,18 @@ def _check_verdict(location: str, verdict: str) -> None:
         raise BadInput(f"{location}: no verdict {verdict[:40]!r}{nearest(family, VERDICTS)}")
 
 
-def _stood(mark: Mark, line: _Line) -> Mark:
+def _edited_mark(mark: Mark, line: _MarksLine) -> Mark:
     """The mark with the verdict, the points and the words of the file."""
     if _number(line.out_of) != float(f"{mark.out_of:g}"):
         raise BadInput(
-            f"{line.place}: {mark.part} is out of {mark.out_of:g} points, as issued; found out of {line.out_of[:40]!r}"
+            f"{line.location}: {mark.part} is out of {mark.out_of:g} points, as issued; found out of {line.out_of[:40]!r}"
         )
     points = mark.points
     if line.points.replace(",", ".") != f"{points:g}":
         points = _number(line.points)
         if not 0 <= points <= mark.out_of:
             raise BadInput(
-                f"{line.place}: points of {mark.part} are a number from 0 to {mark.out_of:g}; found {line.points[:40]!r}"
+                f"{line.location}: points of {mark.part} are a number from 0 to {mark.out_of:g}; found {line.points[:40]!r}"
             )
     messages = mark.told
     if line.feedback is not None and line.feedback != " ".join(mark.feedback.split()):
