@@ -1,4 +1,4 @@
-"""Answers that a person accepted, whatever the marking says."""
+"""Answers that a person accepted, whatever their marks."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ _ALIKE = 0.75  #: of two column names, beyond which one is the other with a typi
 
 
 class Accepted:
-    """Answers accepted by hand: a CSV with ``student,exercise,seed,part`` and, if wanted, ``points`` and
-    ``reason``. An answer so named has full points, or those that are said; of two lines on one answer the later counts.
+    """Answers accepted by hand: a CSV with ``student,exercise,seed,part`` and, optionally, ``points`` and
+    ``reason``. An accepted answer has full points, or the stated ones; of two lines on one answer the later
+    counts.
 
     Raises
     ------
@@ -54,7 +55,7 @@ class Accepted:
             self._by_place.setdefault(_key(*acceptance.answer_key), []).append(acceptance)
 
     def apply(self, graded: Graded, lang: str) -> Graded:
-        """The sheet with its accepted answers marked so, those too that no row gave.
+        """Return the sheet with its accepted answers marked as such, including answers that no row gave.
 
         Raises
         ------
@@ -76,7 +77,7 @@ class Accepted:
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
     def _named(self, graded: Graded, part: str) -> list[Acceptance]:
-        """The lines on an answer, in the order of the file."""
+        """Return the lines on an answer, in the order of the file."""
         keys = (_key(graded.student, graded.exercise, seed, part) for seed in (graded.seed, ""))
         return sorted(
             (acceptance for key in keys for acceptance in self._by_place.get(key, ())),
@@ -84,9 +85,8 @@ class Accepted:
         )
 
     def unfollowed(self, issued: Issued, students: Iterable[str]) -> tuple[list[str], list[str]]:
-        """What somebody must mend in the file (headings and names that are not there, lines that contradict one another),
-        and the answers named that were issued and that nobody gave. ``students`` are those who answered.
-        """
+        """Return the faults of the file (unknown headings and names, contradictory lines), and the issued
+        answers named in it that nobody gave. ``students`` are those who answered."""
         faults, notes = list(self._headings), []
         issued_parts = _IssuedParts(issued, tuple(students)) if self.lines else None
         for acceptance in self.lines:
@@ -99,7 +99,7 @@ class Accepted:
         return faults, notes
 
     def _contradictions(self, issued_parts: _IssuedParts) -> Iterator[str]:
-        """The lines on one answer that give other points than the last one before."""
+        """Yield a message for each line on an answer that gives other points than the line before it."""
         groups: dict[tuple[str, ...], list[Acceptance]] = {}
         for acceptance in self.lines:
             groups.setdefault((folded(acceptance.student), acceptance.exercise, acceptance.part), []).append(
@@ -140,7 +140,8 @@ class Acceptance(NamedTuple):
 
 
 def _in_turn(lines: Iterable[Acceptance]) -> Iterator[tuple[Acceptance, Acceptance]]:
-    """The lines on one part of a student, each with the last one before it that names the same variant, or one of the two none."""
+    """Yield the lines on one part of a student, each with the last line before it on the same variant; a line
+    without a seed is on every variant."""
     last: dict[str, Acceptance] = {}  #: by seed
     latest: Acceptance | None = None
     for acceptance in lines:
@@ -176,7 +177,7 @@ def _acceptance(location: str, number: int, row: dict[str, str], more: Sequence[
 
 
 def _misspelt(columns: Iterable[str]) -> Iterator[str]:
-    """Headings that would be one of those that may be left out."""
+    """Yield a message for each heading that looks like a misspelt optional heading."""
     columns = list(columns)
     absent = [c for c in _OPTIONAL if c not in columns]
     for column in columns:
@@ -187,7 +188,7 @@ def _misspelt(columns: Iterable[str]) -> Iterator[str]:
 
 
 def points_of(text: str, location: str) -> float | None:
-    """The points that a cell holds; None where it holds nothing."""
+    """Return the points in a cell; None for an empty cell."""
     if not text:
         return None
     try:
@@ -203,7 +204,8 @@ def points_of(text: str, location: str) -> float | None:
 
 
 def accepted_mark(line: Mark, points: float | None, reason: str, lang: str, location: str) -> Mark:
-    """The mark of an answer that a person accepts, with all its points where none are said; ``location`` is where it is said.
+    """Return the mark of an accepted answer: full points, if ``points`` is None. ``location`` is the place of
+    the statement, for messages.
 
     Raises
     ------
@@ -223,7 +225,7 @@ def check_points(points: float, part: str, out_of: float, location: str) -> None
 
 
 class _IssuedParts:
-    """The parts that were asked, as lines of the file name them."""
+    """Parts of the issued variants, as lines of the file name them."""
 
     def __init__(self, issued: Issued, students: Sequence[str]) -> None:
         self._issued, self._students = issued, students
@@ -237,7 +239,7 @@ class _IssuedParts:
             self._parts.setdefault((exercise, ""), {}).update(points)
 
     def why_not(self, acceptance: Acceptance) -> str:
-        """Why a line names no answer that was issued; nothing where it does."""
+        """Return the reason for which a line names no issued answer; empty if it names one."""
         issued, parts = self._issued, self._parts.get((acceptance.exercise, acceptance.seed))
         if not issued.has_roster and folded(acceptance.student) not in self._answered:
             return f"no student {acceptance.student!r} among those who answered{name_hint(acceptance.student, self._students)}"
@@ -256,6 +258,6 @@ class _IssuedParts:
         )
 
     def points(self, acceptance: Acceptance) -> float | None:
-        """The points that a line gives; None for all of a part that is not there."""
+        """Return the points that a line gives; None for full points of an unknown part."""
         parts = self._parts.get((acceptance.exercise, acceptance.seed), {})
         return parts.get(acceptance.part) if acceptance.points is None else acceptance.points

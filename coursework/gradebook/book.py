@@ -1,4 +1,5 @@
-"""Marking a class: rows of answers against what was issued. Pure; :mod:`coursework.gradebook.grading` writes the files.
+"""Gradebook of a class: totals of its marked sheets. Pure; :mod:`coursework.gradebook.grading` writes the
+files.
 
 Every row in comes out once, as a marked row or as a rejected one, or is counted where it is blank beside another to the
 same part. Sheets are marked by the hundred, so that
@@ -40,7 +41,8 @@ from coursework.messages import localised
 
 
 def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
-    """A sheet's lines of ``marks.csv``: its answers, in the order they came, then what was accepted without one."""
+    """Yield the lines of a sheet in ``marks.csv``: the answers in the order received, then parts accepted
+    without an answer."""
     for part in (*graded.answered, *graded.unanswered):
         line = graded.lines[part]
         yield {
@@ -60,7 +62,7 @@ def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
 
 
 def rejected_rows(rejected: Iterable[Rejected]) -> Iterator[dict[str, Any]]:
-    """The lines of ``rejected.csv``."""
+    """Yield the lines of ``rejected.csv``."""
     for row in rejected:
         yield {
             **dict.fromkeys(REJECTED_COLUMNS, ""),
@@ -91,7 +93,7 @@ Sitting = tuple[str, int]  #: a student, and which time they sit
 
 @dataclass
 class Gradebook:
-    """What a marking came to."""
+    """Totals of the marked sheets of a class."""
 
     issued: Issued
     rows_in: int = 0
@@ -144,16 +146,16 @@ class Gradebook:
             exercise.add(graded.lines[part])
 
     def handed_in(self, sitting: Sitting) -> Collection[str]:
-        """The exercises of which a sheet came."""
+        """Return the exercises of which a sheet was submitted."""
         return self.students[sitting].by_exercise.keys() if sitting in self.students else ()
 
     @cached_property
     def _rejected_of(self) -> frozenset[str]:
-        """The students of rejected rows."""
+        """Return the students of rejected rows."""
         return frozenset(filter(None, (self.issued.student(r.row.get("student", "")) for r in self.rejected)))
 
     def unread(self) -> dict[Sitting, dict[tuple[str, int], set[str]]]:
-        """What came in rejected rows alone: by student and sitting, the parts of exercise and seed."""
+        """Return the parts answered in rejected rows alone, by sitting and by variant."""
         issued = self.issued
         unread: dict[Sitting, dict[tuple[str, int], set[str]]] = {}
         for row in (rejected.row for rejected in self.rejected):
@@ -174,7 +176,7 @@ class Gradebook:
         return unread
 
     def _seed_of(self, student: str, exercise: str, written: str) -> int:
-        """The variant that a rejected row is of: the student's own, where there is a roster."""
+        """Return the seed of a rejected row: the student's own, if there is a roster."""
         issued = self.issued
         seed = int(written) if re.fullmatch("[0-9]{1,30}", written) else -1
         seeds = issued.seeds_of(student, exercise)
@@ -186,12 +188,13 @@ class Gradebook:
 
     @property
     def unreadable(self) -> int:
-        """How many lines of ``marks.csv`` hold an answer that could not be read."""
+        """Number of lines of ``marks.csv`` with an answer that could not be read."""
         return sum(total.verdicts["unreadable"] for total in self.exercises.values())
 
     @property
     def review_count(self) -> int:
-        """How many rows somebody must look at: rejected or unreadable, accepted by hand and at fault, or for a person to mark."""
+        """Number of rows that a person must review: rejected, unreadable, wrongly accepted by hand, or to be
+        marked by a person."""
         return len(self.rejected) + self.unreadable + len(self.faults) + self.waiting
 
 
@@ -202,7 +205,7 @@ BEST = "best"
 
 @dataclass(frozen=True)
 class Result:
-    """What a student has of one sitting; what was not handed in counts."""
+    """Result of a student in one sitting; sheets that were not submitted count."""
 
     sitting: int
     points: float
@@ -215,12 +218,12 @@ class Result:
 
     @property
     def counts(self) -> float:
-        """The points that the mark is made of."""
+        """Points on which the mark is based."""
         return self.points - self.late
 
 
 def results(book: Gradebook) -> Iterator[tuple[str, Result]]:
-    """Every student of the roster and every one who answered, with the sitting that counts.
+    """Yield each student of the roster, and each other student who answered, with the sitting that counts.
 
     Points are out of all that a student was issued, or without a roster of all that they answered to; those of an
     assignment out of all of it. What came in rejected rows alone is unreadable, and not missing.
@@ -236,7 +239,8 @@ def results(book: Gradebook) -> Iterator[tuple[str, Result]]:
 
 
 def counting_result(issued: Issued, results_of_student: Sequence[Result]) -> Result:
-    """Which of the sittings counts: the best, or as the assignment says the last; of two as good the later."""
+    """Return the result of the sitting that counts: the best, or the last if the assignment states so; of two
+    equally good ones the later."""
     if (issued.assignment or {}).get("sittings", BEST) != BEST:
         return results_of_student[-1]
     return max(
@@ -261,7 +265,8 @@ def _result(book: Gradebook, sitting: Sitting, unread_parts: Mapping[tuple[str, 
 
 
 def _missing_parts(book: Gradebook, sitting: Sitting, key: tuple[str, int]) -> list[Mapping[str, Any]]:
-    """The parts of a variant of which nothing came; where a platform asks part by part, those that it asked of others."""
+    """Return the parts of a variant without an answer. If a platform asks part by part, these are parts that
+    it asked of other students."""
     parts = book.issued.records[key]["parts"]
     apart = book.apart.get(key[0])
     if apart is None or key[0] in book.complete:
@@ -272,7 +277,7 @@ def _missing_parts(book: Gradebook, sitting: Sitting, key: tuple[str, int]) -> l
 def _missing_sheets(
     book: Gradebook, sitting: Sitting, unread_sheets: Iterable[tuple[str, int]]
 ) -> set[tuple[str, int]]:
-    """The variants of which nothing could be marked."""
+    """Return the variants of which nothing could be marked."""
     issued, done = book.issued, set(book.handed_in(sitting))
     owed = {(e, seed) for e, seed in (*issued.issued_to(*sitting).items(), *unread_sheets) if e not in done}
     met = {e for e, _ in owed} | (done - (book.apart.keys() - book.complete))
@@ -281,8 +286,8 @@ def _missing_sheets(
 
 
 def _asked_of_all(book: Gradebook) -> tuple[str, ...]:
-    """The exercises of which everybody has some variant, whoever's it is: those of an assignment, or of a pool whatever
-    came back from the platform."""
+    """Return the exercises of which each student has some variant: those of an assignment; those of a pool of
+    which an answer was received."""
     issued = book.issued
     if issued.assignment is not None:
         return () if issued.has_roster and not issued.is_pool else issued.exercises
@@ -290,13 +295,13 @@ def _asked_of_all(book: Gradebook) -> tuple[str, ...]:
 
 
 def _number(points: float) -> float:
-    """Points as tables print them, whole where they are: a number, which a decimal comma may print."""
+    """Return points as tables print them: an integer if possible, else a number."""
     rounded = float(f"{points:g}")
     return int(rounded) if rounded.is_integer() else rounded
 
 
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
-    """The lines of ``summary.csv``."""
+    """Yield the lines of ``summary.csv``."""
     issued = book.issued
     identity_columns, exercises, carried = identity(issued), exercise_columns(issued), carried_columns(issued)
     for student, result in results(book):

@@ -1,4 +1,4 @@
-"""What one student handed in on a platform that says who it is: marked, a sheet for each exercise that was issued."""
+"""Marks of one student whom a platform identifies: a sheet for each issued exercise."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from coursework.marking.marking import mark
 
 
 class OwnMarks(NamedTuple):
-    """What became of it: a sheet an exercise, that of nothing where none was handed in."""
+    """Marks of one student: a sheet for each exercise, without answers if nothing was submitted."""
 
     sheets: tuple[Graded, ...]
     rejected: tuple[Rejected, ...] = ()
@@ -27,7 +27,7 @@ class OwnMarks(NamedTuple):
 def marks_of_student(
     course: Course, issued: Issued, student: str, rows: Iterable[AnswerRow | Rejected | PlatformFile]
 ) -> OwnMarks:
-    """The marks of a student whom the platform names, whatever name the answers bear.
+    """Return the marks of a student whom the platform identifies, whatever name the answers contain.
 
     The variant is the one that was issued to the student: answers that say they are of another are rejected. A stranger to
     the roster has the sheets of nothing.
@@ -49,7 +49,7 @@ def marks_of_student(
 def as_students(
     issued: Issued, student: str, rows: Iterable[AnswerRow | Rejected | PlatformFile], notes: list[str]
 ) -> Iterator[AnswerRow | Rejected]:
-    """The rows as the student's own; another name in them is told once."""
+    """Yield the rows under the student's name; add one note if they contain another name."""
     for row in rows:
         if isinstance(row, PlatformFile):
             continue
@@ -64,7 +64,8 @@ def as_students(
 
 
 def _blank(course: Course, issued: Issued, student: str, exercise: str) -> Graded:
-    """The marks of nothing, on the student's variant; on the first where none is theirs."""
+    """Return the marks of an empty sheet on the student's variant, or on the first variant if the student has
+    none."""
     name = issued.student(student) or student
     seeds = issued.seeds_of(name, exercise) or [s for e, s in issued.records if e == exercise][:1]
     record = issued.record_of(name, exercise, seeds[-1])
@@ -75,5 +76,5 @@ _NAMES = re.compile(r"(has no part '[^']*').*", re.DOTALL)
 
 
 def for_student(reason: str) -> str:
-    """Why something was rejected, without the names of other parts: they may tell what is asked."""
+    """Return the reason for a rejection without the names of other parts, which may reveal questions."""
     return _NAMES.sub(r"\1", reason)

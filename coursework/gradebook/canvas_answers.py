@@ -1,4 +1,5 @@
-"""Canvas's Student Analysis of a quiz: a line an attempt; a question's column is titled ``12345: its text``, its points beside it."""
+"""Canvas's Student Analysis of a quiz: a line per attempt, a column titled ``12345: its text`` per question,
+and its points next to it."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ class AnalysisColumns(NamedTuple):
 
 
 def columns_of(header: Sequence[str]) -> AnalysisColumns | None:
-    """The places of the columns; None where this is no Student Analysis."""
+    """Return the positions of the columns; None if this is no Student Analysis."""
     titles = [title.strip().casefold() for title in header]
     questions = tuple(k for k, title in enumerate(header) if _QUESTION.match(title))
     if not questions or not {"name", "id", "attempt"} <= set(titles):
@@ -38,7 +39,7 @@ def columns_of(header: Sequence[str]) -> AnalysisColumns | None:
 
 
 def is_another(header: Sequence[str]) -> str:
-    """What is wrong with Canvas's other report of a quiz; nothing where it is none."""
+    """Return a message if this is another report of a Canvas quiz; empty otherwise."""
     titles = {title.strip().casefold() for title in header}
     if {"question id", "question title", "answered student count"} <= titles:
         return "this is Canvas's Item Analysis, which holds nobody's answers: download the Student Analysis"
@@ -48,7 +49,8 @@ def is_another(header: Sequence[str]) -> str:
 def read_answers(
     header: Sequence[str], rows: Iterable[tuple[str, Sequence[str]]], source: str, warning: str
 ) -> Iterator[AnswerRow | Rejected | PlatformFile]:
-    """The answers of the report, question by question: each names its variant and its part in its text."""
+    """Yield the answers of the report, question by question; the text of a question names its variant and its
+    part."""
     columns = columns_of(header)
     assert columns is not None, "only a header that has them comes here"
     labels = {k: label_in(header[k]) for k in columns.questions}

@@ -1,4 +1,4 @@
-"""Marking again: what changed and for whom, and answers that a person accepts by hand."""
+"""Changes of marks between two markings."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _USUAL_MARK = 20  #: out of what marks are told where no assignment states it
 
 
 def _number(text: str) -> float:
-    """Points of a file that anybody may have edited."""
+    """Return the points in a cell of a file that anybody may have edited; NaN if there are none."""
     try:
         return float(text.replace(",", ".") or 0)
     except ValueError:
@@ -38,12 +38,12 @@ _IN_BOTH = tuple(v for v in VERDICTS if v not in ("unreadable", "to_mark", "miss
 
 
 def _count(digits: str) -> int:
-    """How many, or what no count is where nobody has so many."""
+    """Return a count; -1 if it has too many digits."""
     return int(digits) if len(digits) < 10 else -1
 
 
 class EarlierMarks:
-    """The marks that were there before."""
+    """Marks of the previous marking."""
 
     def __init__(self, path: Path) -> None:
         self._marks: dict[str, tuple[str, str]] = {}
@@ -64,11 +64,11 @@ class EarlierMarks:
 
     @property
     def students(self) -> tuple[str, ...]:
-        """Those who had marks, in the order of the file."""
+        """Students with marks, in the order of the file."""
         return tuple(self._names.values())
 
     def edited(self, summary: Path) -> bool:
-        """Whether the marks are no longer those of the summary that was written with them."""
+        """Return True if the marks no longer agree with the summary that was written with them."""
         if not (self.exists and summary.exists()):
             return False
         in_summary: Counter[str] = Counter()
@@ -85,20 +85,20 @@ class EarlierMarks:
         return bool(others) or any(in_summary[verdict] != in_marks[verdict] for verdict in _IN_BOTH)
 
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
-        """What changed in a row of the new marks; None when nothing did."""
+        """Return the change of a row of the new marks; None if there is none."""
         now = (row["verdict"], row["points"])
         before = self._marks.pop(_answer_key(row), ("", ""))
         return None if before == now else _change(row, before, now)
 
     def gone(self) -> Iterator[dict[str, Any]]:
-        """Marks that are no more."""
+        """Yield a change for each mark that no longer exists."""
         for key, before in self._marks.items():
             row = dict(zip((*_PLACE, "sitting"), key.split("\0"), strict=False))
             yield _change({**row, "student": self._names[row["student"]], "answer": ""}, before, ("", ""))
 
 
 class History:
-    """The changes of earlier markings of a folder, to which those of this one are added.
+    """Changes of earlier markings of a folder, to which the new ones are added.
 
     Each has its day, and the student's mark of the summary before and now, out of 20 where no assignment states a scale.
     """
@@ -112,13 +112,14 @@ class History:
         self._new: list[dict[str, Any]] = []
 
     def add(self, change: dict[str, Any]) -> None:
-        """Add a change, but where the last of that answer is the same: a marking that was stopped wrote it already."""
+        """Add a change, unless the last change of that answer is the same: an interrupted marking has written
+        it already."""
         last = self._last.get(_answer_key(change))
         if last is None or any(last[column] != str(change[column]) for column in _TURN):
             self._new.append(change)
 
     def rows(self, summary: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
-        """All changes, the earlier first; ``summary`` are the rows of the summary of now."""
+        """Yield all changes, the earlier first; ``summary`` contains the rows of the new summary."""
         marks = _marks_in(summary)
         yield from self._earlier
         for change in self._new:
@@ -128,7 +129,7 @@ class History:
 
 
 def _plain_row(row: Mapping[str, str]) -> dict[str, str]:
-    """An earlier row, its numbers with a decimal point; a table of before there were dates and marks has none."""
+    """Return an earlier row, its numbers with a decimal point; missing columns are empty."""
     plain = {column: row.get(column, "") for column in CHANGES_COLUMNS}
     for column in ("points_before", "points_now", "mark_before", "mark_now"):
         plain[column] = plain[column].replace(",", ".")
@@ -136,7 +137,7 @@ def _plain_row(row: Mapping[str, str]) -> dict[str, str]:
 
 
 def _marks_in(summary: Iterable[Mapping[str, Any]]) -> dict[str, str]:
-    """The marks of a summary by student."""
+    """Return the marks of a summary by student."""
     marks = {}
     for row in summary:
         if not (mark := str(row.get("mark", "")).replace(",", ".")):
@@ -147,7 +148,7 @@ def _marks_in(summary: Iterable[Mapping[str, Any]]) -> dict[str, str]:
 
 
 def _answer_key(row: Mapping[str, Any]) -> str:
-    """Which answer a row of marks is of; one text, of which a large class has many."""
+    """Return the key of the answer of a row of marks: one text, to save memory in large classes."""
     student, *rest = (str(row.get(c, "")) for c in _PLACE)
     sitting = str(row.get("sitting", ""))
     return "\0".join((folded(student), *rest, *([sitting] if sitting not in ("", "1") else [])))
@@ -165,14 +166,15 @@ def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str
 
 
 def rows_of(path: Path) -> Iterator[dict[str, str]]:
-    """The rows of a table, by the names of its columns."""
+    """Return the rows of a table, by the names of its columns."""
     return (row for _, row, _ in lines_of(path))
 
 
 def lines_of(
     path: Path, most: int | None = None, once: Sequence[str] = ()
 ) -> Iterator[tuple[int, dict[str, str], list[str]]]:
-    """The rows of a table of ``most`` bytes where that is told, each with the number of its line and the cells that have no heading.
+    """Yield the rows of a table, each with its line number and the cells without a heading. ``most`` limits
+    the size of the file in bytes.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A class marked sheet by sheet, on all processors."""
+"""Marking of a class, sheet by sheet, on all processors."""
 
 from __future__ import annotations
 
@@ -32,21 +32,22 @@ WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has star
 
 
 class _SheetJob(NamedTuple):
-    """A sheet to mark: the record it was issued by, and its answers by part."""
+    """A sheet to mark: its issued record, and its answers by part."""
 
     record: Mapping[str, Any]
     answers: Mapping[str, Any]
 
 
 class _MarkingOptions(NamedTuple):
-    """How sheets are marked, here and in other processes."""
+    """Options of the marking, for this process and for others."""
 
     printed: bool  #: feedback sheets are to be made of them
     rules: Rules | None  #: the course's unless the assignment says others
 
 
 def rules_of(course: Course, issued: Issued) -> Rules | None:
-    """The course's rules of marking, overridden by the assignment's; None where it states none.
+    """Return the course's rules of marking, overridden by the assignment's; None if the assignment states
+    none.
 
     Raises
     ------
@@ -63,7 +64,7 @@ def rules_of(course: Course, issued: Issued) -> Rules | None:
 
 
 def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:
-    """The sheets marked, in their order; ``printed`` where feedback sheets are to be made of them.
+    """Yield the marked sheets, in their order; ``printed`` if feedback sheets are made of them.
 
     A sheet that cannot be marked costs itself alone: its rows are added to the rejected, and the warnings tell it.
 
@@ -76,7 +77,8 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
 
 
 def rejecting(sheets: Sheets, results: Iterable[tuple[SheetKey, Graded | str]]) -> Iterator[Graded]:
-    """The sheets that could be marked; the rows of the others are rejected with what is said of them."""
+    """Yield the sheets that could be marked; add the rows of the others to the rejected rows, with the
+    reason."""
     return _rejecting(sheets, ((sheets, *result) for result in results))
 
 
@@ -103,7 +105,7 @@ def _rejecting(sheets: Sheets, results: Iterable[_MarkedSheet]) -> Iterator[Grad
 def judged(
     course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True
 ) -> Iterator[tuple[SheetKey, Graded | str]]:
-    """Every sheet with its marks, or why it cannot be marked, in their order.
+    """Yield each sheet with its marks, or with the reason for which it cannot be marked, in their order.
 
     Raises
     ------
@@ -137,8 +139,8 @@ def _sheet_job(issued: Issued, sheets: Sheets, sheet: SheetKey) -> _SheetJob:
 
 
 def record_of(issued: Issued, sheets: Sheets, sheet: SheetKey) -> Mapping[str, Any]:
-    """The record that a sheet is marked against: in the language that it came back in; of the parts that a platform asked,
-    where it asks them apart."""
+    """Return the record against which a sheet is marked: in the language in which it was answered, and with
+    the parts that a platform asked, if it asks them one by one."""
     record = issued.record_of(*sheet[:3])
     if sheet in sheets.apart:
         record = {**record, "parts": [p for p in record["parts"] if p["id"] in sheets.sheets[sheet]]}
@@ -156,7 +158,7 @@ def _graded(issued: Issued, sheets: Sheets, sheet: SheetKey, sent: Sequence[tupl
 def _marked_chunks(
     course: Course, chunks: Iterator[list[_SheetJob]], answers: int, how: _MarkingOptions
 ) -> Iterator[list[list[tuple] | str]]:
-    """Each chunk marked, in order; by processes where there is much to do."""
+    """Yield each chunk marked, in order; use several processes for many answers."""
     count = workers(answers, WORTH_PROCESSES)
     if count < 2:
         for chunk in chunks:
@@ -173,7 +175,7 @@ def _mark_elsewhere(root: str, chunk: list[_SheetJob], how: _MarkingOptions) -> 
 
 
 def _mark_chunk(course: Course, chunk: Sequence[_SheetJob], how: _MarkingOptions) -> list[list[tuple] | str]:
-    """Lines a sheet, or why it cannot be marked."""
+    """Return the lines of each sheet, or the reason for which it cannot be marked."""
     variants = [course[job.record["exercise"]].from_record(job.record) for job in chunk]
     by_exercise: dict[str, list[int]] = {}
     for i, variant in enumerate(variants):
@@ -193,8 +195,8 @@ def _mark_chunk(course: Course, chunk: Sequence[_SheetJob], how: _MarkingOptions
 def _mark_sheet(
     variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str], printed: bool
 ) -> list[tuple] | str:
-    """A sheet's lines in the order of its parts, or why it cannot be marked; those that are plainly ``right`` are not
-    marked anew."""
+    """Return the lines of a sheet in the order of its parts, or the reason for which it cannot be marked.
+    Answers known to be ``right`` are not marked again."""
     try:
         marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
         return [
@@ -212,7 +214,7 @@ def _mark_sheet(
 
 
 def _right(variant: Variant, part: Part, answer: str, read_as: str, *, printed: bool) -> tuple[Any, ...]:
-    """The mark of an answer that is plainly right, as it is sent."""
+    """Return the mark of an answer that is known to be right, in the form in which processes exchange it."""
     points = float(part.points)
     message = right_says(variant, part, read_as) if printed else ""
     texts = message, right_feedback(variant, part, read_as)
@@ -220,7 +222,8 @@ def _right(variant: Variant, part: Part, answer: str, read_as: str, *, printed: 
 
 
 def _waiting(mark: Mark) -> Mark:
-    """An answer that could not be read is said to wait for somebody."""
+    """Return the mark of an unreadable answer with the message that a person will look at it; another mark
+    unchanged."""
     if mark.verdict != "unreadable":
         return mark
     return mark._replace(told=(*mark.told, Said(words(mark.lang)["marking"]["waits"], {})))

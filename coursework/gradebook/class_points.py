@@ -1,4 +1,4 @@
-"""What a class has, from the ``summary.csv`` of its marks: whom, by what identifies them, and how much of how many."""
+"""Points of a class from the ``summary.csv`` of its marks, with the identifiers of each student."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SCORES = ("points", "mark", "percent")
 
 
 class Scored(NamedTuple):
-    """One student."""
+    """Points of one student."""
 
     name: str
     ids: Ids
@@ -28,7 +28,8 @@ class Scored(NamedTuple):
     has_answered: bool = True
 
     def of(self, most: float | None) -> str:
-        """The points out of another total, to the hundredth, halves up; as they stand where it is the same or not known."""
+        """Return the points scaled to another total, rounded half up to hundredths; unchanged if the total is
+        the same or unknown."""
         if most is None or not self.out_of or exact(_number(self.out_of)) == exact(most):
             return self.points
         total = exact(_number(self.out_of))
@@ -41,7 +42,7 @@ class Scored(NamedTuple):
 
 
 def class_points(marks: Path, score: str) -> list[Scored]:
-    """The students of a folder of marks, or of its ``summary.csv``.
+    """Return the students of a folder of marks, or of its ``summary.csv``.
 
     Raises
     ------

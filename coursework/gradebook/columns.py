@@ -1,4 +1,4 @@
-"""What the columns of the tables are called: the usual ones, and those of an assignment and of the roster."""
+"""Names of the columns of the tables: the usual ones, and those of an assignment and of the roster."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ LATE = "late"  #: a column of the summary where points are taken off of what cam
 
 
 def marks_columns(issued: Issued, *, submitted: bool = False) -> tuple[str, ...]:
-    """The columns of ``marks.csv``; the sitting follows where there are several, and when it was handed in where that
-    is told."""
+    """Return the columns of ``marks.csv``, with the sitting if there are several, and with the time of
+    submission if it is known."""
     more = (SITTING, issued.has_sittings), (SUBMITTED, submitted)
     return (*MARKS_COLUMNS, *(column for column, there in more if there))
 
 
 def summary_columns(issued: Issued, *, late: bool = False) -> tuple[str, ...]:
-    """The columns: identity, exercises and the mark of an assignment stand among the usual ones; what else the roster
-    holds follows. ``late`` where points are taken off of what came late: percent and mark are of what is left."""
+    """Return the columns of ``summary.csv``: the usual ones with the identity, the exercises and the mark of
+    an assignment among them, then those of the roster. With ``late``, a column for the penalty of late
+    submissions; percent and mark are then those of the remaining points."""
     sitting = (SITTING,) if issued.has_sittings else ()
     student, points, out_of, *others = SUMMARY_COLUMNS
     others = [LATE, *others] if late else others
@@ -44,19 +45,19 @@ def summary_columns(issued: Issued, *, late: bool = False) -> tuple[str, ...]:
 
 
 def identity(issued: Issued) -> dict[str, str]:
-    """The columns that tell a student of the assignment: title as it is stated -> name in the summary."""
+    """Return the columns that identify a student of the assignment: stated title -> name in the summary."""
     stated = (issued.assignment or {}).get("identity") or ()
     return {str(title): _distinct_title(str(title), _reserved_names(issued)) for title in stated}
 
 
 def exercise_columns(issued: Issued) -> dict[str, str]:
-    """The column of each exercise of an assignment."""
+    """Return the column of each exercise of an assignment."""
     exercises = map(str, (issued.assignment or {}).get("exercises", ()))
     return {e: f"{e} points" if e in (*SUMMARY_COLUMNS, MARK, LATE, SITTING) else e for e in exercises}
 
 
 def carried_columns(issued: Issued) -> dict[str, str]:
-    """The columns of the roster: folded title -> name in the summary."""
+    """Return the columns of the roster: folded title -> name in the summary."""
     titles = {folded(title): title for cells in issued.columns.values() for title in cells}
     return {f: _distinct_title(title, _reserved_names(issued)) for f, title in titles.items() if f}
 
@@ -66,10 +67,10 @@ def _reserved_names(issued: Issued) -> frozenset[str]:
 
 
 def _distinct_title(title: str, reserved: frozenset[str]) -> str:
-    """A roster's title that is no name of another column."""
+    """Return a title of the roster that differs from the names of other columns."""
     return f"{title} (roster)" if folded(title) in reserved else title
 
 
 def own_columns(issued: Issued, student: str) -> dict[str, str]:
-    """What the roster says of a student, by folded title."""
+    """Return the cells of the roster about a student, by folded title."""
     return {folded(title): value for title, value in issued.columns.get(student, {}).items()}

@@ -1,4 +1,5 @@
-"""Different sheets of one student in several files: whose each is, where folders and names of files tell, and what waits for a person.
+"""Different sheets of one student in several files: the student's own sheet, as far as names of folders and
+files tell, and sheets that wait for a person.
 
 What a notebook says of itself anybody can write. Where two files answer differently for the same student and variant, the
 one that is called by the student, or lies in their folder, is theirs; where none is, or where nothing tells, all wait.
@@ -25,13 +26,15 @@ _AGAIN = re.compile(r"\s*\([0-9]+\)$")  #: what browsers add to the name of a fi
 
 
 def file_of(row: AnswerRow) -> str:
-    """The file of a student's own that a row came from; nothing where it is of a table, or a platform says whose it is."""
+    """Return the student's own file of a row; empty for a row of a table, or for one whose student a platform
+    identifies."""
     match = _OWN.match(row.source) if row.origin is None else None
     return match[0] if match else ""
 
 
 def doubts(issued: Issued, rows: Iterable[tuple[AnswerRow, Callable[[], Sheet | None]]]) -> Doubts:
-    """The rows that wait for a person; each comes with what tells its sheet, if it has one."""
+    """Return the reasons for which rows wait for a person, by sheet and file. Each row comes with a function
+    that returns its sheet, if it has one."""
     sheets: dict[Sheet, dict[str, dict[str, str]]] = {}
     people: dict[str, set[str]] = {}
     for row, sheet_of in rows:
@@ -56,13 +59,14 @@ def _text(row: AnswerRow) -> str:
 
 
 def _differ(answers: Sequence[Mapping[str, str]]) -> bool:
-    """Whether two of them answer one question differently."""
+    """Return True if two of them answer one question differently."""
     met: dict[str, str] = {}
     return any(met.setdefault(part, text) != text for sheet in answers for part, text in sheet.items())
 
 
 def _reasons_to_wait(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict[str, str]:
-    """By file that waits, why; nothing where all are the student's own, of which the first counts."""
+    """Return the reason to wait, by file; none if all are the student's own, since the first of them
+    counts."""
     student = sheet[0]
     theirs = [file for file in files if _student_of_file(issued, file, student) == student]
     if not theirs:
@@ -81,12 +85,12 @@ def _reasons_to_wait(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict
 
 @lru_cache(maxsize=4)
 def _stems(students: tuple[str, ...]) -> Mapping[str, str]:
-    """Students by what their handouts are called."""
+    """Return the students by the file names of their handouts."""
     return dict(zip(file_stems(students), students, strict=True))
 
 
 def _student_of_file(issued: Issued, file: str, student: str) -> str | None:
-    """Whom the name of a file, or of its folder, names."""
+    """Return the student named by a file or its folder; None if there is none."""
     stems = _stems(issued.students or (student,))
     path = Path(file)
     for name in (path.name.partition(".")[0], path.stem, path.parent.name):

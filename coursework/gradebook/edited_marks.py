@@ -1,4 +1,4 @@
-"""Marks as they stand in ``marks.csv``, changed by hand or not: read back, so that summary and feedback are of them.
+"""Marks of ``marks.csv``, possibly edited by hand: read again, so that summary and feedback agree with them.
 
 The answers are marked once more for what is said of them and for what the hand changed; verdict and points are those
 of the file.
@@ -32,7 +32,7 @@ _NEEDED = tuple(c for c in MARKS_COLUMNS if c not in ("read_as", "feedback"))
 
 
 class _MarksLine(NamedTuple):
-    """A mark as it stands."""
+    """Line of ``marks.csv``."""
 
     location: str  #: file and line
     verdict: str
@@ -42,7 +42,7 @@ class _MarksLine(NamedTuple):
 
 
 class EditedMarks:
-    """The marks of a file, each in the place that it was issued for.
+    """Marks of a file, sheet by sheet.
 
     Raises
     ------
@@ -65,7 +65,7 @@ class EditedMarks:
         self.sheets.rejected += _rejected_before(path.with_name("rejected.csv"))
 
     def refuse(self, rejected: list[Rejected]) -> None:
-        """Lines that cannot be read back are told, the first of them with its reason."""
+        """Raise an error if lines could not be read again; it states the reason of the first."""
         if rejected:
             more = f" (and {len(rejected) - 1} lines more)" if len(rejected) > 1 else ""
             raise BadInput(f"{rejected[0].source}: {rejected[0].reason}{more}; nothing is written")
@@ -88,7 +88,7 @@ class EditedMarks:
             yield AnswerRow(*names, row["answer"], location, origin=origin if self._is_pool else None)
 
     def of(self, graded: Graded) -> Graded:
-        """The sheet with the marks of the file.
+        """Return the sheet with the marks of the file.
 
         Raises
         ------
@@ -104,7 +104,8 @@ class EditedMarks:
 
 
 def _with_origins(issued: Issued, rows: Sequence[AnswerRow]) -> list[AnswerRow]:
-    """The rows of a pool; a sheet of which fewer came than its variant asks is of a platform that asks part by part."""
+    """Return the rows of a pool with their origins: a sheet with fewer rows than its variant has parts comes
+    from a platform that asks part by part."""
     counts = Counter(_sheet_of(row) for row in rows)
     part_counts = {(e, str(seed)): len(record["parts"]) for (e, seed), record in issued.records.items()}
 
@@ -120,7 +121,8 @@ def _sheet_of(row: AnswerRow) -> tuple[Any, ...]:
 
 
 def _add_identity(issued: Issued, summary: Path) -> None:
-    """Keep what identifies the students of a pool without a roster, which the summary of the platform's report tells."""
+    """Add the identifiers of the students of a pool without a roster, from the summary of the platform's
+    report."""
     if not issued.has_roster and summary.exists():
         with open_csv(summary) as file:
             delimiter = delimiter_of(file.readline())
@@ -132,7 +134,7 @@ def _add_identity(issued: Issued, summary: Path) -> None:
 
 
 def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
-    """The lines with a cell in them, by number; columns by name."""
+    """Yield the lines that are not empty, with their numbers; the cells by column."""
     try:
         with open_csv(path) as file:
             delimiter = delimiter_of(file.readline())
@@ -167,7 +169,7 @@ def _check_verdict(location: str, verdict: str) -> None:
 
 
 def _edited_mark(mark: Mark, line: _MarksLine) -> Mark:
-    """The mark with the verdict, the points and the words of the file."""
+    """Return the mark with the verdict, the points and the feedback of the file."""
     if _number(line.out_of) != float(f"{mark.out_of:g}"):
         raise BadInput(
             f"{line.location}: {mark.part} is out of {mark.out_of:g} points, as issued; found out of {line.out_of[:40]!r}"
@@ -193,12 +195,12 @@ def _number(text: str) -> float:
 
 
 def _verbatim(text: str) -> str:
-    """Markdown that prints a text as it stands."""
+    """Return Markdown that prints a text unchanged."""
     return re.sub(r"([\\`*_\[\]<>$#])", r"\\\1", text)
 
 
 def _rejected_before(path: Path) -> list[Rejected]:
-    """The rows that could not be marked, as they were told."""
+    """Return the rejected rows of the previous marking."""
     if not path.exists():
         return []
     columns = [c for c in REJECTED_COLUMNS if c not in ("source", "reason")]
@@ -209,7 +211,7 @@ def _rejected_before(path: Path) -> list[Rejected]:
 
 
 def differs(machine: Graded, changed: Graded) -> Iterator[dict[str, Any]]:
-    """The lines of ``changes.csv``: what a hand changed."""
+    """Yield the lines of ``changes.csv``: the marks edited by hand."""
     for part in changed.answered:
         before, now = machine.lines[part], changed.lines[part]
         was, is_now = (before.verdict, f"{before.points:g}"), (now.verdict, f"{now.points:g}")

@@ -1,4 +1,4 @@
-"""How feedback is asked for: in which formats, and whether with the worked solutions."""
+"""Options of the feedback: its formats, and whether it includes the worked solutions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ FORMATS = ("pdf", "html", "ipynb")
 
 
 class FeedbackForm(NamedTuple):
-    """How feedback is asked for: its formats, whether the worked solutions are wanted, and the day it is."""
+    """Options of the feedback: its formats, whether the worked solutions are requested, and the current
+    day."""
 
     formats: Sequence[str] = ("pdf",)
     solutions: bool = False
@@ -24,8 +25,8 @@ USUAL = FeedbackForm()
 
 
 def shows_solutions(issued: Issued, form: FeedbackForm) -> bool:
-    """Whether feedback has the worked solutions: where they are wanted, and of an assignment that states
-    ``solutions_after`` from that day on; never before it.
+    """Return True if feedback includes the worked solutions: if they are requested, or if the assignment
+    states a day ``solutions_after`` that has come; never before that day.
 
     Raises
     ------

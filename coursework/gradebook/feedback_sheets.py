@@ -1,4 +1,4 @@
-"""Feedback: what a student is told of an exercise, or of several under one total, as PDF, web page and notebook."""
+"""Feedback to a student on an exercise, or on several with one total, as PDF, web page and notebook."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from coursework.system.writing import File, Progress, write, writing
 
 
 class FeedbackOptions(NamedTuple):
-    """How feedback is told: what a student may try next, and whether the worked solutions are shown."""
+    """Content of the feedback: a further exercise to practise, and the worked solutions."""
 
     practice: PracticeOf | None = None
     solutions: bool = False
@@ -53,7 +53,8 @@ MARKS_ALONE = FeedbackOptions()
 def feedback_sheet(
     course: Course, graded: Graded, *, answers: bool = False, telling: FeedbackOptions = MARKS_ALONE
 ) -> FeedbackSheet:
-    """A student's marks on one exercise, ready to print; with the right ``answers`` where they may be shown."""
+    """Return a student's marks on one exercise, ready to print; with the right ``answers`` if they are
+    released."""
     variant = course[graded.exercise].from_record(graded.record)
     handout = handout_of(variant, graded.student)
     right = _right_answers(variant) if answers or telling.solutions else {}
@@ -74,7 +75,8 @@ def feedback_sheet(
 
 
 def _line(variant: Variant, question: Question, line: Mark, right: str) -> FeedbackLine:
-    """What became of one answer; what its quantity follows from where it has not all its points."""
+    """Return the feedback line of one answer; if points are missing, with the quantities from which it
+    follows."""
     values = localised(line.read_as, variant.lang), line.verdict, line.points, line.out_of, line.says
     part = next(p for p in variant.parts if p.id == question.id)
     lost = line.points < line.out_of and line.verdict not in _NOT_ABOUT_IT and not part.sort.is_open
@@ -89,7 +91,8 @@ def _line(variant: Variant, question: Question, line: Mark, right: str) -> Feedb
 
 
 def _with_formulas(question: Question, read_as: str, lang: str) -> str:
-    """What was read of a choice as its sheet offers it, Markdown, where that has formulas; else nothing."""
+    """Return the reading of a choice as the sheet offers it, in Markdown, if it contains formulas; empty
+    otherwise."""
     form = words(lang)["choices"]["lettered"]
     letters = question.letters or ("",) * len(question.choices)
     for letter, (_, label) in zip(letters, question.choices, strict=True):
@@ -100,7 +103,7 @@ def _with_formulas(question: Question, read_as: str, lang: str) -> str:
 
 
 def _right_answers(variant: Variant) -> dict[str, str]:
-    """The reference answers by part, Markdown; none to an open question."""
+    """Return the reference answers by part, in Markdown; none for an open question."""
     values = variant.walk
     return {part.id: answer_text(variant, part, values) for part in variant.parts if not part.sort.is_open}
 
@@ -122,7 +125,7 @@ def feedback_paper(
     waiting: Collection[str] = (),
     telling: FeedbackOptions = MARKS_ALONE,
 ) -> FeedbackPaper:
-    """A student's marks on an assignment, of one sitting: one total, the mark, and what to look at next.
+    """Return a student's marks on one sitting of an assignment: one total, the mark, and advice.
 
     An exercise that was not handed in has its sheet too, without answers, unless it is ``waiting``: handed in, and not
     read yet.
@@ -154,8 +157,8 @@ def feedback_paper(
 def feedback_collection(
     course: Course, student: str, graded: Sequence[Graded], telling: FeedbackOptions = MARKS_ALONE
 ) -> FeedbackPaper:
-    """A student's marks on exercises that were handed out one by one: under one total, their questions numbered as on
-    the sheet of each."""
+    """Return a student's marks on exercises that were handed out one by one: under one total, with the
+    question numbers of each sheet."""
     lang = str(graded[0].record.get("lang", "fr"))
     sheets = tuple(
         feedback_sheet(course, sheet._replace(record={**sheet.record, "lang": lang}), telling=telling)
@@ -169,7 +172,7 @@ def feedback_collection(
 def _blank(
     course: Course, issued: Issued, student: str, sitting: int, lang: str
 ) -> Callable[[str], Graded | None]:
-    """Sheets that a student was issued and did not hand in."""
+    """Return a function that makes the sheet of an exercise that the student did not submit."""
     seeds = issued.issued_to(student, sitting)
 
     def sheet(exercise: str) -> Graded | None:
@@ -184,13 +187,13 @@ def _blank(
 
 
 def _worth(issued: Issued, exercise: str) -> float:
-    """The points of an exercise, which are those of all its variants."""
+    """Return the points of an exercise, which are those of all its variants."""
     record = next((r for (e, _), r in issued.records.items() if e == exercise), {"parts": ()})
     return float(sum(part["points"] for part in record["parts"]))
 
 
 def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang: str) -> Heading:
-    """What stands above a student's paper, from what was issued."""
+    """Return the heading of a student's paper, from the issued records."""
     stated = issued.assignment or {}
     roster_cells = own_columns(issued, student)
     versions = (issued.versions.get(key) for key in issued.issued_to(student, sitting).items())
@@ -210,7 +213,7 @@ def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang:
 
 
 def _advice(sheets: Sequence[FeedbackSheet], handed_in: Collection[str], lang: str) -> Iterator[str]:
-    """Where most points are left to gain: questions, and exercises that were not handed in."""
+    """Yield the questions, and the exercises not submitted, in which most points can still be gained."""
     texts = words(lang)["feedback"]
     places: list[tuple[float, float, str]] = []
     for position, sheet in enumerate(sheets, start=1):
@@ -241,7 +244,8 @@ def write_feedback(
     progress: Progress,
     form: FeedbackForm = USUAL,
 ) -> None:
-    """A file a student and format, called as the student's handouts are; of an assignment one a sitting.
+    """Write a file for each student and format, named like the student's handouts; for an assignment, one for
+    each sitting.
 
     A sheet that cannot be printed is a warning, and costs no other.
     """
@@ -277,7 +281,7 @@ def _warn(book: Gradebook, student: str, fault: CourseworkError) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _FeedbackContent:
-    """What a student is told of one sitting, to be made wherever it is printed."""
+    """Feedback of one sitting, to be made in the process that prints it."""
 
     course: Course
     issued: Issued
@@ -308,8 +312,8 @@ def renew_feedback(
     form: FeedbackForm = USUAL,
     ready: Callable[[], None] = lambda: None,
 ) -> None:
-    """Print feedback, then put it into ``out / "feedback"``: sheets of an earlier marking make way, one that somebody wrote
-    on is kept aside and told, and any other file stays.
+    """Print feedback, then move it to ``out / "feedback"``. Sheets of an earlier marking are replaced; a
+    sheet that somebody has edited is kept under another name, with a warning; other files stay.
 
     Nothing of before is touched while it is printed. ``ready`` is called before it is put there, and may refuse.
     """
@@ -327,7 +331,7 @@ def renew_feedback(
 
 
 def _printed(renderer: Renderer, content: _FeedbackContent, end: str) -> bytes:
-    """What a student is told, in a format."""
+    """Return the feedback in a format."""
     sheet = content.sheet
     if end == "ipynb":
         return renderer.feedback_notebook(sheet).encode("utf-8")

@@ -1,4 +1,4 @@
-"""A platform's own export of its gradebook, one column of it filled with what a class has."""
+"""Export of a platform's gradebook, with one column filled with the points of a class."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LISTED = 5  #: names that a message lists
 
 @dataclass
 class Filled:
-    """The file as it is to be written, and what is to be told of it."""
+    """Content of the filled file, and what to report about it."""
 
     data: bytes = b""
     column: str = ""  #: its title
@@ -83,7 +83,7 @@ def fill(
 
 
 class _Sheet(NamedTuple):
-    """A gradebook, parted."""
+    """Parts of a gradebook: columns, rows of students, and maxima."""
 
     people: People
     column: int  #: of the item
@@ -93,7 +93,7 @@ class _Sheet(NamedTuple):
 
     @property
     def names(self) -> list[str]:
-        """The names as they are told, each of its own."""
+        """Names of the students; a name that occurs twice has an identifier added."""
         names = [first_name_first(_name(row, self.people)) for row in self.rows]
         ids = [_first_of(row, self.people.ids) for row in self.rows]
         often = Counter(names)
@@ -141,7 +141,7 @@ def _is_somebody(row: Sequence[PositionedCell], people: People) -> bool:
 
 
 def _first_of(row: Sequence[PositionedCell], places: Iterable[int]) -> str:
-    """The first of some cells that is not empty."""
+    """Return the first of some cells that is not empty."""
     return next(filter(None, (_cell(row, k) for k in places)), "")
 
 
@@ -155,7 +155,7 @@ def _name(row: Sequence[PositionedCell], people: People) -> str:
 def column_of(
     platform: PlatformGradebook, titles: Sequence[str], people: People, item: str, source: Path
 ) -> int:
-    """The column of an item, by its whole title or by its own name in it.
+    """Return the column of an item, by its whole title or by the item's name in it.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def column_of(
 
 
 def _most(platform: PlatformGradebook, sheet: _Sheet, stated: float | None, source: Path) -> float | None:
-    """The item's maximum: as the file tells it, which must agree with what is told."""
+    """Return the item's maximum: that in the file, which must agree with the stated one."""
     text = platform.most_in(sheet.title) if sheet.maxima is None else _cell(sheet.maxima, sheet.column)
     try:
         in_file = float(text.replace(",", ".")) if text else None
@@ -215,7 +215,7 @@ def _points(student: Scored, filled: Filled) -> str:
 
 
 def _sign_in(sheet: _Sheet) -> str:
-    """The decimal sign of the marks that stand in a file; nothing where none has decimals."""
+    """Return the decimal sign of the marks in a file; empty if no mark has decimals."""
     texts = (cell.text for row in sheet.rows for cell in row[sheet.people.last + 1 :])
     signs = [match["sign"] for text in texts if (match := _NUMBER.fullmatch(text))]
     return max("".join(dict.fromkeys(signs)), key=signs.count, default="")
@@ -225,7 +225,8 @@ def _sign_in(sheet: _Sheet) -> str:
 
 
 def _matched(sheet: _Sheet, scored: Sequence[Scored], filled: Filled) -> list[Scored | None]:
-    """By line, whom it is of: by e-mail or number, else by a name that one line and one student alone have."""
+    """Return the student of each line: matched by e-mail or number, else by a name that only one line and one
+    student have."""
     ids = _only((same_id(_cell(row, k)), n) for n, row in enumerate(sheet.rows) for k in sheet.people.ids)
     names = _only((words_of(_name(row, sheet.people)), n) for n, row in enumerate(sheet.rows))
     by_line: dict[int, Scored] = {}
@@ -249,14 +250,14 @@ def _matched(sheet: _Sheet, scored: Sequence[Scored], filled: Filled) -> list[Sc
 
 
 def _differs(row: Sequence[PositionedCell], people: People, student: Scored) -> bool:
-    """Whether both have an e-mail, and these are of two people: a name alone does not make them one."""
+    """Return True if both have an e-mail and these differ; the same name is then that of two people."""
     there = {same_id(_cell(row, k)) for k in people.ids if "@" in _cell(row, k)}
     stated = {same_id(value) for _, value in student.ids if "@" in value}
     return bool(there and stated and not there & stated)
 
 
 def _only(pairs: Iterable[tuple[object, int]]) -> dict[object, int | None]:
-    """By key, the one line that has it; None where several do."""
+    """Return the line of each key that only one line has; None for a key that several have."""
     lines: dict[object, int | None] = {}
     for key, line in pairs:
         if key:

@@ -1,4 +1,4 @@
-"""What was given for one sheet."""
+"""Marked sheet of a student."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from coursework.marking.mark import Mark
 
 
 class Graded(NamedTuple):
-    """One student's marked sheet: a mark for each part asked; ``answered`` names those that came."""
+    """Marked sheet of a student: a mark for each part; ``answered`` names the parts with an answer."""
 
     student: str
     exercise: str

@@ -1,4 +1,4 @@
-"""The job of Monday: files of answers in; marks, summary, rejected rows and feedback sheets out.
+"""Grading of a class: from files of answers to marks, summary, rejected rows and feedback sheets.
 
 The tables appear together, whole, in place of those before, or not at all: none takes its place before all are written
 and each is seen to be replaceable.
@@ -87,7 +87,7 @@ def grade_files(
 
 
 def usual_feedback(sheets: Sheets) -> bool:
-    """Whether feedback sheets are printed unless told; that they are not is told among the warnings."""
+    """Return True if feedback sheets are printed by default; add a warning if they are not."""
     count = sheets.students
     if count > FEEDBACK_STUDENTS:
         sheets.warnings.append(
@@ -112,8 +112,8 @@ def write_marks(
     progress: Progress = lambda done, of: None,
     form: FeedbackForm = USUAL,
 ) -> Gradebook:
-    """Write the files of :func:`grade_files` of sheets that are marked as they are asked for; ``charged`` are the shares that
-    are taken off of what came late."""
+    """Write the files of :func:`grade_files` for sheets that are marked on demand; ``charged`` contains the
+    penalties of late submissions as shares of the points."""
     before = EarlierMarks(out / "marks.csv")
     history = History(out, _day(form))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
@@ -186,7 +186,7 @@ def grade_edited_marks(
     progress: Progress = lambda done, of: None,
     form: FeedbackForm = USUAL,
 ) -> Gradebook:
-    """Write ``summary.csv``, ``rejected.csv`` and feedback sheets of the marks as they stand in a file.
+    """Write ``summary.csv``, ``rejected.csv`` and feedback sheets for the marks in a file.
 
     ``changes.csv`` says which of them are not what the marking gives: a hand changed them. They are kept in
     ``by_hand.csv`` too, so that a later marking knows of them. The file itself stays as it is.
@@ -242,7 +242,8 @@ def grade_edited_marks(
 
 
 def _list_to_mark(by_person: ToMark, tables: Tables, book: Gradebook) -> None:
-    """Write what a person marks; points for what nobody answered, or answered anew, stay in a copy, and are told."""
+    """Write the answers that a person marks. Points for answers that are missing or have changed are kept in
+    a copy, with a warning."""
     path = by_person.path
     if by_person.loses:
         copy = free_name(path)
@@ -257,7 +258,7 @@ def _list_to_mark(by_person: ToMark, tables: Tables, book: Gradebook) -> None:
 
 
 def _kept_copy(marks: Path) -> str:
-    """Keep marks that were edited, beside those that take their place; says so."""
+    """Copy marks that were edited and are about to be replaced; return a warning."""
     copy = free_name(marks)
     write_whole(copy, marks.read_bytes())
     return (
@@ -267,7 +268,7 @@ def _kept_copy(marks: Path) -> str:
 
 
 def nothing_in(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
-    """That nothing can be marked, and why."""
+    """Return the message that nothing can be marked, with the reason."""
     where = ", ".join(map(str, submissions[:3])) + (", …" if len(submissions) > 3 else "")
     message = f"nothing in {where} can be marked, so nothing is written"
     if not rejected:

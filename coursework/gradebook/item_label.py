@@ -1,4 +1,4 @@
-"""The label that an exported question prints in its text, by which a platform's report tells the variant."""
+"""Label printed in the text of an exported question, by which a platform's report identifies the variant."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _BARE = re.compile(r"\s*[-+−–]?[0-9][0-9.,\s]*")
 
 
 class ItemLabel(NamedTuple):
-    """``[slotted_mechanism · 4 · v1 · fr · rA]``: language and part where the question prints them."""
+    """Label ``[slotted_mechanism · 4 · v1 · fr · rA]``; language and part are optional."""
 
     exercise: str
     seed: str
@@ -25,7 +25,7 @@ class ItemLabel(NamedTuple):
     unit: str = ""  #: in which numbers are asked, where it is not the sheet's: ``µrad``, ``10⁻³ °``
 
     def answer(self, text: str) -> str:
-        """What was answered, a bare number with the unit that the question printed beside its box."""
+        """Return the answer; a bare number gets the unit printed beside its box."""
         if not (self.unit and _BARE.fullmatch(text)):
             return text
         return f"{text}{'·' if self.unit.startswith('10') else ' '}{self.unit}"
@@ -35,6 +35,7 @@ NO_LABEL = "the question's text has no label as [slotted_mechanism · 4 · v1 ·
 
 
 def label_in(text: str) -> ItemLabel | None:
-    """The label of a question's text, the last where figures or data look alike; None where it has none."""
+    """Return the last label in a question's text, since figures or data may look alike; None if there is
+    none."""
     matches = [*_LABEL.finditer(text)]
     return ItemLabel(*(group or "" for group in matches[-1].groups())) if matches else None

@@ -1,4 +1,4 @@
-"""Notebooks that came back without what a computer knows them by: some editors drop tags and metadata, some people cut cells and join them.
+"""Notebooks without their tags and metadata: some editors drop them, some people cut and join cells.
 
 What a notebook prints for its reader is left: the line with exercise, seed and version, the name, and cells that say ``answers = {``. Nothing is
 run here either.
@@ -27,7 +27,7 @@ def source_of(cell: dict[str, Any]) -> str:
 
 
 def printed_identity(cells: Sequence[dict[str, Any]]) -> dict[str, Any] | None:
-    """Whose a notebook is and of which variants, as its text says it to a reader; None where no variant is named.
+    """Return the student and the variants that the text of a notebook states; None if it names no variant.
 
     In the form of the metadata that it lacks: ``exercise`` and ``seed``, or ``sheets`` for a paper.
     """
@@ -53,14 +53,16 @@ def _name_in(text: str) -> str:
 
 
 def answers_texts(cells: Sequence[dict[str, Any]]) -> Iterator[tuple[int, str]]:
-    """The cells that assign a dict to ``answers``, each with its place; one that was cut is put together again."""
+    """Return the cells that assign a dict to ``answers``, each with its position; a cell that was cut is
+    joined again."""
     for position, cell in enumerate(cells):
         if cell.get("cell_type") == "code" and BEGINS.search(source_of(cell)):
             yield position, joined(cells, position)
 
 
 def joined(cells: Sequence[dict[str, Any]], position: int) -> str:
-    """A cell of code, with as many of those behind it as close what it opens; alone where none does."""
+    """Return the text of a cell of code, joined with the following cells that close its brackets; the cell
+    alone if none do."""
     text = source_of(cells[position])
     code = text
     for behind in cells[position + 1 : position + _PIECES]:
@@ -73,13 +75,14 @@ def joined(cells: Sequence[dict[str, Any]], position: int) -> str:
 
 
 def _closes(text: str) -> bool:
-    """Whether every brace that is opened outside quotation marks is closed."""
+    """Return True if each brace opened outside quotation marks is closed."""
     bare = re.sub(r"""("{3}|'{3})[\s\S]*?\1|"[^"\n]*"|'[^'\n]*'|#[^\n]*""", "", text)
     return bare.count("{") <= bare.count("}")
 
 
 def answers_statement(code: str) -> str:
-    """The ``answers = {…}`` of a cell that holds more, where nothing else in it touches the answers; else the whole text."""
+    """Return the statement ``answers = {…}`` of a cell with more statements, if no other one uses the
+    answers; else the whole text."""
     start = BEGINS.search(code)
     if start is None:
         return code

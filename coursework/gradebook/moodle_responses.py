@@ -1,4 +1,4 @@
-"""Moodle's Responses report of a quiz, as Moodle writes it: CSV in the language of whoever downloads it, or JSON.
+"""Moodle's Responses report of a quiz: CSV in the language of the person who downloads it, or JSON.
 
 Its columns are known by their places and numbers, since Moodle translates their titles: who, then state, start, end and
 duration of the attempt and its grade, then for each question its text and the response, ``Question 1``, ``Response 1``.
@@ -33,7 +33,7 @@ NO_RESPONSES = (
 
 
 class ResponseColumns(NamedTuple):
-    """Where what stands."""
+    """Positions of the columns of a report."""
 
     name: tuple[int, ...]  #: of the first name and the surname
     ids: tuple[int, ...]
@@ -43,7 +43,7 @@ class ResponseColumns(NamedTuple):
 
 
 def columns_of(header: Sequence[str]) -> ResponseColumns | None:
-    """The places of the columns; None where this is no Responses report."""
+    """Return the positions of the columns; None if this is no Responses report."""
     matches = [_NUMBERED.fullmatch(title.strip()) for title in header]
     numbers = [
         match["number"] if match and not _is_grade(header, k) else "" for k, match in enumerate(matches)
@@ -73,7 +73,7 @@ def _is_grade(header: Sequence[str], index: int) -> bool:
 
 
 def _name(titles: Sequence[str]) -> tuple[int, ...]:
-    """The columns of first name and surname, or of the whole name."""
+    """Return the columns of first name and surname, or of the whole name."""
     for names in (WHOLE, (*FIRST_NAME, *SURNAME)):
         named = [k for k, title in enumerate(titles) if is_called(title, names)]
         if named:
@@ -82,7 +82,7 @@ def _name(titles: Sequence[str]) -> tuple[int, ...]:
 
 
 def is_another(header: Sequence[str]) -> str:
-    """What is wrong with another report of a quiz; nothing where it is none."""
+    """Return a message if this is another report of a quiz; empty otherwise."""
     if sum(bool(_GRADES_REPORT.fullmatch(title.strip())) for title in header) >= 2 and any(
         is_called(title, EMAIL) for title in header
     ):
@@ -101,7 +101,7 @@ def is_another(header: Sequence[str]) -> str:
 def read_responses(
     header: Sequence[str], rows: Iterable[tuple[str, Sequence[str]]], source: str, warning: str
 ) -> Iterator[AnswerRow | Rejected | PlatformFile]:
-    """The answers of a report, by attempt; each row is given with its place."""
+    """Yield the answers of a report, attempt by attempt; each of ``rows`` has its location and its cells."""
     columns = columns_of(header)
     assert columns is not None, "only a header that has them comes here"
     attempts: Counter[tuple[str, ...]] = Counter()
@@ -132,7 +132,7 @@ def read_responses(
 
 
 def _is_average(header: Sequence[str], columns: ResponseColumns, cells: Sequence[str]) -> bool:
-    """The last line: an average in the column of names, nobody's e-mail, nothing in the columns of answers."""
+    """Return True for the last line: an average in the column of names, no e-mail, no answers."""
     if any(cells[k].strip() not in _NONE for pair in columns.questions for k in pair):
         return False
     name = " ".join(cells[k] for k in columns.name).casefold()
@@ -150,7 +150,7 @@ def _student_of(
 def _unfinished(
     columns: ResponseColumns, cells: Sequence[str], student: str, location: str
 ) -> Iterator[Rejected]:
-    """The responses of an attempt that was not handed in, which has no end."""
+    """Yield the responses of an attempt that was not submitted, which has no end."""
     state = cells[columns.state].strip()
     reason = f"the attempt is not finished, it is {state!r}: close it in Moodle, or let it be handed in, and download again"
     answered = [pair for pair in columns.questions if cells[pair[1]].strip() not in _NONE]
@@ -165,7 +165,8 @@ def _unfinished(
 def _response(
     question: str, response: str, student: str, origin: RowOrigin, location: str, warning: str
 ) -> Iterator[AnswerRow | Rejected]:
-    """The answers of one response: all parts of a question with several gaps, or the one that its label names."""
+    """Yield the answers of one response: all parts of a question with several gaps, or the part that its
+    label names."""
     label, text = label_in(question), response.strip()
     if label is None:
         if text not in _NONE:
@@ -206,7 +207,8 @@ _FIRST = re.compile(r"(?P<before>[^\d:;]{1,30}?)1(?P<colon>\s*[:：])")
 
 
 def parts_of(text: str) -> list[str]:
-    """The answers of ``part 1: 238.4 mm; part 2: …``, in whatever language; none where they cannot be told apart.
+    """Return the answers of ``part 1: 238.4 mm; part 2: …``, in any language; none if they cannot be
+    separated.
 
     An answer may hold semicolons. Where what parts two answers stands in one of them too, nobody knows which is which.
     """

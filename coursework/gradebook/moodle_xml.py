@@ -1,4 +1,5 @@
-"""Marks as Moodle's XML import takes them: the item and the students by their ID numbers, with nothing to map."""
+"""Marks in the format of Moodle's XML import: the item and the students by their ID numbers, without any
+mapping."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ _NUMBERS = ("id number", plain("numéro d'identification"), *NUMBER)
 
 
 def number_of(student: Scored) -> str:
-    """A student's number; nothing where there is none."""
+    """Return a student's number; empty if there is none."""
     identifiers = {plain(title): value for title, value in student.ids}
     return next((identifiers[title] for title in _NUMBERS if title in identifiers), "")
 
@@ -21,7 +22,7 @@ def number_of(student: Scored) -> str:
 def moodle_xml(
     item: str, scored: Sequence[Scored], most: float | None, batch: str
 ) -> tuple[bytes, list[str]]:
-    """The file, and who has no number and so is not in it.
+    """Return the file, and the students who are not in it since they have no number.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Answers in notebooks: cells that hold a literal, read and never run; one an exercise."""
+"""Answers in notebooks: cells with a literal, one per exercise, read and never executed."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _SUBMITTED_BY = "handed in by"  #: among what a notebook says of itself: who its
 
 
 def read_notebook(data: bytes, source: str, by: str = "") -> Iterator[AnswerRow | Rejected]:
-    """The rows of a notebook; ``by`` is who handed it in, as its folder says."""
+    """Yield the rows of a notebook; ``by`` is the person who submitted it, according to its folder."""
     for row in _read(data, source, by):
         if by and isinstance(row, Rejected) and not row.row.get("student"):
             row = replace(row, row={**row.row, "student": by})
@@ -94,7 +94,8 @@ _CUT = "the answers cell was cut in pieces; they are put together"
 
 
 def _answers_code(cells: list[dict[str, Any]]) -> tuple[str | None, str]:
-    """The code of the answers cell of one exercise and what is to be told of it; None and why where it cannot be told which it is."""
+    """Return the code of the answers cell of one exercise, and a note about it; None and a reason if the cell
+    cannot be identified."""
     tagged = [position for position, cell in enumerate(cells) if "answers" in _tags(cell)]
     named = dict(answers_texts(cells))
     tagged_texts = _filled(joined(cells, p) for p in tagged if len(tagged) == 1 or p in named)
@@ -108,7 +109,7 @@ def _answers_code(cells: list[dict[str, Any]]) -> tuple[str | None, str]:
 
 
 def _filled(texts: Iterable[str]) -> list[str]:
-    """Different texts of answers: those that hold one, or all where none does."""
+    """Return the different texts that contain an answer; all if none does."""
     different = list(dict.fromkeys(texts))
     return [text for text in different if _has_answer(text)] or different
 
@@ -123,7 +124,7 @@ def _has_answer(code: str) -> bool:
 
 
 def _answers_in(code: str) -> tuple[dict[Any, Any] | str, str]:
-    """The dict of an answers cell, or what is wrong with it; and what is to be told where the cell holds more."""
+    """Return the dict of an answers cell, or its fault; and a note if the cell contains more."""
     answers = literal_answers(code)
     if isinstance(answers, str) and len(code) <= _LONGEST and (bare := answers_statement(code)) != code:
         bare_answers = literal_answers(bare)
@@ -138,7 +139,7 @@ def _answers_in(code: str) -> tuple[dict[Any, Any] | str, str]:
 def _read_paper(
     about: dict[str, Any], cells: list[dict[str, Any]], source: str, notes: list[str]
 ) -> Iterator[AnswerRow | Rejected]:
-    """A notebook of several exercises: an answers cell each, which says whose answers it holds."""
+    """Yield the rows of a notebook of several exercises, with an answers cell for each."""
     sheets = [
         (name_in(s.get("exercise")), name_in(s.get("seed"))) for s in about["sheets"] if isinstance(s, dict)
     ]
@@ -192,7 +193,8 @@ _OF = re.compile(r"#[ \t]*(\w+)[ \t]+([0-9]{1,30})[ \t]*$", re.MULTILINE)
 
 
 def _sheet_of(cell: dict[str, Any], sheets: list[tuple[str, str]]) -> tuple[str, str]:
-    """Exercise and seed of an answers cell: by its metadata, else by the comment at its head, else the only ones."""
+    """Return exercise and seed of an answers cell: from its metadata, else from the comment at its head, else
+    the only ones."""
     metadata = cell.get("metadata")
     own_metadata = metadata.get("coursework") if isinstance(metadata, dict) else None
     if isinstance(own_metadata, dict) and name_in(own_metadata.get("exercise")):
@@ -210,7 +212,7 @@ def _example(sheets: list[tuple[str, str]]) -> str:
 def _name_in_paper(
     about: dict[str, Any], read: list[dict[Any, Any] | str], source: str, warning: str
 ) -> tuple[str, str]:
-    """Whose notebook it is; the name may stand in any of the cells."""
+    """Return the name of the student, which any of the cells may contain, and the warnings."""
     written = [name_in(answers.pop("student", None)) for answers in read if isinstance(answers, dict)]
     named, warning = _with_name(about, {"student": next(filter(None, written), None)}, source, warning)
     return name_in(named.get("student")), warning
@@ -219,7 +221,8 @@ def _name_in_paper(
 def _with_name(
     about: dict[str, Any], answers: dict[Any, Any], source: str, warning: str
 ) -> tuple[dict[str, Any], str]:
-    """A notebook that was nobody's: the name its reader wrote among the answers, or else the file's."""
+    """Return the metadata with a student: that of the metadata, else the name written among the answers, else
+    that of the folder, else the name of the file."""
     written = name_in(answers.pop("student", None))
     if name_in(about.get("student")):
         return about, warning
@@ -231,7 +234,8 @@ def _with_name(
 
 
 def _about(about: dict[str, Any], source: str) -> dict[str, str]:
-    """What a notebook says of itself; one that was nobody's is called as its file."""
+    """Return a row with the student, the exercise and the seed of a notebook; without a student, the name of
+    its file."""
     named = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
     name = named["student"] or about.get(_SUBMITTED_BY) or Path(source).stem
     return {**named, "student": name, "part": "", "answer": ""}
@@ -244,7 +248,7 @@ def _tags(cell: dict[str, Any]) -> list[Any]:
 
 
 def literal_answers(code: str) -> dict[Any, Any] | str:
-    """The dict that an answers cell holds, or what is wrong with the cell. Nothing is run.
+    """Return the dict of an answers cell, or a message about its fault. Nothing is executed.
 
     ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these. A value that is none of
     them is the text that stands there; a cell that is no Python is read line by line.
@@ -306,8 +310,8 @@ _ENDS_IN_KEY = re.compile(r"""(["'])([^"']+)\1\s*:\s*([^"'\s,{}][^"'{}]*)?$""")
 
 
 def _with_hidden(answers: dict[Any, Any], code: str) -> dict[Any, Any]:
-    """The answers, and those that a # has cut off or hides, unless the same is answered elsewhere: ``"rA": 319#.8``,
-    ``"rA": "1",  # mm "b": "2",``."""
+    """Return the answers, with those that a # cuts off or hides, unless the part is answered elsewhere:
+    ``"rA": 319#.8``, ``"rA": "1",  # mm "b": "2",``."""
     unread: list[tuple[Any, str, str]] = []
     for line in code.split("\n"):
         read, comment = _parted(line)
@@ -321,7 +325,7 @@ def _with_hidden(answers: dict[Any, Any], code: str) -> dict[Any, Any]:
 
 
 def _behind(read: str, comment: str) -> Iterator[tuple[str, str, bool]]:
-    """The answers in a comment, by key, and whether what stands before the # is a part of it."""
+    """Yield the answers in a comment: key, text, and True if the text before the # belongs to the answer."""
     if (bare := _ENDS_IN_TEXT.search(read)) and re.search("[:0-9]", comment):
         yield bare[2], comment.strip(" :,}"), False
         return
@@ -342,7 +346,7 @@ def _behind(read: str, comment: str) -> Iterator[tuple[str, str, bool]]:
 
 
 def _parted(line: str) -> tuple[str, str]:
-    """What stands on a line of Python before a #, and what behind it; a # in quotation marks is none."""
+    """Return the text of a line of Python before a # and after it; a # in quotation marks is ignored."""
     quote, escaped = "", False
     for at, char in enumerate(line):
         if escaped:
@@ -364,7 +368,8 @@ _QUOTED = re.compile(r"""(["'])([^"']*)\1""")
 
 
 def _answers_by_line(code: str) -> dict[Any, Any] | str:
-    """The answers of a cell that is no Python, each on its line as in the notebook, or which line is not."""
+    """Return the answers of a cell that is no Python, one per line as in the notebook, or a message about the
+    faulty line."""
     pairs: list[tuple[Any, Any]] = []
     is_open = is_closed = False
     number, line = 0, ""
@@ -385,7 +390,7 @@ def _answers_by_line(code: str) -> dict[Any, Any] | str:
 
 
 def _pairs_of_line(line: str) -> list[tuple[Any, Any]] | None:
-    """The answers of a line; None where they cannot be told apart."""
+    """Return the answers of a line; None if they cannot be separated."""
     code = f"{{{line}\n}}"
     with suppress(*_NO_PYTHON):
         literal = python_code.parse(code, mode="eval").body

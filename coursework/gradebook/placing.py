@@ -1,4 +1,4 @@
-"""Answers to the variants that they belong to; what cannot be placed is kept with its reason."""
+"""Assignment of answers to their variants; rows without one are rejected with a reason."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SheetKey = tuple[
 
 @dataclass
 class Sheets:
-    """Rows of answers in their places, before they are marked."""
+    """Rows of answers by sheet, before they are marked."""
 
     sheets: dict[SheetKey, dict[str, AnswerRow]] = field(default_factory=dict)
     rejected: list[Rejected] = field(default_factory=list)
@@ -47,7 +47,7 @@ class Sheets:
 
     @property
     def students(self) -> int:
-        """How many students they are of."""
+        """Number of students."""
         return len({sheet[0] for sheet in self.sheets})
 
     @property
@@ -56,15 +56,16 @@ class Sheets:
 
     @property
     def is_dated(self) -> bool:
-        """Whether a platform told when any of them came."""
+        """True if a platform states the time of a submission."""
         return bool(self.submitted)
 
     def parts(self, size: int) -> Iterator[Sheets]:
-        """The sheets in their order: all of them, or so many at a time where they are not all at hand."""
+        """Yield the sheets in their order: all at once, or at most ``size`` at a time if they are not in
+        memory."""
         yield self
 
     def drop_empty(self) -> None:
-        """Forget sheets of which nothing came that could be put there."""
+        """Remove sheets without any row."""
         self.sheets = {key: sheet for key, sheet in self.sheets.items() if sheet}
 
 
@@ -72,11 +73,11 @@ class Sheets:
 
 
 class UnplacedError(Exception):
-    """Why a row cannot be marked."""
+    """A row that belongs to no sheet; the message is the reason."""
 
 
 def sheet_of_row(issued: Issued, row: AnswerRow) -> tuple[str, str, int]:
-    """Student, exercise and seed of a row.
+    """Return student, exercise and seed of a row.
 
     Raises
     ------
@@ -117,7 +118,7 @@ def sheet_of_row(issued: Issued, row: AnswerRow) -> tuple[str, str, int]:
 
 
 def student_of(issued: Issued, row: AnswerRow) -> str | None:
-    """Whose a row is, by the name as issued; None for a stranger.
+    """Return the student of a row, by the name as issued; None for a stranger.
 
     Raises
     ------
@@ -132,7 +133,8 @@ def student_of(issued: Issued, row: AnswerRow) -> str | None:
 
 
 def _stated_student(issued: Issued, name: str, origin: RowOrigin) -> str | None:
-    """The student whom a platform tells; an answer that names another than who handed it in is nobody's."""
+    """Return the student whom a platform states; refuse an answer that names another student than the one who
+    submitted it."""
     by = issued.account(origin.by)
     if by is not None and name in origin.by:
         return by
@@ -158,7 +160,7 @@ def _owner_of_seed(issued: Issued, exercise: str, seed: int) -> str:
 
 
 def _seeds_hint(issued: Issued, student: str, exercise: str, mine: Sequence[int]) -> str:
-    """What a student has, to end a refusal."""
+    """Return the end of a refusal: the seeds that the student has."""
     if not mine:
         return f"; {student} was issued none"
     version = issued.versions.get((exercise, mine[0]))
@@ -167,13 +169,13 @@ def _seeds_hint(issued: Issued, student: str, exercise: str, mine: Sequence[int]
 
 
 def _student_hint(name: str, students: Sequence[str]) -> str:
-    """Of namesakes, none before the others."""
+    """Return the end of a refusal: the similar names, all of them if there are several equal ones."""
     several = namesakes(name, students)
     return f"; which of {', '.join(map(repr, several))}?" if len(several) > 1 else name_hint(name, students)
 
 
 def name_hint(name: str, names: Iterable[str]) -> str:
-    """``"; did you mean 'x'?"``, or nothing: a class is not listed."""
+    """Return ``"; did you mean 'x'?"``, or an empty text: a class is not listed."""
     hint = nearest(name[:60], names)
     return hint if "did you mean" in hint else ""
 
@@ -187,7 +189,7 @@ def _near_or_all(name: str, names: Sequence[str]) -> str:
 def placed_sheets(
     course: Course, issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile]
 ) -> Sheets:
-    """Rows by sheet; those that belong nowhere are rejected with their reason.
+    """Return the rows by sheet; rows that belong to none are rejected with a reason.
 
     Raises
     ------
@@ -205,8 +207,8 @@ PlacedRow = tuple[SheetKey, AnswerRow] | Rejected  #: a row with its place, or w
 def placed_rows(
     course: Course, issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], sheets: Sheets
 ) -> Iterator[PlacedRow]:
-    """Row by row its place, or why it has none; what is told of all together is noted in ``sheets``. The rows are read twice:
-    once for those that wait since others contradict them, then as they are asked for.
+    """Yield each row with its sheet, or the rejected row; record in ``sheets`` what concerns all rows. The
+    rows are read twice: first to find those that contradict each other, then one by one.
 
     Raises
     ------
@@ -251,7 +253,7 @@ def _placed_in_order(
 
 
 def _check_records(course: Course, issued: Issued) -> None:
-    """The course has what was issued, and can mark it."""
+    """Check that the course has the issued exercises and can mark them."""
     for exercise, record_of_exercise in {key[0]: record for key, record in issued.records.items()}.items():
         if exercise not in course:
             raise UnknownName(
@@ -263,7 +265,8 @@ def _check_records(course: Course, issued: Issued) -> None:
 
 
 def _place_cache(issued: Issued) -> Callable[[AnswerRow], SheetKey | str]:
-    """The place of a row, or why it has none; looked for once for rows of one sheet that are near each other."""
+    """Return a function that returns the sheet of a row, or the reason for which it has none. Results are
+    cached for neighbouring rows of one sheet."""
     passing: dict[tuple[str, str, str, RowOrigin | None], SheetKey | str] = {}
     lasting = passing.copy()
 
@@ -297,7 +300,8 @@ def fill(course: Course, issued: Issued, sheets: Sheets, placements: Iterable[Pl
 def row_placer(
     course: Course, issued: Issued, sheets: Sheets
 ) -> Callable[[SheetKey, AnswerRow], Rejected | None]:
-    """What puts a row on its sheet, or says why not; rows of a sheet come in their order."""
+    """Return a function that adds a row to its sheet, or returns the rejected row; it receives the rows of a
+    sheet in their order."""
     parts_of_variant: dict[tuple[str, int], tuple[str, ...]] = {}
 
     def put(key_of_sheet: SheetKey, row: AnswerRow) -> Rejected | None:
@@ -341,7 +345,7 @@ def _sheet_of(issued: Issued, row: AnswerRow) -> tuple[str, str, int] | None:
 
 
 def _leave_blank(sheets: Sheets, key: SheetKey, parts: Sequence[str], row: AnswerRow) -> None:
-    """A sheet that came back without a word: each of its questions is a row."""
+    """Add a row for each question of a sheet that was returned without answers."""
     sheet = sheets.sheets[key]
     sheets.rows_in += len(parts) - 1
     sheets.blanks += len(parts) - sum(part not in sheet for part in parts)
@@ -350,7 +354,7 @@ def _leave_blank(sheets: Sheets, key: SheetKey, parts: Sequence[str], row: Answe
 
 
 def _note(sheets: Sheets, key: SheetKey, origin: RowOrigin) -> None:
-    """Keep when a sheet was handed in, and whether it was asked part by part."""
+    """Record the time of submission of a sheet, and whether its parts were asked one by one."""
     if origin.submitted:
         sheets.submitted.setdefault(key, origin.submitted)
     if origin.apart:
@@ -358,7 +362,7 @@ def _note(sheets: Sheets, key: SheetKey, origin: RowOrigin) -> None:
 
 
 def _latest_warning(issued: Issued, key: SheetKey) -> str:
-    """That answers without a seed are taken for those of the latest sitting."""
+    """Return the warning that answers without a seed count for the latest sitting."""
     sitting = issued.sitting_of(*key[:3])
     return (
         f"{key[0]}, {key[1]}: answers without a seed are taken for sitting {sitting}, seed {key[2]}, the latest; "

@@ -1,4 +1,4 @@
-"""What platforms export, known by what it holds and not by its name: a table of readers."""
+"""Exports of platforms, recognised by their content and not by their name: a table of readers."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ FAULTS = (moodle_responses.is_another, canvas_answers.is_another)
 
 
 def reader_of(header: Sequence[str]) -> PlatformTable | None:
-    """Who reads a table; None where no platform is known to write it."""
+    """Return the reader of a table; None if no known platform writes it."""
     return next((table for table in TABLES if table.is_this(header)), None)
 
 
 def fault_of(header: Sequence[str]) -> str:
-    """What is wrong with a platform's table that holds no answers; nothing where it is not known."""
+    """Return a message about a platform's table without answers; empty if the table is unknown."""
     return next(filter(None, (fault(header) for fault in FAULTS)), "")
 
 
 def read_table(
     table: PlatformTable, text: str, delimiter: str, source: str, warning: str
 ) -> Iterator[AnswerRow | Rejected | PlatformFile]:
-    """The rows of a platform's CSV; a cell may run over any number of lines."""
+    """Yield the rows of a platform's CSV; a cell may contain any number of lines."""
     before = csv.field_size_limit(2**31 - 1)
     try:
         reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
@@ -62,7 +62,7 @@ def read_table(
 def read_records(
     content: Any, source: str, warning: str
 ) -> Iterator[AnswerRow | Rejected | PlatformFile] | None:
-    """The rows of a platform's table as JSON, lists of objects; None where it is none."""
+    """Return the rows of a platform's table as JSON, lists of objects; None if it is none."""
     sheets = content if isinstance(content, list) and content and isinstance(content[0], list) else [content]
     items = [item for sheet in sheets if isinstance(sheet, list) for item in sheet]
     if not items or not all(isinstance(item, Mapping) for item in items):
@@ -82,7 +82,7 @@ def read_records(
 
 
 def platform_file_lines(seen: Mapping[PlatformFile, int]) -> tuple[str, ...]:
-    """What was seen, a line each."""
+    """Return a line about each file that a platform wrote."""
     return tuple(
         f"{file.source} is {file.what}" + (f", {counted(count, 'file')}" if file.is_tree else "")
         for file, count in seen.items()

@@ -1,4 +1,4 @@
-"""How each platform's gradebook looks as it exports it: what a column of marks is called, what its maximum is."""
+"""Formats of the platforms' gradebooks: titles of columns of marks, and their maxima."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from coursework.making.identity import FIRST_NAME, SURNAME, WHOLE, identifies, i
 
 
 class PlatformGradebook(NamedTuple):
-    """One platform's table of marks."""
+    """Format of a platform's table of marks."""
 
     name: str
     title_of_platform: str  #: as people call it
@@ -22,12 +22,12 @@ class PlatformGradebook(NamedTuple):
     decimal: str = ""  #: the decimal sign that it reads in every language; empty where it is that of the file
 
     def item_in(self, title: str) -> str:
-        """The item's own name in a column's title."""
+        """Return the item's name in a column's title."""
         match = re.fullmatch(self.title, title.strip())
         return match["item"].strip() if match else title.strip()
 
     def most_in(self, title: str) -> str:
-        """The maximum that a column's title tells; nothing where it tells none."""
+        """Return the maximum in a column's title; empty if it states none."""
         match = re.fullmatch(self.title, title.strip())
         return (match.groupdict().get("most") or "") if match else ""
 
@@ -55,7 +55,7 @@ PLATFORMS = {
 
 
 def platform_gradebook(name: str) -> PlatformGradebook:
-    """The gradebook of a platform.
+    """Return the gradebook format of a platform.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def platform_gradebook(name: str) -> PlatformGradebook:
 
 
 class People(NamedTuple):
-    """Where a table of marks says who."""
+    """Columns of a table of marks that identify a student."""
 
     names: tuple[int, ...]  #: first name before surname
     ids: tuple[int, ...]
@@ -79,7 +79,7 @@ class People(NamedTuple):
 
 
 def people_in(header: Sequence[str]) -> People:
-    """The columns that say who."""
+    """Return the columns that identify a student."""
     full_names = [k for k, title in enumerate(header) if plain(title) in WHOLE]
     apart = [k for k, title in enumerate(header) if is_called(title, (*FIRST_NAME, *SURNAME))]
     names = (

@@ -1,4 +1,4 @@
-"""Results of QTI as players report them (``assessmentResult``, versions 2.1 to 3): an item's identifier tells the variant."""
+"""QTI results (``assessmentResult``, versions 2.1 to 3): the identifier of an item names the variant."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NO_ANSWERS = ("numattempts", "duration", "completionstatus")
 
 
 def read_results(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | PlatformFile]:
-    """The answers of a file of results; entities that a file declares are never followed."""
+    """Yield the answers of a file of results; entities declared in a file are never followed."""
     text, warning = decoded_text(data, source)
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         yield Rejected(source, "results of QTI declare no entities; this file does, and is not read")
@@ -44,7 +44,7 @@ def read_results(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Pl
 
 
 def _tag(element: ET.Element) -> str:
-    """The name without its namespace, in the spelling of version 2."""
+    """Return the name without its namespace, in the spelling of version 2."""
     name = element.tag.rpartition("}")[2].removeprefix("qti-")
     head, *rest = name.split("-")
     return head + "".join(word.capitalize() for word in rest)
@@ -102,7 +102,7 @@ def _part(identifier: str) -> str:
 
 
 def _values(variable: ET.Element) -> str:
-    """What was answered; several values parted by semicolons."""
+    """Return the answer; several values are separated by semicolons."""
     given = [element for element in variable if _tag(element) == "candidateResponse"]
     values = [value.text or "" for element in given for value in element if _tag(value) == "value"]
     return "; ".join(values)

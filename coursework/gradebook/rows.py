@@ -1,4 +1,4 @@
-"""Rows of submissions, and what is no row."""
+"""Rows of submissions, and rejected rows."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from coursework.system.tables import decode
 
 
 class RowOrigin(NamedTuple):
-    """What a platform tells of the sheet that an answer is of."""
+    """Statements of a platform about the sheet of an answer."""
 
     ids: Ids = ()  #: of the student: e-mail, number
     by: tuple[str, ...] = ()  #: who handed it in, as folders and files name them
@@ -25,7 +25,7 @@ class RowOrigin(NamedTuple):
 
 
 class PlatformFile(NamedTuple):
-    """A file, or a tree of them, that a platform wrote."""
+    """File or tree of files that a platform wrote."""
 
     source: str
     what: str
@@ -33,7 +33,7 @@ class PlatformFile(NamedTuple):
 
 
 class AnswerRow(NamedTuple):
-    """One answer as it came."""
+    """One answer as received."""
 
     student: str
     exercise: str
@@ -48,7 +48,7 @@ class AnswerRow(NamedTuple):
 
 @dataclass(frozen=True)
 class Rejected:
-    """One row, or one file, that cannot be marked, and why."""
+    """Row or file that cannot be marked, with the reason."""
 
     source: str
     reason: str
@@ -56,18 +56,18 @@ class Rejected:
 
 
 def path_text(path: Path) -> str:
-    """A path as tables can hold it, whatever the bytes of its name: what is no character of UTF-8 is written ``\\xe9``."""
+    """Return a path as tables can contain it: a byte that is not UTF-8 is written ``\\xe9``."""
     return os.fsencode(path).decode("utf-8", "backslashreplace")
 
 
 def decoded_text(data: bytes, source: str) -> tuple[str, str]:
-    """The text, and a warning that names its file."""
+    """Return the text, and a warning that names its file."""
     text, warning = decode(data)
     return text, f"{source}: {warning}" if warning else ""
 
 
 def _storable_text(text: str) -> str:
-    """The text without halves of characters and NUL, which no file or database can hold."""
+    """Return the text without lone surrogates and NUL, which no file or database can store."""
     return text.encode("utf-8", "replace").decode("utf-8").replace("\0", "\ufffd")
 
 
@@ -75,19 +75,20 @@ _QUOTED = 200  #: characters of what is rejected
 
 
 def quoted(text: str) -> str:
-    """The beginning of what was written where nothing is read, as a table can hold it."""
+    """Return the beginning of a text that could not be read, as a table can contain it."""
     return _storable_text(text.strip()[:_QUOTED])
 
 
 class _DictWithRepeats(dict):
-    """A JSON object, the pairs that repeat a key of it, and those that stand where nothing is read, with why."""
+    """JSON object, with the pairs that repeat a key, and the texts found where nothing is read, with a
+    reason."""
 
     repeats: tuple[tuple[Any, Any], ...] = ()
     unread: tuple[tuple[Any, str, str], ...] = ()
 
 
 def load_json(text: str) -> Any:
-    """JSON whose objects remember the keys that they repeat; numbers of absurd length stay texts."""
+    """Return parsed JSON whose objects keep repeated keys; numbers of absurd length remain texts."""
     return json.loads(text, object_pairs_hook=object_once, parse_int=_integer_or_text)
 
 
@@ -113,7 +114,8 @@ def object_once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
 def with_unread(
     pairs: dict[Any, Any], unread: list[tuple[Any, str, str]], instead: Collection[Any]
 ) -> dict[Any, Any]:
-    """The same answers but those of some keys, ``instead`` of which there are others where nothing is read: key, text, why."""
+    """Return the answers without the keys ``instead``, for which texts were found where nothing is read: key,
+    text, reason."""
     merged = _DictWithRepeats({key: value for key, value in pairs.items() if key not in instead})
     merged.repeats, merged.unread = getattr(pairs, "repeats", ()), tuple(unread)
     return merged
@@ -146,7 +148,7 @@ def sheet_rows(
 
 
 def as_answer(answer: Any) -> Any:
-    """An answer as it is marked: coordinates joined, numbers too long for any reader as texts."""
+    """Return an answer as it is marked: coordinates joined, and numbers with too many digits as texts."""
     if isinstance(answer, (list, tuple)):
         return "; ".join(_text_of(a) for a in answer)
     if isinstance(answer, str):

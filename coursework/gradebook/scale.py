@@ -1,4 +1,4 @@
-"""A mark from points: by the assignment's scale, to its step, never to the student's loss."""
+"""Marks from points: by the assignment's scale, rounded to its step, never down at a half step."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from coursework.making.issued import Issued
 
 
 def mark_of(issued: Issued, points: float, out_of: float) -> str:
-    """The mark as it is written, ``14.5``: the share of the points, to the nearest step, a half step up; empty where
-    only points count."""
+    """Return the mark as text, ``14.5``: the share of the points, rounded half up to a step; empty if the
+    assignment has no marks."""
     scale = (issued.assignment or {}).get("mark")
     if not scale or not out_of:
         return ""
@@ -20,5 +20,5 @@ def mark_of(issued: Issued, points: float, out_of: float) -> str:
 
 
 def exact(number: float) -> Fraction:
-    """The decimal that is meant: 2.1 for 2.0999999999999996."""
+    """Return the intended decimal: 2.1 for 2.0999999999999996."""
     return Fraction(f"{number:.9g}")

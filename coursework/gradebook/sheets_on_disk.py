@@ -1,4 +1,4 @@
-"""Sheets of a class whose answers are more than memory should hold: on disk until they are marked.
+"""Sheets of a class that is too large for memory: on disk until they are marked.
 
 Rows come in the order of their files, and those of a sheet may be far apart. They are parted by sheet, so that all of one are in
 one part, and a part is small; each part is put together, and what it gives is read back in the order in which the sheets
@@ -35,8 +35,8 @@ _BLOCK = 16  #: sheets of each part that are read at once
 def placed_on_disk(
     course: Course, issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], out: Path
 ) -> Iterator[Sheets]:
-    """Rows by sheet, as :func:`coursework.gradebook.placing.placed_sheets` gives them; where there are many, they lie on the disk of
-    ``out`` while the context lasts, and :meth:`Sheets.parts` reads them.
+    """Return a context with the rows by sheet, as :func:`coursework.gradebook.placing.placed_sheets` gives
+    them. Many rows are stored on the disk of ``out`` during the context, and :meth:`Sheets.parts` reads them.
 
     Raises
     ------
@@ -68,7 +68,7 @@ _Read = AnswerRow | Rejected | PlatformFile
 
 
 class _RereadableRows:
-    """Rows that are read twice: held where they are few, on disk where they are many."""
+    """Rows that are read twice: kept in memory, or on disk if there are many."""
 
     def __init__(self, rows: Iterable[_Read], blocks: _Blocks) -> None:
         self._first: Iterable[_Read] | None = rows
@@ -95,7 +95,7 @@ _NumberedRow = tuple[int, Rejected]  #: by the number of the row
 
 
 def _split_by_sheet(placements: Iterator[PlacedRow], by_part: _Blocks) -> list[_NumberedRow]:
-    """Put rows into the parts of their sheets; gives those that have no place."""
+    """Add rows to the parts of their sheets; return the rejected rows."""
     rejected: list[_NumberedRow] = []
     numbered = enumerate(placements)
     while some := list(islice(numbered, AT_ONCE)):
@@ -111,7 +111,7 @@ def _split_by_sheet(placements: Iterator[PlacedRow], by_part: _Blocks) -> list[_
 
 
 class _Stored(NamedTuple):
-    """A sheet."""
+    """Sheet as stored on disk."""
 
     number: int  #: of the first row that came
     key: SheetKey
@@ -122,7 +122,7 @@ class _Stored(NamedTuple):
 
 
 class _SheetsOnDisk(Sheets):
-    """Sheets that are read as they are asked for."""
+    """Sheets that are read from disk on demand."""
 
     def __init__(self, sheets: Sheets, stored: _Blocks) -> None:
         super().__init__(warnings=sheets.warnings, rows_in=sheets.rows_in, seen=sheets.seen)
@@ -154,7 +154,7 @@ class _SheetsOnDisk(Sheets):
         blocks: Iterable[Sequence[tuple[int, SheetKey, AnswerRow]]],
         part: int,
     ) -> list[_NumberedRow]:
-        """Put the rows of a part on their sheets, and these on disk; gives the rows that are refused."""
+        """Place the rows of a part on their sheets, and store these on disk; return the rejected rows."""
         sheets_of_part, rejected = Sheets(), []
         put_row = row_placer(course, issued, sheets_of_part)
         numbers: dict[SheetKey, int] = {}
@@ -200,7 +200,7 @@ def _together(some: Iterable[_Stored]) -> Sheets:
 
 
 class _Blocks:
-    """Lists of things by a number, in a file without a name.
+    """Lists of items by a number, in a temporary file without a name.
 
     They are pickled, which keeps an answer what it is, a number or a text; nobody else can write the file.
     """
@@ -220,7 +220,7 @@ class _Blocks:
                 self._file.close()
 
     def add(self, number: int, items: Sequence[Any]) -> None:
-        """Add a block; none has been read yet."""
+        """Add a block, before any is read."""
         data = pickle.dumps(items, 5)
         self._at.setdefault(number, array("Q")).extend((self._end, len(data)))
         with writing(self._folder):
@@ -230,7 +230,7 @@ class _Blocks:
         self._end += len(data)
 
     def of(self, number: int) -> Iterator[Any]:
-        """The blocks of a number, in the order in which they were added."""
+        """Yield the blocks of a number, in the order in which they were added."""
         at = self._at.get(number, ())
         for start, size in zip(at[::2], at[1::2], strict=True):
             assert self._file is not None

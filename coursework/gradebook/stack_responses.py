@@ -1,4 +1,5 @@
-"""A response of a question of STACK, as Moodle's reports tell it: ``Seed: 1; ans1: 238.4 mm [score]; …; prt1: # = 1 | …``."""
+"""Responses to STACK questions in Moodle's reports: ``Seed: 1; ans1: 238.4 mm [score]; …; prt1: # = 1 |
+…``."""
 
 from __future__ import annotations
 
@@ -16,7 +17,8 @@ _EMPTY = ("EMPTYANSWER", "[]")
 
 
 def stack_answers(text: str) -> dict[int, str] | None:
-    """What was typed in each box, by its number; None where this is no such response, or nobody knows which is which.
+    """Return the text of each box, by its number; None if this is no such response, or if its answers cannot
+    be separated.
 
     Texts come in quotes, in which they may hold anything; what STACK refused comes as it was typed.
     """
@@ -34,7 +36,7 @@ def stack_answers(text: str) -> dict[int, str] | None:
 
 
 def _plain(typed: str) -> str:
-    """A text without its quotes, several cases one after the other."""
+    """Return a text without its quotes, several values separated by commas."""
     if typed in _EMPTY:
         return ""
     if not typed.startswith(('"', '["')):

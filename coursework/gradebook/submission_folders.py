@@ -1,4 +1,5 @@
-"""Trees of submissions as platforms keep them: the folder, or the file's name, says who handed in and when."""
+"""Folders of submissions as platforms arrange them: the name of a folder or file states who submitted, and
+when."""
 
 from __future__ import annotations
 
@@ -21,19 +22,19 @@ _CANVAS = re.compile(r"(?P<student>[^\W_]+)_(?P<late>LATE_)?(?P<id>[0-9]+)_[0-9]
 
 
 class SubmittedFile(NamedTuple):
-    """What a file's place says."""
+    """Statements of a file's location: its origin, and the platform that wrote it."""
 
     origin: RowOrigin
     seen: PlatformFile
 
     @property
     def name(self) -> str:
-        """Who handed it in, as a person reads it."""
+        """Name of the person who submitted the file."""
         return self.origin.by[-1]
 
 
 def submitted_file(path: Path) -> SubmittedFile | None:
-    """Who handed a file in, by the folders that it lies in, else by its name; None where they say nothing."""
+    """Return the origin of a file, from its folders, else from its name; None if they state nothing."""
     directory = path.resolve().parent
     full_path = Path(path_text(path.resolve()))
     for position, folder in reversed([*enumerate(full_path.parts[:-1])]):
@@ -67,8 +68,8 @@ def _submitted_file(by: tuple[str, ...], time: str, root: str, platform: str, fo
 
 
 def latest_first(files: Iterable[Path]) -> list[Path]:
-    """The files in their order, but of an exchange what somebody handed in last before what they did earlier: the first that
-    is read counts."""
+    """Return the files in their order; of an exchange folder, the last submission of a student comes first,
+    since the first one read counts."""
     return sorted(files, key=lambda path: [_sort_key(part) for part in path.parts])
 
 

@@ -1,4 +1,5 @@
-"""Reading what comes back: CSV, JSON and notebooks of answers, and what platforms export. Answers are data: nothing is run.
+"""Readers of submissions: CSV, JSON and notebooks of answers, and exports of platforms. Answers are data:
+nothing is executed.
 
 Every row of every file comes out, as a :class:`AnswerRow` or as a :class:`Rejected` with its reason.
 """
@@ -49,7 +50,7 @@ ENDINGS = (".csv", ".json", ".ipynb", ".parquet", ".xml", ".tsv")
 
 
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
-    """The files to read, folders walked in name order.
+    """Yield the files to read; the files of a folder in the order of their names.
 
     Raises
     ------
@@ -80,7 +81,7 @@ def _files_below(folder: Path) -> Iterator[Path | Rejected]:
 
 
 def _similar_file(path: Path) -> str:
-    """The file or folder that may have been meant, if one of nearly that name is there."""
+    """Return a hint with the file or folder of a similar name; empty if there is none."""
     names = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     near = closest(path.name, names)
     if near is None:
@@ -106,7 +107,7 @@ def _odd_file(path: Path) -> Rejected:
 
 
 def read_file(path: Path, given: Iterable[Path] = ()) -> Iterator[AnswerRow | Rejected | PlatformFile]:
-    """The rows of one file; a file that cannot be read is one rejected row.
+    """Yield the rows of one file; a file that cannot be read is one rejected row.
 
     ``given`` is what somebody named, a folder of which may hold the file: nothing outside of that folder is read.
     """
@@ -227,7 +228,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
 
 
 def _row_of(cells: Sequence[str], location: str, warning: str) -> AnswerRow:
-    """The row of the cells of :data:`COLUMNS`, in their order."""
+    """Return the row of the cells of :data:`COLUMNS`, in their order."""
     student, exercise, seed, part, answer = cells
     if "'" in student or "'" in answer:
         student, answer = as_written(student), as_written(answer)
@@ -249,7 +250,8 @@ NO_ANSWERS = "the file holds no answers"
 
 
 def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[AnswerRow | Rejected]:
-    """The rows of a Parquet file with the columns of the CSV; the seed and the answer may be numbers."""
+    """Yield the rows of a Parquet file with the columns of the CSV; the seed and the answer may be
+    numbers."""
     try:
         pyarrow: Any = library("pyarrow", "Parquet needs", "parquet")
         parquet: Any = library("pyarrow.parquet", "Parquet needs", "parquet")
@@ -287,7 +289,8 @@ def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[AnswerRow | Rejected
 
 
 def _beyond(about: Any) -> str:
-    """Why a Parquet file is too much to be read, by what it says of itself before anything is unpacked; nothing where it is not."""
+    """Return the reason for which a Parquet file is too large to read, from its metadata; empty if it is
+    not."""
     if about.num_rows > MOST_ROWS:
         return beyond("a file", about.num_rows, MOST_ROWS, "rows")
     size = sum(about.row_group(k).total_byte_size for k in range(about.num_row_groups))
@@ -295,7 +298,8 @@ def _beyond(about: Any) -> str:
 
 
 def _cells_of(column: Any, name: str) -> list[Any]:
-    """The cells of a column of Parquet, each different one kept once: a small file may say one text a million times."""
+    """Return the cells of a column of Parquet, each different one stored once: a small file may repeat one
+    text a million times."""
     read = as_answer if name == "answer" else name_in
     if not hasattr(column, "dictionary"):
         return [read(cell) for cell in column.to_pylist()]
@@ -304,7 +308,8 @@ def _cells_of(column: Any, name: str) -> list[Any]:
 
 
 def _odd_columns(types: Any, schema: Any) -> str:
-    """What is wrong with the columns of a Parquet file: one is there twice, or holds what is no text and no number."""
+    """Return a message about the columns of a Parquet file if one occurs twice, or contains neither texts nor
+    numbers."""
 
     def is_read(kind: Any) -> bool:
         if types.is_dictionary(kind) or types.is_list(kind) or types.is_large_list(kind):
@@ -345,7 +350,8 @@ def _csv_row(
 
 
 def _with_commas(header: list[str], cells: list[str]) -> dict[str, str]:
-    """A row of too many cells whose answer is all that may belong to it: ``12`` and ``5`` are ``12,5``."""
+    """Return a row with too many cells, whose surplus cells are joined to the answer: ``12`` and ``5`` are
+    ``12,5``."""
     index, more = header.index("answer"), len(cells) - len(header)
     answer = ",".join(cells[index : index + more + 1])
     return dict(zip(header, [*cells[:index], answer, *cells[index + more + 1 :]], strict=True))

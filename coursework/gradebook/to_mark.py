@@ -1,4 +1,5 @@
-"""Answers that a person marks: ``to_mark.csv`` lists them, and the points written there count when it is marked again."""
+"""Answers that a person marks: ``to_mark.csv`` lists them, and the points written in it count at the next
+marking."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ TO_MARK_COLUMNS = ("student", "exercise", "seed", "part", "answer", "points", "o
 
 
 class GivenPoints(NamedTuple):
-    """A line of the file whose points are filled in."""
+    """Line of the file with points."""
 
     location: str
     named: tuple[str, ...]
@@ -30,7 +31,7 @@ class GivenPoints(NamedTuple):
 
 
 class ToMark:
-    """The answers that a person marks, with the points given so far.
+    """Answers that a person marks, with the points given so far.
 
     A line counts for the very answer that it shows: where another came since, it waits anew.
 
@@ -57,7 +58,7 @@ class ToMark:
                 self.given[_key(*named)] = given
 
     def apply(self, graded: Graded, lang: str) -> Graded:
-        """The sheet with the points that a person gave; what waits is remembered, to be written.
+        """Return the sheet with the points that a person gave; list the answers that a person marks.
 
         Raises
         ------
@@ -78,7 +79,8 @@ class ToMark:
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
     def given_for(self, graded: Graded, part: str, line: Mark) -> GivenPoints | None:
-        """The points that the file gives to an answer; None where it has none, or gives them to another answer."""
+        """Return the points that the file gives to an answer; None if it gives none, or gives them to another
+        answer."""
         key = _key(graded.student, graded.exercise, str(graded.seed), part)
         given = self.given.get(key)
         if given is None:
@@ -91,12 +93,12 @@ class ToMark:
 
     @property
     def unused(self) -> list[str]:
-        """The marked answers that nobody gave."""
+        """Marked answers that nobody gave."""
         return [", ".join(given.named) for key, given in self.given.items() if key not in self._used]
 
     @property
     def loses(self) -> bool:
-        """Whether points that were written in the file are not in the one that takes its place."""
+        """True if points written in the file are missing from the file that replaces it."""
         return bool(self.changed or self.unused)
 
 
@@ -112,8 +114,8 @@ def _key(student: str, exercise: str, seed: str, part: str) -> tuple[str, ...]:
 
 
 def given_mark(line: Mark, points: float, reason: str, lang: str, location: str) -> Mark:
-    """The mark that a person gave: accepted for all the points, partly right for some, wrong for none; ``location`` is where
-    it is said.
+    """Return the mark that a person gave: accepted for all points, partly right for some, wrong for none.
+    ``location`` is the place of the statement, for messages.
 
     Raises
     ------
@@ -127,7 +129,7 @@ def given_mark(line: Mark, points: float, reason: str, lang: str, location: str)
 
 
 def same_answer(text: str, other: str) -> bool:
-    """Whether two texts are one answer, however they are spaced."""
+    """Return True if two texts are the same answer, apart from spaces."""
     return " ".join(text.split()) == " ".join(other.split())
 
 
@@ -145,5 +147,5 @@ def _row(graded: Graded, line: Mark, given: GivenPoints | None) -> dict[str, Any
 
 
 def sorted_rows(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """The lines of the file: question by question, as a person marks them; what waits first."""
+    """Yield the lines of the file: question by question, answers without points first."""
     yield from sorted(rows, key=lambda row: (row["points"] != "", row["exercise"], row["part"]))

@@ -1,4 +1,4 @@
-"""What waits for a person: answers that nobody but a person can judge, put together where the same was written.
+"""Answers that only a person can judge, grouped by equal content.
 
 An answer waits because it could not be read, is to be marked by a person, lacks its unit, is wrong by little, or because
 many wrote the very same and nothing explains it. What is right by little waits for nobody, and can be looked at.
@@ -32,7 +32,7 @@ SHOWN_ON_REQUEST = ("just",)  #: these wait for nobody
 
 
 class AnswerToReview(NamedTuple):
-    """An answer that may be looked at."""
+    """Answer that a person may review."""
 
     sheet: Graded
     mark: Mark
@@ -45,7 +45,7 @@ class AnswerToReview(NamedTuple):
 
 @dataclass(frozen=True)
 class AnswerGroup:
-    """Answers to one question in which the same is written, judged against the same reference."""
+    """Answers to one question with equal content, judged against the same reference."""
 
     id: str
     why: str
@@ -59,7 +59,7 @@ class AnswerGroup:
 
 
 class Measure(NamedTuple):
-    """What a sheet's answers are compared by: margins by part, and what the references are."""
+    """Values by which the answers of a sheet are compared: margins and references, by part."""
 
     margins: Mapping[str, float]
     references: Mapping[str, str]
@@ -70,7 +70,7 @@ _MEASURED = frozenset(("correct", "wrong", "missing_unit"))
 
 
 def measures(course: Course, issued: Issued, graded: Sequence[Graded]) -> Iterator[Measure]:
-    """What the answers of sheets are compared by, those that are read and may be near their margin."""
+    """Yield the values by which the answers of each sheet are compared."""
     variants = [course[graded_sheet.exercise].from_record(graded_sheet.record) for graded_sheet in graded]
     for name in dict.fromkeys(graded_sheet.exercise for graded_sheet in graded):
         keys_of(course[name], [v for v in variants if v.exercise.name == name], rules_of(course, issued))
@@ -91,8 +91,8 @@ def groups(
     graded: Iterable[Graded], measured: Mapping[tuple[str, str, int, int], Measure], order: Sequence[tuple[str, str]],
     drawn: frozenset[tuple[str, str]] = frozenset(),
 ) -> list[AnswerGroup]:  # fmt: skip
-    """The answers that may be looked at, question by question in ``order`` (exercise and part), and there by why, those that
-    most wrote first.
+    """Return the answers that may be reviewed, question by question in ``order`` (exercise and part), then by
+    reason, the largest groups first.
 
     ``measured`` is by student, exercise, seed and sitting; ``drawn`` are the questions that are answered by a drawing.
     """
@@ -125,7 +125,8 @@ def groups(
 def key_of(
     graded: Graded, mark: Mark, measure: Measure, drawn: frozenset[tuple[str, str]]
 ) -> tuple[str, ...] | None:
-    """Return what answers of one group have in common, first why they may be looked at; None of what nobody looks at."""
+    """Return the common values of the answers of one group, beginning with the reason for a review; None for
+    an answer that nobody reviews."""
     margin = measure.margins.get(mark.part)
     if (why := _why(mark, margin, is_drawn=(graded.exercise, mark.part) in drawn)) is None:
         return None
@@ -149,7 +150,8 @@ def _why(mark: Mark, margin: float | None, *, is_drawn: bool) -> str | None:
 def _waits(
     key: tuple[str, ...], members: Sequence[AnswerToReview], answered: Mapping[tuple[str, str], set[str]]
 ) -> bool:
-    """A wrong answer that nothing explains waits where many wrote it; whatever else is here, waits."""
+    """Return True if a group waits: a wrong answer without an explanation waits if many students wrote it;
+    all others wait."""
     if key[0] != "often":
         return True
     students = len({answer.student for answer in members})
@@ -157,7 +159,7 @@ def _waits(
 
 
 def written(mark: Mark) -> str:
-    """What an answer says, in one spelling: as it was read, else its text without what only spelling differs by."""
+    """Return an answer in one spelling: its reading, else its text without differences of spelling."""
     text = mark.read_as or plain_spelling(unwrapped(mark.answer[:LONGEST]))
     return " ".join(text.casefold().split()).rstrip(" .!;,")
 
