@@ -1,1 +1,1 @@
-"""One place for what is issued, what comes back, and what it was marked: a database, from one file on a disk to PostgreSQL."""
+"""Database of issued variants, submissions and marks: SQLite in one file, or PostgreSQL."""

@@ -70,7 +70,8 @@ def invite(
 
 
 def accept_invitation(connection: Connection, invitation: str, secret: str, at: datetime) -> int | None:
-    """Take an invitation up with what became of a password; the person, or none where somebody was faster."""
+    """Accept an invitation: store the hash of the new password. Return the person, or None if the invitation
+    is used or has expired."""
     done = connection.execute(
         update(account)
         .where(account.c.invitation == invitation, account.c.invited_until >= at, account.c.closed.is_(None))
@@ -86,7 +87,7 @@ def set_secret(connection: Connection, number: int, secret: str) -> None:
 
 
 def set_role(connection: Connection, number: int, role: str) -> bool:
-    """Give a person who has an account another role; returns whether they need a new link to come in.
+    """Give a person who has an account another role; return True if they need a new invitation to sign in.
 
     Their sessions end where the role changes. A link that was made for a student, and a password that a student chose by one,
     are known to whoever could make links for students: both end with the student's role.
@@ -103,7 +104,7 @@ def set_role(connection: Connection, number: int, role: str) -> bool:
 
 
 def is_last_administrator(connection: Connection, number: int) -> bool:
-    """Return whether nobody who can come in would be left to administer without this person."""
+    """Return True if nobody else who can sign in is an administrator."""
     mine = account_of(connection, number)
     if mine is None or mine.role != ADMINISTRATOR:
         return False
@@ -111,7 +112,7 @@ def is_last_administrator(connection: Connection, number: int) -> bool:
 
 
 def has_administrator(connection: Connection, at: datetime) -> bool:
-    """Return whether somebody can come in to administer, or is invited to."""
+    """Return True if an administrator can sign in, or is invited to."""
     invited = select(account.c.id).where(
         account.c.role == ADMINISTRATOR, account.c.closed.is_(None), account.c.invited_until > at
     )
@@ -119,7 +120,7 @@ def has_administrator(connection: Connection, at: datetime) -> bool:
 
 
 def _administrators(connection: Connection) -> set[int]:
-    """Return the administrators who can come in now; until the transaction ends nobody else changes one."""
+    """Return the administrators who can sign in; lock their rows until the transaction ends."""
     query = (
         select(account.c.person_id)
         .where(account.c.role == ADMINISTRATOR, account.c.closed.is_(None), account.c.secret != "")

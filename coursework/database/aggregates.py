@@ -16,7 +16,7 @@ from sqlalchemy import Connection, case, delete, func, insert, select, update
 from coursework.course.course import Course
 from coursework.database.class_state import ClassState, Facts, read_rows, read_students
 from coursework.database.class_tables import answers_waiting
-from coursework.database.instructor_queries import ListedAssignment, listed_assignments
+from coursework.database.instructor_queries import AssignmentOverview, listed_assignments
 from coursework.database.outdated import EVERYBODY, ROWS, STUDENT, outdate
 from coursework.database.store import Store, insert_unless_there
 from coursework.database.tables import (
@@ -53,7 +53,8 @@ _WAIT = ("unreadable", "to_mark")
 
 
 def outstanding(connection: Connection, assignment_id: int | None = None) -> dict[int, int]:
-    """Return how many students' aggregates are outdated, by assignment; where all are, as many as it was issued to."""
+    """Return the number of students with outdated aggregates, by assignment; if all are outdated, the number
+    of its variants."""
     noted = select(
         outdated.c.assignment_id, outdated.c.kind, func.count(outdated.c.student.distinct())
     ).group_by(outdated.c.assignment_id, outdated.c.kind)
@@ -96,7 +97,7 @@ def refresh(course: Course, store: Store, assignment_id: int, most: int | None =
 
 
 def _step(course: Course, store: Store, number: int) -> int | None:
-    """Do one piece of the work; return of how many students it was, None where nothing is left."""
+    """Process one batch of notes; return its number of students, or None if no note is left."""
     with store.reading() as connection:
         notes = _notes(connection, number)
         if notes is None:
@@ -122,7 +123,8 @@ class _Notes(NamedTuple):
 
 
 def _notes(connection: Connection, number: int) -> _Notes | None:
-    """Return the notes that come next: those of everybody first, then the rows, then some students."""
+    """Return the notes to process next: those about everybody, then those about rows, then those of some
+    students."""
     of_assignment = outdated.c.assignment_id == number
     for kind in (EVERYBODY, ROWS):
         ids = (
@@ -160,7 +162,7 @@ def _are_deleted(connection: Connection, ids: Sequence[int]) -> bool:
 class _Computed:
     """Computed aggregates of an assignment, ready to be written."""
 
-    def __init__(self, about: ListedAssignment):
+    def __init__(self, about: AssignmentOverview):
         self.about = about
         self.outdate: Collection[str] = ()  #: students who are noted
         self.away: Collection[str] = ()  #: students whose rows go
@@ -190,7 +192,7 @@ def _insert(connection: Connection, table: Any, rows: Sequence[Mapping[str, Any]
         connection.execute(insert(table), list(rows[start : start + _WRITTEN]))
 
 
-def _computed(connection: Connection, course: Course, about: ListedAssignment, notes: _Notes) -> _Computed:
+def _computed(connection: Connection, course: Course, about: AssignmentOverview, notes: _Notes) -> _Computed:
     computed = _Computed(about)
     if notes.kind == EVERYBODY:
         computed.outdate = _everybody(connection, about)
@@ -204,8 +206,8 @@ def _computed(connection: Connection, course: Course, about: ListedAssignment, n
 # ----------------------------------------------------------------------- students
 
 
-def _everybody(connection: Connection, about: ListedAssignment) -> list[str]:
-    """Return every name that is somebody's: as issued, as marked, as computed before."""
+def _everybody(connection: Connection, about: AssignmentOverview) -> list[str]:
+    """Return every name of a student: issued, marked, or computed before."""
     number = about.id
     issued = select(dealt.c.student).join(variant).where(variant.c.assignment_id == number)
     marked = select(marking.c.student).where(marking.c.assignment_id == number)
@@ -222,7 +224,7 @@ def _is_pool(connection: Connection, number: int) -> bool:
 def _students(
     connection: Connection,
     course: Course,
-    about: ListedAssignment,
+    about: AssignmentOverview,
     noted: Collection[str],
     computed: _Computed,
 ) -> None:
@@ -249,8 +251,8 @@ def _students(
     computed.answers = list(_answers(now, cells))
 
 
-def _as_issued(connection: Connection, about: ListedAssignment, noted: Collection[str]) -> frozenset[str]:
-    """Return the students whom names name, however these are spelled."""
+def _as_issued(connection: Connection, about: AssignmentOverview, noted: Collection[str]) -> frozenset[str]:
+    """Return the students with the given names, whatever their spelling."""
     issued = select(dealt.c.student).join(variant).where(variant.c.assignment_id == about.id)
     marked = select(marking.c.student).where(marking.c.assignment_id == about.id)
     unplaced_names = select(unplaced.c.student).where(
@@ -270,7 +272,7 @@ def _as_issued(connection: Connection, about: ListedAssignment, noted: Collectio
     return frozenset(students)
 
 
-def _places(connection: Connection, about: ListedAssignment, now: ClassState) -> dict[str, int]:
+def _places(connection: Connection, about: AssignmentOverview, now: ClassState) -> dict[str, int]:
     """Return the position of each student in the class: the order of issue, then the order of arrival."""
     names = list(now.results)
     order = (
@@ -297,7 +299,7 @@ _Cells = dict[tuple[str, str], Graded]
 
 
 def _cells(now: ClassState) -> dict[str, _Cells]:
-    """Return which sheet fills each question of a student's line in the class table."""
+    """Return the sheet of each question in a student's line of the class table."""
     cells: dict[str, _Cells] = {}
     for sheet in now.graded.values():
         if sheet.sitting == now.results[sheet.student].sitting:
@@ -370,7 +372,7 @@ def _answers(now: ClassState, cells: Mapping[str, _Cells]) -> Iterator[dict[str,
 
 
 def is_by_hand(before: Mark, now: Mark) -> bool:
-    """Tell whether a person made another mark of what the marking gave."""
+    """Return True if a person changed a mark."""
     return before is not now and (before.verdict, before.points) != (now.verdict, now.points)
 
 
@@ -378,7 +380,8 @@ def is_by_hand(before: Mark, now: Mark) -> bool:
 
 
 def facts_of(connection: Connection, number: int) -> Facts:
-    """Return what the sheets of all bear on the points of one: nothing in a class with a roster whose papers come whole."""
+    """Return the facts about all sheets that affect the points of each one; none in a class with a roster
+    whose papers are complete."""
     row = connection.execute(
         select(assignment.c.has_roster, assignment.c.is_pool).where(assignment.c.id == number)
     ).one()
@@ -429,8 +432,8 @@ def _has_files(connection: Connection, number: int) -> bool:
     return any(connection.execute(query.limit(1)).first() is not None for query in (files, faults, refused))
 
 
-def _unplaced(connection: Connection, course: Course, about: ListedAssignment, computed: _Computed) -> None:
-    """Compute the rows that have no place; whose they are is noted where that changed."""
+def _unplaced(connection: Connection, course: Course, about: AssignmentOverview, computed: _Computed) -> None:
+    """Compute the rows without a sheet; note their students if these have changed."""
     computed.unplaced = []
     if _has_files(connection, about.id):
         now = read_rows(connection, course, about)
@@ -456,7 +459,7 @@ def _unplaced(connection: Connection, course: Course, about: ListedAssignment, c
 
 
 def write_total(connection: Connection, number: int, facts: Facts | None = None) -> None:
-    """Write what an assignment comes to, from the aggregates of its students and answers."""
+    """Write the totals of an assignment, from the aggregates of its students and answers."""
     of_assignment = student_total.c.assignment_id == number
     counted = select(
         func.count(),

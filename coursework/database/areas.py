@@ -29,7 +29,7 @@ def areas_of(connection: Connection, number: int) -> tuple[Area, ...]:
 
 
 def put_areas(connection: Connection, number: int, areas: Iterable[Area]) -> None:
-    """Let a person assist in these areas, and in no others."""
+    """Replace the areas in which a person assists."""
     connection.execute(delete(area).where(area.c.person_id == number))
     rows = [
         {"person_id": number, "assignment_id": assigned.assignment, "class_group": assigned.group}
@@ -40,7 +40,7 @@ def put_areas(connection: Connection, number: int, areas: Iterable[Area]) -> Non
 
 
 def group_of(columns: Mapping[str, Any] | None) -> str:
-    """Return the group that a line of a roster names, as it is written; empty where it names none."""
+    """Return the group in a line of a roster, as it is written; empty if it names none."""
     groups = (
         str(value).strip() for title, value in (columns or {}).items() if value and is_called(title, GROUP)
     )
@@ -56,7 +56,8 @@ def groups_known(connection: Connection) -> dict[str, str]:
 
 
 def groups_of(connection: Connection, number: int) -> dict[str, str]:
-    """Return the key of the group of each student of an assignment: by its own roster, else by what is known of the person."""
+    """Return the key of the group of each student of an assignment: from its own roster, else from the
+    columns of the person."""
     columns = connection.execute(select(assignment.c.columns).where(assignment.c.id == number)).scalar() or {}
     given = (
         select(dealt.c.student, person.c.id, person.c.columns)
@@ -70,7 +71,8 @@ def groups_of(connection: Connection, number: int) -> dict[str, str]:
 
 
 def students_within(connection: Connection, holder: PermissionHolder, number: int) -> frozenset[str] | None:
-    """Return the students of an assignment whom somebody of the staff sees, as issued; None for all of them."""
+    """Return the students of an assignment whom a member of the staff may see, by the names as issued; None
+    for all of them."""
     groups = groups_within(holder, number)
     if groups is None:
         return None
@@ -80,8 +82,8 @@ def students_within(connection: Connection, holder: PermissionHolder, number: in
 def may_for(
     connection: Connection, holder: PermissionHolder, permission: Permission, number: int, student: str
 ) -> bool:
-    """Return True if somebody has a permission for a student of an assignment; the student is given by the
-    name as issued."""
+    """Return True if somebody has a permission for a student of an assignment, given by the name as
+    issued."""
     if not may(holder, permission, number):
         return False
     within = students_within(connection, holder, number)
@@ -89,12 +91,12 @@ def may_for(
 
 
 def students_in(connection: Connection, number: int, groups: Collection[str]) -> frozenset[str]:
-    """Return the students of an assignment who are in one of some groups."""
+    """Return the students of an assignment who are in one of the given groups."""
     if not groups:
         return frozenset()
     return frozenset(student for student, group in groups_of(connection, number).items() if group in groups)
 
 
 def areas_for_role(connection: Connection, number: int, role: str) -> tuple[Area, ...]:
-    """Return the areas that count for a role: an assistant's own, nobody else's."""
+    """Return the areas of a person with a role: those of an assistant, none of others."""
     return areas_of(connection, number) if role == ASSISTANT else ()

@@ -203,7 +203,7 @@ def _put_dealt(
     variants: Mapping[tuple[str, str], int],
     people: Mapping[str, int],
 ) -> list[str]:
-    """Add what is new; what is known keeps its row, and takes its new place. Return the students of which anything changed."""
+    """Add new items, and update the positions of known ones; return the students with a change."""
     given = {place_key[:3]: place_key[3] for place_key in before if place_key[0]}
     placed: dict[_Place, int] = {}
     new = []

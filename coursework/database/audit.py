@@ -1,4 +1,5 @@
-"""Record of who did what that another may ask about: added to, never changed, and never an answer."""
+"""Audit log of actions on the data of others. Entries are added, never changed, and never contain an
+answer."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ OF_ACCOUNTS = ("invited", "invitation taken up", "password changed", "role", "da
 
 
 class Actor(NamedTuple):
-    """Somebody who does something, and from where."""
+    """Person or program that acts, with its address."""
 
     name: str
     person: int = 0  #: id; 0 for a command or a platform
@@ -23,7 +24,7 @@ class Actor(NamedTuple):
 
 
 def note(connection: Connection, at: datetime, by: str | Actor, what: str, **about: Any) -> None:
-    """Write down that somebody did something; ``person`` in ``about`` is the id of the person of whom it tells."""
+    """Add an entry to the audit log; ``person`` in ``about`` is the id of the person concerned."""
     actor = by if isinstance(by, Actor) else Actor(by)
     subject = about.get("person")
     row = {
@@ -47,7 +48,7 @@ def noted(
     what: Collection[str] = (),
     subject: int | None = None,
 ) -> list[Any]:
-    """Return what was done, the latest first.
+    """Return entries of the audit log, the latest first.
 
     Parameters
     ----------
@@ -75,5 +76,5 @@ def noted(
 
 
 def kinds(connection: Connection) -> list[str]:
-    """Return the kinds of line that there are."""
+    """Return the kinds of entries that exist."""
     return list(connection.execute(select(audit.c.what).distinct().order_by(audit.c.what)).scalars())

@@ -17,7 +17,7 @@ from coursework.database.assignments import issued_of
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
 from coursework.database.instructor_queries import (
-    ListedAssignment,
+    AssignmentOverview,
     Placing,
     SiteSubmissions,
     Stamp,
@@ -47,7 +47,7 @@ from coursework.making.students import namesakes
 
 @dataclass(frozen=True)
 class UnplacedRow:
-    """A row that could not be placed."""
+    """Row that belongs to no sheet."""
 
     id: str  #: digest of what it says and where
     row: Rejected
@@ -87,7 +87,7 @@ class Facts:
         return {"exercises": sorted(self.exercises), "whole": sorted(self.complete), "apart": apart}
 
     def add_to(self, book: Gradebook) -> None:
-        """Let a gradebook of some know it."""
+        """Add the facts to the gradebook of some students."""
         for name in self.exercises:
             book.exercises.setdefault(name, Total())
         book.complete.update(self.complete)
@@ -97,10 +97,10 @@ class Facts:
 
 @dataclass
 class ClassState:
-    """An assignment and its class, or some students of it, at one stamp."""
+    """Class of an assignment, or some students of it, at one stamp."""
 
     course: Course
-    about: ListedAssignment
+    about: AssignmentOverview
     issued: Issued
     stamp: Stamp
     machine: Mapping[SheetKey, Graded]  #: as the marking gave them
@@ -123,12 +123,12 @@ class ClassState:
 
     @cached_property
     def graded(self) -> dict[SheetKey, Graded]:
-        """As they stand: what people decided counts."""
+        """Current sheets, with the decisions applied."""
         return {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
 
     @cached_property
     def book(self) -> Gradebook:
-        """The gradebook of the class, or of its part."""
+        """Gradebook of the class, or of its part."""
         sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected), list(self.sheets.warnings))
         book = Gradebook(
             self.issued, self.sheets.rows_in, self.sheets.blanks, sheets.rejected, sheets.warnings
@@ -192,7 +192,7 @@ class ClassState:
 
     @cached_property
     def drawn(self) -> frozenset[tuple[str, str]]:
-        """The questions that are answered by a drawing."""
+        """Questions that are answered by a drawing."""
         return frozenset(
             (name, part.id)
             for name in self.issued.exercises
@@ -211,7 +211,7 @@ class ClassState:
 
     @property
     def groups(self) -> list[AnswerGroup]:
-        """All that a person may look at, decided or not."""
+        """Groups of answers that a person may review, decided or not."""
         return self._groups_of_all if self.one_sitting else self._groups_that_matter
 
     @cached_property
@@ -236,7 +236,7 @@ class ClassState:
 
     @cached_property
     def open(self) -> dict[str, OpenGroup]:
-        """Groups that wait for a person, by id, in order; including those that are looked at only on request."""
+        """Groups with undecided answers, by id, in order; including those that are shown only on request."""
         open_groups = {}
         for group in self.groups:
             members = tuple(answer for answer in group.members if not self.is_decided(answer))
@@ -255,14 +255,14 @@ class ClassState:
 
     @cached_property
     def unplaced(self) -> tuple[tuple[str, Rejected, str, str], ...]:
-        """Every row that could not be placed or marked: its digest, whom it names, and whose name is like that."""
+        """Rows that could not be placed or marked: digest, row, student, and similar name."""
         sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected))
         list(rejecting(sheets, self.faults.items()))
         return tuple((row_id(row), row, *named_by(self.issued, row)) for row in sheets.rejected)
 
     @cached_property
     def rejected(self) -> tuple[UnplacedRow, ...]:
-        """Every row that could not be placed, with what became of it."""
+        """Rows that could not be placed, each with its placing by a person."""
         return tuple(UnplacedRow(*unplaced, self.placings.get(unplaced[0])) for unplaced in self.unplaced)
 
     @property
@@ -272,12 +272,13 @@ class ClassState:
 
     @property
     def named(self) -> tuple[UnplacedRow, ...]:
-        """Those of a student of the class."""
+        """Rejected rows that name a student of the class."""
         return tuple(row for row in self.rejected if row.student and row.student in self.issued.students)
 
 
 def named_by(issued: Issued, row: Rejected) -> tuple[str, str]:
-    """Return whom a rejected row names, as issued, and whose name is like that of a stranger."""
+    """Return the student whom a rejected row names, as issued, and the name that is most similar to a
+    stranger's."""
     name = row.row.get("student", "")
     student = issued.student(name) if name else None
     is_one = name and student is None and len(namesakes(name, issued.students)) < 2
@@ -294,8 +295,8 @@ def row_id(row: Rejected) -> str:
 # ------------------------------------------------------------------------ reading
 
 
-def read_class(connection: Connection, course: Course, about: ListedAssignment) -> ClassState:
-    """Read a whole class: for a table that goes out, never for a page.
+def read_class(connection: Connection, course: Course, about: AssignmentOverview) -> ClassState:
+    """Read a whole class: for the export of a table, never for a page.
 
     Raises
     ------
@@ -310,7 +311,7 @@ def read_class(connection: Connection, course: Course, about: ListedAssignment) 
 def read_students(
     connection: Connection,
     course: Course,
-    about: ListedAssignment,
+    about: AssignmentOverview,
     students: Collection[str],
     rejected: Sequence[Rejected] = (),
     facts: Facts | None = None,
@@ -328,9 +329,9 @@ def read_students(
 
 
 def read_rows(
-    connection: Connection, course: Course, about: ListedAssignment
+    connection: Connection, course: Course, about: AssignmentOverview
 ) -> tuple[tuple[str, Rejected, str, str], ...]:
-    """Read every row that could not be placed or marked: its digest, whom it names, and whose name is like that.
+    """Return the rows that could not be placed or marked: digest, row, student, and similar name.
 
     Raises
     ------
@@ -347,7 +348,7 @@ def read_rows(
 def _read(
     connection: Connection,
     course: Course,
-    about: ListedAssignment,
+    about: AssignmentOverview,
     issued: Issued,
     sheets: Sheets,
     students: Collection[str] | None,

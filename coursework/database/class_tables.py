@@ -70,7 +70,7 @@ ALL = Scope()
 
 
 class Outline(NamedTuple):
-    """The questions that were issued, and what each is worth."""
+    """Questions of the issued variants, with their points."""
 
     worth: Mapping[Question, float]  #: points, exercise after exercise as issued
 
@@ -80,7 +80,8 @@ class Outline(NamedTuple):
 
 
 def outline_stamp(connection: Connection, number: int) -> tuple[int, int]:
-    """Return what tells whether the outline of an assignment may be another: variants are only added, or erased."""
+    """Return a stamp that changes if the outline of an assignment may change: variants are only added or
+    erased."""
     query = select(func.count(), func.coalesce(func.max(variant.c.id), 0)).where(
         variant.c.assignment_id == number
     )
@@ -89,7 +90,8 @@ def outline_stamp(connection: Connection, number: int) -> tuple[int, int]:
 
 
 def outline(connection: Connection, number: int) -> Outline:
-    """Return the questions of an assignment, from one record for each way in which an exercise was issued."""
+    """Return the questions of an assignment, from one record for each set of parts with which an exercise was
+    issued."""
     text = variant.c.record["parts"].as_string()
     first = (
         select(func.min(variant.c.id).label("id"))
@@ -109,7 +111,7 @@ def outline(connection: Connection, number: int) -> Outline:
 
 
 class TableRequest(NamedTuple):
-    """A page of the class table, as it is asked for."""
+    """Request for a page of the class table."""
 
     sort: str = ""  #: one of :data:`SORTS`, ``EXERCISE/PART``, or empty for the order of the class
     find: str = ""
@@ -118,7 +120,7 @@ class TableRequest(NamedTuple):
 
 
 class StudentsPage(NamedTuple):
-    """Students of a class, and how many there are."""
+    """Page of students of a class, with their total number."""
 
     rows: Sequence[Any]  #: of ``student_total``
     cells: Mapping[str, Mapping[Question, Any]]  #: of ``answer_now``, by student
@@ -137,7 +139,7 @@ def students_page(
     scope: Scope = ALL,
     question: Question | None = None,
 ) -> StudentsPage:
-    """Return a page of the class table; ``question`` is that of the order, where it is one."""
+    """Return a page of the class table; ``question`` is the one by which it is sorted, if any."""
     of_class = and_(student_total.c.assignment_id == number, scope.of_students(student_total.c.student))
     is_found = and_(of_class, _finds(student_total.c.search, request.find))
     if request.since:
@@ -184,7 +186,7 @@ def _in_order(query: Select[Any], number: int, sort: str, question: Question | N
 def cells_of(
     connection: Connection, number: int, students: Collection[str]
 ) -> dict[str, dict[Question, Any]]:
-    """Return the answers of students that stand in the class table."""
+    """Return the answers of students in the class table."""
     of_students = answer_now.c.assignment_id == number, answer_now.c.student.in_(list(students))
     columns = [
         answer_now.c[name]
@@ -197,7 +199,8 @@ def cells_of(
 
 
 def means(connection: Connection, number: int, scope: Scope = ALL) -> dict[Question, tuple[float, int]]:
-    """Return the sum of the points of each question, and of how many students who handed in."""
+    """Return the sum of the points of each question, and the number of students who submitted an answer to
+    it."""
     is_cell = answer_now.c.assignment_id == number, answer_now.c.is_cell.is_(True)
     columns = answer_now.c.exercise, answer_now.c.part, func.sum(answer_now.c.points), func.count()
     query = select(*columns).where(*is_cell, scope.of_students(answer_now.c.student))
@@ -218,7 +221,7 @@ class Totals(NamedTuple):
 
 
 def totals(connection: Connection, number: int | None = None, scope: Scope = ALL) -> dict[int, Totals]:
-    """Return the totals of assignments, or of one."""
+    """Return the totals of all assignments, or of one."""
     query = select(assignment_total).where(scope.of_assignments(assignment_total.c.assignment_id))
     if number is not None:
         query = query.where(assignment_total.c.assignment_id == number)
@@ -248,7 +251,8 @@ def _waits() -> ColumnElement[bool]:
 
 
 def _rows_waiting(connection: Connection, number: int | None) -> dict[int, tuple[int, int]]:
-    """Return how many rows wait, of students of the class and of nobody, by assignment."""
+    """Return the numbers of waiting rows, by assignment: those of students of the class, and those of
+    strangers."""
     named = case((_is_named(), 1), else_=0)
     query = (
         select(unplaced.c.assignment_id, func.sum(named), func.count())
@@ -265,8 +269,8 @@ def _rows_waiting(connection: Connection, number: int | None) -> dict[int, tuple
 
 
 def _cards(number: int, order: Sequence[Question] = (), scope: Scope = ALL) -> CTE:
-    """Return the groups of answers that may be looked at, numbered in their order: question by question, there by why, those that
-    most wrote first."""
+    """Return the groups of answers to review, numbered in their order: by question, then by reason, the
+    largest first."""
     at = answer_now.c
     question = at.exercise, at.part
     of_students = and_(at.assignment_id == number, scope.of_students(at.student))
@@ -313,7 +317,7 @@ def _cards(number: int, order: Sequence[Question] = (), scope: Scope = ALL) -> C
 
 
 def answers_waiting(connection: Connection, number: int, scope: Scope = ALL) -> int:
-    """Return how many answers wait for a person, without those that are looked at on request alone."""
+    """Return the number of answers that wait for a person, without those that are shown only on request."""
     cards = _cards(number, (), scope)
     query = select(func.coalesce(func.sum(cards.c.open), 0)).where(cards.c.why.not_in(SHOWN_ON_REQUEST))
     return int(connection.execute(query).scalar_one())
@@ -348,7 +352,7 @@ class CardRow(NamedTuple):
 
 
 class CardQueue:
-    """The cards of an assignment, asked for few at a time."""
+    """Cards of an assignment, queried a few at a time."""
 
     def __init__(self, connection: Connection, number: int, order: Sequence[Question], scope: Scope = ALL):
         self._connection, self._number, self._scope = connection, number, scope
@@ -370,41 +374,42 @@ class CardQueue:
         return int(self._connection.execute(query).scalar_one())
 
     def before(self, selection: Filter, number: int) -> int:
-        """Return how many cards are shown before a place among all."""
+        """Return the number of selected cards before a position among all cards."""
         query = select(func.count()).select_from(self._cards)
         conditions = selection.of(self._cards), self._cards.c.number < number
         return int(self._connection.execute(query.where(*conditions)).scalar_one())
 
     def page(self, selection: Filter, first: int, count: int = PAGE) -> list[CardRow]:
-        """Return cards that are shown, from one of them on."""
+        """Return selected cards, beginning with the card ``first``."""
         query = self._select().where(selection.of(self._cards)).order_by(self._cards.c.number)
         return self._rows(query.offset(first).limit(min(count, PAGE)))
 
     def after(self, selection: Filter, number: int) -> CardRow | None:
-        """Return the first card that is shown from a place among all on; after the last comes the first."""
+        """Return the first selected card from a position among all cards on; the first of all after the
+        last."""
         at = self._cards.c.number
         query = self._select().where(selection.of(self._cards)).order_by(at < number, at)
         return next(iter(self._rows(query.limit(1))), None)
 
     def by_why(self) -> dict[str, int]:
-        """Return how many cards wait, by why."""
+        """Return the number of waiting cards, by reason."""
         query = select(self._cards.c.why, func.count()).where(self._cards.c.open > 0)
         return {row[0]: int(row[1]) for row in self._connection.execute(query.group_by(self._cards.c.why))}
 
     def by_question(self, selection: Filter) -> dict[Question, int]:
-        """Return how many cards wait, by question."""
+        """Return the number of waiting cards, by question."""
         question = self._cards.c.exercise, self._cards.c.part
         everywhere = selection._replace(exercise="", part="").of(self._cards)
         query = select(*question, func.count()).where(everywhere).group_by(*question)
         return {(row[0], row[1]): int(row[2]) for row in self._connection.execute(query)}
 
     def done(self) -> int:
-        """Return how many answers of the cards were decided."""
+        """Return the number of decided answers of the cards."""
         query = select(func.coalesce(func.sum(self._cards.c.members - self._cards.c.open), 0))
         return int(self._connection.execute(query).scalar_one())
 
     def alike(self, card: CardRow) -> list[str]:
-        """Return the other cards on which the same cannot be read."""
+        """Return the other cards with the same unreadable text."""
         if card.why != "unreadable":
             return []
         at = answer_now.c
@@ -442,14 +447,14 @@ class CardQueue:
         )
 
     def decided(self, name: str, limit: int) -> list[Any]:
-        """Return the first answers of a card that were decided."""
+        """Return the first decided answers of a card."""
         at = answer_now.c
         columns = at.id, at.student, at.exercise, at.seed, at.sitting, at.part, at.decided, mark.c.answer
         query = self._members([name], *columns, open_only=False).where(at.decided.is_(True))
         return list(self._connection.execute(query.limit(limit)))
 
     def spellings(self, name: str, limit: int) -> list[str]:
-        """Return the first ways in which the same was written."""
+        """Return the first spellings of the answers of a card."""
         at = answer_now.c
         query = self._members([name], mark.c.answer, open_only=False).order_by(None)
         first = query.group_by(mark.c.answer).order_by(func.min(at.first)).limit(limit)
@@ -457,7 +462,7 @@ class CardQueue:
 
 
 def mark_decided(connection: Connection, rows: Collection[int], *, decided: bool) -> None:
-    """Note at once on which answers somebody decided; what it makes of the points is computed next."""
+    """Mark answers as decided or not at once; their points are computed later."""
     numbers = list(rows)
     for start in range(0, len(numbers), 5000):
         some = answer_now.c.id.in_(numbers[start : start + 5000])
@@ -468,7 +473,7 @@ def mark_decided(connection: Connection, rows: Collection[int], *, decided: bool
 
 
 class UnplacedTableRow(NamedTuple):
-    """A row that could not be placed."""
+    """Row that belongs to no sheet, as stored."""
 
     row: str
     student: str  #: of the class; empty for a stranger
@@ -482,7 +487,7 @@ def rows_page(
     connection: Connection, number: int, first: int = 0, *, named: bool = False, waiting: bool = False, row: str = "",
     student: str | None = None, exercise: str = "", part: str = "", scope: Scope = ALL, count: int = PAGE,
 ) -> tuple[list[UnplacedTableRow], int]:  # fmt: skip
-    """Return rows that could not be placed, from one of them on, and how many there are."""
+    """Return rows that could not be placed, beginning with the row ``first``, and their total number."""
     conditions = [unplaced.c.assignment_id == number]
     if scope.students is not None:
         conditions.append(scope.of_students(unplaced.c.student))

@@ -1,4 +1,4 @@
-"""Marks as they stand: the last marking of each sheet, with what people decided."""
+"""Current marks: the last marking of each sheet, with the decisions of people."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _CHUNK = 5000  #: sheets that are read at once
 
 
 class LastMarking(NamedTuple):
-    """A sheet as it was last marked."""
+    """Last marking of a sheet."""
 
     id: int
     key: SheetKey
@@ -161,7 +161,7 @@ def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gra
 
 
 class WaitingAnswer(NamedTuple):
-    """An answer that a person looks at."""
+    """Answer that a person reviews."""
 
     student: str
     exercise: str

@@ -1,4 +1,4 @@
-"""Decisions that people write in files: ``accepted.csv``, and the points in ``to_mark.csv``.
+"""Decisions written in files by people: ``accepted.csv``, and the points in ``to_mark.csv``.
 
 What differs in a file from what was last read or written there is a new decision, by the file's name. So a file that is
 old says nothing new, and one that somebody goes on with says what they changed.
@@ -25,7 +25,7 @@ from coursework.marking.mark import Mark
 
 
 class _StatedDecision(NamedTuple):
-    """A decision as a file states it."""
+    """Decision as a file states it."""
 
     student: str
     exercise: str
@@ -45,7 +45,7 @@ class _StatedDecision(NamedTuple):
 def store_new_decisions(
     connection: Connection, assignment_id: int, by_person: ToMark | None, by_hand: Accepted | None
 ) -> int:
-    """Keep what is new in the files that there are, as decisions; gives how many answers it is of.
+    """Store the new decisions in the files; return the number of answers concerned.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def store_new_decisions(
 
 
 def remember_written(connection: Connection, assignment_id: int, path: Path) -> None:
-    """Remember ``to_mark.csv`` as it stands, just written."""
+    """Record the content of ``to_mark.csv``, just written, so that it counts as known."""
     if path.exists():
         _remember(connection, assignment_id, path, _given_decisions(ToMark(path)))
 
@@ -148,7 +148,7 @@ def _remember(
 
 
 class DecidedToMark(ToMark):
-    """``to_mark.csv`` with the points that were decided, wherever that was."""
+    """``to_mark.csv`` with all points decided, in the file or on the site."""
 
     def __init__(self, path: Path, decisions: Decisions):
         super().__init__(path)
@@ -165,7 +165,7 @@ class DecidedToMark(ToMark):
 
 
 class DecidedAccepted(Accepted):
-    """``accepted.csv`` with all that was decided, wherever that was."""
+    """``accepted.csv`` with all decisions, in the file or on the site."""
 
     def __init__(self, path: Path | None, decisions: Decisions):
         super().__init__(path)

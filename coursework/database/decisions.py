@@ -23,7 +23,7 @@ ACCEPTED, GIVEN, KEPT, WITHDRAWN = KINDS = ("accepted", "given", "kept", "withdr
 
 
 class DecidedAnswer(NamedTuple):
-    """An answer that is decided on."""
+    """Answer to which a decision applies."""
 
     student: str
     exercise: str
@@ -56,7 +56,8 @@ def decide(
     reason: str,
     by: str,
 ) -> None:
-    """Keep a decision on some answers. What is ``given`` counts for the very answer of its place.
+    """Store a decision on some answers. A decision of the kind ``given`` applies only to the answer that was
+    seen.
 
     Raises
     ------
@@ -92,7 +93,7 @@ def decide(
 def _check(
     connection: Connection, assignment_id: int, places: Sequence[DecidedAnswer], points: float | None
 ) -> None:
-    """Refuse what there is not, and more points than there are."""
+    """Raise an error for an exercise or a part that does not exist, or for more points than the part has."""
     exercises = {answer.exercise for answer in places}
     query = select(variant.c.exercise, variant.c.record["parts"].label("parts")).where(
         variant.c.assignment_id == assignment_id, variant.c.exercise.in_(exercises)
@@ -114,7 +115,7 @@ def _check(
 
 
 class Decisions:
-    """The decisions on the answers of an assignment, or of one student."""
+    """Decisions on the answers of an assignment, or of one student."""
 
     def __init__(self, rows: Iterable[tuple[str, str, str, Decision]] = ()):
         self._of: dict[tuple[str, str, str], list[Decision]] = {}
@@ -166,7 +167,7 @@ class Decisions:
                 yield decided
 
     def apply(self, graded: Graded, lang: str = "") -> Graded:
-        """Return the sheet with the marks that a person decided."""
+        """Return the sheet with the decisions of people applied to its marks."""
         if not self._of:
             return graded
         lines, unanswered = dict(graded.lines), list(graded.unanswered)

@@ -14,14 +14,14 @@ from coursework.database.tables import draft
 
 
 class DraftBox(NamedTuple):
-    """Current text of a box."""
+    """Stored text of a box."""
 
     text: str
     version: int  #: counts its changes; 0 where nothing was ever written
 
 
 class DraftChange(NamedTuple):
-    """Text from a page, and the version that it replaces."""
+    """Text received from a page, and the version that it replaces."""
 
     text: str
     over: int
@@ -89,5 +89,5 @@ def sheets(connection: Connection, person: int, beginning: str) -> dict[str, dat
 
 
 def drop(connection: Connection, person: int, sheet: str) -> None:
-    """Forget a sheet."""
+    """Delete the drafts of a sheet."""
     connection.execute(delete(draft).where(draft.c.person_id == person, draft.c.sheet == sheet))

@@ -1,4 +1,4 @@
-"""A database as files and back: a table a CSV, nothing lost, whatever database it goes to."""
+"""Dump of a database as files, one CSV per table, and its restoration into any database."""
 
 from __future__ import annotations
 
@@ -220,7 +220,7 @@ def _chunks(table: Table, path: Path, cell_text: CellText) -> Iterator[list[dict
 
 
 def _has_columns(table: Table, names: Sequence[str]) -> bool:
-    """Return whether a dump has a table's columns, each once; an older one may lack those that are newer."""
+    """Return True if a dump has the columns of a table, each once; an older one may lack recent columns."""
     wanted = {*table.c.keys()} - _NEWER.get(table.name, set())
     return len({*names}) == len(names) and wanted <= {*names} <= {*table.c.keys()}
 
@@ -271,7 +271,7 @@ _MAKERS: tuple[tuple[type[Any], Callable[[str], Any]], ...] = (
 
 
 def _continue_numbering(connection: Connection, table: Table) -> None:
-    """Let a server go on numbering after the rows that were put in."""
+    """Set the sequence of a server to continue after the inserted rows."""
     if connection.dialect.name == "postgresql" and "id" in table.c:
         last = connection.execute(select(func.max(table.c.id))).scalar()
         if last is not None:

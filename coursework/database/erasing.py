@@ -82,7 +82,8 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
 
 
 def _drop_aggregates(connection: Connection, known_as: PersonIdentifiers) -> None:
-    """Take away the aggregates of a person, and all rows without a place, which may name them; the latter are computed anew."""
+    """Delete the aggregates of a person, and all rows without a sheet, which may name the person; the latter
+    are computed again."""
     connection.execute(delete(unplaced))
     for table in (answer_now, student_total, outdated):
         theirs = ids_of(connection, table, known_as)
@@ -93,7 +94,7 @@ def _drop_aggregates(connection: Connection, known_as: PersonIdentifiers) -> Non
 
 
 def _strike(connection: Connection, known_as: PersonIdentifiers) -> None:
-    """Strike names out of what others wrote."""
+    """Remove names from texts of others."""
     words = {word for word in known_as.words if len(word) >= _SHORTEST}
     in_heads = {word for word in words if not word.isalpha()}
     for table, names in TELLING:

@@ -14,7 +14,7 @@ FORGOTTEN = timedelta(minutes=15)  #: a count is forgotten so long after the las
 
 
 def failures_of(connection: Connection, keys: Collection[str], at: datetime) -> dict[str, int]:
-    """Return how often each key failed; keys without a failure that still counts are left out."""
+    """Return the number of recent failures of each key; keys without one are omitted."""
     query = select(failure.c.key, failure.c["count"].label("times")).where(
         failure.c.key.in_(keys), failure.c.last > at - FORGOTTEN
     )
@@ -31,5 +31,5 @@ def add_failure(connection: Connection, keys: Collection[str], at: datetime) -> 
 
 
 def forget_failures(connection: Connection, keys: Collection[str]) -> None:
-    """Start counting anew for each key."""
+    """Delete the failures of keys."""
     connection.execute(delete(failure).where(failure.c.key.in_(keys)))

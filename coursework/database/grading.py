@@ -103,7 +103,7 @@ def accepted_in(accepted: Path | None, out: Path | None) -> Path | None:
 def _deliver(
     connection: Connection, assignment_id: int, submissions: Sequence[Path], *, replaces: bool
 ) -> list[Submission]:
-    """Each file, as far as it is new."""
+    """Store each file as a submission, unless an equal one is stored already."""
     received_at = datetime.now(UTC)
     submitted = []
     for file in find(submissions):

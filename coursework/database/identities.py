@@ -21,7 +21,7 @@ def person_linked_to(connection: Connection, issuer: str, subject: str) -> Any |
 
 
 def link_identity(connection: Connection, number: int, issuer: str, subject: str) -> bool:
-    """Tie a person to a platform's identifier; whether nobody was tied to it before."""
+    """Link a person to a platform's identifier; return True if nobody was linked to it before."""
     row = {"person_id": number, "issuer": issuer, "subject": subject}
     return insert_unless_there(connection, identity, row, ("issuer", "subject")) is not None
 
@@ -59,19 +59,19 @@ def _fits(row: Any, email: str, number: str) -> bool:
 
 
 def has_password(connection: Connection, number: int) -> bool:
-    """Return True for a person who has chosen a password, so that nobody else says who they are."""
+    """Return True if a person has chosen a password; no platform then identifies them."""
     mine = account.c.person_id == number, account.c.secret != ""
     return connection.execute(select(account.c.id).where(*mine)).first() is not None
 
 
 def links_of(connection: Connection, number: int) -> list[Any]:
-    """Return how platforms know a person: ``id``, ``issuer`` and ``subject`` of each."""
+    """Return the links of a person to platforms: ``id``, ``issuer`` and ``subject`` of each."""
     query = select(identity.c.id, identity.c.issuer, identity.c.subject)
     return list(connection.execute(query.where(identity.c.person_id == number).order_by(identity.c.id)))
 
 
 def unlink_identity(connection: Connection, number: int, tie_id: int) -> tuple[str, str] | None:
-    """Take one tie of a person away; returns its issuer and subject, None where there was none."""
+    """Delete one link of a person; return its issuer and subject, or None if there is none."""
     mine = identity.c.id == tie_id, identity.c.person_id == number
     gone = delete(identity).where(*mine).returning(identity.c.issuer, identity.c.subject)
     row = connection.execute(gone).first()

@@ -72,8 +72,8 @@ def stamp(connection: Connection, assignment_id: int) -> Stamp:
     return Stamp(*counts)
 
 
-class ListedAssignment(NamedTuple):
-    """Assignment, as the instructor's pages list it."""
+class AssignmentOverview(NamedTuple):
+    """Assignment in the list of the instructor's pages."""
 
     id: int
     name: str
@@ -85,7 +85,7 @@ class ListedAssignment(NamedTuple):
     last: datetime | None  #: when something came in
 
 
-def listed_assignments(connection: Connection, assignment_id: int | None = None) -> list[ListedAssignment]:
+def listed_assignments(connection: Connection, assignment_id: int | None = None) -> list[AssignmentOverview]:
     """Return the assignments, the latest first; one alone if given."""
     query = (
         select(assignment, func.count(delivery.c.id), func.max(delivery.c.id))
@@ -101,7 +101,7 @@ def listed_assignments(connection: Connection, assignment_id: int | None = None)
     )
     received_at = {row.id: row.came for row in connection.execute(last)}
     return [
-        ListedAssignment(
+        AssignmentOverview(
             row.id,
             row.name,
             row.stated,
@@ -119,7 +119,7 @@ def listed_assignments(connection: Connection, assignment_id: int | None = None)
 
 
 class NumberedDecision(NamedTuple):
-    """A decision with its number."""
+    """Decision with its id."""
 
     id: int
     student: str
@@ -148,7 +148,7 @@ def decided_since(connection: Connection, assignment_id: int, after: int) -> lis
 
 
 def decisions_of(connection: Connection, assignment_id: int) -> list[NumberedDecision]:
-    """Every decision of an assignment, in order."""
+    """Return all decisions of an assignment, in order."""
     return decided_since(connection, assignment_id, 0)
 
 
@@ -177,7 +177,7 @@ def decided_answer_of(decided: NumberedDecision) -> DecidedAnswer:
 
 
 class Placing(NamedTuple):
-    """Placing of a rejected row."""
+    """Placing of a rejected row by a person."""
 
     row: str  #: digest
     delivery_id: int | None  #: of the answer that was made of it; none where it was put aside
@@ -194,12 +194,12 @@ def placings(connection: Connection, assignment_id: int) -> dict[str, Placing]:
 
 
 def put_placing(connection: Connection, assignment_id: int, placed: Placing) -> None:
-    """Keep what became of a rejected row."""
+    """Store the placing of a rejected row."""
     connection.execute(insert(placing).values(assignment_id=assignment_id, **placed._asdict()))
 
 
 def drop_placing(connection: Connection, assignment_id: int, row: str) -> None:
-    """Let a row that was put aside wait again."""
+    """Delete the placing of a row that was put aside, so that it waits again."""
     is_put_aside = (
         placing.c.assignment_id == assignment_id,
         placing.c.row == row,

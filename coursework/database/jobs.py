@@ -19,7 +19,7 @@ _LEASE = timedelta(minutes=2)  #: after which another worker takes what one has 
 
 
 class WorkerJob(NamedTuple):
-    """A piece of work."""
+    """Job of a background worker."""
 
     id: int
     kind: str  #: ``mark``: a delivery; ``rescue``: what a person saved before an assignment closed; ``prepare``: a person's page
@@ -53,7 +53,7 @@ def put_job(
     delivery: int | None = None,
     person: int | None = None,
 ) -> None:
-    """Add a job, in the transaction of what it is about."""
+    """Add a job, in the transaction that requires it."""
     row = {
         "kind": kind,
         "assignment_id": assignment,
@@ -82,7 +82,7 @@ def is_any(connection: Connection) -> bool:
 
 
 def take_job(connection: Connection, worker: str, at: datetime) -> WorkerJob | None:
-    """Take the first job that nobody works at, and count the try; None where there is none. Pages are prepared last.
+    """Take the first free job and count the attempt; return None if there is none. Pages are prepared last.
 
     A job that was begun :data:`MOST_TRIES` times is given up: it killed its worker.
     """
@@ -102,17 +102,18 @@ def take_job(connection: Connection, worker: str, at: datetime) -> WorkerJob | N
 
 
 def drop_job(connection: Connection, number: int) -> None:
-    """Take a job away."""
+    """Delete a job that is done."""
     connection.execute(delete(job).where(job.c.id == number))
 
 
 def drop_jobs(connection: Connection, delivery: int) -> None:
-    """Take away what marks a delivery: it is marked."""
+    """Delete the jobs that mark a submission, which is marked."""
     connection.execute(delete(job).where(job.c.delivery_id == delivery))
 
 
 def put_back(connection: Connection, failed: WorkerJob, fault: str) -> bool:
-    """Let a job that failed be tried again, or give it up after :data:`MOST_TRIES`; True where it is given up."""
+    """Release a failed job for another attempt, or give it up after :data:`MOST_TRIES`; return True if it is
+    given up."""
     if failed.tries >= MOST_TRIES:
         give_up(connection, failed.id, fault)
         return True

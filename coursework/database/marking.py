@@ -1,4 +1,5 @@
-"""Marking what is new: the sheets whose answers, record, rules, course or engine are not what they were marked by."""
+"""Marking of changed sheets: those whose answers, record, rules, course or engine differ from those of their
+last marking."""
 
 from __future__ import annotations
 
@@ -30,7 +31,7 @@ Judged = tuple[SheetKey, Graded | str]
 
 
 class Change(NamedTuple):
-    """A mark that is not what it was."""
+    """Change of a mark."""
 
     student: str
     exercise: str
@@ -58,7 +59,7 @@ class MarkedNow(NamedTuple):
 
 
 class Work:
-    """The sheets of an assignment, or of one delivery of it, beside what was marked of them before."""
+    """Sheets of an assignment, or of one submission, with their last markings."""
 
     def __init__(self, course: Course, store: Store, assignment_id: int, delivery_id: int | None = None):
         self.course, self.store, self.assignment_id = course, store, assignment_id
@@ -99,23 +100,23 @@ class Work:
 
     @property
     def changed(self) -> list[SheetKey]:
-        """The sheets that are not in the state by which they were marked."""
+        """Sheets whose state differs from that of their last marking."""
         return [p for p in self.places if p not in self.last or self.last[p].state != self.states[p]]
 
     @property
     def gone(self) -> list[LastMarking]:
-        """The sheets that nothing answers to any more."""
+        """Last markings of sheets that have no answer any more."""
         if not self.is_whole:
             return []
         return [last for sheet, last in self.last.items() if last.state and sheet not in self.sheets.sheets]
 
     def mark(self) -> None:
-        """Mark what changed."""
+        """Mark the changed sheets."""
         places = self.changed
         self.now = dict(judged(self.course, self.issued, _only(self.sheets, places))) if places else {}
 
     def results(self) -> Iterator[Judged]:
-        """Every sheet with its marks as they are now."""
+        """Yield each sheet with its current marks."""
         places = self.sheets.sheets
         before = self._before(self.last[p] for p in places if p not in self.now and p in self.last)
         for sheet in self.sheets.sheets:
@@ -147,7 +148,7 @@ class Work:
         return MarkedNow(len(self.places), len(self.now), new, tuple(self.changes()))
 
     def write(self, connection: Connection) -> None:
-        """Keep what was marked, but of sheets that somebody else marked meanwhile."""
+        """Store the new marks, except for sheets that another process has marked meanwhile."""
         now = last_markings(connection, self.assignment_id, self._student)
         met = {sheet: last.id for sheet, last in now.items()}
         free = [p for p in self.now if met.get(p) == (self.last[p].id if p in self.last else None)]
@@ -180,7 +181,7 @@ class Work:
             outdate_rows(connection, self.assignment_id)
 
     def was_at_fault(self, sheet: SheetKey) -> bool:
-        """Tell whether a sheet could not be marked before."""
+        """Return True if the last marking of a sheet failed."""
         return sheet in self.last and bool(self.last[sheet].fault)
 
 
@@ -199,7 +200,7 @@ def mark_new(course: Course, store: Store, assignment_id: int) -> MarkedNow:
 
 
 def mark_delivery(course: Course, store: Store, delivery_id: int) -> MarkedNow:
-    """Mark the sheets of one delivery, where they changed.
+    """Mark the changed sheets of one submission.
 
     Raises
     ------
@@ -241,7 +242,7 @@ def _person_of(connection: Connection, delivery_id: int) -> int | None:
 
 
 def _only(sheets: Sheets, places: Iterable[SheetKey]) -> Sheets:
-    """Some of the sheets, by themselves."""
+    """Return some of the sheets alone."""
     selected = {sheet: sheets.sheets[sheet] for sheet in places}
     return Sheets(selected, langs=sheets.langs, submitted=sheets.submitted, apart=sheets.apart)
 

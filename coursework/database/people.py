@@ -1,4 +1,4 @@
-"""People: who answers, who teaches, and how they sign in."""
+"""People: students and staff, and how they sign in."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ def people_query() -> Select[Any]:
 
 
 def people(connection: Connection) -> list[Any]:
-    """Everybody, by name, whatever its accents: Bäcker stands before Blanc."""
+    """Return all people, sorted by name without regard to accents: Bäcker before Blanc."""
     rows = connection.execute(people_query().order_by(person.c.id))
     return sorted(rows, key=lambda row: (sort_key(row.name), row.name))
 
 
 def person_by_id(connection: Connection, number: int) -> Any | None:
-    """``id``, ``who``, ``name``, ``lang``, ``columns``, ``sessions_from``, ``role``, ``login`` of a person; None for nobody."""
+    """Return ``id``, ``who``, ``name``, ``lang``, ``columns``, ``sessions_from``, ``role`` and ``login`` of a
+    person; None if there is no such person."""
     return connection.execute(people_query().where(person.c.id == number)).first()
 
 
@@ -36,7 +37,7 @@ def person_by_identifier(connection: Connection, identifier: str) -> Any | None:
 
 
 def lock_person(connection: Connection, number: int) -> None:
-    """Let nobody else write for this person before the transaction ends. One of SQLite is the only one that writes."""
+    """Lock a person's row until the transaction ends. SQLite has only one writer and needs no lock."""
     if connection.dialect.name != "sqlite":
         connection.execute(select(person.c.id).where(person.c.id == number).with_for_update(key_share=True))
 
@@ -65,7 +66,7 @@ def put_person(
 
 
 def put_people(connection: Connection, students: Sequence[Student]) -> dict[str, int]:
-    """Add the new people of a roster, and new columns of the known ones; return the ids of all people by the
+    """Add the new people of a roster, and new columns of known ones; return the ids of all people by the
     roster's identifier."""
     people_before = {
         row.who: row for row in connection.execute(select(person.c.who, person.c.id, person.c.columns))

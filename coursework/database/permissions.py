@@ -1,4 +1,4 @@
-"""Roles of people on the site, the permissions of each role, and the answer to who may do what, where.
+"""Roles of people on the site, and the permissions of each role.
 
 The roles and permissions are data: :data:`PERMISSIONS` is the whole table. An assistant has the permissions of the table in
 named assignments and groups alone (:class:`Area`); everybody else has theirs everywhere.
@@ -96,7 +96,8 @@ class PermissionHolder(Protocol):
 
 
 def group_key(group: str) -> str:
-    """Return a group's name as groups are compared: whatever its case and spaces."""
+    """Return a group's name in the form in which groups are compared, without differences of case and
+    spaces."""
     return " ".join(group.split()).casefold()
 
 
@@ -141,10 +142,10 @@ def groups_within(holder: PermissionHolder, assignment: int) -> frozenset[str] |
 
 
 def is_of_staff(permission: Permission) -> bool:
-    """Return whether no student has a permission."""
+    """Return True if no student has a permission."""
     return permission not in _STUDENT
 
 
 def to_invite(role: str) -> Permission:
-    """Return the permission that a link for somebody of a role needs."""
+    """Return the permission required to invite somebody of a role."""
     return Permission.PEOPLE_INVITE_STAFF if role in STAFF else Permission.PEOPLE_INVITE_STUDENTS

@@ -1,4 +1,4 @@
-"""All that the database keeps of one person, by table: what is given to them, and what is erased."""
+"""All data about one person, by table: for export and for erasure."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _HIDDEN = {
 
 
 class PersonIdentifiers(NamedTuple):
-    """By what the tables know somebody."""
+    """Identifiers of a person in the tables."""
 
     person: int
     name: str
@@ -59,7 +59,7 @@ class PersonIdentifiers(NamedTuple):
 
 
 def identifiers_of(connection: Connection, number: int) -> PersonIdentifiers | None:
-    """By what the tables know a person; None for nobody.
+    """Return the identifiers of a person; None if there is no such person.
 
     In an assignment with a roster it is who was issued something; in one without, whoever gave the same name, as long as
     nobody else has it.
@@ -186,7 +186,7 @@ def personal_data(connection: Connection, known_as: PersonIdentifiers) -> dict[s
 
 
 def _of_audit(row: Any, known_as: PersonIdentifiers) -> dict[str, Any]:
-    """Return a line of the audit; from where it was done, only where the person did it."""
+    """Return an entry of the audit log; with the address only if the person acted."""
     entry = dict(row._mapping)
     return entry if row.actor == known_as.person else {**entry, "address": None}
 

@@ -1,4 +1,4 @@
-"""Variants that are worth practising, found ahead: their seeds, and what is issued, which nobody practises."""
+"""Pool of variants for practice: seeds found in advance. Issued variants are excluded from practice."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from coursework.database.tables import setting, variant
 
 
 class Pooled(NamedTuple):
-    """The seeds of an exercise that were found so far."""
+    """Seeds of an exercise that were found so far."""
 
     seeds: tuple[int, ...] = ()
     are_all: bool = False  #: no more were found
@@ -39,7 +39,7 @@ def _of_text(text: str) -> Pooled:
 
 
 def put_pooled(connection: Connection, exercise: str, version: int, seeds: Pooled) -> None:
-    """Keep what was found, in the place of what was before."""
+    """Store the seeds found, in place of the earlier ones."""
     name = _name(exercise, version)
     text = json.dumps({"seeds": list(seeds.seeds), "all": seeds.are_all})
     connection.execute(delete(setting).where(setting.c.name == name))

@@ -29,7 +29,7 @@ def prepared_state(connection: Connection, number: int, person_id: int, lang: st
 def prepared_pieces(
     connection: Connection, number: int, person_id: int, lang: str, state: str
 ) -> PreparedPieces | None:
-    """Return a page as it was made in this very state; None where there is none such."""
+    """Return the cached page of exactly this state; None if there is none."""
     query = select(prepared.c.head, prepared.c.body).where(
         *_key(number, person_id, lang), prepared.c.state == state
     )
@@ -40,7 +40,7 @@ def prepared_pieces(
 def put_prepared(
     connection: Connection, number: int, person_id: int, lang: str, state: str, pieces: PreparedPieces
 ) -> None:
-    """Keep a page, in place of that of another state."""
+    """Store a page, in place of that of another state."""
     make = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
     now = {"state": state, **pieces._asdict()}
     added = make(prepared).values(assignment_id=number, person_id=person_id, lang=lang, **now)
@@ -49,13 +49,14 @@ def put_prepared(
 
 
 def drop_prepared(connection: Connection, number: int) -> None:
-    """Delete the pages of an assignment that nobody fills in any more, and what waits to make them."""
+    """Delete the pages of an assignment that nobody fills in any more, and the jobs that prepare them."""
     connection.execute(delete(prepared).where(prepared.c.assignment_id == number))
     connection.execute(delete(job).where(job.c.assignment_id == number, job.c.kind == PREPARE))
 
 
 def prepare_later(connection: Connection, number: int, at: datetime, person_id: int | None = None) -> None:
-    """Add a job for each person who was issued a paper of an assignment, or for one, unless it waits already."""
+    """Add a job for each person with a paper of an assignment, or for one person, unless such a job waits
+    already."""
     theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
     waits = select(job.c.person_id).where(
         job.c.assignment_id == number, job.c.kind == PREPARE, job.c.until.is_(None)

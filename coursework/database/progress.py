@@ -45,7 +45,7 @@ class PersonProgress:
         """Do nothing: no earlier version stored progress in the database."""
 
     def add(self, entries: Iterable[Entry]) -> None:
-        """Keep what happened.
+        """Store entries, each once.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Administrators of databases that are older than the role."""
+"""Administrators in databases that are older than that role."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OWNER = "owner"  #: login of who opens the site on their own machine
 
 
 def promote_first(connection: Connection) -> None:
-    """Make the first instructor administrator where there is no administrator, and the owner of a machine in any case.
+    """Make the first instructor an administrator if there is none, and the owner of a machine in any case.
 
     Only the first one: instructors of before could all take over each other's accounts, and this is to end; who else is to be
     administrator is said by the first, or by a command on the server's machine. An instructor with a password comes before one

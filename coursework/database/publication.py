@@ -145,7 +145,8 @@ class Publication:
         return clock if self.reached is None else max(clock, self.reached)
 
     def counted(self, arrived: datetime, clock: datetime) -> datetime:
-        """Return the time that counts for what arrived a moment ago, whatever date was written down since it did.
+        """Return the effective time of a request received a moment ago, whatever date has been recorded
+        since.
 
         Parameters
         ----------
@@ -166,7 +167,7 @@ class Publication:
 
     @property
     def ends(self) -> datetime | None:
-        """The last moment at which anything is taken; none where that never comes."""
+        """Last moment at which a submission is accepted; None if there is no limit."""
         return self.closes if self.late == REFUSE or self.closes is None else self.late_until
 
     def late_seconds(self, received_at: datetime) -> int:
@@ -214,7 +215,7 @@ def published(connection: Connection, number: int) -> Publication | None:
 
 
 def publish(connection: Connection, number: int, publication: Publication | None) -> None:
-    """Publish an assignment, or, with None, take that back; what was handed in stays."""
+    """Publish an assignment; with None, withdraw its publication. Submissions remain."""
     stored = None if publication is None else publication.as_json()
     if _charging(published(connection, number)) != _charging(publication):
         outdate_all(connection, number)
@@ -281,7 +282,7 @@ def extensions(connection: Connection, number: int) -> dict[int, Extension]:
 
 
 def record_passed_date(connection: Connection, number: int, clock: datetime) -> bool:
-    """Write down the last date that has passed, where one has; tells whether it was another than before."""
+    """Record the last date that has passed, if there is one; return True if it is new."""
     about = connection.execute(
         select(assignment.c.published).where(assignment.c.id == number).with_for_update(key_share=True)
     ).scalar()
@@ -299,7 +300,7 @@ def record_passed_date(connection: Connection, number: int, clock: datetime) -> 
 
 
 class StudentAssignment(NamedTuple):
-    """An assignment that somebody was issued a paper of, as it is published."""
+    """Assignment issued to a person, with its publication."""
 
     id: int
     name: str
@@ -353,7 +354,7 @@ def _student_assignments_query(is_of_one: bool) -> Select[Any]:
 
 
 def set_counting_attempt(connection: Connection, number: int, counts: str) -> None:
-    """Say which of several hand-ins counts, ``best`` or ``last``, where marks are put together."""
+    """Set the attempt that counts, ``best`` or ``last``."""
     row = connection.execute(select(assignment).where(assignment.c.id == number)).one()
     values = {
         key: {**value, "sittings": counts}

@@ -1,4 +1,4 @@
-"""Scans of answer pages, and what people typed of them."""
+"""Scans of answer pages, and texts typed from them by people."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from coursework.database.tables import scanned, typed
 
 
 class ScannedPage(NamedTuple):
-    """A page of a scan, or a file of which no page can be read."""
+    """Page of a scan, or file without a readable page."""
 
     page: str  #: digest of the file, and number
     file: str
@@ -39,7 +39,7 @@ class TypedRow(NamedTuple):
 
 
 def put_scanned(connection: Connection, assignment_id: int, page: ScannedPage, picture: bytes) -> bool:
-    """Keep a page; whether it is new. One that is there stays as it is."""
+    """Store a page; return True if it is new. An existing page stays as it is."""
     row = {
         **page._asdict(), "kept": dict(page.kept), "assignment_id": assignment_id,
         "picture": base64.b64encode(picture).decode(),
@@ -63,13 +63,13 @@ def picture_scanned(connection: Connection, assignment_id: int, page: str) -> by
 
 
 def name_scanned(connection: Connection, assignment_id: int, page: str, student: str) -> None:
-    """Say whose a page is."""
+    """Set the student of a page."""
     of_page = scanned.c.assignment_id == assignment_id, scanned.c.page == page
     connection.execute(update(scanned).where(*of_page).values(student=student))
 
 
 def put_typed(connection: Connection, assignment_id: int, rows: Iterable[TypedRow]) -> None:
-    """Keep what was typed."""
+    """Store texts typed by a person."""
     values = [{**row._asdict(), "assignment_id": assignment_id} for row in rows]
     if values:
         connection.execute(insert(typed), values)

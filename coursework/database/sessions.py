@@ -78,7 +78,7 @@ def _session_query() -> Select[Any]:
 
 
 def touch_session(connection: Connection, number: int, created: datetime, at: datetime) -> None:
-    """Write down that a session is used now."""
+    """Record the last use of a session."""
     until = min(at + IDLE, created + LONGEST)
     connection.execute(update(session).where(session.c.id == number).values(seen=at, until=until))
 
@@ -91,21 +91,21 @@ def sessions_of(connection: Connection, number: int, at: datetime) -> list[Any]:
 
 
 def end_session(connection: Connection, number: int, person_number: int) -> bool:
-    """End one session of a person; returns True where there was one."""
+    """End one session of a person; return True if there was one."""
     mine = session.c.id == number, session.c.person_id == person_number
     return connection.execute(delete(session).where(*mine)).rowcount > 0
 
 
 def end_sessions(connection: Connection, number: int, besides: int = 0) -> None:
-    """End all sessions of a person, but for the one with the number ``besides``."""
+    """End all sessions of a person, except the one with the id ``besides``."""
     connection.execute(delete(session).where(session.c.person_id == number, session.c.id != besides))
 
 
 def end_all_sessions(connection: Connection) -> int:
-    """End the sessions of everybody; returns how many there were."""
+    """End the sessions of everybody; return their number."""
     return connection.execute(delete(session)).rowcount
 
 
 def digest_of(token: str) -> str:
-    """Return the SHA-256 of a token, which is what the database keeps."""
+    """Return the SHA-256 of a token, which the database stores."""
     return hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()

@@ -1,4 +1,4 @@
-"""Small things that a site keeps for itself."""
+"""Settings of a site, stored by name."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def secret(connection: Connection) -> bytes:
 
 
 def renew_secret(connection: Connection) -> None:
-    """Take the signing key away: the next process that asks for it draws another."""
+    """Delete the signing key; the next process that needs it draws another."""
     connection.execute(delete(setting).where(setting.c.name == _KEY))
 
 
@@ -48,7 +48,7 @@ def value_of(connection: Connection, name: str) -> Any:
 
 
 def put_value(connection: Connection, name: str, value: Any) -> None:
-    """Keep something under a name, in place of what stood there."""
+    """Store a value under a name, in place of the earlier one."""
     connection.execute(delete(setting).where(setting.c.name == name))
     connection.execute(insert(setting).values(name=name, value=json.dumps(value, ensure_ascii=False)))
 
@@ -75,7 +75,7 @@ def reloads_of(value: str | None) -> int:
 
 
 def request_reload(connection: Connection) -> int:
-    """Say that the course's files are to be read anew; gives how often that was said."""
+    """Request a reload of the course's files by every process; return the number of reloads so far."""
     now = course_reloads(connection) + 1
     put_value(connection, _COURSE, now)
     return now

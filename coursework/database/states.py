@@ -1,4 +1,5 @@
-"""The states that a sheet was marked by and a page was made in: what is the same gives the same, what differs is done anew."""
+"""States of sheets and pages: digests of everything on which they depend. An equal state gives an equal
+result."""
 
 from __future__ import annotations
 
@@ -26,7 +27,8 @@ _known: WeakKeyDictionary[Course, dict[str, str]] = WeakKeyDictionary()
 
 
 def exercise_state(course: Course, exercise: str) -> str:
-    """Digest of all files that bear on an exercise's marks, as they were when the open course was first asked.
+    """Return the digest of all files that affect an exercise's marks, as they were at the first call for the
+    open course.
 
     Asked before the exercise is loaded, it is never of a later state than what marks.
     """
@@ -39,7 +41,7 @@ def exercise_state(course: Course, exercise: str) -> str:
 
 @cache
 def engine_state() -> str:
-    """Digest of the package's own files that a mark comes from."""
+    """Return the digest of the package's own files that affect marks."""
     paths = [_PACKAGE / name for name in ENGINE]
     files = (p for path in paths for p in ([path] if path.is_file() else path.rglob("*")))
     return _of_files(_PACKAGE, (p for p in files if p.suffix in (".py", ".toml")))
@@ -58,12 +60,13 @@ def page_state(course: Course, exercises: Iterable[str], *given: Any) -> str:
 
 @cache
 def package_state() -> str:
-    """Digest of all of the package's own files."""
+    """Return the digest of all of the package's own files."""
     return _of_files(_PACKAGE, (p for p in _PACKAGE.rglob("*") if p.suffix in (".py", ".toml")))
 
 
 def _templates_state(course: Course) -> str:
-    """Digest of a course's templates and settings, as they were when the open course was first asked."""
+    """Return the digest of a course's templates and settings, as they were at the first call for the open
+    course."""
     states = _known.setdefault(course, {})
     if _TEMPLATES not in states:
         folder = course.folder
@@ -90,7 +93,7 @@ def _of_files(root: Path, files: Iterable[Path]) -> str:
 def sheet_state(
     course: Course, rules: Rules | None, record: Mapping[str, Any], answers: Mapping[str, Any], *more: Any
 ) -> str:
-    """Digest of all that the marks of a sheet hang on."""
+    """Return the digest of everything on which the marks of a sheet depend."""
     exercise = str(record["exercise"])
     how = engine_state(), exercise_state(course, exercise), repr(rules or course.folder.rules)
     state = json.dumps([record, list(answers.items()), *more], default=repr)

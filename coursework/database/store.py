@@ -32,7 +32,7 @@ _PATIENCE = 30  #: seconds for which a write waits for another
 
 
 class Store:
-    """A database of the tables of :mod:`coursework.database.tables`.
+    """Database with the tables of :mod:`coursework.database.tables`.
 
     ``url`` is SQLAlchemy's: ``sqlite:///marks.db``, ``postgresql+psycopg://user@host/name``; a path alone is a file of SQLite.
 
@@ -111,7 +111,7 @@ class Store:
 
     @property
     def display_name(self) -> str:
-        """Its file, or its address without a password."""
+        """File of the database, or its address without a password."""
         url = make_url(self.url)
         return (
             str(Path(url.database or "").resolve())
@@ -131,11 +131,11 @@ class Store:
         return path is None or scrub(path, patience)
 
     def close(self) -> None:
-        """Let go of all connections."""
+        """Close all connections."""
         self.engine.dispose()
 
     def _migrate(self) -> None:
-        """Bring the tables to the latest version that this package knows."""
+        """Migrate the tables to the latest version that this package knows."""
         scripts = ScriptDirectory(str(_MIGRATIONS))
         try:
             with self.engine.begin() as connection:
@@ -162,7 +162,8 @@ class Store:
 def insert_unless_there(
     connection: Connection, table: Table, row: Mapping[str, Any], unique: Sequence[str]
 ) -> int | None:
-    """Add a row, and give its id; None where there is one with the same ``unique`` columns, whoever added it meanwhile."""
+    """Add a row and return its id; return None if there is one with the same ``unique`` columns, even if it
+    was added concurrently."""
     make = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
     added = make(table).values(dict(row)).on_conflict_do_nothing(index_elements=list(unique))
     number = connection.execute(added.returning(table.c.id)).scalar()

@@ -130,7 +130,7 @@ def _student_or_none(issued: Issued, row: AnswerRow) -> str | None:
 
 
 def _replace(connection: Connection, assignment_id: int, number: int, source: str, at: datetime) -> None:
-    """Let one file count in place of all others from its source."""
+    """Let one file replace all others from its source."""
     files = delivery.c.assignment_id == assignment_id, delivery.c.person_id.is_(None)
     others = *files, delivery.c.source == source, delivery.c.id != number, delivery.c.replaced.is_(None)
     connection.execute(update(delivery).where(*others).values(replaced=at))
@@ -249,8 +249,7 @@ def _papers_query() -> Select[Any]:
 def attempts_used(
     connection: Connection, assignment_id: int, person_id: int, done: Sequence[Submission]
 ) -> int:
-    """Return the number of attempts that a person has used for the paper that is now theirs; a make-up is
-    another paper.
+    """Return the number of attempts that a person has used for the current paper; a make-up is another paper.
 
     ``done`` are the person's :func:`submissions_of`.
     """
@@ -272,8 +271,8 @@ def attempts_used(
 def rows_of(
     connection: Connection, assignment_id: int, delivery_id: int | None = None
 ) -> Iterator[AnswerRow | Rejected | PlatformFile]:
-    """Yield the rows that count, in the order of arrival; if a submission is given, all of its rows and no
-    others.
+    """Yield the rows that count, in the order in which they were received; if a submission is given, all of
+    its rows and no others.
 
     A row that says the very same as one of an earlier delivery is that one come again, and is given once.
     """
@@ -306,7 +305,7 @@ def rows_of(
 
 
 def _content(row: AnswerRow | Rejected | PlatformFile) -> tuple[Any, ...] | None:
-    """Return the content of a row, wherever it stood in its file; None if it states no answer."""
+    """Return the content of a row without its place in the file; None if it states no answer."""
     if isinstance(row, AnswerRow):
         return (*row[:4], type(row.answer), row.answer, row.lang, row.origin)
     if isinstance(row, Rejected) and row.row:
@@ -371,7 +370,8 @@ def _origin_from_json(stored: Mapping[str, Any] | None, met: dict[str, RowOrigin
 
 
 def _digest(rows: Sequence[AnswerRow | Rejected | PlatformFile], person_id: int | None) -> str:
-    """Of what rows say, wherever they stood; of what says nobody's name, where as well."""
+    """Return the digest of the content of rows without their places in the file; with the places for rows
+    without a name."""
     digest = sha256(b"" if person_id is None else str(person_id).encode())
     for row in rows:
         digest.update(repr(_digest_content(row)).encode("utf-8", "backslashreplace"))

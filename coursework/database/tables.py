@@ -42,7 +42,7 @@ METADATA = MetaData(
 
 
 class UTCDateTime(TypeDecorator[datetime]):
-    """A time, UTC: what comes back knows its zone on every database."""
+    """Time in UTC; a value that is read has its time zone on every database."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
@@ -74,7 +74,7 @@ class SafeText(TypeDecorator[str]):
 
 
 class CompressedText(TypeDecorator[str]):
-    """A long text, compressed: a page takes a fifth."""
+    """Long text, stored compressed: a page shrinks to a fifth."""
 
     impl = LargeBinary
     cache_ok = True

@@ -1,4 +1,4 @@
-"""Runs migrations on the connection that it is handed."""
+"""Run migrations on the given connection."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from coursework.database.assignments import issued_of
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
 from coursework.database.instructor_queries import (
-    ListedAssignment,
+    AssignmentOverview,
     Placing,
     SiteSubmissions,
     Stamp,
@@ -89,7 +89,7 @@ class CachedClass:
     """State of an assignment and its class at one stamp."""
 
     course: Course
-    about: ListedAssignment
+    about: AssignmentOverview
     issued: Issued
     stamp: Stamp
     machine: Mapping[SheetKey, Graded]  #: results of the marking, without decisions
@@ -323,7 +323,7 @@ def _current_class(site: Site, assignment_id: int) -> CachedClass:
 
 
 def _read(
-    course: Course, connection: Connection, about: ListedAssignment, at: Stamp, cached: _ClassCache
+    course: Course, connection: Connection, about: AssignmentOverview, at: Stamp, cached: _ClassCache
 ) -> CachedClass:
     before = cached.now if cached.now is not None and cached.now.course is course else None
     decisions, placed_by_hand = Decisions.read(connection, about.id), placings(connection, about.id)
@@ -367,7 +367,7 @@ def _read(
     )
 
 
-def _has_come(at: Stamp, about: ListedAssignment) -> tuple[Any, ...]:
+def _has_come(at: Stamp, about: AssignmentOverview) -> tuple[Any, ...]:
     """Return the part of a stamp that decisions do not change."""
     return at.markings, at.deliveries, at.dealt, about.columns, about.stated
 
@@ -408,6 +408,6 @@ def class_page_of(request: Request, now: CachedClass, template: str, tab: str, *
     )
 
 
-def assignment_title(about: ListedAssignment, lang: str) -> str:
+def assignment_title(about: AssignmentOverview, lang: str) -> str:
     """Return the title of an assignment, or its name if it has none."""
     return text_in((about.stated or {}).get("title") or {}, lang) or about.name
