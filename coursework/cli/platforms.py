@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from coursework.course.secrecy import Secret
     from coursework.making.assignment import Assignment
     from coursework.making.roster import Student
-    from coursework.platforms.pools import Drawn
+    from coursework.platforms.pools import DrawnPool
 
 _VARIANTS = 20  #: of a pool, where nothing says how many
 
@@ -127,7 +127,7 @@ def export(
     """
     from coursework.making.roster import read_roster
     from coursework.platforms.exporting import export as exported
-    from coursework.platforms.losses import told
+    from coursework.platforms.losses import loss_lines
     from coursework.platforms.platform import platform_of
     from coursework.system.tables import SPREADSHEETS
     from coursework.system.writing import write_tree
@@ -150,7 +150,7 @@ def export(
         return
     drawn = _drawn(course, wanted, students, out)
     exported_files = exported(chosen, drawn, students, SPREADSHEETS[decimal])
-    lines = list(told(exported_files.lost, drawn.langs[0]))
+    lines = list(loss_lines(exported_files.lost, drawn.langs[0]))
     if strict and lines:
         raise BadInput(
             f"--strict: {platform} loses {counted(len(lines), 'feature')}, and nothing is written: {' | '.join(lines)}"
@@ -230,7 +230,7 @@ def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student])
     return json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
 
 
-def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], out: Path) -> Drawn:
+def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], out: Path) -> DrawnPool:
     from coursework.platforms.pools import of_assignment, of_exercises
 
     if not course.folder.has_solutions:
@@ -286,7 +286,7 @@ def _langs(context: click.Context, assignment: Assignment, langs: Sequence[str])
     return split_list(stated) if isinstance(stated, str) else tuple(map(str, stated))
 
 
-def _check_folder(out: Path, drawn: Drawn) -> None:
+def _check_folder(out: Path, drawn: DrawnPool) -> None:
     """An export takes the place of one of the same pool, or of a smaller one; not of another."""
     from coursework.making.issued import Issued
 

@@ -1,4 +1,5 @@
-"""Groups of questions, as Canvas draws from them: a question of each variant, of the same points, in one unit."""
+"""Groups of questions, from which Canvas draws: one question per variant, with equal points and in one
+unit."""
 
 from __future__ import annotations
 
@@ -8,7 +9,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 
-from coursework.platforms.items import Item, Section
+from coursework.platforms.items import Item, PoolSection
 from coursework.platforms.posed import Interval, Posed
 from coursework.reading.units import convert, find_unit
 from coursework.sheets.sheet import Question
@@ -22,20 +23,20 @@ _PREFIXES = ("m", "µ", "n")
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A question of one variant."""
+class VariantQuestion:
+    """Question of one variant."""
 
     item: Item
     posed: Posed
 
 
 @dataclass(frozen=True)
-class Group:
-    """What one question of a student is drawn from."""
+class QuestionGroup:
+    """Questions from which Canvas draws one for each student."""
 
     exercise: str
     number: int
-    asked: tuple[Asked, ...]
+    asked: tuple[VariantQuestion, ...]
 
     @property
     def question(self) -> Question:
@@ -51,18 +52,18 @@ class Group:
 
     @property
     def _margin(self) -> float:
-        """Half of the smallest margin; infinite where nothing has one."""
+        """Return half of the smallest margin; infinite if there is none."""
         right = [
             (interval.high - interval.low) / 2
-            for one in self.asked
-            for interval in one.posed.intervals
+            for question in self.asked
+            for interval in question.posed.intervals
             if interval.is_right and interval.high > interval.low
         ]
         return min(right, default=float("inf"))
 
     @property
     def decades(self) -> int:
-        """By how many powers of ten numbers are asked larger, so that four decimals say them."""
+        """Return the powers of ten by which numbers are scaled, so that four decimals are enough."""
         steps = range(_MOST + 1)
         return _STEP * next((step for step in steps if self._margin * 10 ** (_STEP * step) >= _LEAST), _MOST)
 
@@ -72,12 +73,12 @@ class Group:
 
     @property
     def is_coarse(self) -> bool:
-        """Whether the page's decimals widen a margin noticeably."""
+        """Return whether rounding to the page's decimals widens a margin noticeably."""
         return self._margin * 10**self.decades < _COARSE
 
     @property
     def unit(self) -> str:
-        """The unit in which numbers are asked: one with a prefix, else the power of ten and the unit."""
+        """Return the unit of the numbers: one with a prefix, else the power of ten and the unit."""
         unit = self.question.unit
         if not self.is_scaled:
             return unit
@@ -89,46 +90,56 @@ class Group:
 
 
 def _is_smaller(prefixed: str, unit: str, decades: int) -> bool:
-    """Whether a unit with a prefix is another by that many powers of ten."""
+    """Return whether a unit with a prefix is the other unit divided by that power of ten."""
     if not unit or unit.startswith("°") or find_unit(prefixed) is None or find_unit(unit) is None:
         return False
     return Fraction(convert(1.0, prefixed, unit)).limit_denominator(10**12) == Fraction(1, 10**decades)
 
 
-def groups(section: Section) -> tuple[Group, ...]:
-    """The groups of an exercise. A part stands in one group alone, so that nobody is asked it twice."""
+def groups(section: PoolSection) -> tuple[QuestionGroup, ...]:
+    """Return the groups of an exercise. A part is in one group only, so that nobody gets it twice."""
     first = section.items[0].questions
-    found: list[list[Asked]] = [[] for _ in first]
-    for asked, place in _placed(section):
-        if place is not None:
-            found[place].append(asked)
+    by_group: list[list[VariantQuestion]] = [[] for _ in first]
+    for variant_question, index in _placed(section):
+        if index is not None:
+            by_group[index].append(variant_question)
     return tuple(
-        Group(section.exercise, number, tuple(some)) for number, some in enumerate(found, start=1) if some
+        QuestionGroup(section.exercise, number, tuple(some))
+        for number, some in enumerate(by_group, start=1)
+        if some
     )
 
 
-def left_out(section: Section) -> dict[str, int]:
-    """Of how many variants a part is asked by no group: other variants ask others in its place."""
-    return dict(Counter(asked.posed.question.id for asked, place in _placed(section) if place is None))
+def left_out(section: PoolSection) -> dict[str, int]:
+    """Return, by part, the number of variants whose question is in no group: other variants ask other parts
+    there."""
+    return dict(
+        Counter(
+            variant_question.posed.question.id
+            for variant_question, index in _placed(section)
+            if index is None
+        )
+    )
 
 
-def _placed(section: Section) -> Iterator[tuple[Asked, int | None]]:
-    """Each question of each variant, and the place of its group; None where it has none."""
+def _placed(section: PoolSection) -> Iterator[tuple[VariantQuestion, int | None]]:
+    """Yield each question of each variant with the index of its group; None if it has none."""
     points = [posed.points for posed in section.items[0].questions]
     places: dict[str, int] = {}
     for item in section.items:
-        for place, posed in enumerate(item.questions):
-            kept = places.setdefault(posed.question.id, place)
-            fits = kept == place < len(points) and posed.points == points[place]
-            yield Asked(item, posed), place if fits else None
+        for index, posed in enumerate(item.questions):
+            first_index = places.setdefault(posed.question.id, index)
+            fits = first_index == index < len(points) and posed.points == points[index]
+            yield VariantQuestion(item, posed), index if fits else None
 
 
 def accepted(interval: Interval, decades: int) -> tuple[Decimal, Decimal, Decimal]:
-    """The middle of what is accepted and its ends, which lie where the page rounds the margin's own ends to."""
+    """Return the middle and the ends of the accepted interval; the ends are those of the margin as the page
+    rounds them."""
     low, high = (_typed(end, decades) for end in (interval.low, interval.high))
     return (low + high) / 2, low, high
 
 
 def _typed(value: float, decades: int) -> Decimal:
-    """A number as the page keeps it."""
+    """Return a number as the page stores it."""
     return Decimal(repr(value)).scaleb(decades).quantize(_PLACES).normalize() + 0

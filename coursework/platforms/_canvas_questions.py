@@ -1,4 +1,4 @@
-"""Questions of a Canvas quiz, as QTI 1.2 that Canvas reads."""
+"""Questions of a Canvas quiz, in the QTI 1.2 that Canvas reads."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import replace
 from decimal import Decimal
 from xml.etree import ElementTree as ET
 
-from coursework.platforms._canvas_groups import Asked, Group, accepted
+from coursework.platforms._canvas_groups import QuestionGroup, VariantQuestion, accepted
 from coursework.platforms._xml import below
 from coursework.platforms.items import SEPARATOR, Pool
-from coursework.platforms.pieces import Image, Pieces, with_files
+from coursework.platforms.pieces import Image, PagePieces, with_files
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Option, Posed
 
 FOLDER = "coursework"  #: of the pictures, in the package and among the course's files
@@ -23,20 +23,20 @@ _TYPES = {
 }
 _BOX = "…"
 _RESPONSE = "response1"
-_FIRST_ANSWER = 1001  #: Canvas tells answers by whole numbers
+_FIRST_ANSWER = 1001  #: Canvas identifies answers by integers
 
 
 def identified(*names: str) -> str:
-    """The identifier of what has these names: the same at every export."""
+    """Return an identifier of the given names, the same at every export."""
     return "i" + hashlib.sha256("\n".join(names).encode()).hexdigest()[:31]
 
 
 class Questions:
-    """Writes the questions of a pool, and keeps the pictures that they show."""
+    """Writer of the questions of a pool, which collects their pictures."""
 
     def __init__(self, pool: Pool):
         self._pool = pool
-        self._pieces = Pieces(pool.folders, pool.lang)
+        self._pieces = PagePieces(pool.folders, pool.lang)
         self._images: dict[str, Image] = {}
         self._openings: dict[str, str] = {}
 
@@ -44,49 +44,51 @@ class Questions:
     def images(self) -> list[Image]:
         return list(self._images.values())
 
-    def add(self, parent: ET.Element, asked: Asked, group: Group) -> None:
-        """A question at the end of its group."""
-        posed, label = asked.posed, self._label(asked, group)
-        ident = identified("question", asked.item.identifier, posed.question.id)
+    def add(self, parent: ET.Element, variant_question: VariantQuestion, group: QuestionGroup) -> None:
+        """Add a question to its group."""
+        posed, label = variant_question.posed, self._label(variant_question, group)
+        ident = identified("question", variant_question.item.identifier, posed.question.id)
         item = below(parent, "item", ident=ident, title=label)
         self._metadata(item, posed, ident)
         presentation = below(item, "presentation")
-        self._text(presentation, f"<div>{self._opening(asked)}{self._prompt(posed, group, label)}</div>")
+        self._text(
+            presentation, f"<div>{self._opening(variant_question)}{self._prompt(posed, group, label)}</div>"
+        )
         _BODIES[posed.kind](self, item, presentation, posed, group)
 
-    def _label(self, asked: Asked, group: Group) -> str:
-        """What reports tell the question by, with the unit where it is not the sheet's."""
-        label = asked.item.label_of(asked.posed.question.id)
+    def _label(self, variant_question: VariantQuestion, group: QuestionGroup) -> str:
+        """Return the label of a question in reports, with the unit if it differs from the sheet's."""
+        label = variant_question.item.label_of(variant_question.posed.question.id)
         return f"{label[:-1]}{SEPARATOR}{group.unit}]" if group.is_scaled else label
 
-    def _opening(self, asked: Asked) -> str:
-        name = asked.item.identifier
+    def _opening(self, variant_question: VariantQuestion) -> str:
+        name = variant_question.item.identifier
         if name not in self._openings:
-            opening, images = with_files(self._pieces.opening(asked.item, named=False), _ADDRESS)
+            opening, images = with_files(self._pieces.opening(variant_question.item, named=False), _ADDRESS)
             self._openings[name] = opening
-            self._keep(images)
+            self._store(images)
         return self._openings[name]
 
-    def _prompt(self, posed: Posed, group: Group, label: str) -> str:
+    def _prompt(self, posed: Posed, group: QuestionGroup, label: str) -> str:
         box = _BOX if posed.kind == NUMBER else ""
-        asked = replace(posed, question=replace(posed.question, unit=group.unit))
-        html, images = with_files(self._pieces.prompt(asked, box=box), _ADDRESS)
-        self._keep(images)
+        posed_in_unit = replace(posed, question=replace(posed.question, unit=group.unit))
+        html, images = with_files(self._pieces.prompt(posed_in_unit, box=box), _ADDRESS)
+        self._store(images)
         return f"{html}<p><small>{label}</small></p>"
 
-    def _keep(self, images: tuple[Image, ...]) -> None:
+    def _store(self, images: tuple[Image, ...]) -> None:
         self._images |= {image.name: image for image in images}
 
     def _metadata(self, item: ET.Element, posed: Posed, ident: str) -> None:
         fields = below(below(item, "itemmetadata"), "qtimetadata")
-        answers = [answer_id(place) for place in range(len(posed.options))]
-        told = {
+        answers = [answer_id(index) for index in range(len(posed.options))]
+        values = {
             "question_type": _TYPES[posed.kind],
             "points_possible": f"{posed.points:g}",
             **({"original_answer_ids": ",".join(answers)} if answers else {}),
             "assessment_question_identifierref": f"{ident}_q",
         }
-        for label, entry in told.items():
+        for label, entry in values.items():
             field = below(fields, "qtimetadatafield")
             below(field, "fieldlabel", label)
             below(field, "fieldentry", entry)
@@ -94,7 +96,7 @@ class Questions:
     def _text(self, parent: ET.Element, html: str) -> None:
         below(below(parent, "material"), "mattext", html, texttype="text/html")
 
-    def _number(self, item: ET.Element, presentation: ET.Element, posed: Posed, group: Group) -> None:
+    def _number(self, item: ET.Element, presentation: ET.Element, posed: Posed, group: QuestionGroup) -> None:
         box = below(presentation, "response_str", ident=_RESPONSE, rcardinality="Single")
         below(below(box, "render_fib", fibtype="Decimal"), "response_label", ident="answer1")
         judged = _judged(item)
@@ -108,42 +110,48 @@ class Questions:
                 below(both, "varlte", _digits(high), respident=_RESPONSE)
                 _all_points(judged[-1])
 
-    def _choice(self, item: ET.Element, presentation: ET.Element, posed: Posed, group: Group) -> None:
+    def _choice(self, item: ET.Element, presentation: ET.Element, posed: Posed, group: QuestionGroup) -> None:
         self._offer(presentation, posed, "Single")
         judged = _judged(item)
-        for place, option in enumerate(posed.options):
-            if option.says:
-                told = _condition(judged, going_on=True)
-                below(below(told, "conditionvar"), "varequal", answer_id(place), respident=_RESPONSE)
-                below(told, "displayfeedback", feedbacktype="Response", linkrefid=f"{answer_id(place)}_fb")
-        for place, option in enumerate(posed.options):
+        for index, option in enumerate(posed.options):
+            if option.message:
+                condition = _condition(judged, going_on=True)
+                below(below(condition, "conditionvar"), "varequal", answer_id(index), respident=_RESPONSE)
+                below(
+                    condition, "displayfeedback", feedbacktype="Response", linkrefid=f"{answer_id(index)}_fb"
+                )
+        for index, option in enumerate(posed.options):
             if is_right(option):
                 right = _condition(judged)
-                below(below(right, "conditionvar"), "varequal", answer_id(place), respident=_RESPONSE)
+                below(below(right, "conditionvar"), "varequal", answer_id(index), respident=_RESPONSE)
                 _all_points(right)
-        for place, option in enumerate(posed.options):
-            if option.says:
-                words = below(item, "itemfeedback", ident=f"{answer_id(place)}_fb")
-                self._text(below(words, "flow_mat"), self._pieces.inline(option.says))
+        for index, option in enumerate(posed.options):
+            if option.message:
+                words = below(item, "itemfeedback", ident=f"{answer_id(index)}_fb")
+                self._text(below(words, "flow_mat"), self._pieces.inline(option.message))
 
-    def _choices(self, item: ET.Element, presentation: ET.Element, posed: Posed, group: Group) -> None:
+    def _choices(
+        self, item: ET.Element, presentation: ET.Element, posed: Posed, group: QuestionGroup
+    ) -> None:
         self._offer(presentation, posed, "Multiple")
         right = _condition(_judged(item))
         every = below(below(right, "conditionvar"), "and")
-        for place, option in enumerate(posed.options):
+        for index, option in enumerate(posed.options):
             where = every if is_right(option) else below(every, "not")
-            below(where, "varequal", answer_id(place), respident=_RESPONSE)
+            below(where, "varequal", answer_id(index), respident=_RESPONSE)
         _all_points(right)
 
     def _offer(self, presentation: ET.Element, posed: Posed, cardinality: str) -> None:
         box = below(presentation, "response_lid", ident=_RESPONSE, rcardinality=cardinality)
         offered = below(box, "render_choice")
-        for place, option in enumerate(posed.options):
+        for index, option in enumerate(posed.options):
             html, images = with_files(self._pieces.option(option), _ADDRESS)
-            self._keep(images)
-            self._text(below(offered, "response_label", ident=answer_id(place)), html)
+            self._store(images)
+            self._text(below(offered, "response_label", ident=answer_id(index)), html)
 
-    def _collected(self, item: ET.Element, presentation: ET.Element, posed: Posed, group: Group) -> None:
+    def _collected(
+        self, item: ET.Element, presentation: ET.Element, posed: Posed, group: QuestionGroup
+    ) -> None:
         box = below(presentation, "response_str", ident=_RESPONSE, rcardinality="Single")
         below(below(box, "render_fib"), "response_label", ident="answer1", rshuffle="No")
         condition = _condition(_judged(item))
@@ -158,17 +166,17 @@ _BODIES = {
 }
 
 
-def answer_id(place: int) -> str:
-    return str(_FIRST_ANSWER + place)
+def answer_id(index: int) -> str:
+    return str(_FIRST_ANSWER + index)
 
 
 def is_right(option: Option) -> bool:
-    """Whether choosing it earns; of one that earns a part, Canvas has nothing to say."""
-    return option.share >= 1 or (option.share > 0 and not option.says)
+    """Return whether choosing an option earns points; Canvas has no message for a partly right option."""
+    return option.share >= 1 or (option.share > 0 and not option.message)
 
 
 def _digits(value: Decimal) -> str:
-    """Plain decimals."""
+    """Return a plain decimal."""
     return f"{value:f}" if value else "0"
 
 

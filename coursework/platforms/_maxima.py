@@ -1,4 +1,4 @@
-"""Expressions as Maxima writes them: values, texts, and the formulas of quantities."""
+"""Expressions in the syntax of Maxima: values, texts, and the formulas of quantities."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from coursework.quantities.formula_code import called
 
 
 class Unprintable(Exception):
-    """An expression holds what has no counterpart in Maxima."""
+    """Error of an expression without counterpart in Maxima."""
 
 
 def number(value: complex) -> str:
-    """A number that Maxima reads as it is.
+    """Return a number in the syntax of Maxima.
 
     Raises
     ------
@@ -33,9 +33,9 @@ def number(value: complex) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
-def text(said: str) -> str:
-    """A text in quotes."""
-    escaped = said.replace("\\", "\\\\").replace('"', '\\"')
+def text(content: str) -> str:
+    """Return a quoted text."""
+    escaped = content.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
 
 
@@ -63,7 +63,8 @@ _ATTRIBUTES = {"real": "realpart({0})", "imag": "imagpart({0})"}
 
 
 def printed(tree: ast.expr, name: Callable[[str], str], space: Mapping[str, Any]) -> str:
-    """A tree of Python as Maxima: ``name`` writes a quantity, or raises ``KeyError``; ``space`` means the other names.
+    """Return a Python expression in the syntax of Maxima; ``name`` writes a quantity or raises ``KeyError``,
+    ``space`` has the values of the other names.
 
     Raises
     ------

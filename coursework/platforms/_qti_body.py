@@ -1,4 +1,5 @@
-"""What a page shows, as QTI takes it: the tags that both versions have, formulas as MathML, nothing that runs or is fetched."""
+"""Content of a page in QTI: the tags that both versions have, formulas as MathML, no scripts and no external
+files."""
 
 from __future__ import annotations
 
@@ -11,10 +12,10 @@ _INLINE = frozenset("a abbr b br cite code em i img kbd q small span strong sub 
 _BLOCK = frozenset(
     "blockquote dd div dl dt h1 h2 h3 h4 h5 h6 hr li ol p pre table tbody td tfoot th thead tr ul".split()
 )
-#: Tags that one of the versions has not, and what stands for each; any other tag goes, and its content stays.
+#: Tags that one of the versions lacks, with their replacement; other tags are dropped, and their content stays.
 _FOR = {"figure": "div", "section": "div", "figcaption": "p"}
 _ALONE = frozenset({"img", "br", "hr", "input"})
-_KEPT = {
+_ATTRIBUTES = {
     "img": ("src", "alt"),
     "a": ("href",),
     "td": ("colspan", "rowspan"),
@@ -25,18 +26,18 @@ _OF_FORMULAS = (
     "width", "columnalign", "rowspacing", "columnspacing", "linethickness", "displaystyle", "scriptlevel",
     "largeop", "movablelimits", "symmetric", "minsize", "maxsize", "height", "depth", "class", "style",
 )  # fmt: skip
-#: Between two braces: a player that makes a template of what it shows would work out what stands within them.
+#: Between two braces: a player that treats its pages as templates would evaluate their content.
 _JOINED = "\N{WORD JOINER}"
-BOX = "input"  #: stands in a page where its answer is typed
+BOX = "input"  #: tag of a page's input box
 
 
 def html(tag: str) -> str:
-    """The name of a tag of HTML in a tree."""
+    """Return the name of an HTML tag in the tree."""
     return f"{{{HTML}}}{tag}"
 
 
-class _Reader(HTMLParser):
-    """From a piece of a page to elements below a ``<div>``."""
+class _BodyReader(HTMLParser):
+    """Parser from a piece of a page to elements below a ``<div>``."""
 
     def __init__(self) -> None:
         super().__init__(convert_charrefs=True)
@@ -46,11 +47,11 @@ class _Reader(HTMLParser):
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
         self._in_formula += tag == "math"
-        made = self._made(tag, {name: value or "" for name, value in attributes})
-        if made is not None:
-            self._place().append(made)
+        element = self._element(tag, {name: value or "" for name, value in attributes})
+        if element is not None:
+            self._open_element().append(element)
         if tag not in _ALONE:
-            self._open.append((tag, made))
+            self._open.append((tag, element))
 
     def handle_startendtag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
         self.handle_starttag(tag, attributes)
@@ -67,62 +68,66 @@ class _Reader(HTMLParser):
 
     def handle_data(self, data: str) -> None:
         data = data.replace("{{", f"{{{_JOINED}{{")
-        place = self._place()
-        if len(place):
-            place[-1].tail = (place[-1].tail or "") + data
+        parent = self._open_element()
+        if len(parent):
+            parent[-1].tail = (parent[-1].tail or "") + data
         else:
-            place.text = (place.text or "") + data
+            parent.text = (parent.text or "") + data
 
-    def _place(self) -> Element:
-        """The innermost element that is open."""
-        return next(made for _, made in reversed(self._open) if made is not None)
+    def _open_element(self) -> Element:
+        """Return the innermost open element."""
+        return next(element for _, element in reversed(self._open) if element is not None)
 
-    def _made(self, tag: str, attributes: dict[str, str]) -> Element | None:
-        """The element of a tag; None of one that is no content of QTI."""
+    def _element(self, tag: str, attributes: dict[str, str]) -> Element | None:
+        """Return the element of a tag; None if QTI has no such content."""
         if self._in_formula:
-            kept = {name: value for name, value in attributes.items() if name in _OF_FORMULAS}
-            return Element(f"{{{MATHML}}}{tag}", kept)
+            allowed = {name: value for name, value in attributes.items() if name in _OF_FORMULAS}
+            return Element(f"{{{MATHML}}}{tag}", allowed)
         if tag == BOX:
             return Element(BOX, attributes)
         name = _FOR.get(tag, tag)
         if name not in _INLINE and name not in _BLOCK:
             return None
-        kept = {one: attributes[one] for one in _KEPT.get(tag, ()) if one in attributes}
-        told = attributes.get("class", "") or (tag if tag in _FOR else "")
-        return Element(html(name), {**kept, **({"class": told} if told else {})})
+        allowed = {
+            attribute: attributes[attribute]
+            for attribute in _ATTRIBUTES.get(tag, ())
+            if attribute in attributes
+        }
+        css_class = attributes.get("class", "") or (tag if tag in _FOR else "")
+        return Element(html(name), {**allowed, **({"class": css_class} if css_class else {})})
 
 
 def elements(page: str, **attributes: str) -> Element:
-    """A piece of a page as one ``<div>``; of a piece that is one ``<div>`` already, that."""
-    reader = _Reader()
+    """Return a piece of a page as one ``<div>``."""
+    reader = _BodyReader()
     reader.feed(page.strip())
     reader.close()
-    found = reader.root
+    root = reader.root
     if (
-        len(found) == 1
-        and found[0].tag == html("div")
-        and not ((found.text or "") + (found[0].tail or "")).strip()
+        len(root) == 1
+        and root[0].tag == html("div")
+        and not ((root.text or "") + (root[0].tail or "")).strip()
     ):
-        found = found[0]
-        found.tail = None
-    found.attrib.update(attributes)
-    return found
+        root = root[0]
+        root.tail = None
+    root.attrib.update(attributes)
+    return root
 
 
 def is_inline(element: Element) -> bool:
-    """Whether all below an element may stand within a line."""
+    """Return whether all elements below may appear within a line."""
     return all(
-        one.tag.startswith(f"{{{MATHML}}}") or one.tag.rpartition("}")[2] in _INLINE
-        for one in element.iter()
-        if one is not element
+        child.tag.startswith(f"{{{MATHML}}}") or child.tag.rpartition("}")[2] in _INLINE
+        for child in element.iter()
+        if child is not element
     )
 
 
-def put_in_box(tree: Element, put: Element) -> None:
-    """Let an element take the place of the box of a page."""
+def put_in_box(tree: Element, replacement: Element) -> None:
+    """Replace the input box of a page by an element."""
     for parent in tree.iter():
-        for place, child in enumerate(parent):
+        for index, child in enumerate(parent):
             if child.tag == BOX:
-                put.tail = child.tail
-                parent[place] = put
+                replacement.tail = child.tail
+                parent[index] = replacement
                 return

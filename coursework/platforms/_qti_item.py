@@ -1,7 +1,7 @@
-"""A variant as one item: what students read, an interaction a question, and how a player marks each by itself.
+"""Variant as a QTI item: the text, an interaction per question, and the marking of each question.
 
-A response is named ``RESPONSE_`` and its part, so is its score ``SCORE_`` and what is shown of it ``FEEDBACK_``; a choice is
-recorded by its letter.
+The variable of a response is ``RESPONSE_`` with the part's name, of its score ``SCORE_`` and of its feedback
+``FEEDBACK_``; a choice is recorded by its letter.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from coursework.language.words import words
 from coursework.platforms._qti_body import elements, html, is_inline, put_in_box
 from coursework.platforms._qti_tree import FORMULA, LANG, add, decimal
 from coursework.platforms.items import Item
-from coursework.platforms.pieces import Image, Pieces, with_files
+from coursework.platforms.pieces import Image, PagePieces, with_files
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval, Option, Posed
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.views import points_number
@@ -29,18 +29,18 @@ _RIGHT, _WRONG, _NONE = "right", "wrong", "missing"
 _DIGITS = 6  #: of the right number that a player may show
 #: Letters that a box of a number takes: a comma or a unit is refused as it is typed, and never marked as something else.
 _MASK = "[0-9.eE+-]*"
-#: Letters that a box shows at once, and what players and the style sheet know this width by.
+#: Visible width of a box in characters, and its class in players and in the style sheet.
 _WIDTHS = {
     "usual": (10, "qti-input-width-10"),
     "wide": (20, "qti-input-width-20"),
     "line": (72, "line"),
 }
-_LINES = 4  #: of a box of several, where the part says nothing
+_LINES = 4  #: of a box of several lines, by default
 
 
 @dataclass(frozen=True)
 class ItemFile:
-    """An item and the pictures that it shows."""
+    """Item with its pictures."""
 
     identifier: str
     title: str
@@ -49,18 +49,20 @@ class ItemFile:
 
 
 def identifier_of(item: Item) -> str:
-    """The item's identifier, which the name of a variable in a test must be told from: no point in it, a letter before all."""
+    """Return the item's identifier: without dots, since a test's variables use them, and with a letter
+    first."""
     return identifier(item.identifier.replace(".", "-"))
 
 
 def identifier(text: str) -> str:
-    """A text as QTI lets things be called: letters, digits, ``_`` and ``-``, and for any other sign its number."""
-    name = re.sub(r"[^A-Za-z0-9_-]", lambda found: f"_{ord(found[0]):x}_", text)
+    """Return a text as a QTI identifier: letters, digits, ``_`` and ``-``, and for any other character its
+    code."""
+    name = re.sub(r"[^A-Za-z0-9_-]", lambda match: f"_{ord(match[0]):x}_", text)
     return name if re.match("[A-Za-z_]", name) else f"_{name}"
 
 
-def item_file(item: Item, pieces: Pieces) -> ItemFile:
-    """A variant of a pool."""
+def item_file(item: Item, pieces: PagePieces) -> ItemFile:
+    """Return the file of a variant of a pool."""
     sheet = item.handout
     opening, images = with_files(pieces.opening(item), f"{IMAGES}/{{}}")
     root = Element(
@@ -74,76 +76,76 @@ def item_file(item: Item, pieces: Pieces) -> ItemFile:
             "toolName": "coursework",
         },
     )
-    asked = [_Asked(posed, item, pieces) for posed in item.questions]
-    for one in asked:
-        root.append(one.response())
-    root.extend(_outcomes(item, asked))
+    questions = [_QtiQuestion(posed, item, pieces) for posed in item.questions]
+    for question in questions:
+        root.append(question.response())
+    root.extend(_outcomes(item, questions))
     add(root, "stylesheet", href=STYLE, type="text/css")
-    root.append(_body(item, opening, asked, pieces))
-    root.append(_processing(asked))
-    for formula in root.iter(FORMULA):  # whose words for who cannot see it are of this language
+    root.append(_body(item, opening, questions, pieces))
+    root.append(_processing(questions))
+    for formula in root.iter(FORMULA):  # its alternative text is in this language
         formula.set(LANG, sheet.lang)
     return ItemFile(identifier_of(item), sheet.title, root, images)
 
 
-def _outcomes(item: Item, asked: Sequence[_Asked]) -> Iterator[Element]:
+def _outcomes(item: Item, questions: Sequence[_QtiQuestion]) -> Iterator[Element]:
     yield _outcome("SCORE", 0.0, maximum=item.points)
     yield _outcome("MAXSCORE", item.points)
-    for one in asked:
-        score = _outcome(one.named("SCORE"), 0.0, maximum=one.posed.points)
-        if one.posed.kind == COLLECTED:
+    for question in questions:
+        score = _outcome(question.named("SCORE"), 0.0, maximum=question.posed.points)
+        if question.posed.kind == COLLECTED:
             score.set("externalScored", "human")
         yield score
-        if one.said:
-            shown = {
-                "identifier": one.named("FEEDBACK"),
+        if question.feedback_texts:
+            attributes = {
+                "identifier": question.named("FEEDBACK"),
                 "cardinality": "single",
                 "baseType": "identifier",
             }
-            yield Element("outcomeDeclaration", shown)
+            yield Element("outcomeDeclaration", attributes)
 
 
 def _outcome(name: str, value: float, maximum: float | None = None) -> Element:
-    made = Element("outcomeDeclaration", identifier=name, cardinality="single", baseType="float")
+    declaration = Element("outcomeDeclaration", identifier=name, cardinality="single", baseType="float")
     if maximum is not None:
-        made.set("normalMaximum", decimal(maximum))
-    add(add(made, "defaultValue"), "value", decimal(value))
-    return made
+        declaration.set("normalMaximum", decimal(maximum))
+    add(add(declaration, "defaultValue"), "value", decimal(value))
+    return declaration
 
 
 # ---------------------------------------------------------------------------- body
 
 
-def _body(item: Item, opening: str, asked: Sequence[_Asked], pieces: Pieces) -> Element:
+def _body(item: Item, opening: str, questions: Sequence[_QtiQuestion], pieces: PagePieces) -> Element:
     body = Element("itemBody")
-    shown = elements(opening)
-    body.append(shown)
-    if any(one.posed.kind == NUMBER for one in asked):
+    content = elements(opening)
+    body.append(content)
+    if any(question.posed.kind == NUMBER for question in questions):
         note = words(item.handout.lang)["platforms"]["qti"]["numbers"]
-        shown.append(elements(f"<p>{pieces.inline(note)}</p>")[0])
-    for one in asked:
-        body.append(one.shown())
+        content.append(elements(f"<p>{pieces.inline(note)}</p>")[0])
+    for question in questions:
+        body.append(question.body())
     return body
 
 
-class _Asked:
-    """A question of an item."""
+class _QtiQuestion:
+    """Question of an item."""
 
-    def __init__(self, posed: Posed, item: Item, pieces: Pieces):
+    def __init__(self, posed: Posed, item: Item, pieces: PagePieces):
         self.posed, self.pieces, self.lang = posed, pieces, item.handout.lang
         self.words = words(self.lang)["platforms"]["qti"]
-        self.said = dict(self._said())
+        self.feedback_texts = dict(self._feedback_texts())
 
-    def named(self, what: str) -> str:
-        return identifier(f"{what}_{self.posed.question.id}")
+    def named(self, prefix: str) -> str:
+        return identifier(f"{prefix}_{self.posed.question.id}")
 
-    # -- what is answered
+    # -- the response
 
     def response(self) -> Element:
-        """The declaration of the response, with what a player may show as right."""
+        """Return the declaration of the response, with the right answer that a player may show."""
         kind = self.posed.kind
         base = {NUMBER: "float", COLLECTED: "string"}.get(kind, "identifier")
-        made = Element(
+        declaration = Element(
             "responseDeclaration",
             {
                 "identifier": self.named("RESPONSE"),
@@ -153,12 +155,12 @@ class _Asked:
         )
         right = tuple(self._right())
         if right:
-            correct = add(made, "correctResponse")
+            correct = add(declaration, "correctResponse")
             for value in right:
                 add(correct, "value", value)
         if kind == CHOICES:
-            self._map(add(made, "mapping", lowerBound="0", defaultValue="0"))
-        return made
+            self._map(add(declaration, "mapping", lowerBound="0", defaultValue="0"))
+        return declaration
 
     def _right(self) -> Iterator[str]:
         if self.posed.kind == NUMBER:
@@ -169,15 +171,15 @@ class _Asked:
                 yield choice_name(option, self.posed)
 
     def _map(self, mapping: Element) -> None:
-        """Points of each of several cases; what is wrong takes some away, and never below nothing."""
+        """Return the points of each of several options; wrong ones subtract, down to zero."""
         for option in self.posed.options:
             earned = decimal(self.posed.points * option.share)
             add(mapping, "mapEntry", mapKey=choice_name(option, self.posed), mappedValue=earned)
 
-    # -- what is seen
+    # -- the body
 
-    def shown(self) -> Element:
-        """The question as it stands in the body, and below it what may be said of the answer."""
+    def body(self) -> Element:
+        """Return the question in the body, with the feedback below it."""
         block = Element(html("div"), {"class": "question"})
         if self.posed.options or self._is_long:
             block.extend(self._below_prompt())
@@ -188,8 +190,8 @@ class _Asked:
             block.extend(parts)
         if self.posed.kind == COLLECTED:
             block.append(self._note())
-        for name, told in self.said.items():
-            block.append(self._feedback(name, told))
+        for name, identifier_shown in self.feedback_texts.items():
+            block.append(self._feedback(name, identifier_shown))
         return block
 
     @property
@@ -197,7 +199,7 @@ class _Asked:
         return self.posed.kind == COLLECTED and self.posed.question.box not in _WIDTHS
 
     def _entry(self) -> Element:
-        """The box of a number, or of an answer of one line that is kept as it is typed."""
+        """Return the box for a number, or for an answer of one line that is only collected."""
         question = self.posed.question
         letters, width = _WIDTHS.get(question.box, _WIDTHS["usual"])
         attributes = {
@@ -212,20 +214,20 @@ class _Asked:
         return Element("textEntryInteraction", attributes)
 
     def _below_prompt(self) -> Iterator[Element]:
-        """An interaction that holds its prompt, or stands below it where that is more than a line."""
+        """Return the interaction with its prompt inside, or below a prompt of several lines."""
         prompt = elements(self.pieces.prompt(self.posed))
-        made = self._choices() if self.posed.options else self._lines()
+        interaction = self._choices() if self.posed.options else self._lines()
         line = prompt[0] if len(prompt) == 1 and prompt[0].tag == html("p") else prompt
         if is_inline(line):
             line.tag, line.tail = "prompt", None
-            made.insert(0, line)
+            interaction.insert(0, line)
         else:
             yield prompt
-        yield made
+        yield interaction
 
     def _choices(self) -> Element:
         several = self.posed.kind == CHOICES
-        made = Element(
+        interaction = Element(
             "choiceInteraction",
             {
                 "responseIdentifier": self.named("RESPONSE"),
@@ -235,12 +237,12 @@ class _Asked:
             },
         )
         for option in self.posed.options:
-            choice = add(made, "simpleChoice", identifier=choice_name(option, self.posed))
+            choice = add(interaction, "simpleChoice", identifier=choice_name(option, self.posed))
             label = elements(self.pieces.option(option))
             if is_inline(label):  # in one piece: there are players that set the pieces of a choice apart
                 label.tag = html("span")
             choice.append(label)
-        return made
+        return interaction
 
     def _lines(self) -> Element:
         room = self.posed.question.room
@@ -256,61 +258,62 @@ class _Asked:
         )
 
     def _note(self) -> Element:
-        """What students are told of an answer that nobody marks there."""
+        """Return the note below an answer that the player does not mark."""
         return elements(f"<p><small>{self.pieces.inline(self.words['later'])}</small></p>")[0]
 
-    def _feedback(self, name: str, told: str) -> Element:
+    def _feedback(self, name: str, identifier_shown: str) -> Element:
         block = Element(
             "feedbackBlock",
             {"outcomeIdentifier": self.named("FEEDBACK"), "identifier": name, "showHide": "show"},
         )
         content = elements(
-            f"<p>{self.pieces.inline(told)}</p>", **{"class": f"feedback {name.split('_')[0]}"}
+            f"<p>{self.pieces.inline(identifier_shown)}</p>", **{"class": f"feedback {name.split('_')[0]}"}
         )
         add(block, "contentBody").append(content)
         return block
 
-    def _said(self) -> Iterator[tuple[str, str]]:
-        """What may be shown of an answer, Markdown, by the identifier that shows it."""
+    def _feedback_texts(self) -> Iterator[tuple[str, str]]:
+        """Yield the feedback on an answer, as identifier and Markdown."""
         if self.posed.kind in (COLLECTED, CHOICES):
             return
         yield _RIGHT, self._line("correct", 1.0, "")
         yield _WRONG, self._line("wrong", 0.0, "")
-        for name, verdict, share, says in self._errors():
-            yield name, self._line(verdict, share, says)
+        for name, verdict, share, message in self._errors():
+            yield name, self._line(verdict, share, message)
 
-    def _line(self, verdict: str, share: float, says: str) -> str:
+    def _line(self, verdict: str, share: float, message: str) -> str:
         points = self.posed.points
         return str(self.words["said"]).format(
             verdict=verdict_word(verdict, self.lang),
             points=points_number(points * share, self.lang),
             of=points_number(points, self.lang),
-            says=says,
+            says=message,
         ).strip()  # fmt: skip
 
     def _errors(self) -> Iterator[tuple[str, str, float, str]]:
         for some in self.errors:
-            yield self._name(some[0]), some[0].verdict, some[0].share, some[0].says
+            yield self._name(some[0]), some[0].verdict, some[0].share, some[0].message
         for option in self.posed.options:
-            if option.says:
+            if option.message:
                 verdict = "mistake" if option.share > 0 else "wrong"
-                yield f"said_{choice_name(option, self.posed)}", verdict, option.share, option.says
+                yield f"said_{choice_name(option, self.posed)}", verdict, option.share, option.message
 
     @cached_property
     def errors(self) -> list[list[Interval]]:
-        """The intervals of the known errors in the order in which they count, an angle's turns together."""
-        wrong = [one for one in self.posed.intervals if not one.is_right]
-        return [list(some) for _, some in groupby(wrong, key=_told)]
+        """Return the intervals of the known errors in the order of their priority, an angle's turns
+        together."""
+        wrong = [interval for interval in self.posed.intervals if not interval.is_right]
+        return [list(some) for _, some in groupby(wrong, key=_feedback_key)]
 
     def _name(self, error: Interval) -> str:
-        """What shows an error: the same of all of its intervals."""
-        told = list(dict.fromkeys(_told(some[0]) for some in self.errors))
-        return f"said_{told.index(_told(error)) + 1}"
+        """Return the identifier of an error's feedback, the same for all of its intervals."""
+        distinct = list(dict.fromkeys(_feedback_key(some[0]) for some in self.errors))
+        return f"said_{distinct.index(_feedback_key(error)) + 1}"
 
-    # -- what it is worth
+    # -- the marking
 
     def rules(self) -> Iterator[Element]:
-        """What a player does with the answer."""
+        """Return the marking rules of the answer."""
         if self.posed.kind == COLLECTED:
             return
         condition = Element("responseCondition")
@@ -329,21 +332,21 @@ class _Asked:
         yield condition
 
     def _cases(self) -> Iterator[tuple[Element, float, str]]:
-        """Each answer that is known: how it is told, its share of the points, what shows it."""
+        """Yield each known answer: its condition, its share of the points, its feedback."""
         if self.posed.kind == NUMBER:
-            right = [one for one in self.posed.intervals if one.is_right]
+            right = [interval for interval in self.posed.intervals if interval.is_right]
             yield self._within(right), 1.0, _RIGHT
             for some in self.errors:
                 yield self._within(some), some[0].share, self._name(some[0])
             return
         for option in self.posed.options:
             name = _RIGHT if option.share >= 1 else f"said_{choice_name(option, self.posed)}"
-            if option.share or option.says:
-                yield self._is(option), option.share, name if name in self.said else _WRONG
+            if option.share or option.message:
+                yield self._is(option), option.share, name if name in self.feedback_texts else _WRONG
 
     def _within(self, intervals: Sequence[Interval]) -> Element:
-        """Whether the answer is in one of the intervals, their ends among them."""
-        tests = [self._between(one) for one in intervals]
+        """Return whether the answer is in one of the closed intervals."""
+        tests = [self._between(interval) for interval in intervals]
         if len(tests) == 1:
             return tests[0]
         either = Element("or")
@@ -359,40 +362,40 @@ class _Asked:
         return both
 
     def _is(self, option: Option) -> Element:
-        made = Element("match")
-        add(made, "variable", identifier=self.named("RESPONSE"))
-        add(made, "baseValue", choice_name(option, self.posed), baseType="identifier")
-        return made
+        match = Element("match")
+        add(match, "variable", identifier=self.named("RESPONSE"))
+        add(match, "baseValue", choice_name(option, self.posed), baseType="identifier")
+        return match
 
     def _set(self, rule: Element, share: float, name: str) -> None:
         earned = add(rule, "setOutcomeValue", identifier=self.named("SCORE"))
         add(earned, "baseValue", decimal(self.posed.points * share), baseType="float")
-        if self.said:
-            shown = add(rule, "setOutcomeValue", identifier=self.named("FEEDBACK"))
-            add(shown, "baseValue", name, baseType="identifier")
+        if self.feedback_texts:
+            outcome = add(rule, "setOutcomeValue", identifier=self.named("FEEDBACK"))
+            add(outcome, "baseValue", name, baseType="identifier")
 
 
-def _processing(asked: Sequence[_Asked]) -> Element:
-    """How the item is marked: each question by itself, then their sum."""
-    made = Element("responseProcessing")
-    for one in asked:
-        made.extend(one.rules())
-    total = add(add(made, "setOutcomeValue", identifier="SCORE"), "sum")
-    for one in asked:
-        add(total, "variable", identifier=one.named("SCORE"))
-    return made
+def _processing(questions: Sequence[_QtiQuestion]) -> Element:
+    """Return the marking of the item: each question by itself, then the sum."""
+    processing = Element("responseProcessing")
+    for question in questions:
+        processing.extend(question.rules())
+    total = add(add(processing, "setOutcomeValue", identifier="SCORE"), "sum")
+    for question in questions:
+        add(total, "variable", identifier=question.named("SCORE"))
+    return processing
 
 
-def _told(error: Interval) -> tuple[str, float, str]:
-    return error.verdict, error.share, error.says
+def _feedback_key(error: Interval) -> tuple[str, float, str]:
+    return error.verdict, error.share, error.message
 
 
 def choice_name(option: Option, posed: Posed) -> str:
-    """What a choice is recorded by: its letter; its place on a sheet that was issued without."""
+    """Return the recorded name of a choice: its letter, or its position if the sheet has no letters."""
     return option.letter or f"choice_{posed.options.index(option) + 1}"
 
 
 def _shown_number(interval: Interval) -> str:
-    """The right number, rounded as far as it stays right."""
+    """Return the right number, rounded as far as it stays right."""
     rounded = float(significant(interval.value, _DIGITS))
     return decimal(rounded if interval.low <= rounded <= interval.high else interval.value)

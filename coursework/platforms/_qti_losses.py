@@ -1,4 +1,4 @@
-"""What of a pool is lost in QTI that hangs on its values and choices."""
+"""Losses of a pool in QTI that depend on its values and choices."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from coursework.platforms.posed import CHOICES, Posed
 
 
 def losses(pool: Pool) -> Iterator[Loss]:
-    """Known errors that a player cannot price as we do."""
-    said = words(pool.lang)["platforms"]["qti"]
+    """Return the known errors to which a player cannot give our points."""
+    texts = words(pool.lang)["platforms"]["qti"]
     for section in pool.sections:
         for item in section.items:
             for posed in item.questions:
                 if posed.kind == CHOICES and "mistakes" in posed.features:
-                    yield Loss(section.exercise, posed.question.id, "mistakes", said["by_share"])
+                    yield Loss(section.exercise, posed.question.id, "mistakes", texts["by_share"])
                 elif _near(posed):
-                    yield Loss(section.exercise, posed.question.id, "mistakes", said["near"])
+                    yield Loss(section.exercise, posed.question.id, "mistakes", texts["near"])
 
 
 def _near(posed: Posed) -> bool:
-    """Whether two known errors of a question, no turns of one another, have numbers in common."""
-    wrong = [one for one in posed.intervals if not one.is_right]
+    """Return whether the intervals of two known errors overlap, apart from whole turns."""
+    wrong = [interval for interval in posed.intervals if not interval.is_right]
     return any(
-        one.value != other.value and one.low <= other.high and other.low <= one.high
-        for one, other in combinations(wrong, 2)
+        interval.value != other.value and interval.low <= other.high and other.low <= interval.high
+        for interval, other in combinations(wrong, 2)
     )

@@ -1,4 +1,5 @@
-"""A pool as a package: its items, a test that deals one of each exercise to a student, what they show, and the manifest."""
+"""Package of a pool: its items, a test that draws one item of each exercise, the pictures, and the
+manifest."""
 
 from __future__ import annotations
 
@@ -7,29 +8,29 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from coursework.platforms._qti_item import IMAGES, STYLE, ItemFile, identifier, item_file
-from coursework.platforms._qti_tree import Spelling, add, decimal, manifest_written, written
-from coursework.platforms.items import Pool, Section
-from coursework.platforms.pieces import Pieces
+from coursework.platforms._qti_tree import QtiSpelling, add, decimal, manifest_written, written
+from coursework.platforms.items import Pool, PoolSection
+from coursework.platforms.pieces import PagePieces
 from coursework.system.writing import File
 from coursework.system.zips import zipped
 
 _ITEMS, _TEST = "items", "test.xml"
 
 
-def package(pool: Pool, platform: str, spelling: Spelling) -> File:
-    """The package of a pool in one language."""
+def package(pool: Pool, platform: str, spelling: QtiSpelling) -> File:
+    """Return the package of a pool in one language."""
     path = Path(f"{pool.name}.{pool.lang}.{platform}.zip")
     return File(path, lambda: zipped(dict(files(pool, spelling))))
 
 
-def files(pool: Pool, spelling: Spelling) -> Iterator[tuple[str, bytes]]:
-    """The files of a package, by their paths in it."""
-    pieces = Pieces(pool.folders, pool.lang)
+def files(pool: Pool, spelling: QtiSpelling) -> Iterator[tuple[str, bytes]]:
+    """Yield the files of a package with their paths."""
+    pieces = PagePieces(pool.folders, pool.lang)
     items = [[item_file(item, pieces) for item in section.items] for section in pool.sections]
     yield f"{_ITEMS}/{STYLE}", pieces.style().encode()
-    for made in (one for some in items for one in some):
-        yield f"{_ITEMS}/{made.identifier}.xml", written(made.tree, spelling)
-        for image in made.images:
+    for written_item in (section_file for some in items for section_file in some):
+        yield f"{_ITEMS}/{written_item.identifier}.xml", written(written_item.tree, spelling)
+        for image in written_item.images:
             yield f"{_ITEMS}/{IMAGES}/{image.name}", image.data
     yield _TEST, written(_test(pool, items), spelling)
     yield "imsmanifest.xml", manifest_written(_manifest(pool, items, spelling), spelling)
@@ -39,7 +40,7 @@ def files(pool: Pool, spelling: Spelling) -> Iterator[tuple[str, bytes]]:
 
 
 def _test(pool: Pool, items: Sequence[Sequence[ItemFile]]) -> Element:
-    """One section an exercise, of which a student gets one item."""
+    """Return the test: one section per exercise, from which a student gets one item."""
     root = Element(
         "assessmentTest",
         {"identifier": _named(pool, "test"), "title": pool.title, "toolName": "coursework"},
@@ -58,46 +59,46 @@ def _test(pool: Pool, items: Sequence[Sequence[ItemFile]]) -> Element:
     return root
 
 
-def _section(section: Section, items: Sequence[ItemFile]) -> Element:
-    made = Element(
+def _section(section: PoolSection, items: Sequence[ItemFile]) -> Element:
+    element = Element(
         "assessmentSection",
         identifier=identifier(section.exercise),
         title=section.title,
         visible="true",
         keepTogether="true",
     )
-    add(made, "selection", select="1")
-    for one in items:
-        add(made, "assessmentItemRef", identifier=one.identifier, href=f"{_ITEMS}/{one.identifier}.xml")
-    return made
+    add(element, "selection", select="1")
+    for item in items:
+        add(element, "assessmentItemRef", identifier=item.identifier, href=f"{_ITEMS}/{item.identifier}.xml")
+    return element
 
 
-def _named(pool: Pool, what: str) -> str:
-    return identifier(f"{pool.name}-{pool.lang}-{what}")
+def _named(pool: Pool, kind: str) -> str:
+    return identifier(f"{pool.name}-{pool.lang}-{kind}")
 
 
 # ------------------------------------------------------------------------ manifest
 
 
-def _manifest(pool: Pool, items: Sequence[Sequence[ItemFile]], spelling: Spelling) -> Element:
+def _manifest(pool: Pool, items: Sequence[Sequence[ItemFile]], spelling: QtiSpelling) -> Element:
     root = Element("manifest", identifier=_named(pool, "package"))
     metadata = add(root, "metadata")
     add(metadata, "schema", spelling.schema_name)
     add(metadata, "schemaversion", spelling.schema_version)
     add(root, "organizations")
     resources = add(root, "resources")
-    flat = [one for some in items for one in some]
+    flat = [entry for some in items for entry in some]
     test = _resource(resources, _named(pool, "test"), spelling.test_type, _TEST)
-    for one in flat:
-        add(test, "dependency", identifierref=one.identifier)
-    for one in flat:
-        item = _resource(resources, one.identifier, spelling.item_type, f"{_ITEMS}/{one.identifier}.xml")
-        for path in (STYLE, *(f"{IMAGES}/{image.name}" for image in one.images)):
+    for entry in flat:
+        add(test, "dependency", identifierref=entry.identifier)
+    for entry in flat:
+        item = _resource(resources, entry.identifier, spelling.item_type, f"{_ITEMS}/{entry.identifier}.xml")
+        for path in (STYLE, *(f"{IMAGES}/{image.name}" for image in entry.images)):
             add(item, "file", href=f"{_ITEMS}/{path}")
     return root
 
 
 def _resource(resources: Element, name: str, kind: str, path: str) -> Element:
-    made = add(resources, "resource", identifier=name, type=kind, href=path)
-    add(made, "file", href=path)
-    return made
+    resource = add(resources, "resource", identifier=name, type=kind, href=path)
+    add(resource, "file", href=path)
+    return resource

@@ -1,6 +1,6 @@
-"""One tree, two spellings: QTI 3 and QTI 2.1 say the same in other letters.
+"""Element trees of QTI, written as QTI 3 or QTI 2.1, which differ in spelling only.
 
-A tree is written with the words of QTI 2.1, in no namespace; what is HTML stands in :data:`HTML`, formulas in :data:`MATHML`.
+A tree has the names of QTI 2.1 without a namespace; HTML is in :data:`HTML`, formulas in :data:`MATHML`.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ LANG = f"{{{_XML}}}lang"
 
 #: Attributes that QTI 2.1 has not.
 _NEW = frozenset({"externalScored"})
-#: Elements that QTI 2.1 has not, and whose content stands in the place of each.
+#: Elements that QTI 2.1 lacks; their content replaces them.
 _WRAPPING = frozenset({"contentBody"})
 _CAPITAL = re.compile("(?<=[a-z])([A-Z])")
 
 
 @dataclass(frozen=True)
-class Spelling:
-    """How a version of QTI writes a tree."""
+class QtiSpelling:
+    """Spelling of a version of QTI."""
 
     version: str  #: 3.0, 2.1
     namespace: str
-    schema: str  #: where its schema stands
+    schema: str  #: address of its schema
     manifest: str  #: namespace of the manifest
     manifest_schema: str
-    schema_name: str  #: as the manifest says it
+    schema_name: str  #: in the manifest
     schema_version: str
     item_type: str  #: of a resource
     test_type: str
@@ -47,7 +47,7 @@ class Spelling:
         return kebab(name) if self.is_kebab else name
 
 
-QTI_3 = Spelling(
+QTI_3 = QtiSpelling(
     "3.0",
     "http://www.imsglobal.org/xsd/imsqtiasi_v3p0",
     "https://purl.imsglobal.org/spec/qti/v3p0/schema/xsd/imsqti_asiv3p0_v1p0.xsd",
@@ -59,7 +59,7 @@ QTI_3 = Spelling(
     "imsqti_test_xmlv3p0",
     is_kebab=True,
 )
-QTI_21 = Spelling(
+QTI_21 = QtiSpelling(
     "2.1",
     "http://www.imsglobal.org/xsd/imsqti_v2p1",
     "http://www.imsglobal.org/xsd/qti/qtiv2p1/imsqti_v2p1.xsd",
@@ -74,19 +74,19 @@ QTI_21 = Spelling(
 
 
 def kebab(name: str) -> str:
-    """``assessmentItem`` -> ``assessment-item``."""
+    """Return ``assessmentItem`` as ``assessment-item``."""
     return _CAPITAL.sub(r"-\1", name).lower()
 
 
-def written(tree: Element, spelling: Spelling) -> bytes:
-    """A tree as a file of this version."""
+def written(tree: Element, spelling: QtiSpelling) -> bytes:
+    """Return a tree as a file of a version."""
     root = next(_spelled(tree, spelling))
     root.set("xmlns", spelling.namespace)
     return _file(root, f"{spelling.namespace} {spelling.schema}")
 
 
-def manifest_written(tree: Element, spelling: Spelling) -> bytes:
-    """A manifest, which has the same words in every version."""
+def manifest_written(tree: Element, spelling: QtiSpelling) -> bytes:
+    """Return a manifest, which is the same in every version."""
     tree.set("xmlns", spelling.manifest)
     return _file(tree, f"{spelling.manifest} {spelling.manifest_schema}")
 
@@ -98,44 +98,45 @@ def _file(root: Element, schemas: str) -> bytes:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
 
 
-def _spelled(element: Element, spelling: Spelling) -> Iterator[Element]:
-    """The element in a spelling; its content where the spelling has no such element."""
-    children = [one for child in element for one in _spelled(child, spelling)]
+def _spelled(element: Element, spelling: QtiSpelling) -> Iterator[Element]:
+    """Yield the element in a spelling; its content if the spelling has no such element."""
+    children = [grandchild for child in element for grandchild in _spelled(child, spelling)]
     if element.tag in _WRAPPING and not spelling.is_kebab:
         yield from children
         return
-    made = Element(_tag(element.tag, spelling), _attributes(element, spelling))
-    made.text, made.tail = element.text, element.tail
-    made.extend(children)
-    yield made
+    copy = Element(_tag(element.tag, spelling), _attributes(element, spelling))
+    copy.text, copy.tail = element.text, element.tail
+    copy.extend(children)
+    yield copy
 
 
-def _tag(tag: str, spelling: Spelling) -> str:
+def _tag(tag: str, spelling: QtiSpelling) -> str:
     space, _, name = tag.rpartition("}")
     return name if space else spelling.tag(name)
 
 
-def _attributes(element: Element, spelling: Spelling) -> dict[str, str]:
-    found = {"xml:lang" if name == LANG else name: value for name, value in element.attrib.items()}
+def _attributes(element: Element, spelling: QtiSpelling) -> dict[str, str]:
+    attributes = {"xml:lang" if name == LANG else name: value for name, value in element.attrib.items()}
     if element.tag.startswith("{"):
         # A formula's root opens its namespace for all below it.
-        return {"xmlns": MATHML, **found} if element.tag == FORMULA else found
+        return {"xmlns": MATHML, **attributes} if element.tag == FORMULA else attributes
     return {
         spelling.attribute(name): value
-        for name, value in found.items()
+        for name, value in attributes.items()
         if spelling.is_kebab or not (name in _NEW or "-" in name)
     }
 
 
 def add(parent: Element, tag: str, text: str = "", **attributes: str) -> Element:
-    """A new child of an element."""
+    """Add a child to an element and return it."""
     child = ET.SubElement(parent, tag, attributes)
     child.text = text or None
     return child
 
 
 def decimal(value: float) -> str:
-    """A number in plain decimals, which every engine reads: no exponent, and no digit fewer than tell it from all others."""
+    """Return a number as a plain decimal that every engine reads: without exponent, with all significant
+    digits."""
     from decimal import Decimal
 
     text = format(Decimal(repr(float(value))), "f")

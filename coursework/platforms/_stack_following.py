@@ -1,4 +1,4 @@
-"""A right method from a student's own earlier answers, where Maxima can be told it: the formula in one line."""
+"""Right methods from a student's own earlier answers, if Maxima can compute them in one expression."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from coursework.platforms._maxima import Unprintable, number, printed
 from coursework.quantities.formula_code import formula_of
 
 _LONGEST = 600  #: characters of a formula that a teacher may still read
-_TRIED = (1.07, 0.9)  #: how wrong earlier answers are where a formula is proved
+_TRIED = (1.07, 0.9)  #: factors of the wrong earlier answers by which a formula is checked
 _SAME = 1e-9
 
 
 @dataclass(frozen=True)
 class Following:
-    """How an answer follows from earlier ones."""
+    """Formula of an answer from earlier ones."""
 
     maxima: str  #: an expression of ``v1``, ``v2``, …, the earlier answers by their number
     earlier: tuple[int, ...]  #: the numbers of these
 
 
 def following(variant: Variant, part: Part) -> Following | None:
-    """How a part's answer follows from earlier ones; None where that is no line of Maxima."""
+    """Return the formula of a part's answer from earlier ones; None if Maxima cannot express it."""
     earlier = _earlier(variant, part)
     if not earlier:
         return None
-    formulas = _Formulas(variant, {p.quantity: place for place, p in earlier.items()})
+    formulas = _Formulas(variant, {p.quantity: part_number for part_number, p in earlier.items()})
     try:
         maxima = formulas.of(part.quantity, first=True)
     except (Unprintable, CourseworkError):
@@ -41,19 +41,19 @@ def following(variant: Variant, part: Part) -> Following | None:
     used = tuple(sorted(formulas.used))
     if not used or len(maxima) > _LONGEST:
         return None
-    found = Following(maxima, used)
-    return found if _is_proved(variant, part, formulas, earlier) else None
+    result = Following(maxima, used)
+    return result if _is_proved(variant, part, formulas, earlier) else None
 
 
 def _earlier(variant: Variant, part: Part) -> dict[int, Part]:
-    """The earlier parts that this one may follow from, by their number."""
+    """Return the earlier parts on which this one may depend, by their number."""
     if not part.sort.follows or not part.sort.is_scalar or part.judge:
         return {}
     before = variant.parts[: variant.parts.index(part)]
     depending = variant.key.solution.depending_on
     return {
-        place: p
-        for place, p in enumerate(before, start=1)
+        part_number: p
+        for part_number, p in enumerate(before, start=1)
         if p.sort.is_followed
         and p.sort.is_scalar
         and not p.choices
@@ -64,7 +64,7 @@ def _earlier(variant: Variant, part: Part) -> dict[int, Part]:
 
 
 class _Formulas:
-    """The formulas of a variant, with numbers for whatever hangs on no earlier answer."""
+    """Formulas of a variant, with numbers for quantities that depend on no earlier answer."""
 
     def __init__(self, variant: Variant, earlier: Mapping[str, int]):
         self._variant, self._earlier = variant, earlier
@@ -104,27 +104,30 @@ class _Formulas:
 
 
 def _is_proved(variant: Variant, part: Part, formulas: _Formulas, earlier: Mapping[int, Part]) -> bool:
-    """Whether the formula gives what our marking takes for right from the same earlier answers."""
+    """Return whether the formula gives the value that our marking accepts for the same earlier answers."""
     for factor in _TRIED:
-        own = {place: float(variant.key.reference[p.quantity]) * factor for place, p in earlier.items()}
-        expected = follows(variant, part, own)
-        found = _evaluated(formulas.of(part.quantity, first=True), own)
+        answers = {
+            part_number: float(variant.key.reference[p.quantity]) * factor
+            for part_number, p in earlier.items()
+        }
+        expected = follows(variant, part, answers)
+        value = _evaluated(formulas.of(part.quantity, first=True), answers)
         if (
             expected is None
-            or found is None
-            or not math.isclose(found, expected, rel_tol=_SAME, abs_tol=_SAME)
+            or value is None
+            or not math.isclose(value, expected, rel_tol=_SAME, abs_tol=_SAME)
         ):
             turn = part.sort.turn
-            if not (turn and expected is not None and found is not None):
+            if not (turn and expected is not None and value is not None):
                 return False
-            if abs((found - expected + turn / 2) % turn - turn / 2) > _SAME * turn:
+            if abs((value - expected + turn / 2) % turn - turn / 2) > _SAME * turn:
                 return False
     return True
 
 
-def follows(variant: Variant, part: Part, own: Mapping[int, float]) -> float | None:
-    """What our marking takes for right from earlier answers, by their number."""
-    quantities = {variant.parts[place - 1].quantity: value for place, value in own.items()}
+def follows(variant: Variant, part: Part, answers: Mapping[int, float]) -> float | None:
+    """Return the value that our marking accepts after earlier answers, by their number."""
+    quantities = {variant.parts[part_number - 1].quantity: value for part_number, value in answers.items()}
     try:
         given = {**variant.used, **quantities}
         value = variant.key.solution.graph.evaluate((part.quantity,), given, variant.effects)[part.quantity]
@@ -133,8 +136,8 @@ def follows(variant: Variant, part: Part, own: Mapping[int, float]) -> float | N
         return None
 
 
-def _evaluated(maxima: str, own: Mapping[int, float]) -> float | None:
-    """The value of such an expression, computed here."""
+def _evaluated(maxima: str, answers: Mapping[int, float]) -> float | None:
+    """Return the value of such an expression."""
     space: dict[str, Any] = {
         "sin": cmath.sin, "cos": cmath.cos, "tan": cmath.tan, "asin": cmath.asin, "acos": cmath.acos,
         "atan": cmath.atan, "exp": cmath.exp, "log": cmath.log, "sqrt": cmath.sqrt,
@@ -143,7 +146,7 @@ def _evaluated(maxima: str, own: Mapping[int, float]) -> float | None:
         "imagpart": lambda z: complex(z).imag, "conjugate": lambda z: complex(z).conjugate(),
         "signum": lambda x: math.copysign(1.0, complex(x).real), "min": lambda a, b: min(complex(a).real, complex(b).real),
         "max": lambda a, b: max(complex(a).real, complex(b).real), "ceiling": lambda x: math.ceil(complex(x).real),
-        "PI": math.pi, "I": 1j, **{f"v{place}": value for place, value in own.items()},
+        "PI": math.pi, "I": 1j, **{f"v{part_number}": value for part_number, value in answers.items()},
     }  # fmt: skip
     text = maxima.replace("%pi", "PI").replace("%i", "I").replace("^", "**")
     try:

@@ -1,4 +1,4 @@
-"""What STACK does with an answer: the nodes of a tree of potential responses, in Maxima, and what they come to here."""
+"""Potential response trees of STACK: the nodes in Maxima, and their results computed here."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from coursework.platforms._stack_following import Following, following, follows
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval, Posed
 from coursework.reading.units import DIMENSIONS, find_unit
 
-_SLACK = 1e-12  #: of an end: it belongs to the margin whatever the last bit
+_SLACK = 1e-12  #: relative; an end belongs to the margin whatever its last bit
 EMPTY = "empty"  #: the verdict of a box that is left so, which costs no penalty
-_LONGEST = 200  #: characters of what a node asks; Moodle has room for 255
+_LONGEST = 200  #: characters of a node's test; Moodle allows 255
 _ATTEMPT = 100  #: an earlier answer is gone on from within this factor of the right one
-#: Units that students may write with a number, and what STACK is told of them.
+#: Units that students may write with a number, in STACK's syntax.
 _UNITS = tuple("mm cm dm m km um s ms h g kg N kN mN daN J kJ W kW mW Pa kPa MPa rad mrad deg rpm".split())
 _BASES = {"length": "m", "mass": "kg", "time": "s"}
-_NUMBERS = ("angle", "cycle")  #: what has a unit and is a number
+_NUMBERS = ("angle", "cycle")  #: units that are numbers
 
 #: Functions of every question. ``x`` is an answer, ``u`` the unit asked, in base units; intervals hold their ends.
 FUNCTIONS = """\
@@ -42,50 +42,51 @@ co_valid(x,u,other,grouped) := if is(x=EMPTYANSWER) or numberp(x) then ""
 
 
 def functions() -> str:
-    """What the question variables of every question begin with."""
-    known = ",".join(f"{name}={in_base_units(name)}" for name in _UNITS if name not in _BASES.values())
-    return FUNCTIONS % (_ATTEMPT, _ATTEMPT, known)
+    """Return the first lines of the question variables of every question."""
+    factors = ",".join(f"{name}={in_base_units(name)}" for name in _UNITS if name not in _BASES.values())
+    return FUNCTIONS % (_ATTEMPT, _ATTEMPT, factors)
 
 
 def in_base_units(unit: str) -> str:
-    """A unit as a factor and base units; angles are numbers."""
-    found = find_unit(unit)
-    if found is None:
+    """Return a unit as a factor and base units; angles are numbers."""
+    factor = find_unit(unit)
+    if factor is None:
         raise Unprintable(unit)
-    powers = dict(zip(DIMENSIONS, found.dimension, strict=True))
+    powers = dict(zip(DIMENSIONS, factor.dimension, strict=True))
     if any(power and name not in (*_BASES, *_NUMBERS) for name, power in powers.items()):
         raise Unprintable(unit)
     bases = "".join(
         f"*{_BASES[name]}^({power})" for name, power in powers.items() if name in _BASES and power
     )
-    return number(found.factor) + bases
+    return number(factor.factor) + bases
 
 
 @dataclass(frozen=True)
 class Node:
-    """One test of an answer: where it holds, nothing after it counts."""
+    """Test of an answer; the first node that holds decides."""
 
-    maxima: str  #: true where it holds
+    maxima: str  #: condition
     holds: Callable[[object, Mapping[int, float]], bool]  #: of an answer, and the earlier ones by number
     share: float
-    says: str = ""  #: Markdown
+    message: str = ""  #: Markdown
     verdict: str = "correct"
 
 
 @dataclass(frozen=True)
 class Tree:
-    """What becomes of one part's answer."""
+    """Marking of one part's answer."""
 
-    place: int  #: of the part, from 1
+    part_number: int  #: of the part, from 1
     posed: Posed
     nodes: tuple[Node, ...]
     following: Following | None = None
-    unit: str = "1"  #: as Maxima is told it
+    unit: str = "1"  #: in Maxima's syntax
     may_be_empty: bool = False
 
     @property
     def variables(self) -> str:
-        """What the nodes speak of: the answer and the earlier ones as numbers, and what is too long for a node."""
+        """Return the variables of the nodes: the answer and the earlier ones as numbers, and expressions too
+        long for a node."""
         return "\n".join((*self._numbers, *self._long))
 
     @property
@@ -95,64 +96,73 @@ class Tree:
                 yield f"t{at}: {node.maxima};"
 
     def test(self, at: int) -> str:
-        """What a node asks."""
+        """Return the test of a node."""
         return f"t{at}" if len(self.nodes[at].maxima) > _LONGEST else self.nodes[at].maxima
 
     @property
     def _numbers(self) -> list[str]:
         if self.posed.kind != NUMBER:
             return []
-        lines = [f"v{self.place}: co_number(ans{self.place},co_u{self.place});"]
-        for place in self.following.earlier if self.following else ():
-            known = f"co_number(ans{place},co_u{place})"
-            lines.append(f"w{place}: {known};")
-            lines.append(f"v{place}: if numberp(w{place}) then w{place} else co_r{place}[3];")
+        lines = [f"v{self.part_number}: co_number(ans{self.part_number},co_u{self.part_number});"]
+        for part_number in self.following.earlier if self.following else ():
+            as_number = f"co_number(ans{part_number},co_u{part_number})"
+            lines.append(f"w{part_number}: {as_number};")
+            lines.append(
+                f"v{part_number}: if numberp(w{part_number}) then w{part_number} else co_r{part_number}[3];"
+            )
         if self.following:
-            lines.append(f"f{self.place}: float({self.following.maxima});")
+            lines.append(f"f{self.part_number}: float({self.following.maxima});")
         return lines
 
-    def share(self, answer: object, own: Mapping[int, float]) -> tuple[float, int]:
-        """What an answer is worth, and the number of the node that says so; -1 where none does."""
-        for place, node in enumerate(self.nodes):
-            if node.holds(answer, own):
-                return node.share, place
+    def share(self, answer: object, answers: Mapping[int, float]) -> tuple[float, int]:
+        """Return the share of the points of an answer, and the number of the deciding node; -1 if there is
+        none."""
+        for index, node in enumerate(self.nodes):
+            if node.holds(answer, answers):
+                return node.share, index
         return 0.0, -1
 
 
 def trees(variant: Variant, questions: Sequence[Posed]) -> tuple[Tree, ...]:
-    """The trees of the questions that STACK can judge."""
-    asked = zip(questions, variant.parts, strict=True)
-    found = [
-        _tree(variant, place, posed, part)
-        for place, (posed, part) in enumerate(asked, start=1)
+    """Return the trees of the questions that STACK can judge."""
+    pairs = zip(questions, variant.parts, strict=True)
+    result = [
+        _tree(variant, part_number, posed, part)
+        for part_number, (posed, part) in enumerate(pairs, start=1)
         if posed.kind != COLLECTED
     ]
-    goes_on = {place for tree in found if tree.following for place in tree.following.earlier}
-    return tuple(_may_be_empty(tree) if tree.place in goes_on else tree for tree in found)
+    goes_on = {part_number for tree in result if tree.following for part_number in tree.following.earlier}
+    return tuple(_may_be_empty(tree) if tree.part_number in goes_on else tree for tree in result)
 
 
 def _may_be_empty(tree: Tree) -> Tree:
-    """A tree whose answer others follow from: they are judged without it, too, so its box may stay empty."""
-    nothing = Node(f"is(ans{tree.place}=EMPTYANSWER)", lambda answer, own: answer is None, 0.0, verdict=EMPTY)
+    """Return a tree whose answer may stay empty, since others depend on it and are judged without it too."""
+    nothing = Node(
+        f"is(ans{tree.part_number}=EMPTYANSWER)", lambda answer, answers: answer is None, 0.0, verdict=EMPTY
+    )
     return replace(tree, nodes=(nothing, *tree.nodes), may_be_empty=True)
 
 
-def _tree(variant: Variant, place: int, posed: Posed, part: Part) -> Tree:
+def _tree(variant: Variant, part_number: int, posed: Posed, part: Part) -> Tree:
     if posed.kind == CHOICE:
-        return Tree(place, posed, tuple(_cases(place, posed)))
+        return Tree(part_number, posed, tuple(_cases(part_number, posed)))
     if posed.kind == CHOICES:
-        return Tree(place, posed, tuple(_several(place, posed)))
-    found = following(variant, part)
+        return Tree(part_number, posed, tuple(_several(part_number, posed)))
+    earlier_answers = following(variant, part)
     right, *wrong = _intervals(posed)
-    nodes = [_of_interval(place, right, part.sort.turn)]
-    if found is not None:
-        nodes.append(_of_following(variant, place, part, found))
-    nodes += [_of_interval(place, one, part.sort.turn if _turns(one, posed) else 0.0) for one in wrong]
-    return Tree(place, posed, tuple(nodes), found, unit_of(part))
+    nodes = [_of_interval(part_number, right, part.sort.turn)]
+    if earlier_answers is not None:
+        nodes.append(_of_following(variant, part_number, part, earlier_answers))
+    nodes += [
+        _of_interval(part_number, interval, part.sort.turn if _turns(interval, posed) else 0.0)
+        for interval in wrong
+    ]
+    return Tree(part_number, posed, tuple(nodes), earlier_answers, unit_of(part))
 
 
 def unit_of(part: Part) -> str:
-    """The unit of a part in base units; of one that STACK cannot be told, one that nothing can be written in."""
+    """Return the unit of a part in base units; for a unit that STACK does not know, one that no answer can
+    have."""
     try:
         return in_base_units(part.unit)
     except Unprintable:
@@ -164,8 +174,12 @@ def _intervals(posed: Posed) -> Iterator[Interval]:
 
 
 def _turns(interval: Interval, posed: Posed) -> bool:
-    """Whether whole turns more or fewer are taken for the same."""
-    verdicts = (one.verdict for one in posed.intervals if one.turns and math.isclose(one.half, interval.half))
+    """Return whether whole turns more or fewer are accepted."""
+    verdicts = (
+        turned.verdict
+        for turned in posed.intervals
+        if turned.turns and math.isclose(turned.half, interval.half)
+    )
     return interval.verdict in verdicts
 
 
@@ -174,12 +188,14 @@ def _ends(interval: Interval) -> tuple[float, float]:
     return interval.low - slack, interval.high + slack
 
 
-def _of_interval(place: int, interval: Interval, turn: float) -> Node:
+def _of_interval(part_number: int, interval: Interval, turn: float) -> Node:
     low, high = _ends(interval)
     holds = _within(low, high, turn)
-    ends = f"v{place},{number(low)},{number(high)}"
+    ends = f"v{part_number},{number(low)},{number(high)}"
     maxima = f"co_turned({ends},{number(turn)})" if turn else f"co_in({ends})"
-    return Node(maxima, lambda answer, own: holds(answer), interval.share, interval.says, interval.verdict)
+    return Node(
+        maxima, lambda answer, answers: holds(answer), interval.share, interval.message, interval.verdict
+    )
 
 
 def _within(low: float, high: float, turn: float) -> Callable[[object], bool]:
@@ -194,30 +210,41 @@ def _within(low: float, high: float, turn: float) -> Callable[[object], bool]:
     return holds
 
 
-def _of_following(variant: Variant, place: int, part: Part, found: Following) -> Node:
-    """The node of a right method from earlier answers, at least one of which is not right but tried."""
+def _of_following(variant: Variant, part_number: int, part: Part, result: Following) -> Node:
+    """Return the node of a right method from earlier answers, at least one of which is a plausible wrong
+    one."""
     key = variant.key
     least = max(part.atol, key.envelope.get(part.quantity, 0.0)) if part.has_margin else 0.0
     share = part.rtol if part.has_margin else 0.0
-    half = f"max({number(settled(least))},{number(float(share))}*abs(f{place}))+{number(1e-9)}*abs(f{place})"
-    earlier = {one: variant.parts[one - 1] for one in found.earlier}
-    wrong = " or ".join(f"not {_right(one, p)}" for one, p in earlier.items())
+    half = f"max({number(settled(least))},{number(float(share))}*abs(f{part_number}))+{number(1e-9)}*abs(f{part_number})"
+    earlier = {earlier_number: variant.parts[earlier_number - 1] for earlier_number in result.earlier}
+    wrong = " or ".join(f"not {_right(earlier_number, p)}" for earlier_number, p in earlier.items())
     tried = "".join(
-        f" and ({_right(one, p)} or co_tried(v{one},co_r{one}[3]))"
-        for one, p in earlier.items()
+        f" and ({_right(earlier_number, p)} or co_tried(v{earlier_number},co_r{earlier_number}[3]))"
+        for earlier_number, p in earlier.items()
         if not p.sort.turn
     )
-    apart = f" and is(abs(f{place})>{half})" if part.has_margin and not part.sort.turn else ""
-    ends = f"v{place},f{place}-({half}),f{place}+({half})"
+    apart = f" and is(abs(f{part_number})>{half})" if part.has_margin and not part.sort.turn else ""
+    ends = f"v{part_number},f{part_number}-({half}),f{part_number}+({half})"
     turn = part.sort.turn
     near = f"co_turned({ends},{number(turn)})" if turn else f"co_in({ends})"
-    maxima = f"if numberp(f{place}) then (({wrong}){tried}{apart} and {near}) else false"
+    maxima = f"if numberp(f{part_number}) then (({wrong}){tried}{apart} and {near}) else false"
 
-    def holds(answer: object, own: Mapping[int, float]) -> bool:
-        whole = {one: own.get(one, float(key.reference[p.quantity])) for one, p in earlier.items()}
-        wrong = [one for one, value in whole.items() if not _is_right(variant, earlier[one], value)]
-        untried = any(not _is_tried(variant, earlier[one], whole[one]) for one in wrong)
-        value = follows(variant, part, whole)
+    def holds(answer: object, answers: Mapping[int, float]) -> bool:
+        complete = {
+            earlier_number: answers.get(earlier_number, float(key.reference[p.quantity]))
+            for earlier_number, p in earlier.items()
+        }
+        wrong = [
+            earlier_number
+            for earlier_number, value in complete.items()
+            if not _is_right(variant, earlier[earlier_number], value)
+        ]
+        untried = any(
+            not _is_tried(variant, earlier[earlier_number], complete[earlier_number])
+            for earlier_number in wrong
+        )
+        value = follows(variant, part, complete)
         if not wrong or untried or value is None or not math.isfinite(value):
             return False
         width = max(least, share * abs(value)) + 1e-9 * abs(value)
@@ -228,8 +255,8 @@ def _of_following(variant: Variant, place: int, part: Part, found: Following) ->
     return Node(maxima, holds, key.rules.follow_through, verdict="follow_through")
 
 
-def _right(place: int, part: Part) -> str:
-    ends = f"v{place},co_r{place}[1],co_r{place}[2]"
+def _right(part_number: int, part: Part) -> str:
+    ends = f"v{part_number},co_r{part_number}[1],co_r{part_number}[2]"
     return f"co_turned({ends},{number(part.sort.turn)})" if part.sort.turn else f"co_in({ends})"
 
 
@@ -240,34 +267,35 @@ def _is_right(variant: Variant, part: Part, value: float) -> bool:
 
 
 def _is_tried(variant: Variant, part: Part, value: float) -> bool:
-    """Whether a wrong answer is near enough to the right one to be gone on from; a direction always is."""
+    """Return whether a wrong answer is close enough to the right one to continue from; a direction always
+    is."""
     reference = abs(float(variant.key.reference[part.quantity]))
     return bool(part.sort.turn) or reference / _ATTEMPT <= abs(value) <= _ATTEMPT * reference
 
 
-def _cases(place: int, posed: Posed) -> Iterator[Node]:
-    """What each case is worth: the right one first."""
-    for at, option in sorted(enumerate(posed.options), key=lambda one: -one[1].share):
-        if option.share > 0 or option.says:
+def _cases(part_number: int, posed: Posed) -> Iterator[Node]:
+    """Return the share of each case, the right one first."""
+    for at, option in sorted(enumerate(posed.options), key=lambda case: -case[1].share):
+        if option.share > 0 or option.message:
             name = case_name(posed, at)
             yield Node(
-                f"is(ans{place}={text(name)})",
-                lambda answer, own, name=name: answer == name,  # type: ignore[misc]
+                f"is(ans{part_number}={text(name)})",
+                lambda answer, answers, name=name: answer == name,  # type: ignore[misc]
                 option.share,
-                option.says,
+                option.message,
                 "correct" if option.share == 1 else f"case {name}",
             )
 
 
-def _several(place: int, posed: Posed) -> Iterator[Node]:
-    """One node for each number of cases too few or too many, since a share hangs on nothing else."""
+def _several(part_number: int, posed: Posed) -> Iterator[Node]:
+    """Return one node for each number of cases too few or too many: the share depends on nothing else."""
     right = right_cases(posed)
     listed = ",".join(map(text, right))
-    chosen = f"ans{place}"
+    chosen = f"ans{part_number}"
     score = f"(2*length(sublist({chosen},lambda([c],member(c,[{listed}]))))-length({chosen}))"
     for count in range(len(right), 0, -1):
 
-        def holds(answer: object, own: Mapping[int, float], count: int = count) -> bool:
+        def holds(answer: object, answers: Mapping[int, float], count: int = count) -> bool:
             chosen = set(answer) if isinstance(answer, (list, tuple, set)) else set()
             return 2 * len(chosen & set(right)) - len(chosen) == count
 
@@ -275,13 +303,13 @@ def _several(place: int, posed: Posed) -> Iterator[Node]:
         yield Node(f"is({score}={count})", holds, count / len(right), verdict=verdict)
 
 
-def case_name(posed: Posed, place: int) -> str:
-    """What a case is called in answers: its letter, as printed, else its number."""
-    return posed.options[place].letter or str(place + 1)
+def case_name(posed: Posed, part_number: int) -> str:
+    """Return the name of a case in answers: its printed letter, else its number."""
+    return posed.options[part_number].letter or str(part_number + 1)
 
 
 def right_cases(posed: Posed) -> tuple[str, ...]:
-    """The cases that a right answer names."""
+    """Return the cases of a right answer."""
     least = 1.0 if posed.kind == CHOICE else 0.0
     return tuple(
         case_name(posed, at)

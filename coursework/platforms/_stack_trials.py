@@ -1,4 +1,4 @@
-"""Trials that a question of STACK carries: answers, and what each is to be worth, so that it proves itself there."""
+"""Self-tests of a STACK question: answers with the expected marks."""
 
 from __future__ import annotations
 
@@ -19,26 +19,29 @@ _OFF = 1.3  #: by how much the first answer is wrong that the others follow from
 class Trial:
     """Answers to a whole variant."""
 
-    says: str
+    message: str
     answers: Mapping[int, Any]  #: by the number of the question
     expected: Mapping[int, tuple[float, int]]  #: by the same: share, and the node that gives it
 
 
 def trials(variant: Variant, trees: Sequence[Tree]) -> Iterator[Trial]:
-    """All right; each part wrong in its first, second and third way; one wrong answer and a right method after it."""
+    """Return the self-tests: all right; each part wrong in three ways; one wrong answer followed by a right
+    method."""
     if not trees:
         return
-    yield _trial("all answers right", trees, {tree.place: _right(tree) for tree in trees})
-    for way in range(_WRONG):
-        answers = {tree.place: _wrong(tree, way) for tree in trees}
-        yield _trial(f"a known error in each answer, number {way + 1}", trees, answers)
+    yield _trial("all answers right", trees, {tree.part_number: _right(tree) for tree in trees})
+    for variation in range(_WRONG):
+        answers = {tree.part_number: _wrong(tree, variation) for tree in trees}
+        yield _trial(f"a known error in each answer, number {variation + 1}", trees, answers)
     if any(tree.following for tree in trees):
         yield _trial("one wrong answer, and a right method from it on", trees, _followed(variant, trees))
 
 
-def _trial(says: str, trees: Sequence[Tree], answers: Mapping[int, Any]) -> Trial:
-    own = {place: float(value) for place, value in answers.items() if isinstance(value, (float, int))}
-    return Trial(says, answers, {tree.place: tree.share(answers[tree.place], own) for tree in trees})
+def _trial(message: str, trees: Sequence[Tree], answers: Mapping[int, Any]) -> Trial:
+    numbers = {number: float(value) for number, value in answers.items() if isinstance(value, (float, int))}
+    return Trial(
+        message, answers, {tree.part_number: tree.share(answers[tree.part_number], numbers) for tree in trees}
+    )
 
 
 def _right(tree: Tree) -> Any:
@@ -48,27 +51,29 @@ def _right(tree: Tree) -> Any:
     return names if tree.posed.kind == CHOICES else names[0]
 
 
-def _wrong(tree: Tree, way: int) -> Any:
+def _wrong(tree: Tree, variation: int) -> Any:
     posed = tree.posed
     if posed.kind == NUMBER:
-        wrong = [one.value for one in posed.intervals if not one.is_right and not one.turns]
-        return wrong[way] if way < len(wrong) else posed.intervals[0].value
+        wrong = [
+            interval.value for interval in posed.intervals if not interval.is_right and not interval.turns
+        ]
+        return wrong[variation] if variation < len(wrong) else posed.intervals[0].value
     wrong_ones = [case_name(posed, at) for at, option in enumerate(posed.options) if option.share < 1]
     if posed.kind == CHOICE:
-        return wrong_ones[way % len(wrong_ones)] if wrong_ones else _right(tree)
-    return _right(tree)[way:] or _right(tree)
+        return wrong_ones[variation % len(wrong_ones)] if wrong_ones else _right(tree)
+    return _right(tree)[variation:] or _right(tree)
 
 
 def _followed(variant: Variant, trees: Sequence[Tree]) -> dict[int, Any]:
-    """The first answer that others follow from is wrong; those that follow do so."""
-    first = min(place for tree in trees if tree.following for place in tree.following.earlier)
+    """Return the test with a wrong first answer and later answers that follow from it."""
+    first = min(number for tree in trees if tree.following for number in tree.following.earlier)
     answers: dict[int, Any] = {}
     for tree in trees:
-        answers[tree.place] = _right(tree)
-        if tree.place == first:
+        answers[tree.part_number] = _right(tree)
+        if tree.part_number == first:
             answers[first] = answers[first] * _OFF
         elif tree.following:
-            own = {place: answers[place] for place in tree.following.earlier if place in answers}
-            value = follows(variant, variant.parts[tree.place - 1], own)
-            answers[tree.place] = answers[tree.place] if value is None else value
+            numbers = {number: answers[number] for number in tree.following.earlier if number in answers}
+            value = follows(variant, variant.parts[tree.part_number - 1], numbers)
+            answers[tree.part_number] = answers[tree.part_number] if value is None else value
     return answers

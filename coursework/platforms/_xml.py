@@ -1,4 +1,4 @@
-"""XML of the standard library that says anything."""
+"""XML of the standard library, for any text."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ _UNSAYABLE = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff
 
 
 def below(parent: ET.Element, tag: str, text: str = "", **attributes: str) -> ET.Element:
-    """A new element at a parent's end, with its text."""
-    found = ET.SubElement(parent, tag, {name: sayable(value) for name, value in attributes.items()})
-    found.text = sayable(text) or None
-    return found
+    """Add a child element with its text, and return it."""
+    element = ET.SubElement(parent, tag, {name: sayable(value) for name, value in attributes.items()})
+    element.text = sayable(text) or None
+    return element
 
 
 def sayable(text: str) -> str:
-    """The same without the characters that no XML may hold."""
+    """Return the text without the characters that XML forbids."""
     return _UNSAYABLE.sub("", text)
 
 
 def xml_bytes(root: ET.Element) -> bytes:
-    """A document, a line an element where that changes no text."""
+    """Return a document, with one element per line if that changes no text."""
     ET.indent(root)
-    made: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
-    return made + b"\n"
+    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return data + b"\n"

@@ -1,4 +1,4 @@
-"""Canvas: a quiz of QTI 1.2, where each question of each variant is a question of a group of its own."""
+"""Canvas: a quiz in QTI 1.2, with a group for each question."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import ClassVar
 from xml.etree import ElementTree as ET
 
 from coursework.language.words import words
-from coursework.platforms._canvas_groups import Group, groups, left_out
+from coursework.platforms._canvas_groups import QuestionGroup, groups, left_out
 from coursework.platforms._canvas_questions import FOLDER, Questions, identified
 from coursework.platforms._xml import below, xml_bytes
 from coursework.platforms.items import Pool
@@ -30,7 +30,7 @@ _TEST, _BESIDE, _CONTENT = (
 
 
 class Canvas(Platform):
-    """A package a language: ``canvas.LANG.zip``."""
+    """Export for Canvas, one package per language: ``canvas.LANG.zip``."""
 
     name: ClassVar[str] = "canvas"
 
@@ -38,16 +38,16 @@ class Canvas(Platform):
         yield File(Path(f"canvas.{pool.lang}.zip"), partial(_package, pool))
 
     def losses(self, pool: Pool) -> Iterable[Loss]:
-        said = words(pool.lang)["platforms"]["canvas"]
+        texts = words(pool.lang)["platforms"]["canvas"]
         for section in pool.sections:
             for group in groups(section):
                 if group.is_scaled:
-                    instead = said["scaled"].format(unit=group.unit, asked=group.question.unit or "1")
+                    instead = texts["scaled"].format(unit=group.unit, asked=group.question.unit or "1")
                     yield Loss(section.exercise, group.part, "tolerance", instead)
                 elif group.is_coarse:
-                    yield Loss(section.exercise, group.part, "tolerance", said["coarse"])
+                    yield Loss(section.exercise, group.part, "tolerance", texts["coarse"])
             for part, count in left_out(section).items():
-                yield Loss(section.exercise, part, "one_variant", said["left_out"].format(count=count))
+                yield Loss(section.exercise, part, "one_variant", texts["left_out"].format(count=count))
 
 
 def _package(pool: Pool) -> bytes:
@@ -62,33 +62,33 @@ def _package(pool: Pool) -> bytes:
 
 
 def _test(pool: Pool, quiz: str) -> tuple[bytes, list[Image]]:
-    """The quiz: a group for each question of each exercise, of which a student gets one."""
+    """Return the quiz: a group for each question of each exercise, from which a student gets one."""
     root = ET.Element("questestinterop", xmlns=_QTI)
     test = below(root, "assessment", ident=quiz, title=pool.title)
     top = below(test, "section", ident="root_section")
-    made = Questions(pool)
+    questions = Questions(pool)
     for section in pool.sections:
         for group in groups(section):
-            place = _group(top, pool, group, section.title)
-            for asked in group.asked:
-                made.add(place, asked, group)
-    return xml_bytes(root), made.images
+            group_element = _group(top, pool, group, section.title)
+            for variant_question in group.asked:
+                questions.add(group_element, variant_question, group)
+    return xml_bytes(root), questions.images
 
 
-def _group(parent: ET.Element, pool: Pool, group: Group, title: str) -> ET.Element:
+def _group(parent: ET.Element, pool: Pool, group: QuestionGroup, title: str) -> ET.Element:
     ident = identified("group", pool.name, pool.lang, group.exercise, str(group.number))
-    place = below(parent, "section", ident=ident, title=f"{title} · {group.number}")
-    selection = below(below(place, "selection_ordering"), "selection")
+    element = below(parent, "section", ident=ident, title=f"{title} · {group.number}")
+    selection = below(below(element, "selection_ordering"), "selection")
     below(selection, "selection_number", "1")
     below(below(selection, "selection_extension"), "points_per_item", f"{group.points:g}")
-    return place
+    return element
 
 
 def _settings(pool: Pool, quiz: str) -> bytes:
-    """What Canvas is to do with the quiz: one attempt, nothing shuffled, not published yet."""
+    """Return the settings of the quiz: one attempt, no shuffling, not published yet."""
     root = ET.Element("quiz", xmlns=_META, identifier=quiz)
     points = sum(group.points for section in pool.sections for group in groups(section))
-    told = {
+    fields = {
         "title": pool.title,
         "description": f"<p>{words(pool.lang)['platforms']['canvas']['how']}</p>",
         "shuffle_answers": "false",
@@ -100,30 +100,30 @@ def _settings(pool: Pool, quiz: str) -> bytes:
         "one_question_at_a_time": "false",
         "available": "false",
     }
-    for name, value in told.items():
+    for name, value in fields.items():
         below(root, name, value)
     return xml_bytes(root)
 
 
 def _manifest(quiz: str, images: Iterable[Image]) -> bytes:
     root = ET.Element("manifest", xmlns=_MANIFEST, identifier=f"{quiz}_manifest")
-    told = below(root, "metadata")
-    below(told, "schema", "IMS Content")
-    below(told, "schemaversion", "1.1.3")
+    metadata = below(root, "metadata")
+    below(metadata, "schema", "IMS Content")
+    below(metadata, "schemaversion", "1.1.3")
     below(root, "organizations")
     resources = below(root, "resources")
     test = below(resources, "resource", identifier=quiz, type=_TEST)
     below(test, "file", href=f"{quiz}/{quiz}.xml")
     below(test, "dependency", identifierref=f"{quiz}_meta")
     meta = f"{quiz}/assessment_meta.xml"
-    beside = below(resources, "resource", identifier=f"{quiz}_meta", type=_BESIDE, href=meta)
-    below(beside, "file", href=meta)
+    resource = below(resources, "resource", identifier=f"{quiz}_meta", type=_BESIDE, href=meta)
+    below(resource, "file", href=meta)
     for image in images:
         href = f"{FOLDER}/{image.name}"
-        one = below(
+        image_resource = below(
             resources, "resource", identifier=identified("file", image.name), type=_CONTENT, href=href
         )
-        below(one, "file", href=href)
+        below(image_resource, "file", href=href)
     return xml_bytes(root)
 
 

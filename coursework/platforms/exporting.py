@@ -1,4 +1,5 @@
-"""An export: the files of a platform, what was issued, what is lost, and how to import it. It holds answers: the staff's half."""
+"""Export for a platform: its files, the record of the pool, the losses, and the steps of the import. It
+contains answers and is for the staff."""
 
 from __future__ import annotations
 
@@ -12,14 +13,14 @@ from coursework.making.issued import issued_content
 from coursework.making.roster import Student
 from coursework.platforms.losses import COLUMNS, Loss, losses
 from coursework.platforms.platform import Platform
-from coursework.platforms.pools import Drawn
+from coursework.platforms.pools import DrawnPool
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
 from coursework.system.writing import File
 
 
 @dataclass(frozen=True)
 class Export:
-    """What is written, and what is lost."""
+    """Files and losses of an export."""
 
     files: tuple[File, ...]
     lost: tuple[Loss, ...]
@@ -27,26 +28,28 @@ class Export:
 
 def export(
     platform: Platform,
-    drawn: Drawn,
+    drawn: DrawnPool,
     students: Sequence[Student] = (),
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
 ) -> Export:
-    """The files of an export, in every language of the pool; ``students`` are those whom the way back will know."""
+    """Return the files of an export, in every language of the pool; ``students`` are those whose marks may
+    come back."""
     pools = [drawn.pool(lang) for lang in drawn.langs]
     lost = {
         (loss.exercise, loss.part, loss.feature): loss
         for pool in reversed(pools)
         for loss in losses(pool, platform.name, platform.losses(pool))
     }
-    made = [file for pool in pools for file in platform.files(pool)]
+    files = [file for pool in pools for file in platform.files(pool)]
     return Export(
-        (*made, *_beside(platform, drawn, students, tuple(lost.values()), spreadsheet)), tuple(lost.values())
+        (*files, *_common_files(platform, drawn, students, tuple(lost.values()), spreadsheet)),
+        tuple(lost.values()),
     )
 
 
-def _beside(
+def _common_files(
     platform: Platform,
-    drawn: Drawn,
+    drawn: DrawnPool,
     students: Sequence[Student],
     lost: Sequence[Loss],
     spreadsheet: Spreadsheet,
@@ -56,13 +59,14 @@ def _beside(
     yield File(Path("issued.json"), lambda: json_text(issued).encode("utf-8"))
     rows = [loss.row(lang) for loss in lost]
     yield File(Path("lost.csv"), lambda: csv_file(rows, COLUMNS, spreadsheet))
-    for one in drawn.langs:
-        text = steps(platform.name, one)
-        yield File(Path(f"IMPORT.{one}.txt"), text.encode, anywhere=False)
+    for code in drawn.langs:
+        text = steps(platform.name, code)
+        yield File(Path(f"IMPORT.{code}.txt"), text.encode, anywhere=False)
 
 
-def pool_content(drawn: Drawn, students: Sequence[Student]) -> dict[str, Any]:
-    """What ``issued.json`` says of a pool: records that belong to nobody, and whom the platform may deal them to."""
+def pool_content(drawn: DrawnPool, students: Sequence[Student]) -> dict[str, Any]:
+    """Return the ``issued.json`` of a pool: records without owner, and the students to whom the platform may
+    give them."""
     content = issued_content(drawn.issues, drawn.assignment, drawn.secret)
     columns = {student.name: dict(student.columns) for student in students}
     return {
@@ -74,6 +78,6 @@ def pool_content(drawn: Drawn, students: Sequence[Student]) -> dict[str, Any]:
 
 
 def steps(platform: str, lang: str) -> str:
-    """How the files of a platform are imported, a step a line."""
-    told = words(lang)["platforms"]["steps"][platform]
-    return "".join(f"{place}. {step}\n" for place, step in enumerate(told, start=1))
+    """Return the steps of the import, one per line."""
+    sentences = words(lang)["platforms"]["steps"][platform]
+    return "".join(f"{number}. {step}\n" for number, step in enumerate(sentences, start=1))

@@ -1,8 +1,8 @@
-"""Gradescope: an autograder that marks against what a build has issued.
+"""Gradescope: an autograder that marks against the record of a build.
 
-Gradescope hands nothing out: sheets are built, and ``coursework export gradescope`` writes the zip that marks what comes back, of
-that build's ``issued.json``, or of what the build of the same exercises and roster issues. It holds this package as it is, the course, and ``issued.json``; no answer, though whoever has it can
-compute them.
+Gradescope hands nothing out: sheets are built, and ``coursework export gradescope`` writes the zip that marks
+submissions by that build's ``issued.json``, or by that of a build of the same exercises and roster. The zip
+has this package, the course and ``issued.json``; it has no answers, but its owner can compute them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from coursework.system.tables import json_text
 from coursework.system.writing import File
 from coursework.system.zips import zipped
 
-#: What marking needs; what prints sheets is left out. Each is among the package's own requirements.
+#: Requirements of marking, without those of printing; a subset of the package's own.
 REQUIREMENTS = (
     "jinja2>=3.1.6,<4", "markdown-it-py>=3.0,<5", "mdit-py-plugins>=0.4,<0.8", "numpy>=1.26,<3", "scipy>=1.11,<2",
 )  # fmt: skip
@@ -73,7 +73,8 @@ fi
 
 
 class Gradescope(Platform):
-    """The autograder is of a build, not of a pool: who has which variant is known when it marks."""
+    """Export for Gradescope, made from a build and not from a pool: the record gives each student's
+    variant."""
 
     name = "gradescope"
     deals = False
@@ -85,19 +86,19 @@ class Gradescope(Platform):
         )
 
     def autograder(self, folder: Folder, data: bytes, source: str) -> Iterator[File]:
-        """The zip for what was issued, ``data`` of an ``issued.json`` as its ``source`` holds it, and how it is put up.
+        """Return the zip and its instructions for ``data``, the bytes of an ``issued.json`` from ``source``.
 
         Raises
         ------
         BadInput
-            The file is not what ``build`` writes, or the course has no solutions to mark with.
+            The file was not written by ``build``, or the course has no solutions to mark with.
         """
         issued = Issued.of(data, source)
         if not folder.has_solutions:
             raise BadInput(f"{folder.label} has no solutions: it cannot mark")
         lang = next(str(record.get("lang", "fr")) for record in issued.records.values())
         content = json_of(data, source)
-        if SECRET in content:  # whoever only marks needs none
+        if SECRET in content:  # marking needs none
             data = json_text(without_secret(content)).encode("utf-8")
         yield File(Path("autograder.zip"), partial(_zip, folder, data, lang))
         yield File(Path(f"IMPORT.{lang}.txt"), lambda: _steps(issued, lang).encode("utf-8"))
@@ -107,7 +108,7 @@ PLATFORM = Gradescope()
 
 
 def points_of(issued: Issued) -> float:
-    """What a submission is out of: the points of one variant of each exercise."""
+    """Return the possible points of a submission: those of one variant of each exercise."""
     worth = {
         exercise: sum(p["points"] for p in record["parts"])
         for (exercise, _), record in issued.records.items()
@@ -116,18 +117,20 @@ def points_of(issued: Issued) -> float:
 
 
 def _steps(issued: Issued, lang: str) -> str:
-    told = words(lang)["platforms"]["steps"]["gradescope"]
+    sentences = words(lang)["platforms"]["steps"]["gradescope"]
     points = f"{points_of(issued):g}"
-    return "".join(f"{place}. {step.format(points=points)}\n" for place, step in enumerate(told, start=1))
+    return "".join(
+        f"{number}. {step.format(points=points)}\n" for number, step in enumerate(sentences, start=1)
+    )
 
 
 # ---------------------------------------------------------------------------- zip
 
 
 def _zip(folder: Folder, issued: bytes, lang: str) -> bytes:
-    own = folder.root != builtin_root().resolve()
-    requirements = " ".join(f"'{one}'" for one in REQUIREMENTS)
-    settings = {"course": "course" if own else "", "lang": lang}
+    is_own_course = folder.root != builtin_root().resolve()
+    requirements = " ".join(f"'{requirement}'" for requirement in REQUIREMENTS)
+    settings = {"course": "course" if is_own_course else "", "lang": lang}
     files = {
         "setup.sh": _SETUP.format(requirements=requirements).encode(),
         "run_autograder": _RUN.format(stopped=_stopped(lang)).encode(),
@@ -136,25 +139,28 @@ def _zip(folder: Folder, issued: bytes, lang: str) -> bytes:
     }
     package = Path(__file__).parents[1]
     files |= _below("coursework", package, _files(package, skip="_course"))
-    for name, root in (("coursework/_course", builtin_root()), *((("course", folder.root),) if own else ())):
+    for name, root in (
+        ("coursework/_course", builtin_root()),
+        *((("course", folder.root),) if is_own_course else ()),
+    ):
         for kind in _COURSE:
             files |= _below(name, root, _files(root / kind))
     return zipped(files, programs=("setup.sh", "run_autograder"))
 
 
 def _below(name: str, root: Path, paths: Iterable[Path]) -> dict[str, bytes]:
-    """Files of a folder, by what they are called in the archive."""
+    """Return the files of a folder by their path in the archive."""
     return {f"{name}/{path.relative_to(root).as_posix()}": path.read_bytes() for path in paths}
 
 
 def _stopped(lang: str) -> str:
-    """What stands where the marking was stopped from outside."""
-    told: dict[str, Any] = {"score": 0, "output": words(lang)["gradescope"]["stopped"], "tests": []}
-    return json.dumps(told, ensure_ascii=True)
+    """Return the result for a marking that was stopped from outside."""
+    result: dict[str, Any] = {"score": 0, "output": words(lang)["gradescope"]["stopped"], "tests": []}
+    return json.dumps(result, ensure_ascii=True)
 
 
 def _files(folder: Path, skip: str = "") -> Iterable[Path]:
-    """The files below a folder, in order, without what Python leaves there."""
+    """Return the files below a folder, in order, without Python's caches."""
     return sorted(
         path
         for path in folder.rglob("*")

@@ -1,4 +1,4 @@
-"""Items: a variant in a language, as a platform poses it, and the pool of them that it draws from."""
+"""Items: variants in a language as a platform presents them, and the pool from which it draws."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SEPARATOR = " · "
 
 @dataclass(frozen=True)
 class Item:
-    """One variant in one language."""
+    """Variant in one language."""
 
     handout: Handout
     questions: tuple[Posed, ...]
@@ -27,16 +27,17 @@ class Item:
 
     @property
     def label(self) -> str:
-        """What the platform's reports tell the variant by: it stands in the text that students read."""
+        """Return the label of the variant in the platform's reports, printed in the text for students."""
         return f"[{variant_code(self.handout)}{SEPARATOR}{self.handout.lang}]"
 
     def label_of(self, part: str) -> str:
-        """The same of one part, where a platform asks each part as a question of its own."""
+        """Return the label of one part, for platforms that present each part as a question."""
         return f"{self.label[:-1]}{SEPARATOR}{part}]"
 
     @property
     def identifier(self) -> str:
-        """The same for the same variant in the same pool, however often it is exported: letters, digits, ``-``, ``_``, ``.``."""
+        """Return the identifier of the variant in its pool, the same at every export: letters, digits, ``-``,
+        ``_``, ``.``."""
         sheet = self.handout
         return f"{self.pool}.{sheet.exercise}.v{sheet.version}.{sheet.seed}.{sheet.lang}"
 
@@ -46,8 +47,8 @@ class Item:
 
 
 @dataclass(frozen=True)
-class Section:
-    """The variants of one exercise, of which each student gets one: they ask the same parts."""
+class PoolSection:
+    """Variants of one exercise with the same parts, of which each student gets one."""
 
     exercise: str
     title: str  #: plain text
@@ -60,12 +61,12 @@ class Section:
 
 @dataclass(frozen=True)
 class Pool:
-    """What a platform is handed, in one language."""
+    """Content for a platform, in one language."""
 
     name: str  #: letters, digits, ``-`` and ``_``
     title: str  #: plain text
     lang: str
-    sections: tuple[Section, ...]
+    sections: tuple[PoolSection, ...]
     issues: tuple[Issue, ...]  #: the variants, which belong to nobody
     folders: tuple[Path, ...]  #: of templates
     course: Path  #: the course's folder
@@ -81,13 +82,13 @@ class Pool:
 
 
 def item(variant: Variant, pool: str) -> Item:
-    """A variant as a platform poses it."""
+    """Return a variant as a platform presents it."""
     sheet = handout(variant)
-    asked = zip(sheet.questions, variant.parts, strict=True)
-    return Item(sheet, tuple(posed(variant, question, part) for question, part in asked), pool)
+    pairs = zip(sheet.questions, variant.parts, strict=True)
+    return Item(sheet, tuple(posed(variant, question, part) for question, part in pairs), pool)
 
 
-def section(variants: Sequence[Variant], pool: str) -> Section:
-    """The section of the variants of an exercise, all in one language."""
+def section(variants: Sequence[Variant], pool: str) -> PoolSection:
+    """Return the section of the variants of an exercise, in one language."""
     items = tuple(item(variant, pool) for variant in variants)
-    return Section(items[0].handout.exercise, items[0].handout.title, items)
+    return PoolSection(items[0].handout.exercise, items[0].handout.title, items)

@@ -1,6 +1,6 @@
-"""What a platform does not do with a question that our marking does, and what it does instead.
+"""Losses of a platform: the features of our marking that it lacks, and its behaviour instead.
 
-The words for it, ``[platforms.lost.NAME]`` of each language, are the table: a feature that a platform has no word for is kept.
+The table is in ``[platforms.lost.NAME]`` of each language; a feature without an entry is supported.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ _OF_JUDGED = (
     "partial",
     "counted_once",
 )
-#: What every pool has: a variant for each student, all of its questions together; our marks of another try.
+#: Features of every pool: one variant per student with all of its questions; marks of a second attempt.
 _OF_POOLS = ("one_variant", "corrected")
 
 
 class Loss(NamedTuple):
-    """What is lost of a part, or of a whole exercise, where the part is empty."""
+    """Loss of a part, or of an exercise if the part is empty."""
 
     exercise: str
     part: str
     feature: str  #: a key of ``[platforms.features]``
-    instead: str  #: what the platform does, in words
+    instead: str  #: the platform's behaviour, in words
 
     def row(self, lang: str) -> dict[str, str]:
-        """A line of ``lost.csv``."""
+        """Return the row of ``lost.csv``."""
         return {**self._asdict(), "feature": feature_words(self.feature, lang)}
 
 
 def feature_words(feature: str, lang: str) -> str:
-    """What a feature is called."""
+    """Return the name of a feature."""
     features = words(lang)["platforms"]["features"]
     if feature not in features:
         raise BadCourse(f"no words for the feature {feature!r}; there is: {', '.join(features)}")
@@ -52,22 +52,23 @@ def feature_words(feature: str, lang: str) -> str:
 
 
 def lost_words(platform: str, lang: str) -> Mapping[str, str]:
-    """What a platform does instead, by feature; one platform may say that it does as another."""
+    """Return a platform's behaviour by feature; a platform may refer to another's."""
     table = words(lang)["platforms"]["lost"]
-    found: Mapping[str, str] | str = table[platform]
-    return table[found] if isinstance(found, str) else found
+    texts: Mapping[str, str] | str = table[platform]
+    return table[texts] if isinstance(texts, str) else texts
 
 
 def losses(pool: Pool, platform: str, more: Iterable[Loss] = ()) -> list[Loss]:
-    """Everything that a platform does not keep of a pool, a line a part and feature; ``more`` is what its files alone tell."""
+    """Return all losses of a pool, one per part and feature; ``more`` are those that the platform itself
+    finds."""
     lost = lost_words(platform, pool.lang)
-    found = {
+    by_feature = {
         (exercise, part, feature): Loss(exercise, part, feature, str(lost[feature]))
         for exercise, part, feature in _features(pool)
         if feature in lost
     }
-    found |= {(loss.exercise, loss.part, loss.feature): loss for loss in more}
-    return list(found.values())
+    by_feature |= {(loss.exercise, loss.part, loss.feature): loss for loss in more}
+    return list(by_feature.values())
 
 
 def _features(pool: Pool) -> Iterator[tuple[str, str, str]]:
@@ -83,13 +84,16 @@ def _features(pool: Pool) -> Iterator[tuple[str, str, str]]:
                         yield section.exercise, posed.question.id, feature
 
 
-def told(lost: Sequence[Loss], lang: str) -> Iterator[str]:
-    """One plain line a feature: of how many parts of how many exercises it is lost, and what happens instead."""
+def loss_lines(lost: Sequence[Loss], lang: str) -> Iterator[str]:
+    """Yield one line per feature: the number of parts and exercises concerned, and the behaviour instead."""
     by_feature: dict[tuple[str, str], list[Loss]] = {}
     for loss in lost:
         by_feature.setdefault((loss.feature, loss.instead), []).append(loss)
-    said = words(lang)["platforms"]
+    texts = words(lang)["platforms"]
     for (feature, instead), some in by_feature.items():
-        exercises, parts = {one.exercise for one in some}, [one for one in some if one.part]
-        where = said["where_parts" if parts else "where"].format(parts=len(parts), exercises=len(exercises))
-        yield said["line"].format(feature=feature_words(feature, lang), where=where, instead=instead)
+        exercises, parts = (
+            {lost_part.exercise for lost_part in some},
+            [lost_part for lost_part in some if lost_part.part],
+        )
+        where = texts["where_parts" if parts else "where"].format(parts=len(parts), exercises=len(exercises))
+        yield texts["line"].format(feature=feature_words(feature, lang), where=where, instead=instead)

@@ -1,7 +1,7 @@
-"""Moodle: a file of its XML, in it a category an exercise, in each a question a variant: a cloze that asks all parts.
+"""Moodle: an XML file with a category per exercise and a cloze question per variant, which asks all parts.
 
-The grammar of a cloze is Moodle's, ``{2:NUMERICAL:=238.437:2.39~%50%-238.437:2.39#what is said}``: the weight, the type, then
-answers, of which the first that fits counts. Before that, Moodle decodes the entities of each once.
+The syntax of a cloze is ``{2:NUMERICAL:=238.437:2.39~%50%-238.437:2.39#feedback}``: the weight, the type,
+then answers, of which the first match counts. Moodle first decodes the entities of each answer once.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from xml.dom.minidom import Document, Element
 from coursework.language.numbers import plain
 from coursework.language.words import words
 from coursework.platforms.items import Item, Pool
-from coursework.platforms.pieces import Image, Pieces, with_files
+from coursework.platforms.pieces import Image, PagePieces, with_files
 from coursework.platforms.platform import Platform
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval, Posed
 from coursework.system.writing import File
 
-_SHOWN = 6  #: figures of an answer, which students are shown
+_SHOWN = 6  #: figures of an answer shown to students
 _OFF = 1e-3  #: share of a half-width that rounding an answer may move it by
 _PERCENT = 7  #: decimals of a share, as many as Moodle keeps
-_FINEST = 1000  #: a weight is a whole number: of so many parts of a point at most
+_FINEST = 1000  #: weights are integers: the finest fraction of a point
 _ID = 100  #: characters of an ``idnumber``
-#: What a style sheet of ours does elsewhere: a figure as narrow as a telephone; a formula and its comma on one line.
+#: Inline style in place of our style sheet: figures that fit a telephone; a formula and its comma on one line.
 _STYLES = {
     "<img ": '<img style="max-width: 100%; height: auto" ',
     '<span class="kept">': '<span style="white-space: nowrap">',
 }
 _WIDE = {"wide": 30, "line": 50, "lines": 60}  #: characters that a box of such a question shows
-_BOX = "\N{OBJECT REPLACEMENT CHARACTER}"  #: where a box is to stand
+_BOX = "\N{OBJECT REPLACEMENT CHARACTER}"  #: placeholder of a box
 
 
 class Moodle(Platform):
@@ -49,8 +49,8 @@ PLATFORM = Moodle()
 
 
 def quiz(pool: Pool) -> bytes:
-    """The file that is imported."""
-    pieces = Pieces(pool.folders, pool.lang)
+    """Return the file to import."""
+    pieces = PagePieces(pool.folders, pool.lang)
     page = Document()
     root = _element(page, page, "quiz")
     for section in pool.sections:
@@ -61,29 +61,31 @@ def quiz(pool: Pool) -> bytes:
 
 
 def _category(root: Element, page: Document, names: Sequence[str]) -> None:
-    """The category of what follows; a slash in a name is written twice."""
+    """Return the category of the following questions; a slash in a name is doubled."""
     path = "/".join(("$course$", "top", *(name.replace("/", "//") for name in names)))
     _text(_element(_element(root, page, "question", type="category"), page, "category"), page, path)
 
 
-def _question(root: Element, page: Document, item: Item, pieces: Pieces) -> None:
+def _question(root: Element, page: Document, item: Item, pieces: PagePieces) -> None:
     html, images = _page(item, pieces)
     question = _element(root, page, "question", type="cloze")
     _text(_element(question, page, "name"), page, item.label[1:-1])
-    asked = _element(question, page, "questiontext", format="html")
-    _text(asked, page, html)
+    text_element = _element(question, page, "questiontext", format="html")
+    _text(text_element, page, html)
     for image in images:
         data = base64.b64encode(image.data).decode()
-        file = _element(asked, page, "file", name=image.name, path="/", encoding="base64")
+        file = _element(text_element, page, "file", name=image.name, path="/", encoding="base64")
         file.appendChild(page.createTextNode(data))
     _element(question, page, "idnumber").appendChild(page.createTextNode(_idnumber(item.identifier)))
 
 
-def _page(item: Item, pieces: Pieces) -> tuple[str, tuple[Image, ...]]:
-    """Statement and questions with their boxes, and the pictures that the statement shows."""
-    asked = (f'<div style="margin-top: 1em">{_asked(posed, pieces)}</div>' for posed in item.questions)
-    told = f'<div lang="{pieces.lang}">{pieces.opening(item)}{"".join(asked)}</div>'
-    html, images = with_files(told, "@@PLUGINFILE@@/{}")
+def _page(item: Item, pieces: PagePieces) -> tuple[str, tuple[Image, ...]]:
+    """Return statement and questions with their boxes, and the statement's pictures."""
+    questions = (
+        f'<div style="margin-top: 1em">{_question_html(posed, pieces)}</div>' for posed in item.questions
+    )
+    page_html = f'<div lang="{pieces.lang}">{pieces.opening(item)}{"".join(questions)}</div>'
+    html, images = with_files(page_html, "@@PLUGINFILE@@/{}")
     for plain_tag, styled in _STYLES.items():
         html = html.replace(plain_tag, styled)
     scale = _scale(posed.points for posed in item.questions)
@@ -92,13 +94,13 @@ def _page(item: Item, pieces: Pieces) -> tuple[str, tuple[Image, ...]]:
 
 
 def _filled(html: str, boxes: Iterable[str]) -> str:
-    """The boxes in their places; braces of the page itself open none."""
+    """Return the page with its boxes; braces of the page itself are escaped."""
     first, *rest = html.replace("{", "&#123;").replace("}", "&#125;").split(_BOX)
     return first + "".join(box + text for box, text in zip(boxes, rest, strict=True))
 
 
-def _asked(posed: Posed, pieces: Pieces) -> str:
-    """A question, with a mark where its box is to stand."""
+def _question_html(posed: Posed, pieces: PagePieces) -> str:
+    """Return a question with a placeholder for its box."""
     if posed.kind in (CHOICE, CHOICES):
         return f"{pieces.prompt(posed)}<div>{_BOX}</div>"
     return pieces.prompt(posed, box=_BOX)
@@ -107,39 +109,44 @@ def _asked(posed: Posed, pieces: Pieces) -> str:
 # --------------------------------------------------------------------------- cloze
 
 
-def _box(posed: Posed, weight: int, pieces: Pieces) -> str:
-    """A question's box, in the grammar of a cloze. What is collected weighs nothing: the quiz is out of what Moodle judges."""
+def _box(posed: Posed, weight: int, pieces: PagePieces) -> str:
+    """Return a question's box in cloze syntax. A collected answer has weight zero: the quiz counts the points
+    that Moodle judges."""
     if posed.kind == NUMBER:
-        return _cloze(weight, "NUMERICAL", (_number(one, pieces) for one in posed.intervals))
+        return _cloze(weight, "NUMERICAL", (_number(option, pieces) for option in posed.intervals))
     if posed.kind == COLLECTED:
-        return _cloze(0, "SHORTANSWER", _kept(posed, words(pieces.lang)["platforms"]["moodle"]))
+        return _cloze(0, "SHORTANSWER", _collected_answer(posed, words(pieces.lang)["platforms"]["moodle"]))
     kind = "MULTICHOICE_V" if posed.kind == CHOICE else "MULTIRESPONSE"
     answers = (
-        _answer(one.share, escaped(pieces.option(one)), one.says, pieces, whole=posed.kind == CHOICE)
-        for one in posed.options
+        _answer(
+            option.share, escaped(pieces.option(option)), option.message, pieces, is_full=posed.kind == CHOICE
+        )
+        for option in posed.options
     )
     return _cloze(weight, kind, answers)
 
 
-def _kept(posed: Posed, told: Mapping[str, str]) -> tuple[str, str]:
-    """What stands for a right answer that Moodle does not know, then whatever is written; the box is as wide as its longest."""
-    later = told["later"].ljust(_WIDE.get(posed.question.box, 0), "\N{NO-BREAK SPACE}")
-    return f"={escaped(later)}", f"%50%*#{escaped(told['kept'])}"
+def _collected_answer(posed: Posed, texts: Mapping[str, str]) -> tuple[str, str]:
+    """Return the right answer and the catch-all of a collected answer; the box is as wide as the longest
+    text."""
+    later = texts["later"].ljust(_WIDE.get(posed.question.box, 0), "\N{NO-BREAK SPACE}")
+    return f"={escaped(later)}", f"%50%*#{escaped(texts['kept'])}"
 
 
 def _cloze(weight: int, kind: str, answers: Iterable[str]) -> str:
     return f"{{{weight}:{kind}:{'~'.join(answers)}}}"
 
 
-def _number(interval: Interval, pieces: Pieces) -> str:
-    shown, margin = numerical(interval)
-    return _answer(interval.share, f"{shown}:{margin}", interval.says, pieces)
+def _number(interval: Interval, pieces: PagePieces) -> str:
+    text, margin = numerical(interval)
+    return _answer(interval.share, f"{text}:{margin}", interval.message, pieces)
 
 
-def _answer(share: float, answer: str, says: str, pieces: Pieces, *, whole: bool = True) -> str:
-    """One answer of a box: what it is worth, ``=`` for all where one answer earns the ``whole``; what is said of it."""
-    worth = "=" if whole and share == 1 else f"%{_percent(share)}%"
-    return f"{worth}{answer}#{escaped(pieces.inline(says))}" if says else worth + answer
+def _answer(share: float, answer: str, feedback: str, pieces: PagePieces, *, is_full: bool = True) -> str:
+    """Return one answer of a box with its share, ``=`` for the full share of a single answer, and its
+    feedback."""
+    worth = "=" if is_full and share == 1 else f"%{_percent(share)}%"
+    return f"{worth}{answer}#{escaped(pieces.inline(feedback))}" if feedback else worth + answer
 
 
 def _percent(share: float) -> str:
@@ -150,42 +157,43 @@ _MARKS = str.maketrans({"&": "&amp;", "}": "&#125;", "#": "&#35;", "~": "&#126;"
 
 
 def escaped(html: str) -> str:
-    """HTML as it stands within an answer of a cloze, which ends nowhere in it; Moodle decodes it once.
+    """Return HTML escaped for an answer of a cloze; Moodle decodes it once.
 
-    A backslash is written as HTML writes it: Moodle takes one away before ``}`` and ``#``.
+    A backslash is written as an entity: Moodle removes one before ``}`` and ``#``.
     """
     return html.replace("\\", "&#92;").translate(_MARKS)
 
 
 def numerical(interval: Interval) -> tuple[str, str]:
-    """The answer as students are shown it, six figures or as many as its margin needs, and the margin that holds the interval."""
+    """Return the answer as students see it, with six figures or as many as its margin needs, and the margin
+    around it that covers the interval."""
     half = (interval.high - interval.low) / 2
     if not half:
         return plain(interval.value), "0"
     step = min(
         _step(_OFF * half), max(_step(interval.value) * Decimal(10) ** (1 - _SHOWN), _step(_OFF**2 * half))
     )
-    shown = Decimal(interval.value).quantize(step)
-    reach = max(Decimal(interval.high) - shown, shown - Decimal(interval.low))
+    rounded = Decimal(interval.value).quantize(step)
+    reach = max(Decimal(interval.high) - rounded, rounded - Decimal(interval.low))
     margin = reach.quantize(_step(float(reach)) * Decimal(10) ** (1 - _SHOWN), ROUND_UP)
-    return _decimal(shown), _decimal(margin)
+    return _decimal(rounded), _decimal(margin)
 
 
 def _step(value: float) -> Decimal:
-    """The place of a number's first figure: 0.01 of 0.0238."""
+    """Return the place value of a number's first figure: 0.01 of 0.0238."""
     return Decimal(1).scaleb(Decimal(value).adjusted()) if value else Decimal(0)
 
 
 def _decimal(number: Decimal) -> str:
-    """A number without zeros at its end, and without exponent."""
+    """Return a decimal without trailing zeros and without exponent."""
     text = f"{number:f}"
     text = text.rstrip("0").rstrip(".") if "." in text else text
     return "0" if text in ("-0", "") else text
 
 
 def _scale(points: Iterable[float]) -> int:
-    """By how much points are multiplied to be weights, which are whole numbers."""
-    parts = [Fraction(one).limit_denominator(_FINEST).denominator for one in points]
+    """Return the factor that makes points whole-number weights."""
+    parts = [Fraction(value).limit_denominator(_FINEST).denominator for value in points]
     return min(math.lcm(*parts), _FINEST)
 
 
@@ -193,21 +201,21 @@ def _scale(points: Iterable[float]) -> int:
 
 
 def _element(parent: Element | Document, page: Document, tag: str, **marks: str) -> Element:
-    made = page.createElement(tag)
+    element = page.createElement(tag)
     for name, value in marks.items():
-        made.setAttribute(name, value)
-    parent.appendChild(made)
-    return made
+        element.setAttribute(name, value)
+    parent.appendChild(element)
+    return element
 
 
 def _text(parent: Element, page: Document, text: str) -> None:
-    """A text, in one piece: of one with entities Moodle loses the spaces between two of them."""
-    whole = text.replace("]]>", "]]&gt;")
-    _element(parent, page, "text").appendChild(page.createCDATASection(whole))
+    """Return a text as a single CDATA section: Moodle loses spaces between two entities otherwise."""
+    escaped_text = text.replace("]]>", "]]&gt;")
+    _element(parent, page, "text").appendChild(page.createCDATASection(escaped_text))
 
 
 def _idnumber(identifier: str) -> str:
-    """An identifier as long as Moodle takes it at most: its end stays, a digest tells what stood before."""
+    """Return an identifier of the length that Moodle allows: its end, after a digest of the rest."""
     if len(identifier) <= _ID:
         return identifier
     digest = hashlib.sha256(identifier.encode()).hexdigest()[:12]

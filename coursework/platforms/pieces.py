@@ -1,4 +1,5 @@
-"""Pieces of pages that platforms show: HTML that needs no style, no script and no network; formulas as MathML, figures as SVG."""
+"""Pieces of pages for platforms: HTML that needs no style, script or network; formulas as MathML, figures as
+SVG."""
 
 from __future__ import annotations
 
@@ -23,56 +24,58 @@ _ENDINGS = {"svg+xml": "svg", "png": "png", "jpeg": "jpg"}
 
 
 class Image(NamedTuple):
-    """A picture that a piece shows."""
+    """Picture of a piece."""
 
-    name: str  #: of the file; it hangs on what it holds
+    name: str  #: of the file; it depends on its content
     data: bytes
 
 
-class Pieces:
-    """Makes the pieces of a language through templates of these folders."""
+class PagePieces:
+    """Renderer of the pieces of a language, with the templates of these folders."""
 
     def __init__(self, folders: Sequence[Path], lang: str):
         self.folders, self.lang = tuple(folders), lang
         self._env = environment_of(self.folders, lang)
 
     def opening(self, item: Item, *, named: bool = True) -> str:
-        """All of an item before its questions: statement, figure, data, margins, and, where it is ``named``, its label."""
+        """Return the part of an item before its questions: statement, figure, data, margins, and, if
+        ``named``, its label."""
         names = views.context(item.handout)
         names |= {"label": item.label if named else "", "level": 4}
         return render(self._env, "_platform_opening.html.j2", names)
 
     def prompt(self, posed: Posed, *, box: str = "", numbered: bool = True) -> str:
-        """A question with the ``box`` (HTML) that is typed in: its symbol before it, its unit behind. What is collected says
-        what an answer looks like, and lists the options of a choice."""
+        """Return a question with its ``box`` (HTML), the symbol before it and the unit after it. A collected
+        question explains the form of its answer and lists the options of a choice."""
         names = {"question": posed.question, "box": box, "numbered": numbered, "words": words(self.lang)}
         names["listed"] = posed.kind == COLLECTED
         names["form"] = self._form(posed.question) if names["listed"] else ""
         return render(self._env, "_platform_question.html.j2", names)
 
     def _form(self, question: Question) -> str:
-        """The form of an answer, in words."""
+        """Return the form of an answer in words."""
         return str(words(self.lang)["hints"].get(question.kind, question.hint))
 
     def option(self, option: Option) -> str:
-        """An option as it is offered, with its letter, which reports tell it by."""
+        """Return an option with its letter, by which reports name it."""
         return render(self._env, "_platform_option.html.j2", {"option": option, "words": words(self.lang)})
 
     def style(self) -> str:
-        """What a platform that takes a style sheet is given for these pieces."""
+        """Return the style sheet of these pieces, for platforms that accept one."""
         return render(self._env, "_platform_style.css.j2", {})
 
     def inline(self, markdown: str) -> str:
-        """A line of Markdown as HTML."""
+        """Return a line of Markdown as HTML."""
         return render(self._env, "_platform_line.html.j2", {"line": markdown})
 
     def plain(self, markdown: str) -> str:
-        """A line of Markdown as plain text, for whatever shows no HTML."""
+        """Return a line of Markdown as plain text."""
         return plain_line(markdown, self.lang)
 
 
 def with_files(html: str, address: str = "{}") -> tuple[str, tuple[Image, ...]]:
-    """The same with its pictures as files: where each stood in the page, the ``address`` of its file stands, ``{}`` for its name."""
+    """Return the page with its pictures as files: ``address`` replaces each, with ``{}`` for the file's
+    name."""
     images: dict[str, Image] = {}
 
     def out(match: re.Match[str]) -> str:

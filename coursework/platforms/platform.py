@@ -1,4 +1,4 @@
-"""What every platform says of itself. A platform is a file of this room: its stem is the word by which it is asked for."""
+"""Interface of the platforms. Each platform is a file of this folder, and its stem is its name."""
 
 from __future__ import annotations
 
@@ -15,21 +15,23 @@ from coursework.system.writing import File
 
 
 class Platform(ABC):
-    """One platform, or one format that several read. A newcomer has a ``name``, writes files, and has its words in every
-    language: ``[platforms.lost.NAME]``, what it does instead of what it does not do, and ``[platforms.steps.NAME]``, how its
-    files are imported."""
+    """Platform, or a format that several platforms read.
+
+    A new one has a ``name``, writes files, and has its texts in every language: ``[platforms.lost.NAME]``,
+    its behaviour where it lacks a feature, and ``[platforms.steps.NAME]``, the steps of the import.
+    """
 
     name: ClassVar[str] = ""
     deals: ClassVar[bool] = (
-        True  #: it gives each student a variant of a pool; else it marks what was handed out by name
+        True  #: it draws a variant of a pool for each student; else it marks variants issued by name
     )
 
     @abstractmethod
     def files(self, pool: Pool) -> Iterator[File]:
-        """What the platform imports, of a pool in one language; paths are below the export's folder."""
+        """Yield the files to import, for a pool in one language; paths are below the export's folder."""
 
     def losses(self, pool: Pool) -> Iterable[Loss]:
-        """What is lost besides what the words of the platform say of every question: what hangs on a value."""
+        """Return further losses that depend on the pool's values."""
         return ()
 
 
@@ -39,7 +41,7 @@ _ENGINE = ("__init__", "exporting", "items", "losses", "pieces", "platform", "po
 
 
 def platforms() -> tuple[str, ...]:
-    """The names of the platforms there are."""
+    """Return the names of the platforms."""
     return tuple(
         sorted(
             path.stem
@@ -50,7 +52,7 @@ def platforms() -> tuple[str, ...]:
 
 
 def platform_of(name: str) -> Platform:
-    """The platform of a name.
+    """Return the platform of a name.
 
     Raises
     ------
@@ -60,5 +62,5 @@ def platform_of(name: str) -> Platform:
     if name not in platforms():
         raise unknown("platform", name, platforms())
     module = import_module(f"coursework.platforms.{name}")
-    found: Platform = module.PLATFORM
-    return found
+    platform: Platform = module.PLATFORM
+    return platform

@@ -1,4 +1,4 @@
-"""Pools: variants that a platform deals out, of exercises or of an assignment."""
+"""Pools: variants of exercises or of an assignment, from which a platform draws."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from coursework.markup.markdown import plain_line
 from coursework.platforms.items import Pool, section
 from coursework.rendering.renderer import renderer_of
 
-_TRIED = 24  #: variants that tell what most ask
-_USUAL = 1 / 3  #: of them that ask the same at least, where a pool is of those
+_TRIED = 24  #: variants in the sample that finds the most frequent parts
+_USUAL = 1 / 3  #: least share of them with the same parts, if the pool uses those parts
 
 T = TypeVar("T", bound=Any)
 
 
-class Drawn:
-    """The variants of a pool, drawn once and posed in each language."""
+class DrawnPool:
+    """Variants of a pool, drawn once and presented in each language."""
 
     def __init__(
         self,
         course: Course[Any],
-        asked: Sequence[AskedExercise],
+        exercises: Sequence[AskedExercise],
         count: int,
         *,
         first_seed: int = 0,
@@ -42,44 +42,57 @@ class Drawn:
         assignment: Assignment | None = None,
         secret: Secret | None = None,
     ):
-        #: Kept in ``issued.json`` where the assignment's file has none.
+        #: Stored in ``issued.json`` if the assignment's file has none.
         self.secret = secret if assignment and assignment.secret is None else None
-        own = assignment.secret or secret if assignment else None
-        self._key = keyed(own, assignment) if assignment and own else None
+        own_secret = assignment.secret or secret if assignment else None
+        self._key = keyed(own_secret, assignment) if assignment and own_secret else None
         self.course, self.assignment, self.langs = course, assignment, tuple(langs)
-        for exercise in asked:
+        for exercise in exercises:
             _check_languages(course[exercise.name], langs)
-        self.variants = [self._drawn(course[one.name], one, count, first_seed) for one in asked]
+        self.variants = [
+            self._drawn(course[asked_exercise.name], asked_exercise, count, first_seed)
+            for asked_exercise in exercises
+        ]
 
     @property
     def name(self) -> str:
-        """What identifiers begin with."""
-        told = self.assignment.name if self.assignment else "coursework"
-        return re.sub(r"[^A-Za-z0-9_-]+", "-", told).strip("-") or "coursework"
+        """Return the prefix of the identifiers."""
+        label = self.assignment.name if self.assignment else "coursework"
+        return re.sub(r"[^A-Za-z0-9_-]+", "-", label).strip("-") or "coursework"
 
     def _drawn(
-        self, exercise: CourseExercise[Any], asked: AskedExercise, count: int, first_seed: int
+        self, exercise: CourseExercise[Any], asked_exercise: AskedExercise, count: int, first_seed: int
     ) -> list[Any]:
-        """Variants that ask the same parts, all different while there are such."""
+        """Return variants that ask the same parts, all different while such variants last."""
         lang = self.langs[0]
-        if asked.seed is not None:
-            found: list[Any] = [exercise.variant(asked.seed, lang, asked.parts, self._key)]
+        if asked_exercise.seed is not None:
+            variants: list[Any] = [
+                exercise.variant(asked_exercise.seed, lang, asked_exercise.parts, self._key)
+            ]
         else:
-            fits = alike(exercise, first_seed, asked.parts)
+            fits = alike(exercise, first_seed, asked_exercise.parts)
             if self.assignment is None:
-                found = distinct_variants(exercise, first_seed, count, lang, parts=asked.parts, fits=fits)
-            else:
-                places = [f"pool {place}" for place in range(count)]
-                drawn, _ = drawn_by(
-                    self.assignment.name, exercise, places, lang, asked.parts, fits=fits, secret=self._key
+                variants = distinct_variants(
+                    exercise, first_seed, count, lang, parts=asked_exercise.parts, fits=fits
                 )
-                found = [drawn[place] for place in places]
-        try_judges(found[0].key)
-        return [with_points(variant, asked) for variant in found]
+            else:
+                places = [f"pool {index}" for index in range(count)]
+                drawn, _ = drawn_by(
+                    self.assignment.name,
+                    exercise,
+                    places,
+                    lang,
+                    asked_exercise.parts,
+                    fits=fits,
+                    secret=self._key,
+                )
+                variants = [drawn[index] for index in places]
+        try_judges(variants[0].key)
+        return [with_points(variant, asked_exercise) for variant in variants]
 
     @property
     def issues(self) -> tuple[Issue, ...]:
-        """Every variant, which belongs to nobody."""
+        """Return every variant, without owner."""
         return tuple(
             Issue("", variant, self.langs, f"{variant.seed:05d}")
             for variants in self.variants
@@ -87,7 +100,7 @@ class Drawn:
         )
 
     def pool(self, lang: str) -> Pool:
-        """The pool in a language."""
+        """Return the pool in a language."""
         sections = tuple(section([v.in_language(lang) for v in some], self.name) for some in self.variants)
         return Pool(
             self.name,
@@ -101,8 +114,8 @@ class Drawn:
         )
 
     def _title(self, lang: str) -> str:
-        told = text_in(self.assignment.title, lang) or self.assignment.name if self.assignment else ""
-        return told or plain_line(self.course.folder.title(lang), lang)
+        heading = text_in(self.assignment.title, lang) or self.assignment.name if self.assignment else ""
+        return heading or plain_line(self.course.folder.title(lang), lang)
 
 
 def of_exercises(
@@ -112,8 +125,8 @@ def of_exercises(
     first_seed: int,
     langs: Sequence[str],
     parts: Sequence[str] | None,
-) -> Drawn:
-    """A pool of exercises by name, from the first seed on.
+) -> DrawnPool:
+    """Return a pool of exercises by name, from the first seed on.
 
     Raises
     ------
@@ -121,8 +134,8 @@ def of_exercises(
         As :func:`coursework.making.issuing.issue`.
     """
     chosen = chosen_parts(course, names, parts)
-    asked = [AskedExercise(name, chosen[name]) for name in names]
-    return Drawn(course, asked, count, first_seed=first_seed, langs=langs)
+    exercises = [AskedExercise(name, chosen[name]) for name in names]
+    return DrawnPool(course, exercises, count, first_seed=first_seed, langs=langs)
 
 
 def of_assignment(
@@ -131,8 +144,9 @@ def of_assignment(
     count: int,
     langs: Sequence[str],
     secret: Secret | None = None,
-) -> Drawn:
-    """A pool of each exercise of an assignment; ``secret`` keys its draws where the assignment's file has none.
+) -> DrawnPool:
+    """Return a pool of each exercise of an assignment; ``secret`` keys its draws if the assignment's file has
+    none.
 
     Raises
     ------
@@ -141,13 +155,14 @@ def of_assignment(
     """
     if secret is None and assignment.secret is None:
         raise ValueError(f"{assignment.name} has no secret")
-    return Drawn(course, assignment.exercises, count, langs=langs, assignment=assignment, secret=secret)
+    return DrawnPool(course, assignment.exercises, count, langs=langs, assignment=assignment, secret=secret)
 
 
 def alike(
     exercise: CourseExercise[Any], first_seed: int, parts: Sequence[str] | None
 ) -> Callable[[Variant], bool]:
-    """Whether a variant may be of a pool: it asks what most ask; where variants ask this and that, it is worth what most are."""
+    """Return whether a variant fits the pool: it asks the most frequent parts, or has the most frequent
+    points if parts vary."""
     tried = [v for v in exercise.variants(range(first_seed, first_seed + _TRIED), None, parts) if v.parts]
     if not tried:
         raise BadInput(f"{exercise.name}: its variants ask none of the parts; name others, or none")
@@ -159,14 +174,14 @@ def alike(
 
 
 def _points(variant: Variant) -> tuple[float, int]:
-    """What a variant is worth, and in how many questions."""
+    """Return the points of a variant and its number of questions."""
     return sum(part.points for part in variant.parts), len(variant.parts)
 
 
-def _most_common(found: Iterable[T]) -> tuple[T, int]:
-    """What there is most of, the largest of several, and how much there is."""
-    counts = Counter(found)
-    most = max(counts, key=lambda one: (counts[one], one))
+def _most_common(values: Iterable[T]) -> tuple[T, int]:
+    """Return the most frequent value, the largest of several, and its count."""
+    counts = Counter(values)
+    most = max(counts, key=lambda value: (counts[value], value))
     return most, counts[most]
 
 

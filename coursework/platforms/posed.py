@@ -1,6 +1,6 @@
-"""What a platform can judge by itself: a question with its right answers and those that known errors give.
+"""Questions that a platform can judge: the right answers and those of known errors.
 
-An answer that a platform is to know is marked by the marker first: what it is worth, and what is said of it, are the mark's.
+The marker marks each of these answers first; its points and messages are those of the platform.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from coursework.sheets.sheet import Question
 NUMBER, CHOICE, CHOICES, COLLECTED = KINDS = ("number", "choice", "choices", "collected")
 _DIGITS = 4  #: of a wrong answer in the sentence about it
 _ALL_DIGITS = 9  #: of one that two errors may give, in the same place
-_SAME = 1e-9  #: of a value: what two ways to compute it may differ by
-_TURNS = (0, 1, -1)  #: whole turns more or fewer that an angle is written with
+_SAME = 1e-9  #: relative difference allowed between two computations of a value
+_TURNS = (0, 1, -1)  #: whole turns added to an angle
 
 
 @dataclass(frozen=True)
 class Interval:
-    """Numbers that are taken for one answer, in the part's unit; the ends belong to it."""
+    """Closed interval of numbers that count as one answer, in the part's unit."""
 
     low: float
     high: float
-    value: float  #: what the answer is, between them
+    value: float  #: the exact answer, between the ends
     share: float = 1.0  #: of the points
-    says: str = ""  #: Markdown; nothing of a right answer
+    message: str = ""  #: Markdown; empty for a right answer
     verdict: str = "correct"
-    turns: int = 0  #: whole turns from the value that the solution gives
+    turns: int = 0  #: whole turns from the solution's value
 
     @property
     def is_right(self) -> bool:
@@ -51,34 +51,35 @@ class Interval:
 
     @property
     def core(self) -> Interval:
-        """The answers that are what an error gives; those further out may be of another."""
+        """Return the part of the interval that belongs to this error for certain; further out it may belong
+        to another."""
         return replace(self, low=self.value - CLOSE * self.half, high=self.value + CLOSE * self.half)
 
 
 @dataclass(frozen=True)
 class Option:
-    """A case that is offered."""
+    """Option of a choice."""
 
     case: str
     letter: str  #: as printed before it; empty of a sheet that was issued without
     label: str  #: Markdown
-    share: float  #: of the points; of several that may be chosen, what this one adds or takes
-    says: str = ""  #: Markdown
+    share: float  #: of the points; in a multiple choice, the share that this option adds or subtracts
+    message: str = ""  #: Markdown
 
 
 @dataclass(frozen=True)
 class Posed:
-    """A question as a platform poses it. What is ``collected`` is kept as it was typed, and judged by nobody there."""
+    """Question as a platform presents it. A ``collected`` answer is stored as typed and not judged there."""
 
     question: Question
     kind: str  #: number, choice, choices, collected
     intervals: tuple[
         Interval, ...
-    ] = ()  #: the right ones first, then what errors give: the first that holds an answer counts
+    ] = ()  #: the right ones first, then those of errors: the first that contains an answer counts
     options: tuple[Option, ...] = ()  #: in the order printed
     features: frozenset[str] = (
         frozenset()
-    )  #: what our marking does with it, by the words of :mod:`~coursework.platforms.losses`
+    )  #: features of our marking, by the names of :mod:`~coursework.platforms.losses`
 
     @property
     def points(self) -> float:
@@ -86,7 +87,7 @@ class Posed:
 
 
 def posed(variant: Variant, question: Question, part: Part) -> Posed:
-    """A question of a variant's sheet, for a platform."""
+    """Return a question of a variant's sheet for a platform."""
     key = variant.key
     features = frozenset(_features(variant, key, part))
     if "collected" in features:
@@ -105,7 +106,7 @@ def posed(variant: Variant, question: Question, part: Part) -> Posed:
 
 
 def _features(variant: Variant, key: Key, part: Part) -> Iterator[str]:
-    """What our marking does with a part that a platform may not do."""
+    """Yield the features of our marking of a part that a platform may lack."""
     if why := _why_collected(variant, key, part):
         yield from ("collected", why)
     elif part.sort.is_scalar:
@@ -123,7 +124,7 @@ def _features(variant: Variant, key: Key, part: Part) -> Iterator[str]:
 
 
 def _why_collected(variant: Variant, key: Key, part: Part) -> str:
-    """Why no platform can judge a part by what it knows; nothing where it can."""
+    """Return the reason why no platform can judge a part; "" if it can."""
     if part.sort.is_open:
         return "open"
     if part.judge:
@@ -159,12 +160,12 @@ def _from_errors(variant: Variant, key: Key, part: Part) -> Iterator[str]:
 
 
 def _intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
-    """What is taken for an answer, and for an error, without last bits, which would differ from one processor to another:
-    the ends are drawn in by more than these."""
-    for one in _found_intervals(variant, key, part):
-        inward = _INWARD * max(abs(one.low), abs(one.high)) if one.half else 0.0
-        low, high = settled(one.low + inward), settled(one.high - inward)
-        yield replace(one, low=low, high=high, value=settled(one.value))
+    """Return the intervals of the right answer and of errors, narrowed by more than the last bits, which
+    differ between processors."""
+    for interval in _found_intervals(variant, key, part):
+        inward = _INWARD * max(abs(interval.low), abs(interval.high)) if interval.half else 0.0
+        low, high = settled(interval.low + inward), settled(interval.high - inward)
+        yield replace(interval, low=low, high=high, value=settled(interval.value))
 
 
 _INWARD = 1e-9  #: of the larger end
@@ -174,44 +175,59 @@ def _found_intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interva
     reference, width = float(key.reference[part.quantity]), key.half_width(part)
     yield from _turned(Interval(reference - width, reference + width, reference), part)
     for interval in _wrong_intervals(variant, key, part):
-        yield from (one for one in _turned(interval, part) if not one.turns or _is_told(one, variant, part))
+        yield from (
+            turned
+            for turned in _turned(interval, part)
+            if not turned.turns or _is_told(turned, variant, part)
+        )
 
 
 def _is_told(turned: Interval, variant: Variant, part: Part) -> bool:
-    """Whether our marking takes an error whole turns away for the same: not degrees for radians."""
-    made = _wrong_interval(variant, part, turned.value, turned.half, _ALL_DIGITS)
-    return made is not None and made.verdict == turned.verdict
+    """Return whether our marking gives an error the same message a whole turn away, as it does not for
+    degrees and radians."""
+    marked = _wrong_interval(variant, part, turned.value, turned.half, _ALL_DIGITS)
+    return marked is not None and marked.verdict == turned.verdict
 
 
 def _wrong_intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
-    """What known errors give. Where two take the same answers, what is close to one is of that one, then as marking ranks them."""
-    found: list[Interval] = []
+    """Return the intervals of known errors. Where two overlap, answers close to one belong to it; then the
+    order of marking decides."""
+    intervals: list[Interval] = []
     for value, half in _wrong_values(key, part):
-        one = _wrong_interval(variant, part, value, half)
-        if one is not None and not any(_same(one, other) for other in found):
-            found.append(one)
-    shared = [one for one in found if any(_meet(one, other, part) for other in found if other is not one)]
-    told = {one: _exactly(one, variant, part) for one in shared}
-    yield from (one.core for one in told.values() if one is not None)
-    kept = [one for one in (told.get(one, one) for one in found) if one is not None]
-    yield from sorted(kept, key=lambda one: _rank(one, key, part))
+        interval = _wrong_interval(variant, part, value, half)
+        if interval is not None and not any(_same(interval, other) for other in intervals):
+            intervals.append(interval)
+    shared = [
+        interval
+        for interval in intervals
+        if any(_meet(interval, other, part) for other in intervals if other is not interval)
+    ]
+    exact_of = {interval: _exactly(interval, variant, part) for interval in shared}
+    yield from (interval.core for interval in exact_of.values() if interval is not None)
+    remaining = [
+        interval
+        for interval in (exact_of.get(interval, interval) for interval in intervals)
+        if interval is not None
+    ]
+    yield from sorted(remaining, key=lambda interval: _rank(interval, key, part))
 
 
 def _exactly(interval: Interval, variant: Variant, part: Part) -> Interval | None:
-    """An error as its value in many digits is marked; the sentence has few where it is the same."""
-    made = _wrong_interval(variant, part, interval.value, interval.half, _ALL_DIGITS)
-    return interval if made is not None and made.verdict == interval.verdict else made
+    """Return an error marked with many digits, with the message for few digits if the mark is the same."""
+    exact = _wrong_interval(variant, part, interval.value, interval.half, _ALL_DIGITS)
+    return interval if exact is not None and exact.verdict == interval.verdict else exact
 
 
-def _meet(one: Interval, other: Interval, part: Part) -> bool:
-    """Whether two take an answer in common, of an angle whole turns apart."""
-    apart = other.value - one.value
+def _meet(first: Interval, other: Interval, part: Part) -> bool:
+    """Return whether two intervals overlap, whole turns apart included for an angle."""
+    apart = other.value - first.value
     turn = part.sort.turn
-    return abs(math.remainder(apart, turn) if turn else apart) <= one.half + other.half
+    return abs(math.remainder(apart, turn) if turn else apart) <= first.half + other.half
 
 
 def _rank(interval: Interval, key: Key, part: Part) -> int:
-    """Of answers that are close to nothing: first mistakes about this very quantity, then slips, then mistakes made elsewhere."""
+    """Return the rank of overlapping errors: mistakes about this quantity first, then slips, then mistakes
+    made elsewhere."""
     kind, _, name = interval.verdict.partition(":")
     if kind != "mistake":
         return 1
@@ -219,7 +235,7 @@ def _rank(interval: Interval, key: Key, part: Part) -> int:
 
 
 def _turned(interval: Interval, part: Part) -> Iterator[Interval]:
-    """The same, and for an angle whole turns more and fewer."""
+    """Return the interval, and for an angle those whole turns away."""
     for turns in _TURNS if part.sort.turn else (0,):
         by = turns * part.sort.turn
         yield replace(
@@ -248,26 +264,33 @@ def _wrong_values(key: Key, part: Part) -> Iterator[tuple[float, float]]:
 def _wrong_interval(
     variant: Variant, part: Part, value: float, half: float, digits: int = _DIGITS
 ) -> Interval | None:
-    """What is taken for a wrong value; None where our marking does not take it for one that it knows."""
+    """Return the interval of a wrong value; None if our marking does not recognise it."""
     text = significant(value, digits) if not part.is_exact else plain(value)
     if len(text.partition(".")[2]) == 3:
         text += "0"  # three decimals could be thousands
-    made = marked_alone(variant, part, text)
-    if made.verdict == "correct" or not made.verdict.startswith(("mistake:", "slip:")):
+    marked = marked_alone(variant, part, text)
+    if marked.verdict == "correct" or not marked.verdict.startswith(("mistake:", "slip:")):
         return None
-    if value and abs(value) <= half and marked_alone(variant, part, "0").verdict != made.verdict:
+    if value and abs(value) <= half and marked_alone(variant, part, "0").verdict != marked.verdict:
         return None  # a nought earns nothing, and an interval has no hole
-    return Interval(value - half, value + half, value, made.points / made.out_of, made.says, made.verdict)
+    return Interval(
+        value - half, value + half, value, marked.points / marked.out_of, marked.says, marked.verdict
+    )
 
 
-def _same(one: Interval, other: Interval) -> bool:
-    """Whether one is told already: it adds nothing where another of the same verdict holds all of it, but for last bits."""
-    slack = _SAME * max(abs(one.low), abs(one.high))
-    return one.verdict == other.verdict and other.low - slack <= one.low and one.high <= other.high + slack
+def _same(interval: Interval, other: Interval) -> bool:
+    """Return whether an interval is redundant: another of the same verdict contains it, apart from the last
+    bits."""
+    slack = _SAME * max(abs(interval.low), abs(interval.high))
+    return (
+        interval.verdict == other.verdict
+        and other.low - slack <= interval.low
+        and interval.high <= other.high + slack
+    )
 
 
 def marked_alone(variant: Variant, part: Part, answer: Any) -> Mark:
-    """The mark of an answer on a sheet that is blank but for it."""
+    """Return the mark of an answer on an otherwise empty sheet."""
     return mark(variant, {part.id: answer})[part.id]
 
 
@@ -283,6 +306,6 @@ def _options(variant: Variant, key: Key, question: Question, part: Part) -> Iter
             share = 1 / len(right) if case in right else -cost_of_wrong(len(right), len(question.choices))
             yield Option(case, letter, label, share)
             continue
-        made = marked_alone(variant, part, case)
-        says = "" if made.verdict == "correct" else made.says
-        yield Option(case, letter, label, made.points / made.out_of, says)
+        marked = marked_alone(variant, part, case)
+        message = "" if marked.verdict == "correct" else marked.says
+        yield Option(case, letter, label, marked.points / marked.out_of, message)

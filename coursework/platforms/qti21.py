@@ -1,4 +1,4 @@
-"""QTI 2.1: the same package as of QTI 3, in the letters of the version that most platforms import."""
+"""QTI 2.1: the package of QTI 3 in the version that most platforms import."""
 
 from __future__ import annotations
 

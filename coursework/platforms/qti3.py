@@ -1,4 +1,4 @@
-"""QTI 3: a package that players of that version import."""
+"""QTI 3: a package for players of that version."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""STACK: Moodle's XML with a question a variant, which asks all parts and tests itself."""
+"""STACK: Moodle's XML with a question per variant, which asks all parts and has self-tests."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ from coursework.platforms._stack_trials import Trial, trials
 from coursework.platforms._xml import below, xml_bytes
 from coursework.platforms.items import Item, Pool
 from coursework.platforms.losses import Loss
-from coursework.platforms.pieces import Image, Pieces, with_files
+from coursework.platforms.pieces import Image, PagePieces, with_files
 from coursework.platforms.platform import Platform
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Posed
 from coursework.system.writing import File
 
 _VERSION = "2026010500"  #: of STACK, with which all this was tried
-_BOX = "\N{OBJECT REPLACEMENT CHARACTER}"  #: where a box is to stand
-_SHOWN = 6  #: figures of an answer, which students are shown
+_BOX = "\N{OBJECT REPLACEMENT CHARACTER}"  #: placeholder of a box
+_SHOWN = 6  #: figures of an answer shown to students
 _SIGNS = {",": ("fr",)}  #: decimal signs other than the point, with the languages that write them
 _TYPES = {NUMBER: "algebraic", CHOICE: "radio", CHOICES: "checkbox", COLLECTED: "string"}
 _STARS = "4"  #: a space, or nothing, between a number and its unit is a product
 _BRIEFLY = "3"  #: how an answer was read, on a line
-_ALLOWED = "rad"  #: a unit whose name Maxima has for something else
+_ALLOWED = "rad"  #: a unit whose name Maxima uses otherwise
 _SIZES = {NUMBER: "15", COLLECTED: "40"}
-_NO_ANSWER = "?"  #: what stands as the right answer of a box that nobody judges; it is never shown
+_NO_ANSWER = "?"  #: right answer of a box that is not judged; never shown
 
 
 class Stack(Platform):
-    """A file a language: ``stack.LANG.xml``."""
+    """Export for STACK, one file per language: ``stack.LANG.xml``."""
 
     name: ClassVar[str] = "stack"
 
@@ -50,7 +50,7 @@ class Stack(Platform):
         yield File(Path(f"stack.{pool.lang}.xml"), partial(_quiz, pool))
 
     def losses(self, pool: Pool) -> Iterable[Loss]:
-        """The answers that may follow from others by no line of Maxima."""
+        """Return the parts whose answers may follow from others without an expression in Maxima."""
         instead = words(pool.lang)["platforms"]["stack"]["not_followed"]
         for item, variant in _with_variants(pool):
             for posed, part in zip(item.questions, variant.parts, strict=True):
@@ -61,7 +61,7 @@ class Stack(Platform):
 
 def _quiz(pool: Pool) -> bytes:
     root = ET.Element("quiz")
-    pieces = Pieces(pool.folders, pool.lang)
+    pieces = PagePieces(pool.folders, pool.lang)
     variants = {item.identifier: variant for item, variant in _with_variants(pool)}
     for section in pool.sections:
         _category(root, pool.title, f"{section.title} ({section.exercise}, {pool.lang})")
@@ -71,7 +71,7 @@ def _quiz(pool: Pool) -> bytes:
 
 
 def _with_variants(pool: Pool) -> Iterator[tuple[Item, Any]]:
-    """Each item, with its variant in the language of the pool."""
+    """Yield each item with its variant in the language of the pool."""
     variants = {
         (issue.variant.exercise.name, issue.variant.seed): issue.variant.in_language(pool.lang)
         for issue in pool.issues
@@ -82,14 +82,14 @@ def _with_variants(pool: Pool) -> Iterator[tuple[Item, Any]]:
 
 def _category(root: ET.Element, *path: str) -> None:
     question = below(root, "question", type="category")
-    whole = "/".join(("$course$", "top", *(piece.replace("/", "//") for piece in path)))
-    below(below(question, "category"), "text", whole)
+    path_text = "/".join(("$course$", "top", *(piece.replace("/", "//") for piece in path)))
+    below(below(question, "category"), "text", path_text)
 
 
 class _Question:
-    """One variant as a question of STACK."""
+    """Question of STACK for one variant."""
 
-    def __init__(self, root: ET.Element, pieces: Pieces, item: Item, variant: Any):
+    def __init__(self, root: ET.Element, pieces: PagePieces, item: Item, variant: Any):
         self._root, self._pieces, self._item, self._variant = root, pieces, item, variant
         self._words = words(item.handout.lang)["platforms"]["stack"]
         self._trees = trees(variant, item.questions)
@@ -108,48 +108,50 @@ class _Question:
         below(below(question, "stackversion"), "text", _VERSION)
         below(below(question, "questionvariables"), "text", self._variables())
         self._html(question, "specificfeedback", "")
-        self._html(question, "questionnote", _shown(self._item.label))
+        self._html(question, "questionnote", _without_commands(self._item.label))
         self._html(question, "questiondescription", "")
         self._options(question)
-        for place, posed in enumerate(self._item.questions, start=1):
-            self._input(question, place, posed)
+        for part_number, posed in enumerate(self._item.questions, start=1):
+            self._input(question, part_number, posed)
         for tree in self._trees:
             self._tree(question, tree)
-        for place, trial in enumerate(trials(self._variant, self._trees), start=1):
-            self._trial(question, place, trial)
+        for part_number, trial in enumerate(trials(self._variant, self._trees), start=1):
+            self._trial(question, part_number, trial)
 
     # ------------------------------------------------------------------- text
 
     def _text(self, question: ET.Element) -> None:
-        said = [self._shown(self._pieces.opening(self._item))]
-        for place, posed in enumerate(self._item.questions, start=1):
+        pieces = [self._page_piece(self._pieces.opening(self._item))]
+        for part_number, posed in enumerate(self._item.questions, start=1):
             box = "" if posed.kind in (CHOICE, CHOICES) else _BOX
-            html = self._shown(self._pieces.prompt(posed, box=box)).replace(_BOX, f"[[input:ans{place}]]")
-            said.append(html if box else f"{html}<div>[[input:ans{place}]]</div>")
-            said.append(f"<div>[[validation:ans{place}]]</div>")
-            said.append(f"<div>[[feedback:prt{place}]]</div>" if posed.kind != COLLECTED else "")
-        where = self._html(question, "questiontext", "".join(said))
+            html = self._page_piece(self._pieces.prompt(posed, box=box)).replace(
+                _BOX, f"[[input:ans{part_number}]]"
+            )
+            pieces.append(html if box else f"{html}<div>[[input:ans{part_number}]]</div>")
+            pieces.append(f"<div>[[validation:ans{part_number}]]</div>")
+            pieces.append(f"<div>[[feedback:prt{part_number}]]</div>" if posed.kind != COLLECTED else "")
+        where = self._html(question, "questiontext", "".join(pieces))
         for image in self._images.values():
             data = base64.b64encode(image.data).decode()
             below(where, "file", data, name=image.name, path="/", encoding="base64")
 
-    def _shown(self, html: str) -> str:
-        """A piece with its pictures as files, and nothing in it that STACK would run."""
-        found, images = with_files(html, "@@PLUGINFILE@@/{}")
+    def _page_piece(self, html: str) -> str:
+        """Return a piece with its pictures as files, without text that STACK would run."""
+        page, images = with_files(html, "@@PLUGINFILE@@/{}")
         self._images |= {image.name: image for image in images}
-        return _shown(found)
+        return _without_commands(page)
 
     @staticmethod
     def _html(parent: ET.Element, tag: str, html: str) -> ET.Element:
-        place = below(parent, tag, format="html")
-        below(place, "text", html)
-        return place
+        element = below(parent, tag, format="html")
+        below(element, "text", html)
+        return element
 
     # ---------------------------------------------------------------- options
 
     def _options(self, question: ET.Element) -> None:
         sign = next((sign for sign, langs in _SIGNS.items() if self._item.handout.lang in langs), ".")
-        told = {
+        fields = {
             "questionsimplify": "1",
             "assumepositive": "0",
             "assumereal": "0",
@@ -164,39 +166,40 @@ class _Question:
             "isbroken": "0",
             "variantsselectionseed": "",
         }
-        for name, value in told.items():
+        for name, value in fields.items():
             below(question, name, value)
-        for name, said in (
+        for name, text_name in (
             ("prtcorrect", "right"),
             ("prtpartiallycorrect", "partly"),
             ("prtincorrect", "wrong"),
         ):
-            self._html(question, name, f"<p>{self._words[said]}</p>")
+            self._html(question, name, f"<p>{self._words[text_name]}</p>")
 
     def _variables(self) -> str:
-        """The functions of every question, and what is right: low end, high end, value."""
+        """Return the question variables: the functions of every question, and the right values: low end, high
+        end, value."""
         lines = [functions()]
         for tree in self._trees:
             if tree.posed.kind == NUMBER:
                 right = tree.posed.intervals[0]
                 ends = ",".join(map(number, (right.low, right.high, right.value)))
-                lines.append(f"co_u{tree.place}: {tree.unit};")
-                lines.append(f"co_r{tree.place}: [{ends}];")
-                said = self._words["other_unit"].format(unit=tree.posed.question.unit or "1")
-                told = f"{text(said)},{text(self._words['grouped'])}"
-                lines.append(f"co_check{tree.place}(x) := co_valid(x,{tree.unit},{told});")
+                lines.append(f"co_u{tree.part_number}: {tree.unit};")
+                lines.append(f"co_r{tree.part_number}: [{ends}];")
+                unit_message = self._words["other_unit"].format(unit=tree.posed.question.unit or "1")
+                messages = f"{text(unit_message)},{text(self._words['grouped'])}"
+                lines.append(f"co_check{tree.part_number}(x) := co_valid(x,{tree.unit},{messages});")
             else:
-                lines.append(f"co_a{tree.place}: {self._cases(tree.posed)};")
+                lines.append(f"co_a{tree.part_number}: {self._cases(tree.posed)};")
         return "\n".join(lines) + "\n"
 
     # ----------------------------------------------------------------- inputs
 
-    def _input(self, question: ET.Element, place: int, posed: Posed) -> None:
+    def _input(self, question: ET.Element, part_number: int, posed: Posed) -> None:
         box = below(question, "input")
-        told = {
-            "name": f"ans{place}",
+        fields = {
+            "name": f"ans{part_number}",
             "type": _TYPES[posed.kind],
-            "tans": self._answer(place, posed),
+            "tans": self._answer(part_number, posed),
             "boxsize": _SIZES.get(posed.kind, "15"),
             "strictsyntax": "1",
             "insertstars": _STARS if posed.kind == NUMBER else "0",
@@ -209,30 +212,30 @@ class _Question:
             "checkanswertype": "0",
             "mustverify": "1" if posed.kind == NUMBER else "0",
             "showvalidation": _BRIEFLY if posed.kind == NUMBER else "0",
-            "options": ",".join(self._extra(place, posed)),
+            "options": ",".join(self._extra(part_number, posed)),
         }
-        for name, value in told.items():
+        for name, value in fields.items():
             below(box, name, value)
 
-    def _extra(self, place: int, posed: Posed) -> Iterator[str]:
+    def _extra(self, part_number: int, posed: Posed) -> Iterator[str]:
         if posed.kind == NUMBER:
-            yield f"validator:co_check{place}"
-            if any(tree.may_be_empty and tree.place == place for tree in self._trees):
+            yield f"validator:co_check{part_number}"
+            if any(tree.may_be_empty and tree.part_number == part_number for tree in self._trees):
                 yield "allowempty"
         if posed.kind == COLLECTED:
             yield "hideanswer"
 
-    def _answer(self, place: int, posed: Posed) -> str:
+    def _answer(self, part_number: int, posed: Posed) -> str:
         if posed.kind == NUMBER:
             right = posed.intervals[0]
-            shown = float(f"{right.value:.{_SHOWN}g}")
-            return number(shown if right.low <= shown <= right.high else right.value)
+            rounded = float(f"{right.value:.{_SHOWN}g}")
+            return number(rounded if right.low <= rounded <= right.high else right.value)
         if posed.kind == COLLECTED:
             return text(_NO_ANSWER)
-        return f"co_a{place}"
+        return f"co_a{part_number}"
 
     def _cases(self, posed: Posed) -> str:
-        """What is offered, as STACK is told it."""
+        """Return the options of a choice in STACK's syntax."""
         right = right_cases(posed)
         cases = (
             f"[{text(name)},{str(name in right).lower()},{text(self._option(posed, at))}]"
@@ -240,24 +243,24 @@ class _Question:
         )
         return f"[{','.join(cases)}]"
 
-    def _option(self, posed: Posed, place: int) -> str:
-        return self._shown(self._pieces.option(posed.options[place])).strip()
+    def _option(self, posed: Posed, part_number: int) -> str:
+        return self._page_piece(self._pieces.option(posed.options[part_number])).strip()
 
     # ------------------------------------------------------------------ trees
 
     def _tree(self, question: ET.Element, tree: Tree) -> None:
-        place = below(question, "prt")
-        below(place, "name", f"prt{tree.place}")
-        below(place, "value", f"{tree.posed.points:g}")
-        below(place, "autosimplify", "1")
-        below(place, "feedbackstyle", "1")
-        below(below(place, "feedbackvariables"), "text", tree.variables)
+        element = below(question, "prt")
+        below(element, "name", f"prt{tree.part_number}")
+        below(element, "value", f"{tree.posed.points:g}")
+        below(element, "autosimplify", "1")
+        below(element, "feedbackstyle", "1")
+        below(below(element, "feedbackvariables"), "text", tree.variables)
         for at, node in enumerate(tree.nodes):
             last = at + 1 == len(tree.nodes)
-            says = self._shown(self._pieces.inline(node.says)) if node.says else ""
+            feedback = self._page_piece(self._pieces.inline(node.message)) if node.message else ""
             if node.verdict == "follow_through":
-                says = f"<p>{self._words['follows']}</p>"
-            told = {
+                feedback = f"<p>{self._words['follows']}</p>"
+            fields = {
                 "name": str(at),
                 "description": node.verdict,
                 "answertest": "AlgEquiv",
@@ -266,50 +269,57 @@ class _Question:
                 "testoptions": "",
                 "quiet": "1",
             }
-            one = below(place, "node")
-            for name, value in told.items():
-                below(one, name, value)
+            node_element = below(element, "node")
+            for name, value in fields.items():
+                below(node_element, name, value)
             penalty = "0" if node.verdict == EMPTY else ""
-            self._branch(one, "true", node.share, "-1", note(tree, at), says, penalty)
+            self._branch(node_element, "true", node.share, "-1", note(tree, at), feedback, penalty)
             self._branch(
-                one, "false", 0.0, "-1" if last else str(at + 1), note(tree, at, holds=False), "", ""
+                node_element, "false", 0.0, "-1" if last else str(at + 1), note(tree, at, holds=False), "", ""
             )
 
     def _branch(
-        self, node: ET.Element, way: str, share: float, following: str, noted: str, says: str, penalty: str
+        self,
+        node: ET.Element,
+        outcome: str,
+        share: float,
+        following: str,
+        noted: str,
+        feedback: str,
+        penalty: str,
     ) -> None:
-        below(node, f"{way}scoremode", "=")
-        below(node, f"{way}score", f"{share:.7g}")
-        below(node, f"{way}penalty", penalty)
-        below(node, f"{way}nextnode", following)
-        below(node, f"{way}answernote", noted)
-        self._html(node, f"{way}feedback", says)
+        below(node, f"{outcome}scoremode", "=")
+        below(node, f"{outcome}score", f"{share:.7g}")
+        below(node, f"{outcome}penalty", penalty)
+        below(node, f"{outcome}nextnode", following)
+        below(node, f"{outcome}answernote", noted)
+        self._html(node, f"{outcome}feedback", feedback)
 
     # ----------------------------------------------------------------- trials
 
-    def _trial(self, question: ET.Element, place: int, trial: Trial) -> None:
+    def _trial(self, question: ET.Element, part_number: int, trial: Trial) -> None:
         test = below(question, "qtest")
-        below(test, "testcase", str(place))
-        below(test, "description", trial.says)
+        below(test, "testcase", str(part_number))
+        below(test, "description", trial.message)
         for at, posed in enumerate(self._item.questions, start=1):
-            told = below(test, "testinput")
-            below(told, "name", f"ans{at}")
-            below(told, "value", _typed(trial.answers.get(at), posed))
+            input_element = below(test, "testinput")
+            below(input_element, "name", f"ans{at}")
+            below(input_element, "value", _typed(trial.answers.get(at), posed))
         for tree in self._trees:
-            share, node = trial.expected[tree.place]
-            told = below(test, "expected")
+            share, node = trial.expected[tree.part_number]
+            input_element = below(test, "expected")
             last = len(tree.nodes) - 1
             noted = note(tree, node) if node >= 0 else note(tree, last, holds=False)
-            below(told, "name", f"prt{tree.place}")
-            below(told, "expectedscore", f"{share:.7g}")
-            below(told, "expectedpenalty", "0" if share == 1 else "0.1")
-            below(told, "expectedanswernote", noted)
+            below(input_element, "name", f"prt{tree.part_number}")
+            below(input_element, "expectedscore", f"{share:.7g}")
+            below(input_element, "expectedpenalty", "0" if share == 1 else "0.1")
+            below(input_element, "expectedanswernote", noted)
 
 
 def note(tree: Tree, node: int, *, holds: bool = True) -> str:
-    """What STACK's reports call the way out of a node."""
+    """Return the answer note of a node's branch in STACK's reports."""
     verdict = tree.nodes[node].verdict if holds else "none"
-    return f"prt{tree.place}-{node + 1}-{verdict}" if holds else f"prt{tree.place}-{node + 1}-F"
+    return f"prt{tree.part_number}-{node + 1}-{verdict}" if holds else f"prt{tree.part_number}-{node + 1}-F"
 
 
 def _typed(answer: Any, posed: Posed) -> str:
@@ -322,8 +332,8 @@ def _typed(answer: Any, posed: Posed) -> str:
     return text(str(answer))
 
 
-def _shown(html: str) -> str:
-    """The same with nothing in it that STACK would take for a command."""
+def _without_commands(html: str) -> str:
+    """Return the text without anything that STACK would take for a command."""
     return html.replace("[[", "&#91;&#91;").replace("{@", "&#123;@").replace("{#", "&#123;#")
 
 

@@ -20,7 +20,7 @@ from clients.moodle_site import MOODLE, ask
 import coursework
 from coursework.platforms.losses import losses
 from coursework.platforms.moodle import PLATFORM, quiz
-from coursework.platforms.pieces import Pieces
+from coursework.platforms.pieces import PagePieces
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import CHOICES, COLLECTED, marked_alone
 
@@ -175,7 +175,7 @@ def test_hostile_labels_and_odd_shares_come_through(tmp_path):
     assert (told["done"], told["said"]) == (True, "")
     (question,) = told["questions"]
     made = question["boxes"][-1]["answers"]
-    pieces = Pieces(pool.folders, "en")
+    pieces = PagePieces(pool.folders, "en")
     assert [_shown(one["answer"]) for one in made] == [_shown(pieces.option(one)) for one in options]
     assert [one["share"] for one in made] == pytest.approx([one.share for one in options], abs=1e-7)
     assert HOSTILE.split("$")[0] in html.unescape(made[0]["answer"])

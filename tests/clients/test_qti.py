@@ -259,7 +259,7 @@ def test_what_is_typed_is_marked_and_told(page, package):
     assert boxes.count() == 9
     right, error = (
         given.questions[0].intervals[0],
-        next(one for one in given.questions[1].intervals if not one.is_right and one.says),
+        next(one for one in given.questions[1].intervals if not one.is_right and one.message),
     )
     boxes.nth(0).press_sequentially(f"{right.value:.6g}")
     boxes.nth(1).press_sequentially(f"{error.value:.6g}")

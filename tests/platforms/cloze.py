@@ -42,7 +42,7 @@ def _closing(text, start):
 
 
 def _split(text, mark, most=0):
-    """Pieces between marks, of which none follows a backslash; a hash after an ampersand is of an entity."""
+    """PagePieces between marks, of which none follows a backslash; a hash after an ampersand is of an entity."""
     return re.split(rf"(?<![\\&]){mark}" if mark == "#" else rf"(?<!\\){mark}", text, maxsplit=most)
 
 

@@ -7,7 +7,7 @@ from tables import each_row
 
 import coursework
 from coursework.language.words import words
-from coursework.platforms.losses import Loss, feature_words, losses, lost_words, told
+from coursework.platforms.losses import Loss, feature_words, loss_lines, losses, lost_words
 from coursework.platforms.platform import platform_of, platforms
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import COLLECTED
@@ -77,7 +77,7 @@ def test_what_a_platform_has_no_word_for_is_kept_and_more_is_added(pools):
 
 def test_a_line_a_feature_says_of_how_many_parts(pools):
     lost = losses(pools("slotted_mechanism"), "moodle")
-    lines = list(told(lost, "en"))
+    lines = list(loss_lines(lost, "en"))
     assert len(lines) == len({loss.feature for loss in lost})
     commas = sum(loss.feature == "comma" for loss in lost)
     assert any(line.startswith(f"decimal comma (parts: {commas}, exercises: 1): ") for line in lines)

@@ -13,9 +13,9 @@ from tables import each_row
 
 import coursework
 from coursework.language.words import words
-from coursework.platforms.items import Pool, Section
+from coursework.platforms.items import Pool, PoolSection
 from coursework.platforms.moodle import escaped, numerical, quiz
-from coursework.platforms.pieces import Pieces
+from coursework.platforms.pieces import PagePieces
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval
 
@@ -77,7 +77,7 @@ def test_every_question_has_its_box(written, name, lang):
             assert [(one.share, one.text) for one in box.answers[1:]] == [(0.5, "*")]
             assert box.answers[0].text.strip() == words(lang)["platforms"]["moodle"]["later"]
         else:
-            pieces = Pieces(pool.folders, lang)
+            pieces = PagePieces(pool.folders, lang)
             assert [one.text for one in box.answers] == [pieces.option(one) for one in posed.options]
             assert [one.share for one in box.answers] == pytest.approx([one.share for one in posed.options])
 
@@ -118,7 +118,7 @@ def test_a_long_name_of_a_pool_leaves_identifiers_short_and_different(written):
     ids = set()
     for tail in "ab":
         items = tuple(type(item)(item.handout, item.questions, "week " * 40 + tail) for item in pool.items)
-        section = Section("grashof", "Grashof", items)
+        section = PoolSection("grashof", "Grashof", items)
         data = quiz(Pool("x", "X", "en", (section,), pool.issues, pool.folders, pool.course))
         ids |= {one[1] for one in questions(data) if one[0] != "category"}
     assert {len(one) for one in ids} == {100}

@@ -12,7 +12,7 @@ from course_of_every_kind import write_course
 import coursework
 from coursework.language.numbers import plain, significant
 from coursework.platforms.items import item
-from coursework.platforms.pieces import Pieces
+from coursework.platforms.pieces import PagePieces
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, KINDS, NUMBER
 from coursework.rendering.renderer import renderer_of
 
@@ -88,9 +88,9 @@ def test_right_ones_come_before_errors_and_sentences_give_no_reference(name, see
         assert rights[0]
         reference = significant(float(variant.key.reference[part.quantity]), 4)
         for one in posed.intervals:
-            assert bool(one.says) != one.is_right, (part.id, one)
+            assert bool(one.message) != one.is_right, (part.id, one)
             if not part.is_exact and abs(one.value - float(reference)) > one.half:
-                assert f": {reference} " not in one.says, (part.id, one)
+                assert f": {reference} " not in one.message, (part.id, one)
 
 
 @every_exercise
@@ -160,7 +160,7 @@ def test_several_right_ones_share_the_points(tmp_path):
 def test_options_are_read_as_reports_make_plain_text_of_them(name, lang):
     """Letter and words as a platform's report has them, formulas without their layout: the same as the letter alone."""
     variant = COURSE[name].variant(3, lang)
-    pieces = Pieces(renderer_of(COURSE.folder).template_folders, lang)
+    pieces = PagePieces(renderer_of(COURSE.folder).template_folders, lang)
     for posed, part in zip(item(variant, "pool").questions, variant.parts, strict=True):
         for option in posed.options:
             flat = " ".join(html.unescape(re.sub(r"<[^>]*>", "", pieces.option(option))).split())

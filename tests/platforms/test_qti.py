@@ -25,7 +25,7 @@ from coursework.marking.marking import mark
 from coursework.platforms._qti_item import identifier, identifier_of, item_file
 from coursework.platforms._qti_tree import QTI_3, QTI_21, decimal, kebab, written
 from coursework.platforms.losses import losses
-from coursework.platforms.pieces import Pieces
+from coursework.platforms.pieces import PagePieces
 from coursework.platforms.platform import platform_of
 from coursework.platforms.pools import of_assignment, of_exercises
 from coursework.platforms.posed import COLLECTED
@@ -80,7 +80,7 @@ def items(found):
 def test_a_player_marks_every_answer_as_we_do_or_the_loss_is_listed(name):
     drawn = pool_of(name)
     pool = drawn.pool("en")
-    lost, pieces = lost_of(pool), Pieces(pool.folders, "en")
+    lost, pieces = lost_of(pool), PagePieces(pool.folders, "en")
     for variant, given in items_of(drawn, "en"):
         player = Player(written(item_file(given, pieces).tree, QTI_3))
         some = sheets(variant, given)
@@ -93,7 +93,7 @@ def test_a_player_marks_every_answer_as_we_do_or_the_loss_is_listed(name):
 @every_exercise
 def test_what_is_declared_right_has_full_marks(name):
     drawn = pool_of(name)
-    pieces = Pieces(drawn.pool("en").folders, "en")
+    pieces = PagePieces(drawn.pool("en").folders, "en")
     for _, given in items_of(drawn, "en"):
         player = Player(written(item_file(given, pieces).tree, QTI_3))
         outcomes = player.outcomes(player.right())
@@ -111,10 +111,10 @@ def test_what_is_declared_right_has_full_marks(name):
 def test_a_known_error_is_told_and_priced():
     drawn = pool_of("slotted_mechanism")
     (_, given), *_ = items_of(drawn, "en")
-    pieces = Pieces(drawn.pool("en").folders, "en")
+    pieces = PagePieces(drawn.pool("en").folders, "en")
     player = Player(written(item_file(given, pieces).tree, QTI_21))
     posed = given.questions[1]
-    error = next(one for one in posed.intervals if "arctangent" in one.says)
+    error = next(one for one in posed.intervals if "arctangent" in one.message)
     outcomes = player.outcomes({"RESPONSE_theta4": f"{error.value:.6g}"})
     assert outcomes["SCORE_theta4"] == error.share * posed.points
     (shown,) = (
@@ -134,7 +134,7 @@ def test_several_cases_count_each_and_never_below_nothing(tmp_path):
     drawn = of_exercises(coursework.open_course(tmp_path), ["coil"], 1, 0, ["en"], None)
     pool = drawn.pool("en")
     (variant, given), *_ = items_of(drawn, "en")
-    player = Player(written(item_file(given, Pieces(pool.folders, "en")).tree, QTI_3))
+    player = Player(written(item_file(given, PagePieces(pool.folders, "en")).tree, QTI_3))
     part = next(one for one in variant.parts if one.id == "true_of_it")
     letter = variant.letters(part)
     for chosen, points in (
@@ -324,7 +324,7 @@ def test_a_label_prints_as_it_is_and_does_nothing(drawn, text):
     options = (replace(posed.options[0], label=text.replace("*", "\\*")), *posed.options[1:])
     hostile = replace(given, questions=(*given.questions[:-1], replace(posed, options=options)))
     for spelling in SPELLINGS.values():
-        data = written(item_file(hostile, Pieces(drawn.pool("en").folders, "en")).tree, spelling)
+        data = written(item_file(hostile, PagePieces(drawn.pool("en").folders, "en")).tree, spelling)
         root = plain(ET.fromstring(data))
         label = "".join(next(root.iter("simpleChoice")).itertext())
         assert text.replace("'", "’") in label.replace("\u2060", "").replace(
