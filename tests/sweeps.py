@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -68,3 +68,7 @@ def _git(root: Path, *arguments: str) -> list[str]:
     except OSError:
         return []
     return done.stdout.splitlines() if done.returncode == 0 else []
+
+
+#: A test that goes over the whole course at once: a sweep, unless an exercise differs from the main branch.
+whole_course: Callable[[Any], Any] = (lambda test: test) if changed_exercises() else pytest.mark.sweep

@@ -181,7 +181,7 @@ def test_both_readings_of_an_ambiguous_group_are_tried(course):
 def test_a_wrong_angle_is_not_right_as_so_many_thousand_degrees(course):
     """113466° is 66° modulo a turn; 113,466 is 113,466 and wrong."""
     variant = course["slotted_mechanism"].variant(1, "fr")
-    for thousandths in range(10_000, 360_000, 37):
+    for thousandths in range(10_000, 360_000, 371):
         value = thousandths / 1000
         if distance(Part("x", kind="angle", atol=3.0), value, variant.solution()["theta4"]) > 1:
             mark = variant.grade({"theta4": f"{value:.3f}".replace(".", ",")})["theta4"]

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from sweeps import whole_course
 from tables import each_row
 
 import coursework
@@ -73,6 +74,7 @@ def test_what_nothing_explains_is_told_what_it_is_computed_from():
     assert "not yet right" in wrong.feedback
 
 
+@whole_course
 def test_one_wrong_sign_costs_the_same_in_every_exercise():
     """Told by its author or by the engine, with all else blank."""
     for name in NUMERIC:
@@ -256,6 +258,7 @@ def _holds(piece, seen, unseen):
     )
 
 
+@whole_course
 @each_row("lang", ["en", "fr"])
 def test_a_number_that_nothing_explains_is_told_its_sign_and_order_of_magnitude(lang):
     table, silent, told = words(lang)["marking"], [], 0

@@ -7,7 +7,7 @@ what is unavoidable is the condition number times the last digit: an error may b
 from __future__ import annotations
 
 import pytest
-from sweeps import sampled, slow
+from sweeps import sampled, slow, whole_course
 
 import coursework
 from coursework.accuracy.hard_places import growing_places, hard_places
@@ -41,6 +41,7 @@ def test_every_asked_number_has_a_reference_in_many_digits():
     assert {name: names for name, names in lacking.items() if names} == {}
 
 
+@whole_course
 def test_no_digit_is_lost_beside_a_length_far_larger_than_the_rest():
     found = []
     for name in NUMERIC:

@@ -8,6 +8,7 @@ from pathlib import Path
 import course_of_every_kind
 import numpy as np
 import pytest
+from sweeps import whole_course
 from tables import each_row
 
 import coursework
@@ -73,6 +74,7 @@ def test_texts_that_answer_nothing_are_enough_and_differ():
     assert len(set(TEXTS)) == len(TEXTS) >= 400
 
 
+@whole_course
 def test_no_part_of_any_exercise_reads_what_answers_nothing(every_kind):
     """What is not read waits, and earns nothing; so this holds whatever the variant's right answer is."""
     found = [
@@ -129,6 +131,7 @@ COUNTED = tuple(
 )
 
 
+@whole_course
 def test_the_same_on_every_sheet_earns_half_at_most():
     assert len(COUNTED) > 5
     shares = {name: best_guess(COURSE[name].variants(range(1000, 1200))).share for name in COUNTED}

@@ -11,6 +11,7 @@ from itertools import combinations
 
 import pytest
 from secret_words import holds, spelled
+from sweeps import whole_course
 
 import coursework
 from coursework.cli import run
@@ -83,6 +84,7 @@ def dealt(path, before=None, make_up=(), students=CLASS):
 # --------------------------------------------------------------------------- draws
 
 
+@whole_course
 def test_every_exercise_is_drawn_by_the_secret(tmp_path):
     """By its code the public package gives other values, in other orders of choices, and another secret gives others too."""
     one, other = Secret.new(), Secret.new()

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from sweeps import whole_course
 
 import coursework
 from coursework.errors import Cycle, MissingQuantity
@@ -33,6 +34,7 @@ def test_the_paper_to_draw_on_is_told_by_its_size_and_drawn_on_the_page(name, la
     assert not re.search(r"\.paper \{[^}]*display: none", page)
 
 
+@whole_course
 def test_a_sheet_lists_what_the_statement_or_an_asked_question_uses_and_no_more():
     wrong = []
     for name in COURSE.names:

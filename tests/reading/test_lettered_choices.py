@@ -1,5 +1,6 @@
 """On a sheet with letters a choice is read by letter, place, words, and a tick; what says two things is not read."""
 
+from sweeps import whole_course
 from tables import each_row
 
 from coursework.reading.choices import read_choice
@@ -93,6 +94,7 @@ def test_on_a_sheet_without_letters_none_is_read(text):
     assert read_choice(text, GUIDE).status == "unreadable"
 
 
+@whole_course
 def test_whatever_was_read_without_letters_is_read_alike_with_them_or_waits():
     """Over the course, in both languages: every code, label, head and beginning; letters never make another of it."""
     import coursework

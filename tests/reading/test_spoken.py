@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from sweeps import whole_course
 
 import coursework
 from coursework.language.numbers import significant
@@ -59,6 +60,7 @@ def test_no_answer_in_words_is_none_and_another_place_is_told_as_such():
     assert all(map(refers_elsewhere, ("voir feuille", "cf copie", "cf. copie", "see sheet")))
 
 
+@whole_course
 @pytest.mark.parametrize("lang", ["fr", "en"])
 def test_no_kind_of_part_calls_a_text_without_answer_unreadable(lang):
     """In every exercise: what says that there is no answer is missing, and another place waits as such."""
@@ -83,6 +85,7 @@ def test_no_kind_of_part_calls_a_text_without_answer_unreadable(lang):
     assert wrong == []
 
 
+@whole_course
 def test_two_values_a_lost_superscript_and_a_raised_dot_wait_in_every_exercise():
     wrong = []
     for name in COURSE.names:

@@ -6,7 +6,7 @@ import json
 
 import pytest
 import typst
-from sweeps import sampled
+from sweeps import sampled, whole_course
 from tables import each_row
 
 import coursework
@@ -40,6 +40,7 @@ def widths(formulas, lang):
     return [width for width, _ in sizes(drawn)]
 
 
+@whole_course
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_formulas_that_are_taken_to_fit_do(lang):
     sure = {}
@@ -58,6 +59,7 @@ def test_formulas_that_are_taken_to_fit_do(lang):
     assert any(r"\begin{aligned}" in tex for tex in sure)
 
 
+@whole_course
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_rows_whose_height_is_told_hold_their_cells_on_one_line(lang):
     told, count = {}, 0

@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 from formula_samples import FORMULAS, call
 from rendering_samples import ANSWER_DIGITS, answer_sheet, handout, many_given
-from sweeps import sampled
+from sweeps import sampled, whole_course
 from tables import each_row
 
 from coursework.cli import run
@@ -221,6 +221,7 @@ def test_build_writes_sources_with_their_figures(tmp_path):
     assert not list((out / "handouts").rglob("*solution*"))
 
 
+@whole_course
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_every_exercise_has_a_whole_source(course, lang):
     issues = issuing.issue(course, course.names, first_seed=0, count=1, langs=[lang])

@@ -13,7 +13,7 @@ import pytest
 import typst
 from paper_samples import COURSE, NAMES, bare, heading, paper, solution
 from rendering_samples import handout
-from sweeps import sampled
+from sweeps import sampled, whole_course
 
 from coursework.language.words import languages
 from coursework.rendering.papers import typst_source
@@ -21,7 +21,7 @@ from coursework.rendering.renderer import PAPERS, renderer_of
 from coursework.rendering.views import LAST_TOGETHER, SHORT_SOLUTION, worked
 
 RENDERER = renderer_of(COURSE.folder)
-every_language = pytest.mark.parametrize("lang", languages())
+every_language = pytest.mark.parametrize("lang", sampled(languages(), ["fr"]))
 every_paper = pytest.mark.parametrize("size", PAPERS)
 
 _NUMBER = "strong[#number.]"
@@ -113,6 +113,7 @@ def places_in_solution(marked_in):
     return places
 
 
+@whole_course
 @pytest.mark.parametrize("printed", sampled(product(PAPERS, languages()), [("letter", "fr")]), ids="-".join)
 def test_a_question_of_a_solution_stands_on_one_page_with_its_answer_where_that_takes_few_steps(
     places_in_solution, printed

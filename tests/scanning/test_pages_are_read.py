@@ -49,6 +49,7 @@ def told(page):
     return [(f.field.part, f.text, f.cases, f.waits) for f in page.fields]
 
 
+@pytest.mark.sweep
 @each_row("kind", KINDS)
 def test_however_a_page_is_scanned_nothing_is_read_that_was_not_written(kind, sheet):
     rng = np.random.default_rng([7, *kind.encode()])
@@ -62,6 +63,7 @@ def test_however_a_page_is_scanned_nothing_is_read_that_was_not_written(kind, sh
     assert len(sure) >= 2
 
 
+@pytest.mark.sweep
 @each_row("kind", KINDS)
 @each_row("is_written", [False, True])
 def test_what_is_written_below_the_rows_may_be_the_answer_of_a_blank_one(kind, is_written):
@@ -87,6 +89,7 @@ def test_what_is_written_below_the_rows_may_be_the_answer_of_a_blank_one(kind, i
     assert [f.crop is not None for f in found.fields] == [is_written, False, is_written]
 
 
+@pytest.mark.sweep
 @each_row("kind", KINDS)
 def test_a_scan_in_black_and_white_is_known_for_one(kind, sheet):
     rng = np.random.default_rng([3, *kind.encode()])

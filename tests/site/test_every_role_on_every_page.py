@@ -147,6 +147,7 @@ def is_let_in(reply):
     )
 
 
+@pytest.mark.e2e
 def test_each_role_has_the_pages_of_the_table_and_no_others(site):
     """What an assistant may do, they may where they assist alone."""
     wrong = []
@@ -197,6 +198,7 @@ def told_of(site, text):
     return [one for one in secrets if re.search(rf"(?<!\w){re.escape(one)}(?!\w)", text)]
 
 
+@pytest.mark.e2e
 def test_no_page_shows_an_assistant_a_student_of_another_group(site):
     found = []
     for page in ROUTES:

@@ -41,6 +41,7 @@ def guess(a_class, times, login=LOGIN, **more):
         assert browser.post("/sign-in", data=told, **more).status_code == 401
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("times", [12, 150])
 def test_nobody_locks_the_right_password_out(class_of_three, waits, times):
     """From the same address: a browser that signed in before is at once in, a new one after a bounded wait."""
@@ -68,6 +69,7 @@ def test_a_neighbour_does_not_wait(class_of_three, waits):
     assert waits == []
 
 
+@pytest.mark.e2e
 def test_a_class_that_mistypes_behind_one_address_does_not_wait(class_of_three, waits):
     for number in range(99):
         guess(class_of_three, 1, f"student{number}@example.org")

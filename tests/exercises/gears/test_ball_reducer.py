@@ -301,7 +301,9 @@ def turned_between(attitudes):
     return vector * np.arcsin(sine) / sine
 
 
-FILMS = pytest.mark.parametrize("seed", [1, 3])  # the input turns one way, the other way
+FILMS = pytest.mark.parametrize(
+    "seed", [1, pytest.param(3, marks=pytest.mark.slow)]
+)  # the input turns one way, the other way
 
 
 @FILMS
