@@ -22,7 +22,7 @@ from site_walk import Filled, filled, fillings
 from coursework.database.permissions import is_of_staff
 from coursework.gradebook.submissions import read_rows
 from coursework.lti import service
-from coursework.lti.host import Reply
+from coursework.lti.host import LTIResponse
 from coursework.lti.service import AT_ONCE as LINKS_AT_ONCE
 from coursework.lti.service import LARGEST, PROCESSOR
 from coursework.site.application import ROUTES
@@ -392,7 +392,7 @@ def test_of_one_person_by_a_link_two_requests_are_answered_at_once(linked, monke
         go_on.wait(PATIENCE)
         with lock:
             under_way.discard(threading.get_ident())
-        return Reply("")
+        return LTIResponse("")
 
     pages = [linked.enter() for _ in range(2)]
     monkeypatch.setattr(SiteHost, "show", slow)
