@@ -37,6 +37,11 @@ class Slip(NamedTuple):
     kind: str
     factor: float
 
+    @property
+    def is_common(self) -> bool:
+        """Return whether it is made so often, in so few ways, that the whole margin may be read as it."""
+        return self.kind in ("sign", "radians") or round(abs(math.log10(self.factor)), 9) % 3 == 0
+
     def made(self, reference: float) -> float:
         """Return the wrong value that the slip makes of the right one."""
         return reference * self.factor

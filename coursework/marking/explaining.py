@@ -236,7 +236,8 @@ def _explanations(
         fit = None if slip.kind in seen else _fitting(part, mended, reference, None, width)
         if fit is None:
             continue
-        if _is_near(key, part, judged_by, mended[fit[0]], fit[1]):
+        usual = 1.0 if slip.is_common else NEAR
+        if _is_near(key, part, judged_by, mended[fit[0]], fit[1], usual):
             seen.add(slip.kind)
             yield Explanation(f"slip:{slip.kind}", *fit, traces=_of_unit(slip, part.unit))
     for value in key.other_cases(judged_by):
@@ -249,12 +250,14 @@ def _explanations(
             yield Explanation("slip:other_case", *fit)
 
 
-def _is_near(key: Key, part: Part, judged_by: Part, answer: Any, gap: float) -> bool:
+def _is_near(
+    key: Key, part: Part, judged_by: Part, answer: Any, gap: float, usual: float = NEAR
+) -> bool:
     """Return whether an answer is as near to a mistake's value as rounding brings it; whole margins hold too
     many numbers."""
     if not part.sort.is_number or not part.has_margin:
         return True
-    return gap <= nearness(part, key, judged_by, answer, NEAR)
+    return gap <= nearness(part, key, judged_by, answer, usual)
 
 
 def fits_followed(
