@@ -15,6 +15,7 @@ from coursework.marking.calculator import fitting as fitting_in_radians
 from coursework.marking.calculator import values_in_radians
 from coursework.marking.usual import (
     NEAR,
+    NEAR_HERE,
     Fit,
     last_digit,
     nearness,
@@ -223,9 +224,10 @@ def _explanations(
         if part.sort.is_number and any(map(part.sort.is_trivial, reading.values)) and value:
             continue  # a nought is near to whatever is small, and shows nothing
         fit = _fitting(part, reading.values, value, along, width)
-        if fit is not None and _is_near(key, part, judged_by, reading.values[fit[0]], fit[1]):
+        is_here = quantity in key.solution.mistakes[name].targets
+        usual = NEAR_HERE if is_here else NEAR
+        if fit is not None and _is_near(key, part, judged_by, reading.values[fit[0]], fit[1], usual):
             traces = () if part.sort.has_few_values else (f"mistake:{name}",)
-            is_here = quantity in key.solution.mistakes[name].targets
             is_likely = _is_likely(name, key, judged_by, before)
             yield Explanation(f"mistake:{name}", *fit, is_here, is_likely, traces=traces)
     for kind in part.sort.slips(part, reading.values[0], reference, _lengths(key.variant)):
@@ -233,7 +235,8 @@ def _explanations(
     seen = set()
     for slip in key.slips(judged_by):
         mended = [slip.mended(value) for value in reading.values]
-        fit = None if slip.kind in seen else _fitting(part, mended, reference, None, width)
+        fits = slip.kind not in seen and not (part.sort.turn and _is_turned(slip, mended, part.sort.turn))
+        fit = _fitting(part, mended, reference, None, width) if fits else None
         if fit is None:
             continue
         usual = 1.0 if slip.is_common else NEAR
@@ -250,9 +253,12 @@ def _explanations(
             yield Explanation("slip:other_case", *fit)
 
 
-def _is_near(
-    key: Key, part: Part, judged_by: Part, answer: Any, gap: float, usual: float = NEAR
-) -> bool:
+def _is_turned(slip: Slip, mended: Sequence[float], turn: float) -> bool:
+    """Return whether directions are more than a turn when mended: modulo a turn, some are near to anything."""
+    return slip.kind == "radians" and all(abs(value) > turn for value in mended)
+
+
+def _is_near(key: Key, part: Part, judged_by: Part, answer: Any, gap: float, usual: float = NEAR) -> bool:
     """Return whether an answer is as near to a mistake's value as rounding brings it; whole margins hold too
     many numbers."""
     if not part.sort.is_number or not part.has_margin:

@@ -25,9 +25,10 @@ if TYPE_CHECKING:
 NAMED = 3  #: errors that fit one answer; of more than these none is named
 _SHORT = 2  #: names of a formula that may be printed whole: it is a term of one factor
 _LONGEST = 4  #: names of a term that is printed
-NEAR = 0.35  #: half-widths from the value that a usual error gives: among so many errors some are near to anything
+NEAR = 0.35  #: half-widths from the value that a usual error, or a mistake made elsewhere, gives: of so many some are near to anything
+NEAR_HERE = 0.7  #: the same of a mistake about the asked quantity itself, of which there are few
 NEAR_DEGREES = 0.1  #: the same of a direction, of which fewer are far apart
-_LEAST = 0.04  #: half-widths within which rounding on the way brings whoever makes an error
+_LEAST = 0.02  #: half-widths within which rounding on the way brings whoever makes an error
 _BY_CHANCE = 1.2  #: half-widths of a number that all the errors in play may take together: the more there are, the nearer each must be
 _FEW = 3  #: digits of an answer that was rounded
 _SAME = 1e-9  #: of a value: what two ways to compute it may differ by
