@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 from coursework.api import open_course
 from coursework.database.store import Store
 from coursework.errors import BadInput, CourseworkError
+from coursework.messages import Message
 from coursework.site.application import application
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.people.accounts import check_administrator
@@ -89,7 +90,7 @@ def listening(host: str, port: int) -> socket.socket:
         The port is in use or reserved, or the machine has no such address.
     """
     if port > 65535:
-        raise BadInput(f"--port {port}: a port is a number from 0 to 65535")
+        raise BadInput("--port {port}: a port is a number from 0 to 65535", port=port)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         return socket.create_server((host, port), family=family, backlog=_WAITING)
@@ -97,17 +98,25 @@ def listening(host: str, port: int) -> socket.socket:
         raise BadInput(_refusal(host, port, fault)) from fault
 
 
-def _refusal(host: str, port: int, fault: OSError) -> str:
+def _refusal(host: str, port: int, fault: OSError) -> Message:
     if fault.errno == errno.EADDRINUSE:
-        return (
-            f"port {port} of {host} is taken, perhaps by another 'coursework serve': end that one, or say another, "
-            f"--port {port + 1 if port < 65535 else port - 1}, or --port 0 for any that is free"
+        return Message(
+            "port {port} of {host} is taken, perhaps by another 'coursework serve': end that one, or say another, "
+            "--port {other}, or --port 0 for any that is free",
+            port=port,
+            host=host,
+            other=port + 1 if port < 65535 else port - 1,
         )
     if fault.errno == errno.EACCES:
-        return f"port {port} is kept for the system: say one from 1024 on, and let a proxy in front listen at {port}"
-    return (
-        f"--host {host}: this machine cannot listen there ({fault.strerror or fault}); 127.0.0.1 is this machine alone, "
-        "0.0.0.0 every address that it has"
+        return Message(
+            "port {port} is kept for the system: say one from 1024 on, and let a proxy in front listen at {port}",
+            port=port,
+        )
+    return Message(
+        "--host {host}: this machine cannot listen there ({problem}); 127.0.0.1 is this machine alone, "
+        "0.0.0.0 every address that it has",
+        host=host,
+        problem=fault.strerror or str(fault),
     )
 
 

@@ -14,6 +14,7 @@ from tables import each_row
 from coursework.database.assignments import issued_content, names
 from coursework.database.audit import noted
 from coursework.database.publication import ACCEPT, CHARGE, Publication, extensions, published
+from coursework.errors import unknown
 from coursework.making.issued import Issued
 from coursework.site.publication import assigning
 from coursework.site.publication.publishing import holders
@@ -169,6 +170,16 @@ def test_a_dealing_that_fails_is_told_and_issues_nothing(class_of_three, staff, 
     page = staff.get(reply.headers["location"])
     assert "Nothing was issued" in page.text
     assert not names_of(class_of_three)
+
+
+def test_a_job_reports_its_fault_in_the_language_of_who_began_it(class_of_three, staff, monkeypatch):
+    def failing(*_):
+        raise unknown("exercise", "cranck", ["crank"])
+
+    monkeypatch.setattr(assigning, "_assigned", failing)
+    staff.cookies.set("coursework-lang", "fr")
+    reply = handed_out(class_of_three, staff, file=TOML, roster=ROSTER)
+    assert "aucun exercice" in staff.get(reply.headers["location"]).text
 
 
 def test_a_dealing_that_was_interrupted_is_told(class_of_three, staff):

@@ -49,6 +49,7 @@ from coursework.gradebook.waiting import (
 from coursework.making.assignment import text_in
 from coursework.making.issued import Issued
 from coursework.making.students import namesakes
+from coursework.messages import localised
 from coursework.site.frame.requests import HTTPException, Request, Response
 from coursework.site.frame.settings import Site
 from coursework.site.papers.submission import mark, pass_dates
@@ -70,6 +71,11 @@ class RejectedRow:
     def waits(self) -> bool:
         """Return True if a person must still look at the row."""
         return self.became is None
+
+    @property
+    def reason(self) -> str:
+        """Reason of the rejection, in the language of the current messages."""
+        return localised(self.row.reason)
 
 
 @dataclass(frozen=True)

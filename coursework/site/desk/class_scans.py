@@ -14,6 +14,7 @@ from coursework.database.marking import mark_new
 from coursework.database.scans import pages_scanned, typed_rows
 from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import AnswerRow
+from coursework.messages import Message, localised
 from coursework.scanning.gathering import Answer, Card, Gathered
 from coursework.scanning.kept import ANSWERS, LOST, REFUSED, FileKept, PageKept, Scanned, page_of, with_copies
 from coursework.scanning.page_reading import Papers
@@ -24,7 +25,7 @@ from coursework.scanning.typed import Typed
 from coursework.site.frame.settings import Site
 
 SOURCE = "scans"  #: source of the submission; the next submission of scans replaces it
-_GONE = PageKept(REFUSED, "read by another version: send its file again", has_picture=False)
+_GONE = PageKept(REFUSED, Message("read by another version: send its file again"), has_picture=False)
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,10 @@ class ClassScans:
     @property
     def rejected(self) -> list[Scanned]:
         return [page for page in self.pages if page.page.what == REFUSED]
+
+    def reason(self, page: Scanned) -> str:
+        """Return the reason of a rejection, in the language of the current messages."""
+        return localised(page.page.reason)
 
     @property
     def counts(self) -> dict[str, int]:

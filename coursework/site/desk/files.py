@@ -4,6 +4,7 @@ are never run."""
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path, PurePath
@@ -28,6 +29,7 @@ from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.submissions import find, read_file
 from coursework.making.issued import COLUMNS
 from coursework.making.roster import roster_and_notes
+from coursework.messages import Message, as_message, localised
 from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
 from coursework.site.frame.budgets import DESK_FILES, read_apart
@@ -147,19 +149,26 @@ def _with_short_source(
     row: AnswerRow | Rejected | PlatformFile, folder: Path
 ) -> AnswerRow | Rejected | PlatformFile:
     """Return a row without the temporary folder in its source."""
+    paths = re.compile(rf"{re.escape(str(folder))}(?:/\d+/(?:zip/)?)?")
 
     def shortened(text: str) -> str:
-        for number in range(60):
-            text = text.replace(f"{folder}/{number}/zip/", "").replace(f"{folder}/{number}/", "")
-        return text.replace(str(folder), "")
+        return paths.sub("", text)
 
     if isinstance(row, AnswerRow):
         return row._replace(
             source=shortened(row.source), warning=shortened(row.warning) if row.warning else ""
         )
     if isinstance(row, Rejected):
-        return Rejected(shortened(row.source), shortened(row.reason), row.row)
+        return Rejected(shortened(row.source), _without(row.reason, paths), row.row)
     return row._replace(source=shortened(row.source))
+
+
+def _without(text: object, parts: re.Pattern[str]) -> Message:
+    """Return a message without the parts that match a pattern, longest first."""
+    message = as_message(text)
+    for part in sorted(set(parts.findall(message)), key=len, reverse=True):
+        message = message.replacing(part, "")
+    return message
 
 
 def roster_in(request: Request) -> Response:
@@ -184,7 +193,7 @@ def roster_in(request: Request) -> Response:
                 DESK_FILES, request.words["refused"]["too_much"], roster_and_notes, path
             )
         except BadInput as fault:
-            raise BadInput(str(fault).replace(f"{temporary}/", "")) from fault
+            raise BadInput(as_message(fault).replacing(f"{temporary}/", "")) from fault
     issued_names = {
         entry.name: now.issued.student(entry.name, tuple(entry.columns.items())) for entry in students
     }
@@ -206,7 +215,7 @@ def roster_in(request: Request) -> Response:
             students=len(columns),
         )
     strangers = [entry.name for entry in students if not issued_names[entry.name]]
-    messages = [note.replace(f"{temporary}/", "") for note in messages]
+    messages = [localised(as_message(note).replacing(f"{temporary}/", "")) for note in messages]
     messages.insert(0, texts["roster_came"].format(len(students) - len(strangers), len(students)))
     if strangers:
         messages.append(texts["roster_strangers"].format(_list(strangers)))
@@ -394,7 +403,7 @@ def gradebook(request: Request) -> Response:
         except ValueError as fault:
             if isinstance(fault, CourseworkError):
                 raise BadInput(
-                    str(fault).replace(f"{temporary}/sent/", "").replace(f"{temporary}/", "")
+                    as_message(fault).replacing(f"{temporary}/sent/", "").replacing(f"{temporary}/", "")
                 ) from fault
             raise BadInput(texts["no_number"]) from None
     messages = [texts["filled"].format(filled.written, filled.column)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Mapping, Sequence
+from contextvars import copy_context
 from datetime import datetime, timedelta
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -54,7 +55,10 @@ def begin(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
     """Start to read the uploaded files, given by name, for the person ``by``; return at the end or after a
     short wait."""
     _store_state(site, number, ScanJob(RUNNING, len(sent)))
-    thread = threading.Thread(target=_run, args=(site, number, dict(sent), by), daemon=True)
+    # The context has the reader's language, in which faults are stored.
+    thread = threading.Thread(
+        target=copy_context().run, args=(_run, site, number, dict(sent), by), daemon=True
+    )
     thread.start()
     thread.join(_PATIENCE)
 

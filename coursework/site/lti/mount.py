@@ -31,13 +31,16 @@ def settings_of(folder: Path, url: str) -> Settings:
     BadInput
         The file cannot be read, or was written for a service at another address.
     """
-    settings, folder_settings = read_settings(folder), checked_url(url, "the site's --url") + PATH
-    if settings.url not in ("", folder_settings):
+    settings, due = read_settings(folder), checked_url(url, "the site's --url") + PATH
+    if settings.url not in ("", due):
         raise BadInput(
-            f"{folder}: platforms.toml is for a service at {settings.url}, and the site has it at {folder_settings}: "
-            f"coursework lti platform --in {folder} --url {folder_settings}, and register that address on the platform"
+            "{folder}: platforms.toml is for a service at {found}, and the site has it at {due}: "
+            "coursework lti platform --in {folder} --url {due}, and register that address on the platform",
+            folder=folder,
+            found=settings.url,
+            due=due,
         )
-    return replace(settings, url=folder_settings)
+    return replace(settings, url=due)
 
 
 def mounted(site: Site, folder: Path, client: Any = None, settings: Settings | None = None) -> Starlette:

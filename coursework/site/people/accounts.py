@@ -249,7 +249,7 @@ def invited_by_command(site: Site, login: str, role: str) -> str:
     """
     normalised = as_login(login)
     if not normalised:
-        raise BadInput(f"--{role} needs a login, such as an e-mail: --{role} ada@example.org")
+        raise BadInput("--{role} needs a login, such as an e-mail: --{role} ada@example.org", role=role)
     with site.store.begin() as connection:
         existing = account_by_login(connection, normalised)
         person = existing.person_id if existing else put_person(connection, normalised, login.strip(), "", {})

@@ -15,6 +15,7 @@ from starlette.routing import Route
 
 from coursework.course.folder import course_folder
 from coursework.language.words import languages, words
+from coursework.messages import localised
 from coursework.site.frame.pages import SitePages
 from coursework.site.preview.previewed import ViewRequest
 from coursework.site.preview.under_work import EditedExercise, View
@@ -96,6 +97,7 @@ class _PreviewPages:
         if choice.lang not in properties["languages"]:
             choice.lang = properties["languages"][0]
         content = self._view(choice, about)
+        content = content._replace(fault=localised(content.fault, choice.lang))
         texts = words(choice.lang, "site")["preview"]
         names = {
             "lang": choice.lang, "said": texts, "exercise": work.exercise, "choice": choice, "stamp": stamp,

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from coursework.api import open_course
 from coursework.authoring import check_report, checks
 from coursework.errors import CourseworkError
+from coursework.messages import Message, as_message
 from coursework.rendering.renderer import builtin_renderer, renderer_of
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.handout import handout
@@ -63,18 +64,23 @@ def _result(folder: str | None, exercise: str, request: ViewRequest) -> ViewResu
     try:
         return ViewResult(_VIEWS[request.view](folder, exercise, request))
     except CourseworkError as fault:
-        return ViewResult(fault=str(fault))
+        return ViewResult(fault=as_message(fault))
     except Exception as fault:  # an author's slip in a function of the course
         return ViewResult(fault=_fault_text(fault, folder))
 
 
-def _fault_text(fault: Exception, folder: str | None) -> str:
-    message = f"{type(fault).__name__}: {fault}"
+def _fault_text(fault: Exception, folder: str | None) -> Message:
+    problem = Message("{kind}: {problem}", kind=type(fault).__name__, problem=fault)
     root = open_course(folder).folder.root
     frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]
     if not frames:
-        return message
-    return f"{Path(frames[-1].filename).relative_to(root).as_posix()}, line {frames[-1].lineno}: {message}"
+        return problem
+    return Message(
+        "{file}, line {line}: {problem}",
+        file=Path(frames[-1].filename).relative_to(root).as_posix(),
+        line=frames[-1].lineno,
+        problem=problem,
+    )
 
 
 def _about(folder: str | None, exercise: str, request: ViewRequest) -> Any:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from coursework.course.folder import course_folder
+from coursework.messages import Message
 from coursework.site.preview.previewed import ViewRequest, ViewResult, work
 
 _EVERY = 0.12  #: seconds between two scans of the files
@@ -53,7 +54,10 @@ class _Process:
                 if not self._pipe.poll(seconds):
                     self.end()
                     return ViewResult(
-                        fault=f"this took more than {seconds:g} s, and was stopped: a loop that does not end?"
+                        fault=Message(
+                            "this took more than {seconds} s, and was stopped: a loop that does not end?",
+                            seconds=f"{seconds:g}",
+                        )
                     )
                 answer: ViewResult = self._pipe.recv()
                 return answer
@@ -106,7 +110,7 @@ class EditedExercise:
             ):  # it was stopped, or fell
                 self._views = self._begun()
             if self._ended.is_set():
-                return View(None, "the preview has ended", None)
+                return View(None, Message("the preview has ended"), None)
         if not result.fault:
             self._good[request] = result.content, datetime.now().astimezone()
             return View(result.content, "", None)

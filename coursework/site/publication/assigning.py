@@ -8,6 +8,7 @@ from __future__ import annotations
 import secrets
 import threading
 from collections.abc import Mapping, Sequence
+from contextvars import copy_context
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from typing import Any, NamedTuple
@@ -25,6 +26,7 @@ from coursework.making.assignment import assignment_of
 from coursework.making.issued import SECRET, issued_content
 from coursework.making.roster import Student
 from coursework.making.variant_assignment import assign_variants
+from coursework.messages import localised
 from coursework.site.frame.settings import Site
 from coursework.site.papers.opening import prepare_soon
 from coursework.system.processes import processes, workers
@@ -82,7 +84,10 @@ def begin(site: Site, wanted: AssignmentRequest, by: str, event: str) -> str:
     the end or after a short wait."""
     token = secrets.token_hex(8)
     _store_state(site, token, AssigningJob(RUNNING, wanted.name, wanted.papers))
-    thread = threading.Thread(target=_run, args=(site, token, wanted, by, event), daemon=True)
+    # The context has the reader's language, in which faults are stored.
+    thread = threading.Thread(
+        target=copy_context().run, args=(_run, site, token, wanted, by, event), daemon=True
+    )
     thread.start()
     thread.join(_PATIENCE)
     return token
@@ -116,7 +121,11 @@ def _run(site: Site, token: str, wanted: AssignmentRequest, by: str, event: str)
     try:
         outcome = _assigned_in_process(site, wanted)
         number = _store(site, wanted, outcome, by, event)
-        _store_state(site, token, begun._replace(state=DONE, number=number, messages=tuple(outcome.notes)))
+        _store_state(
+            site,
+            token,
+            begun._replace(state=DONE, number=number, messages=tuple(map(localised, outcome.notes))),
+        )
     except CourseworkError as fault:
         _store_state(site, token, begun._replace(state=FAILED, messages=(str(fault),)))
     except Exception as fault:  # the page reports it, since nobody waits for this thread

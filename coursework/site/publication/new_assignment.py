@@ -22,6 +22,7 @@ from coursework.errors import BadInput
 from coursework.making.assignment import FILES, OPTIONS, Assignment, assignment_of, table_of
 from coursework.making.issued import Issued
 from coursework.making.roster import Student, read_roster
+from coursework.messages import as_message
 from coursework.site.frame.budgets import DESK_FILE, read_apart
 from coursework.site.frame.requests import Request, Upload
 from coursework.site.publication.assigning import AssignmentRequest
@@ -173,7 +174,7 @@ def roster(request: Request) -> list[Student]:
                 )
                 return students
             except BadInput as fault:
-                raise BadInput(str(fault).replace(str(path), "roster.csv")) from None
+                raise BadInput(as_message(fault).replacing(str(path), "roster.csv")) from None
     return students_with_accounts(request) if request.form.text("accounts") else []
 
 
