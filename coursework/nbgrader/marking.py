@@ -15,6 +15,7 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.notebooks import read_notebook
 from coursework.gradebook.rows import Rejected
 from coursework.making.issued import Issued
+from coursework.messages import Message
 from coursework.nbgrader import outputs as cell_outputs
 from coursework.nbgrader.cells import answers_id, grade_id
 from coursework.nbgrader.outputs import Output
@@ -41,8 +42,12 @@ class MarkedNotebook:
         points, out_of = self.points.get(name, (0.0, most))
         if abs(out_of - most) > _EPSILON:
             warn(
-                f"{name} is worth {most:g} points in nbgrader's database and {out_of:g} as it was issued; "
-                "run nbgrader generate_assignment anew"
+                Message(
+                    "{name} is worth {most:g} points in nbgrader's database and {out_of:g} as it was issued; run nbgrader generate_assignment anew",
+                    name=name,
+                    most=most,
+                    out_of=out_of,
+                )
             )
         return [*self.outputs.get(name, ()), cell_outputs.points_output(max(0.0, min(points, most)))]
 

@@ -17,6 +17,7 @@ from nbgrader.api import Gradebook, MissingEntry
 from nbgrader.preprocessors import ClearSolutions, Execute, NbGraderPreprocessor, SaveAutoGrades
 from traitlets import Unicode
 
+from coursework.messages import Message
 from coursework.nbgrader.cells import OURS, SCHEMA
 from coursework.nbgrader.marking import MarkedNotebook, marked_notebook
 from coursework.system.visible import one_line
@@ -112,12 +113,12 @@ class RestoreCells(NbGraderPreprocessor):
         return nb, resources
 
 
-def restore(nb: NotebookNode, released_cells: Mapping[str, NotebookNode]) -> list[str]:
+def restore(nb: NotebookNode, released_cells: Mapping[str, NotebookNode]) -> list[Message]:
     """Put the released cells back into a notebook; return the changes that had to be undone."""
     changes, cells, seen = [], [], set[str]()
     for cell in nb.cells:
         if not _completed(cell):
-            changes.append("a cell that is none was left out")
+            changes.append(Message("a cell that is none was left out"))
             continue
         name = _grade_id(cell)
         if name in released_cells and name not in seen:
@@ -126,12 +127,15 @@ def restore(nb: NotebookNode, released_cells: Mapping[str, NotebookNode]) -> lis
             continue
         if "nbgrader" in cell.metadata:
             del cell.metadata["nbgrader"]
-            which = f"a second cell {name}" if name in released_cells else "a cell that was not released"
-            changes.append(f"{which} counts as the student's own")
+            if name in released_cells:
+                change = Message("a second cell {name} counts as the student's own", name=name)
+            else:
+                change = Message("a cell that was not released counts as the student's own")
+            changes.append(change)
         cells.append(cell)
     for index, (name, cell) in enumerate(released_cells.items()):
         if name not in seen:
-            changes.append(f"the cell {name} was gone")
+            changes.append(Message("the cell {name} was gone", name=name))
             cells.insert(_behind(cells, list(released_cells)[:index]), cell)
     nb.cells = cells
     for cell in nb.cells:  # restored cells have no id, and copies share one
@@ -153,11 +157,11 @@ def _completed(cell: Any) -> bool:
     return True
 
 
-def _restored(cell: NotebookNode, released: NotebookNode, changes: list[str]) -> NotebookNode:
+def _restored(cell: NotebookNode, released: NotebookNode, changes: list[Message]) -> NotebookNode:
     """Return a cell as it was released; the source of a solution stays the student's."""
     fields = released.metadata.nbgrader
     if cell.cell_type != fields.cell_type or (fields.locked and cell.source != released.source):
-        changes.append(f"the cell {fields.grade_id} was changed")
+        changes.append(Message("the cell {grade_id} was changed", grade_id=fields.grade_id))
     back = _node({**released, "metadata": {**cell.metadata, **released.metadata}})
     if not fields.locked:
         back["source"] = cell.source

@@ -24,6 +24,7 @@ from coursework.making.assignment import Assignment
 from coursework.making.issued import issued_content
 from coursework.making.issuing import Issue
 from coursework.making.papers import IssuedPaper, papers
+from coursework.messages import Message
 from coursework.nbgrader.cells import for_nbgrader, without_variants
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.sheet import Handout
@@ -118,12 +119,15 @@ def check(nb_assignment: NbAssignment) -> None:
     langs = dict.fromkeys(lang for issue in nb_assignment.issues for lang in issue.langs)
     if len(langs) > 1 and any(len(issue.langs) > 1 for issue in nb_assignment.issues):
         raise BadInput(
-            f"nbgrader has one notebook of {nb_assignment.name} for a class, in one language: --lang {' or --lang '.join(langs)}"
+            "nbgrader has one notebook of {name} for a class, in one language: --lang {options}",
+            name=nb_assignment.name,
+            options=" or --lang ".join(langs),
         )
     if nb_assignment.has_personal_variants and not nb_assignment.has_roster:
         raise BadInput(
-            f"nbgrader has one notebook of {nb_assignment.name} for a class: one variant, or a variant a student by --roster FILE.csv; "
-            f"found {counted(len(nb_assignment.papers), 'variant')} that are nobody's"
+            "nbgrader has one notebook of {name} for a class: one variant, or a variant a student by --roster FILE.csv; found {variants} that are nobody's",
+            name=nb_assignment.name,
+            variants=counted(len(nb_assignment.papers), "variant"),
         )
     parts_of: dict[str, set[tuple[tuple[str, float], ...]]] = {}
     for issue in nb_assignment.issues:
@@ -132,10 +136,16 @@ def check(nb_assignment: NbAssignment) -> None:
     for exercise, different in parts_of.items():
         if len(different) > 1:
             everywhere = set.intersection(*({part for part, _ in parts} for parts in different))
-            some = f" such as --parts {','.join(sorted(everywhere))}" if everywhere else ""
+            advice: str = Message("name parts that all of them ask, or give everybody one variant")
+            if everywhere:
+                advice = Message(
+                    "name parts that all of them ask, such as --parts {parts}, or give everybody one variant",
+                    parts=",".join(sorted(everywhere)),
+                )
             raise BadInput(
-                f"the variants of {exercise} do not ask the same, and nbgrader has the same cells for a class: name parts "
-                f"that all of them ask,{some} or give everybody one variant"
+                "the variants of {exercise} do not ask the same, and nbgrader has the same cells for a class: {advice}",
+                exercise=exercise,
+                advice=advice,
             )
 
 

@@ -27,6 +27,7 @@ from coursework.language.numbers import localise
 from coursework.language.words import languages, words
 from coursework.making.issued import Issued
 from coursework.markup.markdown import plain_line
+from coursework.messages import Message
 from coursework.rendering.feedback import hint, note, sign, verdict_word
 from coursework.sheets.sheet import FeedbackLine, FeedbackSheet
 
@@ -86,7 +87,9 @@ def _metadata(path: Path) -> Mapping[str, Any]:
     try:
         metadata = json.loads(path.read_text("utf-8"))
     except (OSError, ValueError) as fault:
-        raise BadInput(f"submission_metadata.json cannot be read ({type(fault).__name__})") from fault
+        raise BadInput(
+            "submission_metadata.json cannot be read ({error})", error=type(fault).__name__
+        ) from fault
     return metadata if isinstance(metadata, dict) else {}
 
 
@@ -109,7 +112,7 @@ def _student(issued: Issued, user: Mapping[str, Any]) -> str:
 def _rows(submission: Path) -> Iterator[AnswerRow | Rejected]:
     """Yield the rows of a submission; links that lead out of its folder are not followed."""
     if not submission.is_dir():
-        yield Rejected("submission", "the folder holds no file")
+        yield Rejected("submission", Message("the folder holds no file"))
         return
     for folder_file in find([submission]):
         if isinstance(folder_file, Rejected):

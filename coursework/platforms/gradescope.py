@@ -95,7 +95,7 @@ class Gradescope(Platform):
         """
         issued = Issued.of(data, source)
         if not folder.has_solutions:
-            raise BadInput(f"{folder.label} has no solutions: it cannot mark")
+            raise BadInput("{course} has no solutions: it cannot mark", course=folder.label)
         lang = next(str(record.get("lang", "fr")) for record in issued.records.values())
         content = json_of(data, source)
         if SECRET in content:  # marking needs none

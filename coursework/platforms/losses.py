@@ -47,7 +47,11 @@ def feature_words(feature: str, lang: str) -> str:
     """Return the name of a feature."""
     features = words(lang)["platforms"]["features"]
     if feature not in features:
-        raise BadCourse(f"no words for the feature {feature!r}; there is: {', '.join(features)}")
+        raise BadCourse(
+            "no words for the feature {feature!r}; there is: {names}",
+            feature=feature,
+            names=", ".join(features),
+        )
     return str(features[feature])
 
 

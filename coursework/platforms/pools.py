@@ -165,7 +165,9 @@ def alike(
     points if parts vary."""
     tried = [v for v in exercise.variants(range(first_seed, first_seed + _TRIED), None, parts) if v.parts]
     if not tried:
-        raise BadInput(f"{exercise.name}: its variants ask none of the parts; name others, or none")
+        raise BadInput(
+            "{exercise}: its variants ask none of the parts; name others, or none", exercise=exercise.name
+        )
     usual, often = _most_common(v.part_ids for v in tried)
     if often >= _USUAL * len(tried):
         return lambda variant: variant.part_ids == usual
@@ -190,4 +192,9 @@ def _check_languages(exercise: CourseExercise[Any], langs: Sequence[str]) -> Non
         words(lang)
         if lang not in exercise.languages:
             have = ", ".join(exercise.languages) or "none"
-            raise BadInput(f"{exercise.name} has no text in {lang!r}; it has {have}")
+            raise BadInput(
+                "{exercise} has no text in {lang!r}; it has {have}",
+                exercise=exercise.name,
+                lang=lang,
+                have=have,
+            )

@@ -16,6 +16,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path, PurePosixPath
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 from coursework.system.json_files import read_json
 
 LIST = ".built.json"
@@ -40,7 +41,7 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
     new_digests = {p.relative_to(new).as_posix(): _digest(p) for p in sorted(new.rglob("*")) if p.is_file()}
     before, damage = _read(out / LIST)
     same = (out / LAST).is_file() and not anew
-    unchanged: dict[str, str] = {}
+    unchanged: dict[str, Message] = {}
     aside: dict[str, None] = {}
     strange: dict[str, None] = {}
     for path, digest in new_digests.items():
@@ -50,21 +51,28 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
         if anew:
             aside[obstacle] = None
         elif same and obstacle in before and (out / obstacle).is_file():
-            unchanged[path] = f"{out / path} was changed since it was built, and is kept as it is"
+            unchanged[path] = Message(
+                "{file} was changed since it was built, and is kept as it is", file=out / path
+            )
         else:
             strange[obstacle] = None
     if strange:
         first = str(out / next(iter(strange)))
-        names = first if len(strange) == 1 else f"{first} and {len(strange) - 1} more"
+        names = (
+            first
+            if len(strange) == 1
+            else Message("{first} and {count} more", first=first, count=len(strange) - 1)
+        )
         raise BadInput(
-            f"not as a build wrote it, and in the way of this one: {names}; move it, choose another --out, "
-            "or --overwrite to set it aside under another name"
+            "not as a build wrote it, and in the way of this one: {names}; move it, choose another --out, or --overwrite to set it aside under another name",
+            names=names,
         )
     notes = [*damage, *unchanged.values()]
     gone = [path for path in before if not same and path not in new_digests and os.path.lexists(out / path)]
     mine = [path for path in gone if not _holds(out / path, before[path])]
     notes += [
-        f"{out / path} is of what was issued before; it was changed since, and is kept" for path in mine
+        Message("{file} is of what was issued before; it was changed since, and is kept", file=out / path)
+        for path in mine
     ]
     installed = sorted((path for path in new_digests if path not in unchanged), key=lambda path: path == LAST)
     # If this build stops halfway, both contents count as built.
@@ -73,7 +81,13 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
         for path in aside:
             backup = free_name(out / path)
             _move(out / path, backup, undo)
-            notes.append(f"{out / path} was not as a build leaves it; it is now {backup.name}")
+            notes.append(
+                Message(
+                    "{file} was not as a build leaves it; it is now {backup}",
+                    file=out / path,
+                    backup=backup.name,
+                )
+            )
         for path in [path for path in gone if path not in mine] + installed:
             if os.path.lexists(out / path):
                 _move(out / path, staging / "old" / path, undo)
@@ -103,13 +117,21 @@ def renew(new: Path, out: Path, record: Path) -> list[str]:
     for name, digest in new_digests.items():
         if os.path.lexists(out / name) and not _holds(out / name, [digest, *before.get(name, ())]):
             backup = _back_up(out / name)
-            notes.append(f"{out / name} was changed since it was written; it is now {backup.name}")
+            notes.append(
+                Message(
+                    "{file} was changed since it was written; it is now {backup}",
+                    file=out / name,
+                    backup=backup.name,
+                )
+            )
         (new / name).replace(out / name)
     for name in sorted(before.keys() - new_digests.keys()):
         if _holds(out / name, before[name]):
             (out / name).unlink()
         elif os.path.lexists(out / name):
-            notes.append(f"{out / name} is of an earlier marking; it was changed since, and is kept")
+            notes.append(
+                Message("{file} is of an earlier marking; it was changed since, and is kept", file=out / name)
+            )
     _write(record, {name: [digest] for name, digest in new_digests.items()})
     return notes
 
@@ -183,14 +205,16 @@ def _read(path: Path) -> tuple[Written, list[str]]:
     try:
         return _written(path), []
     except BadInput as fault:
-        return {}, [f"{fault}; so what stands there counts as somebody's own, and is not lost"]
+        return {}, [
+            Message("{problem}; so its files count as somebody's own, and are not lost", problem=fault)
+        ]
 
 
 def _written(path: Path) -> Written:
     content = read_json(path)
     files = content.get("files") if isinstance(content, dict) else None
     if not isinstance(files, dict) or not all(_is_written(*entry) for entry in files.items()):
-        raise BadInput(f"{path} is no list of what was written")
+        raise BadInput("{file} is no list of what was written", file=path)
     return files
 
 

@@ -21,6 +21,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from typing import Any, Protocol
 
 from coursework.errors import BadInput, CourseworkError
+from coursework.messages import Message
 from coursework.system.extras import library
 from coursework.system.processes import Lost, others_can_start, shared_by, uninterrupted
 
@@ -68,8 +69,8 @@ def cluster(address: str, load: Payload) -> Iterator[None]:
     match = _FORM.fullmatch(address)
     if match is None:
         raise BadInput(
-            f"--cluster takes the address of a scheduler, tcp://HOST:8786 or tls://HOST:8786, or local:N for N workers "
-            f"of this machine; found {address!r}"
+            "--cluster takes the address of a scheduler, tcp://HOST:8786 or tls://HOST:8786, or local:N for N workers of this machine; found {address!r}",
+            address=address,
         )
     if match["count"] and not others_can_start():
         raise BadInput(
@@ -172,8 +173,10 @@ class _Cluster:
             self._client = await self._connected()
         except Exception as fault:
             raise BadInput(
-                f"no scheduler answers at {self._address} (waited {CONNECT:g} s: {_line(fault)}); start one there, "
-                "'dask scheduler', or name another"
+                "no scheduler answers at {address} (waited {seconds:g} s: {problem}); start one there, 'dask scheduler', or name another",
+                address=self._address,
+                seconds=CONNECT,
+                problem=_line(fault),
             ) from None
         self._watching = asyncio.ensure_future(self._watch())
 
@@ -228,7 +231,8 @@ class _Cluster:
                 return result
             except KilledWorker:
                 raise Lost(
-                    f"a task ended every worker at {self._address} that took it: too little memory?"
+                    "a task ended every worker at {address} that took it: too little memory?",
+                    address=self._address,
                 ) from None
             except (ImportError, AttributeError, pickle.UnpicklingError) as fault:
                 raise _without_package(self._address, fault) from None
@@ -239,7 +243,9 @@ class _Cluster:
                     future.release()
             self._at_hand.clear()
             await self._at_hand.wait()
-        raise Lost(f"the scheduler at {self._address} comes and goes ({message})")
+        raise Lost(
+            "the scheduler at {address} comes and goes ({message})", address=self._address, message=message
+        )
 
     def _sent(self, task: bytes, key: str) -> tuple[Any, ...]:
         """Send a task; return the futures of its result and of the content it needs. The scheduler and the
@@ -258,7 +264,7 @@ class _Cluster:
                 seen = now
                 self._at_hand.set()
             elif now - seen > PATIENCE:
-                self._lost = Lost(f"{silent} (waited {PATIENCE:g} s)")
+                self._lost = Lost("{silent} (waited {seconds:g} s)", silent=silent, seconds=PATIENCE)
                 for task in self._tasks:
                     task.cancel()
                 return
@@ -272,9 +278,9 @@ class _Cluster:
             threads = await asyncio.wait_for(self._client.nthreads(), CONNECT)
         except Exception:  # a network has many ways to fail
             self._at_hand.clear()
-            return f"the scheduler at {self._address} answers no more"
+            return Message("the scheduler at {address} answers no more", address=self._address)
         self.capacity = sum(threads.values())
-        return None if threads else f"no worker is left at {self._address}"
+        return None if threads else Message("no worker is left at {address}", address=self._address)
 
 
 async def _left(resource: Any) -> None:
@@ -285,8 +291,9 @@ async def _left(resource: Any) -> None:
 
 def _without_package(address: str, fault: Exception) -> CourseworkError:
     return CourseworkError(
-        f"a worker at {address} has not this package, or another version of it ({_line(fault)}): "
-        "install there what is installed here"
+        "a worker at {address} has not this package, or another version of it ({problem}): install there what is installed here",
+        address=address,
+        problem=_line(fault),
     )
 
 

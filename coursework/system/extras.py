@@ -8,6 +8,7 @@ from importlib import import_module
 from types import ModuleType
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 from coursework.system.distribution import add_extra
 
 
@@ -30,11 +31,19 @@ def library(module: str, job: str, extra: str) -> ModuleType:
         return import_module(module)
     except Exception as fault:  # whatever a library does that does not fit the others
         if isinstance(fault, ModuleNotFoundError) and fault.name == name:
-            raise NotAtHand(f"{job} {name}, which is not installed: {add_extra(extra)}") from fault
+            raise NotAtHand(
+                "{job} {name}, which is not installed: {command}",
+                job=Message(job),
+                name=name,
+                command=add_extra(extra),
+            ) from fault
         message = " ".join(str(fault).split())[:120]
         raise NotAtHand(
-            f"{job} {name}, which is installed and cannot be loaded ({type(fault).__name__}: {message}): "
-            f"pip install --upgrade --force-reinstall {name}, or a version that fits the NumPy that is there"
+            "{job} {name}, which is installed and cannot be loaded ({error}: {message}): pip install --upgrade --force-reinstall {name}, or a version that fits the NumPy that is there",
+            job=Message(job),
+            name=name,
+            error=type(fault).__name__,
+            message=message,
         ) from fault
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 
 _DIGITS = 300  #: of an integer; a float has no more before its point
 _EXCERPT = 40  #: characters of a faulty text in a message
@@ -25,7 +26,7 @@ def read_json(path: Path) -> Any:
     try:
         data = path.read_bytes()
     except OSError as fault:
-        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        raise BadInput("{file} cannot be read: {reason}", file=path, reason=fault.strerror) from fault
     return json_of(data, str(path))
 
 
@@ -41,9 +42,11 @@ def json_of(data: bytes, source: str) -> Any:
         text = data.decode("utf-8-sig")
         value = json.loads(text, parse_int=_integer, parse_float=_decimal, parse_constant=_constant)
     except RecursionError as fault:
-        raise BadInput(f"{source} is not JSON that can be read: it is nested too deep") from fault
+        raise BadInput(
+            "{source} is not JSON that can be read: it is nested too deep", source=source
+        ) from fault
     except ValueError as fault:
-        raise BadInput(f"{source} is not JSON: {str(fault)[:100]}") from fault
+        raise BadInput("{source} is not JSON: {problem}", source=source, problem=str(fault)[:100]) from fault
     if "\\u0000" in text or "\\ud" in text.casefold():
         _check_texts(value, source)
     return value
@@ -73,8 +76,14 @@ def _refuse(written: str, problem: str) -> NoReturn:
 def _check_texts(value: Any, source: str) -> None:
     for path, text in _texts(value, ""):
         if "\0" in text or (not text.isprintable() and any("\ud800" <= c <= "\udfff" for c in text)):
-            problem = "a NUL" if "\0" in text else "half a character"
-            raise BadInput(f"{source}: {path.lstrip('.') or 'a text'} holds {problem}: {text[:_EXCERPT]!r}")
+            problem = Message("a NUL") if "\0" in text else Message("half a character")
+            raise BadInput(
+                "{source}: {place} holds {problem}: {text!r}",
+                source=source,
+                place=path.lstrip(".") or Message("a text"),
+                problem=problem,
+                text=text[:_EXCERPT],
+            )
 
 
 def _texts(content: Any, path: str) -> Iterator[tuple[str, str]]:

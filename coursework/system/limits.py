@@ -6,6 +6,7 @@ A class of a hundred thousand stays far below. Split larger input.
 from __future__ import annotations
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 
 # ----------------------------------------------------------------------------- read
 MOST_BYTES = 1_000_000_000  #: of one file of answers, as CSV, JSON or XML
@@ -27,10 +28,11 @@ MOST_PORT = 65_535
 MOST_WORKERS = 256
 
 
-def beyond(subject: str, count: int, most: int, unit: str) -> str:
+def beyond(subject: str, count: int, most: int, unit: str) -> Message:
     """Return the message for too much: ``a file of 7,000,000 rows is not read; the limit is 2,000,000: part
     it into several``."""
-    return f"{subject} of {count:,} {unit} is not read; the limit is {most:,}: part it into several"
+    template = "{subject} of {count:,} {unit} is not read; the limit is {most:,}: part it into several"
+    return Message(template, subject=Message(subject), count=count, unit=Message(unit), most=most)
 
 
 def check_size(subject: str, size: int, most: int) -> None:
@@ -42,4 +44,4 @@ def check_size(subject: str, size: int, most: int) -> None:
         It says the size and the limit.
     """
     if size > most:
-        raise BadInput(f"{subject}: {beyond('a file', size, most, 'bytes')}")
+        raise BadInput("{subject}: {problem}", subject=subject, problem=beyond("a file", size, most, "bytes"))

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 
-LEADS_OUT = "a link that leads out of the folder is not followed"
+LEADS_OUT = Message("a link that leads out of the folder is not followed")
 
 
 class LeadsOut(OSError):
@@ -56,7 +57,7 @@ def check_inside(path: Path, folder: Path) -> None:
         It is a link that does; the path is named, and nothing behind it.
     """
     if path.is_symlink() and leads_out(path, folder):
-        raise BadInput(f"{path}: {LEADS_OUT}")
+        raise BadInput("{file}: {problem}", file=path, problem=LEADS_OUT)
 
 
 def open_inside(path: Path, folder: Path) -> BufferedReader:

@@ -130,7 +130,9 @@ def _given(sent: deque[tuple[str, Future[Any]]]) -> Any:
     try:
         return task.result()
     except Lost as fault:
-        raise Lost(f"{fault}: {name} is not done, and what comes after it may not be") from None
+        raise Lost(
+            "{problem}: {name} is not done, and what comes after it may not be", problem=fault, name=name
+        ) from None
 
 
 @contextmanager
@@ -400,7 +402,9 @@ def _do_confined(answer: Connection, means: ResourceLimits, sent: bytes) -> None
     except CourseworkError as fault:
         given = pickle.dumps((False, fault, time.process_time()))
     except Exception as fault:  # its message may contain a right answer
-        fault = CourseworkError(f"{type(fault).__name__} in {function.__name__}")
+        fault = CourseworkError(
+            "{error} in {function}", error=type(fault).__name__, function=function.__name__
+        )
         given = pickle.dumps((False, fault, time.process_time()))
     unlimited()
     answer.send_bytes(given)

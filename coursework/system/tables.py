@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 
 MAX_LINES = 20  #: of one quoted cell
 _WARNINGS = {
     "utf-8-sig": "",
-    "utf-16": "the file is UTF-16, not UTF-8",
-    "cp1252": "the file is not UTF-8; it was read as Windows-1252",
+    "utf-16": Message("the file is UTF-16, not UTF-8"),
+    "cp1252": Message("the file is not UTF-8; it was read as Windows-1252"),
 }
 
 
@@ -34,7 +35,8 @@ def duplicate_column(header: Iterable[str], columns: Iterable[str]) -> str:
     else ""."""
     titles = [as_written(title.strip()).casefold() for title in header]
     duplicate = next((column for column in columns if titles.count(column) > 1), "")
-    return f"the header names the column {duplicate} twice; take one of them away" if duplicate else ""
+    template = "the header names the column {column} twice; take one of them away"
+    return Message(template, column=duplicate) if duplicate else ""
 
 
 def encoding_of(data: bytes) -> str:
@@ -103,7 +105,9 @@ def _refuse_nul(path: Path, data: bytes) -> None:
     """Raise if a table holds NUL: no spreadsheet and no editor writes one."""
     if b"\0" in data and "\0" in (text := data.decode(encoding_of(data), "replace")):
         line = len(re.findall(r"\r\n|\n|\r", text.partition("\0")[0])) + 1
-        raise BadInput(f"{path}, line {line}: holds a NUL byte, which no table does; take it out")
+        raise BadInput(
+            "{file}, line {line}: holds a NUL byte, which no table does; take it out", file=path, line=line
+        )
 
 
 @contextmanager

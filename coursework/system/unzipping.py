@@ -52,7 +52,12 @@ def unpack(archive: Path, folder: Path, limits: ArchiveLimits = USUAL) -> list[P
         with zipfile.ZipFile(archive) as opened:
             members = [info for info in opened.infolist() if not info.is_dir()]
             if len(members) > limits.files:
-                raise BadInput(f"{archive.name} holds {len(members)} files; {limits.files} is the most")
+                raise BadInput(
+                    "{archive} holds {count} files; {most} is the most",
+                    archive=archive.name,
+                    count=len(members),
+                    most=limits.files,
+                )
             for member in members:
                 target = folder / _path_inside(archive, member.filename, limits)
                 written.append(target)
@@ -60,7 +65,9 @@ def unpack(archive: Path, folder: Path, limits: ArchiveLimits = USUAL) -> list[P
     except BadInput:
         raise
     except _DAMAGED as fault:
-        raise BadInput(f"{archive.name} cannot be opened: {fault}") from fault
+        raise BadInput(
+            "{archive} cannot be opened: {problem}", archive=archive.name, problem=fault
+        ) from fault
     return written
 
 
@@ -71,10 +78,16 @@ def _path_inside(archive: Path, name: str, limits: ArchiveLimits) -> PurePosixPa
         part in ("", ".", "..") or ":" in part or "\0" in part for part in path.parts
     )
     if odd or not path.parts:
-        raise BadInput(f"{archive.name} names a place outside its folder, {name[:60]!r}: it is not opened")
+        raise BadInput(
+            "{archive} names a place outside its folder, {name!r}: it is not opened",
+            archive=archive.name,
+            name=name[:60],
+        )
     if len(path.parts) > limits.depth or max(map(len, path.parts)) > limits.name:
         raise BadInput(
-            f"{archive.name} has folders too deep or names too long, {name[:60]!r}: it is not opened"
+            "{archive} has folders too deep or names too long, {name!r}: it is not opened",
+            archive=archive.name,
+            name=name[:60],
         )
     return path
 
@@ -88,7 +101,9 @@ def _write(opened: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path, most: i
             size += len(chunk)
             if size > most:
                 raise BadInput(
-                    f"{archive.name} unpacks to more than it may ({member.filename[:60]!r}): it is not gone on with"
+                    "{archive} unpacks to more than it may ({filename!r}): it is not gone on with",
+                    archive=archive.name,
+                    filename=member.filename[:60],
                 )
             target.write(chunk)
     return size

@@ -73,7 +73,9 @@ def writing(path: Path) -> Iterator[None]:
         yield
     except OSError as fault:
         raise BadInput(
-            f"{path} cannot be written: {fault.strerror or fault}; name another folder, or make this one writable"
+            "{file} cannot be written: {reason}; name another folder, or make this one writable",
+            file=path,
+            reason=fault.strerror or fault,
         ) from fault
 
 
@@ -276,5 +278,7 @@ def _replacement_errors(path: Path) -> Iterator[None]:
         yield
     except OSError as fault:
         raise BadInput(
-            f"{path} cannot be written ({fault.strerror}); close what has it open, move it away, or choose another --out"
+            "{file} cannot be written ({reason}); close what has it open, move it away, or choose another --out",
+            file=path,
+            reason=fault.strerror,
         ) from fault

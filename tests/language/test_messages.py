@@ -15,12 +15,12 @@ from coursework.messages import Message, as_message, localised, messages_in, tra
 PACKAGE = Path(coursework.__file__).resolve().parent
 
 #: What takes a template first, and is read by those who use the product; errors in the code of a course stay English.
-FOR_USERS = {"BadInput", "Message"}
+FOR_USERS = {"BadInput", "Message", "Lost", "NotAtHand"}
 
 #: Folders whose messages are not yet templates.
 LEFT = frozenset(
-    "accuracy authoring cli course database gradebook lti making model.py motion nbgrader platforms reading rendering scanning selfstudy "
-    "statistics system workbook".split()
+    "accuracy authoring cli course database gradebook lti making model.py motion reading rendering scanning selfstudy "
+    "statistics workbook".split()
 )
 
 
