@@ -407,9 +407,10 @@ def gradebook(request: Request) -> Response:
                 ) from fault
             raise BadInput(texts["no_number"]) from None
     messages = [texts["filled"].format(filled.written, filled.column)]
-    for outcome in ("strangers", "unclear", "absent", "kept"):
-        if names := getattr(filled, outcome):
-            messages.append(texts[outcome].format(len(names), _list(names)))
+    outcomes = {
+        "strangers": filled.strangers, "unclear": filled.unclear, "absent": filled.absent, "kept": filled.unchanged,
+    }  # fmt: skip
+    messages += [texts[key].format(len(names), _list(names)) for key, names in outcomes.items() if names]
     return files_page(request, messages, filled, file_name(sent))
 
 
