@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,7 @@ from coursework.quantities.usual_errors import ALL_DEGREES
 from coursework.reading.reading import Reading
 
 _FAR = 5  #: times a right value from which on the order of magnitude is told
+_TRIED = 3  #: wrong answers, of which fewer are tried for those that an answer follows from
 _LISTED = 7  #: given quantities that a sentence lists
 
 if TYPE_CHECKING:
@@ -155,16 +157,18 @@ def _follows(named: Sequence[Explanation]) -> bool:
 
 
 def _followed_from(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> list[str]:
-    """The parts whose wrong answers an answer follows from: without one of them it would be another."""
+    """Return the fewest parts whose wrong answers an answer follows from, the others being right."""
     parts = _asked_above(key.variant, judged_by.quantity, before.wrong)
-    quantities = [p.quantity for p in parts]
-    left = list(before.wrong)
-    for quantity in quantities if len(quantities) > 1 else ():
-        others = [q for q in left if q != quantity]
-        own_answers = {q: v for q, v in before.own.items() if q not in before.wrong or q in others}
-        if fits_followed(key, part, reading, judged_by, own_answers, others) is not None:
-            left = others
-    return [p.id for p in parts if p.quantity in left]
+    nearest = [p.quantity for p in reversed(parts)]
+    above = (p.quantity for p in reversed(key.variant.parts) if p.quantity in before.wrong)
+    further = [q for q in above if judged_by.quantity in key.solution.depending_on(q) and q not in nearest]
+    quantities = [*nearest, *further]
+    for count in range(1, min(len(nearest), _TRIED)):
+        for some in itertools.combinations(quantities, count):
+            own_answers = {q: v for q, v in before.own.items() if q not in before.wrong or q in some}
+            if fits_followed(key, part, reading, judged_by, own_answers, some) is not None:
+                return [p.id for p in key.variant.parts if p.quantity in some]
+    return [p.id for p in parts]
 
 
 def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said:
