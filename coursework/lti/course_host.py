@@ -35,6 +35,7 @@ from coursework.making.assignment import AskedExercise, Assignment, read_assignm
 from coursework.making.papers import date_text
 from coursework.making.variant_assignment import keyed
 from coursework.marking.marking import mark
+from coursework.messages import localised
 from coursework.rendering.feedback import verdict_word
 from coursework.sheets.handout import handout
 from coursework.sheets.paper import FeedbackPaper, Heading, Paper
@@ -507,7 +508,7 @@ def _members(visit: LTIRequest, lang: str) -> tuple[Any, str]:
     try:
         return visit.roster(), ""
     except NotServed as fault:
-        return None, texts["no_roster"].format(fault)
+        return None, texts["no_roster"].format(localised(fault, lang))
 
 
 def _box(part: str, number: int, alone: bool) -> str:

@@ -45,16 +45,19 @@ class SigningKey:
             The file cannot be read, is no RSA key, or others than its owner may read it.
         """
         if os.name == "posix" and self.path.stat().st_mode & 0o077:
-            raise BadInput(f"others may read the private key {self.path}: chmod 600 {self.path}")
+            raise BadInput("others may read the private key {file}: chmod 600 {file}", file=self.path)
         try:
             private_key = serialization.load_pem_private_key(self.path.read_bytes(), None)
         except (OSError, ValueError, TypeError) as fault:
             raise BadInput(
-                f"{self.path} is no private key: {type(fault).__name__}; 'coursework lti keys rotate' makes another"
+                "{file} is no private key: {error}; 'coursework lti keys rotate' makes another",
+                file=self.path,
+                error=type(fault).__name__,
             ) from fault
         if not isinstance(private_key, rsa.RSAPrivateKey):
             raise BadInput(
-                f"{self.path} is no RSA key, which LTI signs with; 'coursework lti keys rotate' makes one"
+                "{file} is no RSA key, which LTI signs with; 'coursework lti keys rotate' makes one",
+                file=self.path,
             )
         return private_key
 
@@ -86,7 +89,7 @@ class KeyFolder:
             There is none.
         """
         if not self.keys:
-            raise BadInput(f"no key in {self.folder}; 'coursework lti keys new' makes one")
+            raise BadInput("no key in {folder}; 'coursework lti keys new' makes one", folder=self.folder)
         return self.keys[-1]
 
     @property
@@ -123,10 +126,11 @@ class KeyFolder:
         kids = [key.kid for key in self.keys]
         matching = [key for key in self.keys if kid and key.kid.startswith(kid)]
         if len(matching) != 1:
-            raise BadInput(f"no one key {kid!r}{nearest(kid, kids)}")
+            raise BadInput("no one key {kid!r}{near}", kid=kid, near=nearest(kid, kids))
         if matching[0] == self.signing:
             raise BadInput(
-                f"{matching[0].kid} is the key that signs; 'coursework lti keys rotate' makes another first"
+                "{kid} is the key that signs; 'coursework lti keys rotate' makes another first",
+                kid=matching[0].kid,
             )
         matching[0].path.unlink()
         return matching[0]

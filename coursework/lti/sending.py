@@ -9,6 +9,7 @@ from coursework.errors import CourseworkError
 from coursework.lti.services import NotServed, Services
 from coursework.lti.settings import Settings
 from coursework.lti.storage import Storage, Waiting
+from coursework.messages import Message, as_message
 
 LOG = logging.getLogger("coursework.lti")
 _FIRST, _LONGEST = 5.0, 3600.0  #: seconds to the next attempt after one failure, and after many
@@ -33,7 +34,7 @@ class Sender:
             platform = self._settings.platform(issuer, client_id)
             try:
                 if platform is None:
-                    raise NotServed(f"{issuer} is no longer in the settings", 404)
+                    raise NotServed(Message("{issuer} is no longer in the settings", issuer=issuer), 404)
                 self._services.send(platform, waiting)
             except CourseworkError as fault:
                 failed += 1
@@ -46,10 +47,10 @@ class Sender:
     def _failed(self, waiting: Waiting, fault: CourseworkError) -> None:
         status = getattr(fault, "status", 0)
         if status == _CONFLICT:
-            self._storage.put_off(waiting, _FIRST, str(fault))
+            self._storage.put_off(waiting, _FIRST, as_message(fault))
             self._storage.newer_stamp(waiting)
         else:
-            self._storage.put_off(waiting, wait_after(waiting.failures, status), str(fault))
+            self._storage.put_off(waiting, wait_after(waiting.failures, status), as_message(fault))
         LOG.warning("a score waits: %s", fault)
 
     def start(self) -> None:

@@ -19,6 +19,7 @@ from coursework.lti.keys import KeyFolder
 from coursework.lti.roles import Role, role_of
 from coursework.lti.settings import LTIPlatform, origin
 from coursework.lti.storage import Waiting
+from coursework.messages import Message
 
 _GRADES = "https://purl.imsglobal.org/spec/lti-ags/scope/"
 SCORE, LINE, LINE_READ = f"{_GRADES}score", f"{_GRADES}lineitem", f"{_GRADES}lineitem.readonly"
@@ -88,7 +89,7 @@ class Services:
         else a new one."""
         link = waiting.link
         if not waiting.lines or LINE not in waiting.scopes:
-            raise NotServed("the link has no column in the gradebook", 404)
+            raise NotServed(Message("the link has no column in the gradebook"), 404)
         url = _with(waiting.lines, resource_link_id=link)
         columns = self._request(platform, [LINE], "GET", url, accept=_LINES_TYPE).json()
         for column in columns if isinstance(columns, list) else []:
@@ -123,10 +124,16 @@ class Services:
             try:
                 members += [_member(member) for member in answer.json().get("members", [])]
             except (ValueError, AttributeError, TypeError, KeyError) as fault:
-                raise NotServed(f"{platform.name} answers with no roster") from fault
+                raise NotServed(
+                    Message("{platform} answers with no roster", platform=platform.name)
+                ) from fault
             page = answer.links.get("next", {}).get("url", "")
             if page and origin(page) != origin(url):
-                raise NotServed(f"{platform.name} sends us elsewhere for the rest of its roster")
+                raise NotServed(
+                    Message(
+                        "{platform} sends us elsewhere for the rest of its roster", platform=platform.name
+                    )
+                )
         return members
 
     # ------------------------------------------------------------------ requests
@@ -137,8 +144,11 @@ class Services:
         """Return the response of the platform; retry once with a new token if it rejects the cached one."""
         if origin(url) not in platform.services:
             raise NotServed(
-                f"{platform.name} names an address at {origin(url)[:100]!r}, which is not among its own: add it to its 'origins' in "
-                "platforms.toml where it is",
+                Message(
+                    "{platform} names an address at {origin!r}, which is not among its own: add it to its 'origins' in platforms.toml where it is",
+                    platform=platform.name,
+                    origin=origin(url)[:100],
+                ),
                 403,
             )
         for fresh in (False, True):
@@ -149,7 +159,10 @@ class Services:
             if answer.status_code != 401:
                 break
         if not answer.is_success:
-            raise NotServed(f"{platform.name} answers {answer.status_code}", answer.status_code)
+            raise NotServed(
+                Message("{platform} answers {status}", platform=platform.name, status=answer.status_code),
+                answer.status_code,
+            )
         return answer
 
     def token(self, platform: LTIPlatform, scopes: Sequence[str], fresh: bool = False) -> str:
@@ -174,13 +187,18 @@ class Services:
         answer = self._sent(platform, "POST", platform.token_url, data=request)
         if not answer.is_success:
             raise NotServed(
-                f"{platform.name} gives no token: it answers {answer.status_code}", answer.status_code
+                Message(
+                    "{platform} gives no token: it answers {status}",
+                    platform=platform.name,
+                    status=answer.status_code,
+                ),
+                answer.status_code,
             )
         try:
             had = answer.json()
             token, seconds = str(had["access_token"]), float(had.get("expires_in", 3600))
         except (ValueError, KeyError, TypeError) as fault:
-            raise NotServed(f"{platform.name} gives no token") from fault
+            raise NotServed(Message("{platform} gives no token", platform=platform.name)) from fault
         with self._lock:
             self._tokens[name] = token, time.monotonic() + max(0.0, seconds - 30)
         return token
@@ -198,7 +216,11 @@ class Services:
         try:
             return self._client.request(method, url, **options)
         except (httpx.HTTPError, httpx.InvalidURL) as fault:
-            raise NotServed(f"{platform.name} does not answer: {type(fault).__name__}") from None
+            raise NotServed(
+                Message(
+                    "{platform} does not answer: {error}", platform=platform.name, error=type(fault).__name__
+                )
+            ) from None
 
 
 def _below(line: str, name: str) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from coursework.errors import BadInput, nearest
+from coursework.messages import Message, as_message
 from coursework.system.toml_lines import line_of
 
 FILE = "platforms.toml"
@@ -103,10 +104,16 @@ def checked_url(url: str, label: str, *, slash: bool = False) -> str:
         or parts.username
         or any(c.isspace() or c in "\"'<>;," for c in url)
     ):
-        raise BadInput(f"{label} is an address such as https://moodle.example.org; found {url!r}")
+        raise BadInput(
+            "{label} is an address such as https://moodle.example.org; found {url!r}",
+            label=Message(label),
+            url=url,
+        )
     if parts.scheme == "http" and not is_loopback(host):
         raise BadInput(
-            f"{label} is plain http: {url}; keys and launches would go unprotected: give its https address"
+            "{label} is plain http: {url}; keys and launches would go unprotected: give its https address",
+            label=Message(label),
+            url=url,
         )
     return url if slash else url.rstrip("/")
 
@@ -171,7 +178,7 @@ def read_settings(folder: Path) -> Settings:
         source = path.read_text("utf-8-sig")
         table = tomllib.loads(source)
     except (OSError, ValueError, RecursionError) as fault:
-        raise BadInput(f"{path} cannot be read: {fault}") from fault
+        raise BadInput("{file} cannot be read: {problem}", file=path, problem=fault) from fault
     return _SettingsReader(path, source).settings(table)
 
 
@@ -181,26 +188,35 @@ class _SettingsReader:
     def __init__(self, path: Path, source: str):
         self.path, self.source = path, source
 
-    def refused(self, key_path: Sequence[str | int], why: str) -> BadInput:
+    def refused(self, key_path: Sequence[str | int], why: Message) -> BadInput:
         line = line_of(self.source, key_path)
-        return BadInput(f"{self.path}{f', line {line}' if line else ''}: {why}")
+        if line:
+            return BadInput("{file}, line {line}: {problem}", file=self.path, line=line, problem=why)
+        return BadInput("{file}: {problem}", file=self.path, problem=why)
 
     def settings(self, table: Mapping[str, Any]) -> Settings:
         for key in table:
             if key not in ("service", "platforms"):
-                raise self.refused([key], f"no key {key!r}{nearest(key, ('service', 'platforms'))}")
+                raise self.refused(
+                    [key],
+                    Message("no key {key!r}{near}", key=key, near=nearest(key, ("service", "platforms"))),
+                )
         service, listed = table.get("service", {}), table.get("platforms", [])
         if not isinstance(service, Mapping) or not isinstance(listed, list):
-            raise self.refused(["service"], "write [service] with url = …, then [[platforms]]")
+            raise self.refused(["service"], Message("write [service] with url = …, then [[platforms]]"))
         for key in service:
             if key not in _SERVICE:
-                raise self.refused(["service", key], f"no key {key!r} in [service]{nearest(key, _SERVICE)}")
+                raise self.refused(
+                    ["service", key],
+                    Message("no key {key!r} in [service]{near}", key=key, near=nearest(key, _SERVICE)),
+                )
         platforms = tuple(self.platform(number, entry) for number, entry in enumerate(listed))
         self._check_twice(platforms)
         hours = service.get("session_hours", 12)
         if isinstance(hours, bool) or not isinstance(hours, (int, float)) or not 0 < hours <= 168:
             raise self.refused(
-                ["service", "session_hours"], f"session_hours is a number up to 168; found {hours!r}"
+                ["service", "session_hours"],
+                Message("session_hours is a number up to 168; found {hours!r}", hours=hours),
             )
         return Settings(
             self.path.parent,
@@ -216,13 +232,18 @@ class _SettingsReader:
     def platform(self, number: int, table: Any) -> LTIPlatform:
         key_path: list[str | int] = ["platforms", number]
         if not isinstance(table, Mapping):
-            raise self.refused(key_path, "platforms are tables: [[platforms]], then issuer = …")
+            raise self.refused(key_path, Message("platforms are tables: [[platforms]], then issuer = …"))
         for key in table:
             if key not in _KEYS:
-                raise self.refused([*key_path, key], f"no key {key!r} in [[platforms]]{nearest(key, _KEYS)}")
+                raise self.refused(
+                    [*key_path, key],
+                    Message("no key {key!r} in [[platforms]]{near}", key=key, near=nearest(key, _KEYS)),
+                )
         for key in ("issuer", "client_id", "deployments", "auth_url", "token_url", "jwks_url"):
             if not table.get(key):
-                raise self.refused(key_path, f"a platform needs {key}; 'coursework lti platform' writes one")
+                raise self.refused(
+                    key_path, Message("a platform needs {key}; 'coursework lti platform' writes one", key=key)
+                )
         urls = {key: self._url([*key_path, key], table[key]) for key in ("auth_url", "token_url", "jwks_url")}
         # The issuer is compared literally, including a slash at its end.
         self._url([*key_path, "issuer"], table["issuer"])
@@ -242,21 +263,25 @@ class _SettingsReader:
 
     def _truth(self, key_path: Sequence[str | int], value: Any) -> bool:
         if not isinstance(value, bool):
-            raise self.refused(key_path, f"{key_path[-1]} is true or false; found {value!r}")
+            raise self.refused(
+                key_path, Message("{key} is true or false; found {value!r}", key=key_path[-1], value=value)
+            )
         return value
 
     def _texts(self, key_path: Sequence[str | int], value: Any) -> tuple[str, ...]:
         if not isinstance(value, list) or not all(
             isinstance(text, (str, int)) and str(text).strip() for text in value
         ):
-            raise self.refused(key_path, f'{key_path[-1]} is a list: ["1"]; found {value!r}')
+            raise self.refused(
+                key_path, Message('{key} is a list: ["1"]; found {value!r}', key=key_path[-1], value=value)
+            )
         return tuple(str(text) for text in value)
 
     def _url(self, key_path: Sequence[str | int], value: Any) -> str:
         try:
             return checked_url(str(value), str(key_path[-1]))
         except BadInput as fault:
-            raise self.refused(key_path, str(fault)) from None
+            raise self.refused(key_path, as_message(fault)) from None
 
     def _check_twice(self, platforms: Sequence[LTIPlatform]) -> None:
         seen: set[tuple[str, str]] = set()
@@ -264,7 +289,11 @@ class _SettingsReader:
             if (platform.issuer, platform.client_id) in seen:
                 raise self.refused(
                     ["platforms", number],
-                    f"{platform.issuer} with client_id {platform.client_id} stands twice; keep one",
+                    Message(
+                        "{issuer} with client_id {client_id} stands twice; keep one",
+                        issuer=platform.issuer,
+                        client_id=platform.client_id,
+                    ),
                 )
             seen.add((platform.issuer, platform.client_id))
 

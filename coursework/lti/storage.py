@@ -120,7 +120,7 @@ class Storage:
                 file.execute("PRAGMA journal_mode = WAL")
                 file.executescript(_TABLES)
         except (OSError, sqlite3.Error) as fault:
-            raise BadInput(f"{self.path} cannot be used: {fault}") from fault
+            raise BadInput("{file} cannot be used: {problem}", file=self.path, problem=fault) from fault
 
     @contextmanager
     def _open(self) -> Iterator[sqlite3.Connection]:
@@ -348,7 +348,7 @@ class Storage:
         try:
             return Secret.of(text)
         except ValueError as fault:
-            raise BadInput(f"{self.path}: {fault}; restore a backup") from None
+            raise BadInput("{file}: {problem}; restore a backup", file=self.path, problem=fault) from None
 
     def checked_state(self, subject: str) -> str:
         """Return the state of something when it was last checked; empty if it never was."""

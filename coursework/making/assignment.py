@@ -20,6 +20,7 @@ from coursework.course.marking_rules import Rules
 from coursework.course.secrecy import Secret
 from coursework.errors import BadCourse, BadInput, nearest
 from coursework.language.words import languages
+from coursework.messages import Message
 from coursework.sheets.paper import Logo
 
 Texts = Mapping[str, str]  #: by language
@@ -133,7 +134,9 @@ class Assignment:
         try:
             data = self.logo.read_bytes()
         except OSError as fault:
-            raise BadInput(f"the logo {self.logo} cannot be read: {fault.strerror}") from fault
+            raise BadInput(
+                "the logo {file} cannot be read: {reason}", file=self.logo, reason=fault.strerror
+            ) from fault
         return Logo(data, self.logo.suffix[1:].lower(), text_in(self.logo_alt, lang))
 
 
@@ -153,9 +156,16 @@ def read_assignment(path: Path, course: Exercises) -> Assignment:
     try:
         source = path.read_text("utf-8-sig")
     except OSError as fault:
-        raise BadInput(f"the assignment {path} cannot be read: {fault.strerror or fault}") from fault
+        raise BadInput(
+            "the assignment {file} cannot be read: {reason}", file=path, reason=fault.strerror or fault
+        ) from fault
     except UnicodeDecodeError as fault:
-        raise BadInput(f"{path} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
+        raise BadInput(
+            "{file} is not UTF-8: {reason} at byte {position}",
+            file=path,
+            reason=fault.reason,
+            position=fault.start,
+        ) from fault
     return _AssignmentReader(path, source, course).assignment(table_of(source, str(path)))
 
 
@@ -168,20 +178,32 @@ def table_of(source: str, source_name: str) -> dict[str, Any]:
         The text is no TOML, or too large, nested too deep, or has a number of more than 64 bits.
     """
     if len(source) > _LARGEST:
-        raise BadInput(f"{source_name} has {len(source)} characters; an assignment has at most {_LARGEST}")
+        raise BadInput(
+            "{source_name} has {count} characters; an assignment has at most {most}",
+            source_name=source_name,
+            count=len(source),
+            most=_LARGEST,
+        )
     for number, line in enumerate(source.splitlines(), start=1):
         if line.partition("=")[0].count(".") > _MOST_DOTS:
             raise BadInput(
-                f"{source_name}, line {number}: more than {_MOST_DOTS} dots before what is said; a key has one or two"
+                "{source_name}, line {number}: more than {most} dots before what is said; a key has one or two",
+                source_name=source_name,
+                number=number,
+                most=_MOST_DOTS,
             )
     try:
         table = tomllib.loads(source)
     except RecursionError:
-        raise BadInput(f"{source_name}: brackets within brackets, too many to be read") from None
+        raise BadInput(
+            "{source_name}: brackets within brackets, too many to be read", source_name=source_name
+        ) from None
     except ValueError as fault:
-        raise BadInput(f"{source_name}: {fault}") from fault
+        raise BadInput("{source_name}: {problem}", source_name=source_name, problem=fault) from fault
     if _holds_huge(table):
-        raise BadInput(f"{source_name}: a whole number of more than 64 bits, which TOML has not")
+        raise BadInput(
+            "{source_name}: a whole number of more than 64 bits, which TOML has not", source_name=source_name
+        )
     return table
 
 
@@ -220,9 +242,11 @@ class _AssignmentReader:
     def __init__(self, path: Path, source: str, course: Exercises):
         self.path, self.lines, self.course = path, source.splitlines(), course
 
-    def refused(self, key: str, why: str, exercise: int = -1) -> BadInput:
+    def refused(self, key: str, why: Message, exercise: int = -1) -> BadInput:
         line = self._line(key, exercise)
-        return BadInput(f"{self.path}{f', line {line}' if line else ''}: {why}")
+        if line:
+            return BadInput("{file}, line {line}: {problem}", file=self.path, line=line, problem=why)
+        return BadInput("{file}: {problem}", file=self.path, problem=why)
 
     def _line(self, key: str, exercise: int) -> int:
         """Return the line of a key, at the top level or in a table of exercises; 0 if it is not found."""
@@ -267,17 +291,24 @@ class _AssignmentReader:
             elif key in readers:
                 values[key] = readers[key](value)
             else:
-                raise self.refused(key, f"no key {_short(key)}{nearest(key, [*readers, *OPTIONS])}")
+                raise self.refused(
+                    key,
+                    Message("no key {key}{near}", key=_short(key), near=nearest(key, [*readers, *OPTIONS])),
+                )
         if "exercises" not in values:
             names = ", ".join(self.course.names[:4])
-            raise BadInput(f"{self.path} names no exercise; write [[exercises]] and name = …: {names}, …")
+            raise BadInput(
+                "{file} names no exercise; write [[exercises]] and name = …: {names}, …",
+                file=self.path,
+                names=names,
+            )
         if "solutions_after" in values and values.get("answers") == "never":
             raise self.refused(
                 "solutions_after",
-                'answers = "never" keeps the solutions back for good; leave one of the two out',
+                Message('answers = "never" keeps the solutions back for good; leave one of the two out'),
             )
         if "logo" in values and not values.get("logo_alt"):
-            raise self.refused("logo", 'a logo needs words for who cannot see it: logo_alt = "…"')
+            raise self.refused("logo", Message('a logo needs words for who cannot see it: logo_alt = "…"'))
         return Assignment(self.path.stem, options=options, **values)
 
     # ------------------------------------------------------------------ values
@@ -289,11 +320,23 @@ class _AssignmentReader:
             if not isinstance(value, Mapping) or not all(isinstance(v, str) for v in value.values()):
                 raise self.refused(
                     key,
-                    f'{key} is a text, or one a language: {{ fr = "…", en = "…" }}; found {reprlib.repr(value)}',
+                    Message(
+                        '{key} is a text, or one a language: {{ fr = "…", en = "…" }}; found {found}',
+                        key=key,
+                        found=reprlib.repr(value),
+                    ),
                 )
             for lang in value:
                 if lang not in languages():
-                    raise self.refused(key, f"{key}: no language {lang!r}{nearest(lang, languages())}")
+                    raise self.refused(
+                        key,
+                        Message(
+                            "{key}: no language {lang!r}{near}",
+                            key=key,
+                            lang=lang,
+                            near=nearest(lang, languages()),
+                        ),
+                    )
             return dict(value)
 
         return read
@@ -301,7 +344,9 @@ class _AssignmentReader:
     def _truth(self, key: str) -> Callable[[Any], bool]:
         def read(value: Any) -> bool:
             if not isinstance(value, bool):
-                raise self.refused(key, f"{key} is true or false; found {reprlib.repr(value)}")
+                raise self.refused(
+                    key, Message("{key} is true or false; found {found}", key=key, found=reprlib.repr(value))
+                )
             return value
 
         return read
@@ -311,7 +356,13 @@ class _AssignmentReader:
             if value not in allowed:
                 raise self.refused(
                     key,
-                    f"{key} is {' or '.join(allowed)}; found {reprlib.repr(value)}{nearest(str(value), allowed)}",
+                    Message(
+                        "{key} is {allowed}; found {found}{near}",
+                        key=key,
+                        allowed=" or ".join(allowed),
+                        found=reprlib.repr(value),
+                        near=nearest(str(value), allowed),
+                    ),
                 )
             return str(value)
 
@@ -327,7 +378,10 @@ class _AssignmentReader:
                 return datetime.date.fromisoformat(str(value))
             except ValueError:
                 raise self.refused(
-                    key, f"{key} is a day such as 2026-12-04; found {reprlib.repr(value)}"
+                    key,
+                    Message(
+                        "{key} is a day such as 2026-12-04; found {found}", key=key, found=reprlib.repr(value)
+                    ),
                 ) from None
 
         return read
@@ -335,19 +389,28 @@ class _AssignmentReader:
     def _logo(self, value: Any) -> Path:
         path = self.path.parent / str(value)
         if path.suffix.lower() not in (".svg", ".png"):
-            raise self.refused("logo", f"logo is an SVG or a PNG file; found {reprlib.repr(value)}")
+            raise self.refused(
+                "logo", Message("logo is an SVG or a PNG file; found {found}", found=reprlib.repr(value))
+            )
         if not path.is_file():
-            raise self.refused("logo", f"logo: there is no file {path}")
+            raise self.refused("logo", Message("logo: there is no file {file}", file=path))
         return path
 
     def _mark(self, value: Any) -> Scale:
         if not isinstance(value, Mapping):
-            raise self.refused("mark", f"mark is {{ of = 20, step = 0.5 }}; found {reprlib.repr(value)}")
+            raise self.refused(
+                "mark", Message("mark is {{ of = 20, step = 0.5 }}; found {found}", found=reprlib.repr(value))
+            )
         for key, number in value.items():
             if key not in ("of", "step"):
-                raise self.refused("mark", f"mark has no {key!r}{nearest(key, ('of', 'step'))}")
+                raise self.refused(
+                    "mark", Message("mark has no {key!r}{near}", key=key, near=nearest(key, ("of", "step")))
+                )
             if isinstance(number, bool) or not isinstance(number, (int, float)) or not number > 0:
-                raise self.refused("mark", f"mark: {key} is a number above 0; found {number!r}")
+                raise self.refused(
+                    "mark",
+                    Message("mark: {key} is a number above 0; found {number!r}", key=key, number=number),
+                )
         return Scale(float(value.get("of", 20)), float(value.get("step", 0.5)))
 
     def _versions(self, value: Any) -> int | None:
@@ -356,7 +419,12 @@ class _AssignmentReader:
         if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_VERSIONS:
             raise self.refused(
                 "versions",
-                f'versions is "{EACH}", or a number from 1 to {MOST_VERSIONS}; found {reprlib.repr(value)}',
+                Message(
+                    'versions is "{each}", or a number from 1 to {most}; found {found}',
+                    each=EACH,
+                    most=MOST_VERSIONS,
+                    found=reprlib.repr(value),
+                ),
             )
         return value
 
@@ -366,14 +434,18 @@ class _AssignmentReader:
         ):
             raise self.refused(
                 "identity",
-                f'identity lists columns of the roster: ["number", "group"]; found {reprlib.repr(value)}',
+                Message(
+                    'identity lists columns of the roster: ["number", "group"]; found {found}',
+                    found=reprlib.repr(value),
+                ),
             )
         return tuple(value)
 
     def _sort(self, value: Any) -> str:
         if not isinstance(value, str) or not value.strip():
             raise self.refused(
-                "sort", f'sort is a column of the roster: "group"; found {reprlib.repr(value)}'
+                "sort",
+                Message('sort is a column of the roster: "group"; found {found}', found=reprlib.repr(value)),
             )
         return value
 
@@ -389,7 +461,8 @@ class _AssignmentReader:
             return Secret.of(value)
         except ValueError as fault:
             raise self.refused(
-                "secret", f"{fault}; delete the line, and 'coursework build' creates one"
+                "secret",
+                Message("{problem}; delete the line, and 'coursework build' creates one", problem=fault),
             ) from None
 
     # --------------------------------------------------------------- exercises
@@ -400,13 +473,15 @@ class _AssignmentReader:
             or not value
             or not all(isinstance(exercise, Mapping) for exercise in value)
         ):
-            raise self.refused("exercises", "exercises are tables: [[exercises]], then name = …")
+            raise self.refused("exercises", Message("exercises are tables: [[exercises]], then name = …"))
         exercises = tuple(self._exercise(number, exercise) for number, exercise in enumerate(value))
         names = [exercise.name for exercise in exercises]
         for number, name in enumerate(names):
             if name in names[:number]:
                 raise self.refused(
-                    "name", f"{name} stands twice; an assignment asks an exercise once", number
+                    "name",
+                    Message("{name} stands twice; an assignment asks an exercise once", name=name),
+                    number,
                 )
         return exercises
 
@@ -414,17 +489,31 @@ class _AssignmentReader:
         keys = ("name", "parts", "points", "seed")
         for key in table:
             if key not in keys:
-                raise self.refused(key, f"no key {_short(key)} in [[exercises]]{nearest(key, keys)}", number)
+                raise self.refused(
+                    key,
+                    Message("no key {key} in [[exercises]]{near}", key=_short(key), near=nearest(key, keys)),
+                    number,
+                )
         name = table.get("name")
         if name not in self.course.names:
             near = nearest(str(name), self.course.names)
-            lacks = f"no exercise {_short(name)}" if "name" in table else "[[exercises]] without name = …"
-            raise self.refused("name" if "name" in table else "exercises", f"{lacks}{near}", number)
+            lacks = Message("[[exercises]] without name = …")
+            if "name" in table:
+                lacks = Message("no exercise {name}", name=_short(name))
+            raise self.refused(
+                "name" if "name" in table else "exercises",
+                Message("{lacks}{near}", lacks=lacks, near=near),
+                number,
+            )
         parts = self._parts(number, str(name), table.get("parts"))
         points = self._points(number, str(name), table.get("points"))
         seed = table.get("seed")
         if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
-            raise self.refused("seed", f"a seed is a whole number from 0 on; found {_short(seed)}", number)
+            raise self.refused(
+                "seed",
+                Message("a seed is a whole number from 0 on; found {found}", found=_short(seed)),
+                number,
+            )
         return AskedExercise(str(name), parts, points, seed)
 
     def _parts(self, number: int, name: str, value: Any) -> tuple[str, ...] | None:
@@ -433,13 +522,22 @@ class _AssignmentReader:
         parts = [value] if isinstance(value, str) else value
         if not isinstance(parts, list) or not parts or not all(isinstance(part_id, str) for part_id in parts):
             raise self.refused(
-                "parts", f'parts is a list of ids: ["rA", "theta4"]; found {reprlib.repr(value)}', number
+                "parts",
+                Message('parts is a list of ids: ["rA", "theta4"]; found {found}', found=reprlib.repr(value)),
+                number,
             )
         ids = [*(part.id for part in self.course[name].spec.parts), USUAL, ALL]
         for part_id in parts:
             if part_id not in ids:
                 raise self.refused(
-                    "parts", f"{name} has no part {_short(part_id)}{nearest(part_id, ids)}", number
+                    "parts",
+                    Message(
+                        "{name} has no part {part}{near}",
+                        name=name,
+                        part=_short(part_id),
+                        near=nearest(part_id, ids),
+                    ),
+                    number,
                 )
         return tuple(parts)
 
@@ -451,10 +549,23 @@ class _AssignmentReader:
         ids = [part.id for part in self.course[name].spec.parts]
         for part in value:
             if part not in ids:
-                raise self.refused("points", f"{name} has no part {_short(part)}{nearest(part, ids)}", number)
+                raise self.refused(
+                    "points",
+                    Message(
+                        "{name} has no part {part}{near}",
+                        name=name,
+                        part=_short(part),
+                        near=nearest(part, ids),
+                    ),
+                    number,
+                )
         return {str(part): self._number(number, points) for part, points in value.items()}
 
     def _number(self, number: int, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < float("inf"):
-            raise self.refused("points", f"points are a number above 0; found {reprlib.repr(value)}", number)
+            raise self.refused(
+                "points",
+                Message("points are a number above 0; found {found}", found=reprlib.repr(value)),
+                number,
+            )
         return float(value)

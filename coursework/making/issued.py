@@ -15,6 +15,7 @@ from coursework.course.secrecy import Secret
 from coursework.errors import BadInput
 from coursework.making.identity import Ids, ids_of, run_together, same_id, words_of
 from coursework.making.students import folded, unaccented
+from coursework.messages import Message
 from coursework.system.json_files import json_of, read_json
 
 if TYPE_CHECKING:
@@ -34,9 +35,13 @@ class Issued:
     def __init__(self, content: Mapping[str, Any], source: str):
         records = content.get("issued") if isinstance(content, Mapping) else None
         if not isinstance(records, list) or not records:
-            raise BadInput(f"{source} is no list of issued records; 'coursework build' writes issued.json")
+            raise BadInput(
+                "{source} is no list of issued records; 'coursework build' writes issued.json", source=source
+            )
         if isinstance(content, Mapping) and _is_later(content.get("format")):
-            raise BadInput(f"{source} was written by a later version of coursework: update the package")
+            raise BadInput(
+                "{source} was written by a later version of coursework: update the package", source=source
+            )
         self.has_roster = bool(content.get("roster"))
         self.is_pool = bool(content.get("pool"))
         self.assignment = _stated(content.get("assignment"), source)
@@ -61,7 +66,11 @@ class Issued:
                     record["parts"] = usual
             except _Unfit as fault:
                 raise BadInput(
-                    f"{source}, item {number} of {len(records)}: no issued record: {fault}; 'coursework build' writes them"
+                    "{source}, item {number} of {count}: no issued record: {problem}; 'coursework build' writes them",
+                    source=source,
+                    number=number,
+                    count=len(records),
+                    problem=fault,
                 ) from fault
             first = self.records.setdefault(key, record)
             if item.get("version"):
@@ -110,7 +119,9 @@ class Issued:
         try:
             Issued(content, str(path))
         except BadInput as fault:
-            raise BadInput(f"{fault}; choose another --out, or --overwrite to replace it") from fault
+            raise BadInput(
+                "{problem}; choose another --out, or --overwrite to replace it", problem=fault
+            ) from fault
         return content
 
     @staticmethod
@@ -267,7 +278,9 @@ class _Unfit(ValueError):
 #: Fields of an item and of its record, with their types; those of an item are optional.
 _ITEM = {"student": str, "sitting": int, "version": str}
 _RECORD = {"exercise": str, "seed": int, "version": int, "parts": list, "given": dict, "lang": str}
-_KIND_NAMES = {str: "a text", int: "a whole number, 0 or more", list: "a list", dict: "an object"}
+_KIND_NAMES = {
+    str: Message("a text"), int: Message("a whole number, 0 or more"), list: Message("a list"), dict: Message("an object"),
+}  # fmt: skip
 
 
 def _record_of(item: Any) -> dict[str, Any]:
@@ -280,7 +293,7 @@ def _record_of(item: Any) -> dict[str, Any]:
     """
     record = item.get("record") if isinstance(item, dict) else None
     if not isinstance(record, dict):
-        raise _Unfit("it has no record")
+        raise _Unfit(Message("it has no record"))
     for name, kind in _ITEM.items():
         if name in item:
             _check_kind(name, item[name], kind)
@@ -292,8 +305,10 @@ def _record_of(item: Any) -> dict[str, Any]:
 
 def _check_kind(name: str, value: Any, kind: type) -> None:
     if type(value) is not kind or (isinstance(value, int) and value < 0):
-        text = "nothing" if value is None else repr(value)[:40]
-        raise _Unfit(f"{name} is {_KIND_NAMES[kind]}; found {text}")
+        text = Message("nothing") if value is None else repr(value)[:40]
+        raise _Unfit(
+            Message("{name} is {kind}; found {found}", name=name, kind=_KIND_NAMES[kind], found=text)
+        )
 
 
 def _check_parts(parts: Sequence[Any]) -> None:
@@ -301,18 +316,28 @@ def _check_parts(parts: Sequence[Any]) -> None:
     met = set()
     for part in parts:
         if not isinstance(part, dict):
-            raise _Unfit(f"a part is an object; found {str(part)[:40]!r}")
+            raise _Unfit(Message("a part is an object; found {found!r}", found=str(part)[:40]))
         _check_kind("id of a part", part.get("id"), str)
         if part["id"] in met:
-            raise _Unfit(f"it has the part {part['id'][:40]!r} twice")
+            raise _Unfit(Message("it has the part {part!r} twice", part=part["id"][:40]))
         met.add(part["id"])
         if not _is_size(part.get("points")):
             raise _Unfit(
-                f"points of {part['id'][:40]!r} are a number above 0; found {str(part.get('points'))[:40]!r}"
+                Message(
+                    "points of {part!r} are a number above 0; found {found!r}",
+                    part=part["id"][:40],
+                    found=str(part.get("points"))[:40],
+                )
             )
         choices = part.get("choices", [])
         if not isinstance(choices, list) or not all(isinstance(c, str) for c in choices):
-            raise _Unfit(f"choices of {part['id'][:40]!r} are texts; found {str(choices)[:40]!r}")
+            raise _Unfit(
+                Message(
+                    "choices of {part!r} are texts; found {found!r}",
+                    part=part["id"][:40],
+                    found=str(choices)[:40],
+                )
+            )
 
 
 def _is_later(written: Any) -> bool:
@@ -328,7 +353,9 @@ def _stated(content: Any, source: str) -> Mapping[str, Any] | None:
     if mark is not None:
         fits = isinstance(mark, Mapping) and all(_is_size(mark.get(n)) for n in ("of", "step"))
     if not fits:
-        raise BadInput(f"{source}: its assignment is none; 'coursework build FILE.toml' writes it")
+        raise BadInput(
+            "{source}: its assignment is none; 'coursework build FILE.toml' writes it", source=source
+        )
     return dict(content)
 
 
@@ -341,7 +368,9 @@ def _columns(content: Any, source: str) -> dict[str, Mapping[str, str]]:
     if content is None:
         return {}
     if not isinstance(content, Mapping) or not all(isinstance(row, Mapping) for row in content.values()):
-        raise BadInput(f"{source}: its students are no columns by name; 'coursework build' writes them")
+        raise BadInput(
+            "{source}: its students are no columns by name; 'coursework build' writes them", source=source
+        )
     return {str(s): {str(c): str(v) for c, v in row.items()} for s, row in content.items()}
 
 
@@ -360,7 +389,9 @@ def secret_of(content: Mapping[str, Any] | None, source: str = "what was issued"
     try:
         return None if text is None else Secret.of(text)
     except ValueError as fault:
-        raise BadInput(f"{source}: {fault}; restore the line from a copy of the file") from None
+        raise BadInput(
+            "{source}: {problem}; restore the line from a copy of the file", source=source, problem=fault
+        ) from None
 
 
 def without_secret(content: Mapping[str, Any]) -> dict[str, Any]:

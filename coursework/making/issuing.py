@@ -22,6 +22,7 @@ from coursework.making.flaws import try_judges
 from coursework.making.protection import valid_variants
 from coursework.making.roster import Student
 from coursework.making.students import file_stems
+from coursework.messages import Message
 from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
 
 V = TypeVar("V", bound=Variant)
@@ -83,14 +84,27 @@ def distinct_variants(
         seed = batch.stop
     if len(by_values) < count:
         exist = draws.population(exercise.drawing)
-        reason = f"{len(by_values)} found" if exist is None or refused else f"only {exist} exist"
-        flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
-        reason += f"; passed over as {flaws}" if flaws else ""
+        reason = (
+            Message("{count} found", count=len(by_values))
+            if exist is None or refused
+            else Message("only {count} exist", count=exist)
+        )
         raise Starved(
-            f"{exercise.name}: {counted(count, 'different variant')} asked, {reason}; "
-            "ask for fewer, widen a range or make a step finer"
+            "{exercise}: {variants} asked, {reason}{flaws}; ask for fewer, widen a range or make a step finer",
+            exercise=exercise.name,
+            variants=counted(count, "different variant"),
+            reason=reason,
+            flaws=_passed_over(refused),
         )
     return list(by_values.values())
+
+
+def _passed_over(refused: Counter[str]) -> str:
+    """Return the most frequent flaws of the skipped variants, for a message; empty if there is none."""
+    if not refused:
+        return ""
+    flaws = ", ".join(f"{flaw} ({number}×)" for flaw, number in refused.most_common(3))
+    return Message("; passed over as {flaws}", flaws=flaws)
 
 
 def _check_can_tell(exercise: CourseExercise[Any]) -> None:
@@ -98,9 +112,9 @@ def _check_can_tell(exercise: CourseExercise[Any]) -> None:
     ones."""
     if not exercise.folder.has_solutions:
         raise NoSolution(
-            f"{exercise.name}: {exercise.folder.label} has no solutions/, as a students' copy, and cannot tell which "
-            "variants the full course passes over; 'coursework build --issued issued.json' writes the sheets of what was "
-            "issued: ask the teacher for that file, or for the sheets"
+            "{exercise}: {course} has no solutions/, as a students' copy, and cannot tell which variants the full course passes over; 'coursework build --issued issued.json' writes the sheets of what was issued: ask the teacher for that file, or for the sheets",
+            exercise=exercise.name,
+            course=exercise.folder.label,
         )
 
 
@@ -190,11 +204,11 @@ def drawn_by(
     shared = [person for person in waiting if person in spare]
     variants |= {person: spare[person] for person in shared}
     if len(variants) < len(people):
-        flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
         raise Starved(
-            f"{exercise.name}: no variant that is worth issuing was found for "
-            f"{counted(len(people) - len(variants), 'student')}{f'; passed over as {flaws}' if flaws else ''}; "
-            "widen a range or make a step finer"
+            "{exercise}: no variant that is worth issuing was found for {students}{flaws}; widen a range or make a step finer",
+            exercise=exercise.name,
+            students=counted(len(people) - len(variants), "student"),
+            flaws=_passed_over(refused),
         )
     return variants, shared
 
@@ -313,9 +327,15 @@ def check_languages(
     """
     for lang in langs:
         if lang not in exercise.languages:
-            have = ", ".join(exercise.languages) or "none"
-            origin = source.format(name=langs[lang]) if isinstance(langs, Mapping) else ""
-            raise BadInput(f"{exercise.name} has no text in {lang!r}{origin}; it has {have}")
+            have = ", ".join(exercise.languages) or Message("none")
+            origin = Message(source, name=langs[lang]) if isinstance(langs, Mapping) else ""
+            raise BadInput(
+                "{exercise} has no text in {lang!r}{origin}; it has {have}",
+                exercise=exercise.name,
+                lang=lang,
+                origin=origin,
+                have=have,
+            )
 
 
 def chosen_parts(
@@ -340,5 +360,7 @@ def chosen_parts(
     chosen = {name: tuple(p for p in parts if p in ids_of[name]) for name in names}
     for name, some in chosen.items():
         if not some:
-            raise BadInput(f"{name} has none of the parts {', '.join(parts)}; build it by itself")
+            raise BadInput(
+                "{name} has none of the parts {parts}; build it by itself", name=name, parts=", ".join(parts)
+            )
     return chosen

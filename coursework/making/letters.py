@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from coursework.errors import counted
+from coursework.messages import Message
 from coursework.rendering.renderer import Renderer
 
 _NAMED = 5  #: names in the note
@@ -17,7 +18,10 @@ def unprinted_names(renderer: Renderer, names: Iterable[str]) -> list[str]:
         return []
     named = ", ".join(f"{name} ({letters})" for name, letters in list(lacking.items())[:_NAMED])
     more = ", …" if len(lacking) > _NAMED else ""
-    return [
-        f"{counted(len(lacking), 'name')} with letters that no font of the PDF draws, printed as squares: {named}{more}; "
-        "put a font that has them (.ttf, .otf) into templates/fonts of the course"
-    ]
+    note = Message(
+        "{names} with letters that no font of the PDF draws, printed as squares: {named}; "
+        "put a font that has them (.ttf, .otf) into templates/fonts of the course",
+        names=counted(len(lacking), "name"),
+        named=named + more,
+    )
+    return [note]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from coursework.errors import counted
 from coursework.making.identity import EMAIL, FIRST_NAME, is_called, plain
+from coursework.messages import Message
 
 RosterLine = tuple[int, list[str]]  #: number and cells of a row
 
@@ -32,12 +33,20 @@ def without_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> tuple[li
             if gone:
                 named = ", ".join(name or "(no name)" for name in gone[:3])
                 notes.append(
-                    f"{counted(len(gone), 'line')} of no student left out: {named}{', …' if len(gone) > 3 else ''}"
+                    Message(
+                        "{lines} of no student left out: {named}",
+                        lines=counted(len(gone), "line"),
+                        named=named + (", …" if len(gone) > 3 else ""),
+                    )
                 )
             if columns:
                 named = ", ".join(header[c].strip() for c in sorted(columns)[:2])
                 notes.append(
-                    f"{counted(len(columns), 'column')} of marks not carried: {named}{', …' if len(columns) > 2 else ''}"
+                    Message(
+                        "{columns} of marks not carried: {named}",
+                        columns=counted(len(columns), "column"),
+                        named=named + (", …" if len(columns) > 2 else ""),
+                    )
                 )
             return students, Unused(columns, tuple(notes), is_this in (_is_canvas, _is_sakai))
     return list(rows), Unused()

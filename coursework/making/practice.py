@@ -125,11 +125,13 @@ def offers_practice(course: Course) -> bool:
     stated = course.folder.settings.get("feedback", {})
     source = "exercises/course.toml: [feedback]"
     if not isinstance(stated, Mapping):
-        raise BadCourse(f"{source} is a table: practice = false")
+        raise BadCourse("{source} is a table: practice = false", source=source)
     for key in stated:
         if key not in _SETTINGS:
-            raise BadCourse(f"{source} has no {key!r}{nearest(str(key), _SETTINGS)}")
+            raise BadCourse(
+                "{source} has no {key!r}{near}", source=source, key=key, near=nearest(str(key), _SETTINGS)
+            )
     offers = stated.get("practice", True)
     if not isinstance(offers, bool):
-        raise BadCourse(f"{source}: practice is true or false; found {offers!r}")
+        raise BadCourse("{source}: practice is true or false; found {offers!r}", source=source, offers=offers)
     return offers

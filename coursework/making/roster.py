@@ -13,6 +13,7 @@ from coursework.language.words import languages
 from coursework.making.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE, distinguishing_id, plain
 from coursework.making.platform_rosters import RosterLine, first_name_first, without_marks
 from coursework.making.students import folded
+from coursework.messages import Message
 from coursework.system.limits import MOST_COLUMNS, MOST_TABLE_BYTES, beyond, check_size
 from coursework.system.tables import as_written, decode, delimiter_of, duplicate_column, record
 
@@ -66,42 +67,55 @@ def read_roster(
     lines = _rows(path, warn) or [(1, [])]
     header, rows = _heading(path, lines, columns, warn)
     if len(header) > MOST_COLUMNS:
-        raise BadInput(f"the roster {path}: {beyond('a table', len(header), MOST_COLUMNS, 'columns')}")
+        raise BadInput(
+            "the roster {file}: {problem}",
+            file=path,
+            problem=beyond("a table", len(header), MOST_COLUMNS, "columns"),
+        )
     if columns:
         header = _retitled(path, header, columns)
     titles = [plain(cell) for cell in header]
     named = _name_columns(titles)
     if not named:
-        raise BadInput(f"the roster {path}: no column says who a student is; {_which(header)}")
+        raise BadInput(
+            "the roster {file}: no column says who a student is; {advice}", file=path, advice=_which(header)
+        )
     if duplicate := duplicate_column(
         titles, (*(titles[group[0]] for group in named), *_LANG, *NUMBER, *EMAIL)
     ):
-        raise BadInput(f"the roster {path}: {duplicate}")
+        raise BadInput("the roster {file}: {problem}", file=path, problem=duplicate)
     lang_column = next((titles.index(c) for c in _LANG if c in titles), None)
     rows, unused = without_marks(header, rows)
     for note in unused.notes:
-        warn(f"the roster {path}: {note}")
+        warn(Message("the roster {file}: {note}", file=path, note=note))
     used = {*(column for group in named for column in group), *unused.columns, lang_column}
     others = [k for k, title in enumerate(header) if k not in used and title.strip()]
     numbered = []
     for number, cells in rows:
-        location = f"the roster {path}, line {number}"
+        location = Message("the roster {file}, line {number}", file=path, number=number)
         if any(cell.strip() for cell in cells[len(titles) :]):
             raise BadInput(
-                f"{location}: {counted(len(cells), 'cell')} where the header has {len(titles)}; "
-                "put a name that holds a comma or a semicolon between quotation marks, or give the column a title"
+                "{location}: {cells} where the header has {most}; put a name that holds a comma or a semicolon between quotation marks, or give the column a title",
+                location=location,
+                cells=counted(len(cells), "cell"),
+                most=len(titles),
             )
         cells += [""] * (len(titles) - len(cells))
         name = " ".join(" ".join(_first_filled(cells, group) for group in named).split())
         name = first_name_first(name) if unused.turned else name
         lang = cells[lang_column].strip().lower() if lang_column is not None else ""
         if not name:
-            raise BadInput(f"{location}: no name; write it, or take the line away")
+            raise BadInput("{location}: no name; write it, or take the line away", location=location)
         if lang and lang not in languages():
-            raise BadInput(f"{location}: no language {lang!r}; there is {', '.join(languages())}")
+            raise BadInput(
+                "{location}: no language {lang!r}; there is {languages}",
+                location=location,
+                lang=lang,
+                languages=", ".join(languages()),
+            )
         numbered.append((number, Student(name, lang, {header[c].strip(): cells[c].strip() for c in others})))
     if not numbered:
-        raise BadInput(f"the roster {path} names no student")
+        raise BadInput("the roster {file} names no student", file=path)
     _tell_lost(path, [header[c].strip() for c in others], warn)
     untitled = [
         column
@@ -110,7 +124,10 @@ def read_roster(
     ]
     if untitled:
         warn(
-            f"the roster {path} has a column without a title, which is not used; give it one to carry it through"
+            Message(
+                "the roster {file} has a column without a title, which is not used; give it one to carry it through",
+                file=path,
+            )
         )
     return _apart(path, numbered)
 
@@ -127,11 +144,22 @@ def _heading(
             if index:
                 above = " ".join(cell.strip() for _, row in lines[:index] for cell in row if cell.strip())
                 warn(
-                    f"the roster {path}: passed over above the heading: {above[:60]}{'…' if len(above) > 60 else ''}"
+                    Message(
+                        "the roster {file}: passed over above the heading: {above}",
+                        file=path,
+                        above=above[:60] + ("…" if len(above) > 60 else ""),
+                    )
                 )
             return cells, lines[index + 1 :]
     if columns:
-        warn(f"the roster {path}: line {lines[0][0]} is taken for the heading: {', '.join(lines[0][1])[:60]}")
+        warn(
+            Message(
+                "the roster {file}: line {line} is taken for the heading: {cells}",
+                file=path,
+                line=lines[0][0],
+                cells=", ".join(lines[0][1])[:60],
+            )
+        )
     return lines[0][1], lines[1:]
 
 
@@ -144,7 +172,13 @@ def _retitled(path: Path, header: Sequence[str], columns: Mapping[str, str]) -> 
         if not which.isdecimal() and plain(which) in titles:
             index = titles.index(plain(which))
         if not 0 <= index < len(header):
-            raise BadInput(f"the roster {path} has no column {which!r} for {field_name}; {_which(header)}")
+            raise BadInput(
+                "the roster {file} has no column {column!r} for {name}; {advice}",
+                file=path,
+                column=which,
+                name=field_name,
+                advice=_which(header),
+            )
         places[index] = field_name
     instead = {title for field_name in columns for title in COLUMNS[field_name]}
     if "name" in columns:
@@ -153,9 +187,12 @@ def _retitled(path: Path, header: Sequence[str], columns: Mapping[str, str]) -> 
     return [COLUMNS[places[k]][0] if k in places else title for k, title in enumerate(remaining)]
 
 
-def _which(header: Sequence[str]) -> str:
-    titles = ", ".join(f"{k} {cell.strip()}" for k, cell in enumerate(header, 1) if cell.strip()) or "nothing"
-    return f"found {titles}. Give the name a title such as student, or nom and prénom, or say which column is what: --columns name=1,first=2"
+def _which(header: Sequence[str]) -> Message:
+    titles = ", ".join(f"{k} {cell.strip()}" for k, cell in enumerate(header, 1) if cell.strip())
+    return Message(
+        "found {titles}. Give the name a title such as student, or nom and prénom, or say which column is what: --columns name=1,first=2",
+        titles=titles or Message("nothing"),
+    )
 
 
 def _first_filled(cells: Sequence[str], columns: Sequence[int]) -> str:
@@ -173,7 +210,12 @@ def _tell_lost(path: Path, titles: Sequence[str], warn: Callable[[str], None]) -
     for title, often in Counter(titles).items():
         if often > 1:
             warn(
-                f"the roster {path} has {often} columns {title}; the last is kept: give each a title of its own"
+                Message(
+                    "the roster {file} has {count} columns {title}; the last is kept: give each a title of its own",
+                    file=path,
+                    count=often,
+                    title=title,
+                )
             )
 
 
@@ -187,8 +229,11 @@ def _apart(path: Path, lines: Sequence[tuple[int, Student]]) -> list[Student]:
             student = replace(student, name=f"{student.name} ({by})")
         if folded(student.name) in seen:
             raise BadInput(
-                f"the roster {path}, line {number}: {student.name} stands on line {seen[folded(student.name)]} already; "
-                "tell them apart, by a number for instance"
+                "the roster {file}, line {number}: {student} stands on line {other} already; tell them apart, by a number for instance",
+                file=path,
+                number=number,
+                student=student.name,
+                other=seen[folded(student.name)],
             )
         seen[folded(student.name)] = number
         students.append(student)
@@ -210,15 +255,17 @@ def _name_columns(titles: list[str]) -> list[list[int]]:
 def _rows(path: Path, warn: Callable[[str], None]) -> list[tuple[int, list[str]]]:
     """Return the rows that are not blank, each with its line number."""
     try:
-        check_size(f"the roster {path}", path.stat().st_size, MOST_TABLE_BYTES)
+        check_size(Message("the roster {file}", file=path), path.stat().st_size, MOST_TABLE_BYTES)
         data = path.read_bytes()
     except OSError as fault:
-        raise BadInput(f"the roster {path} cannot be read: {fault.strerror}") from fault
+        raise BadInput(
+            "the roster {file} cannot be read: {reason}", file=path, reason=fault.strerror
+        ) from fault
     text, warning = decode(data)
     if "\0" in text:
-        raise BadInput(f"the roster {path} is no CSV; save it as “CSV UTF-8”")
+        raise BadInput("the roster {file} is no CSV; save it as “CSV UTF-8”", file=path)
     if warning:
-        warn(f"the roster {path}: {warning}")
+        warn(Message("the roster {file}: {problem}", file=path, problem=warning))
     return list(_records(re.split(r"\r\n|\n|\r", text)))
 
 

@@ -25,6 +25,7 @@ from coursework.making.issued import secret_of
 from coursework.making.issuing import Issue, check_languages, drawn_by, whose_languages
 from coursework.making.roster import Student
 from coursework.making.students import file_stems, folded, student_named
+from coursework.messages import Message
 from coursework.model import Part
 
 V = TypeVar("V", bound=Variant)
@@ -102,7 +103,11 @@ def assign_variants(
 def _named(name: str, students: Sequence[Student]) -> Student:
     match = student_named(name, (s.name for s in students))
     if match is None:
-        raise BadInput(f"no student {name!r} was issued a paper{nearest(name, [s.name for s in students])}")
+        raise BadInput(
+            "no student {name!r} was issued a paper{near}",
+            name=name,
+            near=nearest(name, [s.name for s in students]),
+        )
     return next(s for s in students if s.name == match)
 
 
@@ -129,8 +134,8 @@ class _Assigner:
             stated is None or list(stated.get("exercises", ())) != list(assignment.names)
         ):
             raise BadInput(
-                f"{assignment.name} was not issued there as it is now: what is issued stays issued; choose another --out, or "
-                "--overwrite to deal anew"
+                "{assignment} was not issued there as it is now: what is issued stays issued; choose another --out, or --overwrite to deal anew",
+                assignment=assignment.name,
             )
         self._records: dict[tuple[str, str, int], Mapping[str, Any]] = {}
         self._letters: dict[str, str] = {}
@@ -165,13 +170,21 @@ class _Assigner:
         late = [s for s in students if s.name and folded(s.name) not in set(map(folded, issued))]
         if issued and gone:
             self.notes.append(
-                f"kept, though no longer on the roster: {', '.join(gone[:5])}{', …' if len(gone) > 5 else ''}"
+                Message(
+                    "kept, though no longer on the roster: {names}",
+                    names=", ".join(gone[:5]) + (", …" if len(gone) > 5 else ""),
+                )
             )
         if issued and late:
             names = ", ".join(s.name for s in late[:5])
             more = ", …" if len(late) > 5 else ""
             self.notes.append(
-                f"{counted(len(issued), 'paper')} issued before stay as they are; added: {names}{more}"
+                Message(
+                    "{papers} issued before stay as they are; added: {names}{more}",
+                    papers=counted(len(issued), "paper"),
+                    names=names,
+                    more=more,
+                )
             )
         result = [
             replace(there[folded(name)], name=name)
@@ -297,8 +310,12 @@ class _Assigner:
         )  # fmt: skip
         if shared:
             self.notes.append(
-                f"{exercise.name}: {len(shared)} of {counted(len(people), 'paper')} share a variant with another; so many "
-                "different ones do not exist"
+                Message(
+                    "{exercise}: {count} of {papers} share a variant with another; so many different ones do not exist",
+                    exercise=exercise.name,
+                    count=len(shared),
+                    papers=counted(len(people), "paper"),
+                )
             )
         return {person: with_points(variant, asked_exercise) for person, variant in variants.items()}
 
