@@ -64,7 +64,7 @@ def invite(
         connection.execute(update(account).where(account.c.id == mine.id).values(invitation_values))
         return
     if connection.execute(select(account.c.id).where(account.c.login == login)).first() is not None:
-        raise BadInput(f"the login {login} is somebody else's")
+        raise BadInput("the login {login} is somebody else's", login=login)
     row = {"person_id": number, "login": login, "role": role, "created": at}
     connection.execute(insert(account).values({**row, **invitation_values}))
 

@@ -43,12 +43,13 @@ def assignment_called(connection: Connection, name: str = "") -> int:
     if name in ids:
         return ids[name]
     if name:
-        raise BadInput(f"no assignment {name!r} in the database{nearest(name, ids)}")
-    if len(ids) != 1:
-        choices = (
-            f"there are {', '.join(ids)}: --assignment NAME" if ids else "there is none: --issued issued.json"
+        raise BadInput(
+            "no assignment {name!r} in the database{nearest}", name=name, nearest=nearest(name, ids)
         )
-        raise BadInput(f"which assignment? {choices}")
+    if len(ids) != 1:
+        if not ids:
+            raise BadInput("which assignment? there is none: --issued issued.json")
+        raise BadInput("which assignment? there are {names}: --assignment NAME", names=", ".join(ids))
     return next(iter(ids.values()))
 
 
@@ -127,9 +128,9 @@ def _assignment(
     if any(getattr(known_row, key) != value for key, value in values.items()):
         connection.execute(update(assignment).where(assignment.c.id == known_row.id).values(values))
     if known_row.has_roster != values["has_roster"] and not values["is_pool"]:
-        raise BadInput(
-            f"{name} was issued {'without' if values['has_roster'] else 'by'} a roster: choose another --name"
-        )
+        if values["has_roster"]:
+            raise BadInput("{name} was issued without a roster: choose another --name", name=name)
+        raise BadInput("{name} was issued by a roster: choose another --name", name=name)
     rows = [row._asdict() for row in connection.execute(_dealt(known_row.id))]
     return known_row.id, dict(zip(_places(rows), rows, strict=True))
 
@@ -172,7 +173,10 @@ def _put_variants(
             new.setdefault(key, item)
         elif _in_no_language(variants[key].record) != _in_no_language(item["record"]):
             raise BadInput(
-                f"{name}: {key[0]} {key[1]} was issued with other data before, and what is issued stays issued: choose another --name"
+                "{name}: {exercise} {seed} was issued with other data before, and what is issued stays issued: choose another --name",
+                name=name,
+                exercise=key[0],
+                seed=key[1],
             )
     if new:
         rows = [
@@ -211,8 +215,12 @@ def _put_dealt(
         had = given.get(place_key[:3], item["seed"])
         if had != item["seed"]:
             raise BadInput(
-                f"{name}: {place_key[0]} was issued {place_key[2]} {had}, and what is issued stays issued; {item['seed']} is another: "
-                "choose another --name"
+                "{name}: {student} was issued {exercise} {before}, and what is issued stays issued; {seed} is another: choose another --name",
+                name=name,
+                student=place_key[0],
+                exercise=place_key[2],
+                before=had,
+                seed=item["seed"],
             )
         if place_key in before:
             placed[place_key] = item["place"]
@@ -270,7 +278,7 @@ def issued_content(
     """
     about = connection.execute(select(assignment).where(assignment.c.id == number)).first()
     if about is None:
-        raise BadInput(f"no assignment number {number} in the database")
+        raise BadInput("no assignment number {number} in the database", number=number)
     items: list[dict[str, Any]] = []
     columns = about.columns
     if person_id is not None:

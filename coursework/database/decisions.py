@@ -67,7 +67,7 @@ def decide(
         Points that are more than the part has, or none where some are given.
     """
     if kind not in KINDS:
-        raise UnknownName(f"no kind of decision {kind!r}{nearest(kind, KINDS)}")
+        raise UnknownName("no kind of decision {kind!r}{nearest}", kind=kind, nearest=nearest(kind, KINDS))
     if kind == GIVEN and points is None:
         raise BadInput("points are given, or the answer is accepted: say how many")
     places = list(places)
@@ -104,9 +104,14 @@ def _check(
     for answer in places:
         parts = worth.get(answer.exercise)
         if parts is None:
-            raise UnknownName(f"no exercise {answer.exercise!r} was issued")
+            raise UnknownName("no exercise {exercise!r} was issued", exercise=answer.exercise)
         if answer.part not in parts:
-            raise UnknownName(f"{answer.exercise} has no part {answer.part!r}{nearest(answer.part, parts)}")
+            raise UnknownName(
+                "{exercise} has no part {part!r}{nearest}",
+                exercise=answer.exercise,
+                part=answer.part,
+                nearest=nearest(answer.part, parts),
+            )
         if points is not None:
             check_points(points, answer.part, parts[answer.part], f"{answer.student}, {answer.exercise}")
 

@@ -52,7 +52,9 @@ def dump(store: Store, folder: Path) -> dict[str, int]:
         The folder holds other files, or cannot be written.
     """
     if not is_bare(folder) and not (folder / _ABOUT).exists():
-        raise BadInput(f"{folder} holds other files: name an empty folder, or one that does not exist")
+        raise BadInput(
+            "{folder} holds other files: name an empty folder, or one that does not exist", folder=folder
+        )
     (folder / _ABOUT).unlink(missing_ok=True)  # what is half written is no dump
     rows = {}
     with store.reading() as connection:
@@ -87,7 +89,7 @@ def _write(connection: Connection, table: Table, path: Path) -> int:
             file.close()
             part.replace(path)
     except OSError as fault:
-        raise BadInput(f"{path} cannot be written: {fault.strerror}") from fault
+        raise BadInput("{file} cannot be written: {problem}", file=path, problem=fault.strerror) from fault
     return count
 
 
@@ -118,14 +120,19 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
     with _naming_folder(folder), store.begin() as connection:
         for table in METADATA.sorted_tables:
             if connection.execute(select(*table.primary_key).limit(1)).first() is not None:
-                raise BadInput(f"the database is not empty: there are rows in {table.name}; name a new one")
+                raise BadInput(
+                    "the database is not empty: there are rows in {table}; name a new one", table=table.name
+                )
         for table in _dumped():
             path = folder / f"{table.name}.csv"
             check_inside(path, folder)
             rows[table.name] = _read(connection, table, path, cell_text)
             if rows[table.name] != counted.get(table.name, 0):
                 raise BadInput(
-                    f"{path} has {rows[table.name]} rows, and the dump had {counted.get(table.name, 0)}"
+                    "{file} has {rows} rows, and the dump had {expected}",
+                    file=path,
+                    rows=rows[table.name],
+                    expected=counted.get(table.name, 0),
                 )
             _continue_numbering(connection, table)
         if "area" not in counted:  # written before there were administrators
@@ -142,7 +149,9 @@ def _naming_folder(folder: Path) -> Iterator[None]:
         yield
     except (DBAPIError, OverflowError, UnicodeEncodeError) as fault:
         reason = " ".join(str(getattr(fault, "orig", fault)).split())[:120]
-        raise BadInput(f"{folder} is damaged, and nothing of it is kept: {reason}") from fault
+        raise BadInput(
+            "{folder} is damaged, and nothing of it is kept: {reason}", folder=folder, reason=reason
+        ) from fault
 
 
 def _check_readable(connection: Connection) -> None:
@@ -161,7 +170,9 @@ def _check_readable(connection: Connection) -> None:
         except (KeyError, TypeError, ValueError, AttributeError) as fault:
             reason = fault if isinstance(fault, BadInput) else f"{type(fault).__name__} {str(fault)[:60]}"
             raise BadInput(
-                f"what the dump has of {name} cannot be read: {reason}; nothing of it is kept"
+                "what the dump has of {name} cannot be read: {reason}; nothing of it is kept",
+                name=name,
+                reason=reason,
             ) from fault
 
 
@@ -169,17 +180,28 @@ def _about(folder: Path) -> tuple[Mapping[str, int], CellText]:
     """Return the number of rows of each table, and the function that reads the text of a cell."""
     if not (folder / _ABOUT).is_file():
         raise BadInput(
-            f"{folder} holds no dump: there is no {_ABOUT} in it; 'coursework database dump' makes one"
+            "{folder} holds no dump: there is no {file} in it; 'coursework database dump' makes one",
+            folder=folder,
+            file=_ABOUT,
         )
     check_inside(folder / _ABOUT, folder)
     about = read_json(folder / _ABOUT)
     if not isinstance(about, dict) or about.get("format") not in (FORMAT, _BEFORE):
-        raise BadInput(f"{folder} is of another version: {_ABOUT} says {str(about)[:60]}")
+        raise BadInput(
+            "{folder} is of another version: {file} says {content}",
+            folder=folder,
+            file=_ABOUT,
+            content=str(about)[:60],
+        )
     rows = about.get("rows")
     if not isinstance(rows, dict) or not all(isinstance(count, int) for count in rows.values()):
-        raise BadInput(f"{folder / _ABOUT} says not how many rows each table has")
+        raise BadInput("{file} says not how many rows each table has", file=folder / _ABOUT)
     if strangers := rows.keys() - {table.name for table in _dumped()}:
-        raise BadInput(f"{folder} is of a later version: there is no table {', '.join(sorted(strangers))}")
+        raise BadInput(
+            "{folder} is of a later version: there is no table {tables}",
+            folder=folder,
+            tables=", ".join(sorted(strangers)),
+        )
     return rows, as_written if about["format"] == FORMAT else str
 
 
@@ -193,9 +215,11 @@ def _read(connection: Connection, table: Table, path: Path, cell_text: CellText)
                 connection.execute(insert(table), rows)
             count += len(rows)
     except UnicodeDecodeError as fault:
-        raise BadInput(f"{path} is not UTF-8, about byte {fault.start}") from fault
+        raise BadInput(
+            "{file} is not UTF-8, about byte {position}", file=path, position=fault.start
+        ) from fault
     except csv.Error as fault:
-        raise BadInput(f"{path} is not CSV: {fault}") from fault
+        raise BadInput("{file} is not CSV: {problem}", file=path, problem=fault) from fault
     return count
 
 
@@ -206,7 +230,11 @@ def _chunks(table: Table, path: Path, cell_text: CellText) -> Iterator[list[dict
         names = next(reader, [])
         if not _has_columns(table, names):
             raise BadInput(
-                f"{path} has the columns {', '.join(names)}; {table.name} has {', '.join(table.c.keys())}"
+                "{file} has the columns {found}; {table} has {columns}",
+                file=path,
+                found=", ".join(names),
+                table=table.name,
+                columns=", ".join(table.c.keys()),
             )
         makers = [_maker(table.c[name]) for name in names]
         rows: list[dict[str, Any]] = []
@@ -229,14 +257,24 @@ def _row(
     path: Path, line: int, names: Sequence[str], makers: Sequence[Callable[[str], Any]], cells: Sequence[str]
 ) -> dict[str, Any]:
     if len(cells) != len(names):
-        raise BadInput(f"{path}, line {line}: {len(cells)} cells where the header has {len(names)}")
+        raise BadInput(
+            "{file}, line {line}: {cells} cells where the header has {most}",
+            file=path,
+            line=line,
+            cells=len(cells),
+            most=len(names),
+        )
     row = {}
     for name, make, cell in zip(names, makers, cells, strict=True):
         try:
             row[name] = None if cell == _NULL else make(cell)
         except (ValueError, RecursionError) as fault:
             raise BadInput(
-                f"{path}, line {line}: {name} is not what it is in a dump: {cell[:40]!r}"
+                "{file}, line {line}: {column} is not what it is in a dump: {cell!r}",
+                file=path,
+                line=line,
+                column=name,
+                cell=cell[:40],
             ) from fault
     return row
 

@@ -213,7 +213,7 @@ def mark_delivery(course: Course, store: Store, delivery_id: int) -> MarkedNow:
         query = select(delivery.c.assignment_id).where(delivery.c.id == delivery_id)
         assignment_id = connection.execute(query).scalar()
     if assignment_id is None:
-        raise BadInput(f"no delivery number {delivery_id} in the database")
+        raise BadInput("no submission number {number} in the database", number=delivery_id)
     return mark_changed(course, store, assignment_id, delivery_id).summary()
 
 

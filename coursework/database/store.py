@@ -20,6 +20,7 @@ from sqlalchemy.exc import ArgumentError, DatabaseError, DBAPIError, NoSuchModul
 from sqlalchemy.exc import TimeoutError as NoConnection
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 from coursework.system.sqlite_files import scrub
 
 _MIGRATIONS = Path(__file__).parent / "migrations"
@@ -27,7 +28,6 @@ _READS = "coursework_reads"  #: said of a connection that writes nothing
 CONNECTIONS = (
     20  #: of one process at most: four of them leave a PostgreSQL of the usual settings, 100, some for others
 )
-_RESTORE = "; keep a copy of the file and restore a backup, or see what 'sqlite3 FILE .recover' finds"
 _PATIENCE = 30  #: seconds for which a write waits for another
 
 
@@ -48,11 +48,15 @@ class Store:
             self.engine: Engine = create_engine(self.url, **_options(self.url))
         except (ArgumentError, NoSuchModuleError) as fault:
             raise BadInput(
-                f"no database {_without_password(url)!r}: {fault}; a file is sqlite:///marks.db, a server postgresql+psycopg://user@host/name"
+                "no database {database!r}: {problem}; a file is sqlite:///marks.db, a server postgresql+psycopg://user@host/name",
+                database=_without_password(url),
+                problem=fault,
             ) from fault
         except ModuleNotFoundError as missing:
             raise BadInput(
-                f"{_without_password(url)} needs the package {missing.name}: pip install it"
+                "{database} needs the package {package}: pip install it",
+                database=_without_password(url),
+                package=missing.name,
             ) from missing
         _make_private(self.url)
         self._reads: dict[str, Any] = {_READS: True}
@@ -83,7 +87,9 @@ class Store:
         except (DatabaseError, NoConnection) as fault:
             if _is_ours(fault):
                 raise
-            raise BadInput(f"{_without_password(self.url)}: {_cause(fault)}") from fault
+            raise BadInput(
+                "{database}: {cause}", database=_without_password(self.url), cause=_cause(fault)
+            ) from fault
 
     @contextmanager
     def begin(self) -> Iterator[Connection]:
@@ -101,7 +107,9 @@ class Store:
             if _is_ours(fault):
                 raise
             raise BadInput(
-                f"{_without_password(self.url)}: {_cause(fault)}; nothing of this was kept"
+                "{database}: {cause}; nothing of this was kept",
+                database=_without_password(self.url),
+                cause=_cause(fault),
             ) from fault
 
     @property
@@ -149,13 +157,20 @@ class Store:
                 command.upgrade(config, "head")
         except CommandError as fault:
             raise BadInput(
-                f"{_without_password(self.url)} was written by a later version of coursework ({fault}): update the package"
+                "{database} was written by a later version of coursework ({problem}): update the package",
+                database=_without_password(self.url),
+                problem=fault,
             ) from fault
         except DBAPIError as fault:
-            raise BadInput(f"{_without_password(self.url)} cannot be opened: {_cause(fault)}") from fault
+            raise BadInput(
+                "{database} cannot be opened: {cause}",
+                database=_without_password(self.url),
+                cause=_cause(fault),
+            ) from fault
         except UnicodeDecodeError as fault:  # SQLite quotes what is damaged
             raise BadInput(
-                f"{_without_password(self.url)} cannot be opened: its tables are damaged{_RESTORE}"
+                "{database} cannot be opened: its tables are damaged; keep a copy of the file and restore a backup, or see what 'sqlite3 FILE .recover' finds",
+                database=_without_password(self.url),
             ) from fault
 
 
@@ -262,6 +277,11 @@ def _is_ours(fault: DatabaseError | NoConnection) -> bool:
     return isinstance(fault, DatabaseError) and type(fault) not in (DatabaseError, OperationalError)
 
 
-def _cause(fault: DBAPIError | NoConnection) -> str:
+def _cause(fault: DBAPIError | NoConnection) -> Message:
     reason = " ".join(str(fault.orig if isinstance(fault, DBAPIError) else fault).split())
-    return reason + _RESTORE if type(fault) is DatabaseError else reason
+    if type(fault) is not DatabaseError:
+        return Message("{problem}", problem=reason)
+    return Message(
+        "{problem}; keep a copy of the file and restore a backup, or see what 'sqlite3 FILE .recover' finds",
+        problem=reason,
+    )

@@ -69,7 +69,7 @@ class SafeText(TypeDecorator[str]):
 
     def process_bind_param(self, value: str | None, dialect: Any) -> str | None:
         if value is None or (value.isascii() and "\0" not in value):
-            return value
+            return None if value is None else str(value)  # of a message its English text
         return value.replace("\0", "␀").encode("utf-8", "backslashreplace").decode("utf-8")
 
 

@@ -19,6 +19,7 @@ from coursework.making.issued import Issued
 from coursework.making.students import folded
 from coursework.marking.feedback import Told
 from coursework.marking.mark import Mark
+from coursework.messages import Message, as_message
 from coursework.system.limits import MOST_TABLE_BYTES
 
 ACCEPTED = "accepted"
@@ -49,7 +50,9 @@ class Accepted:
             () if path is None else lines_of(path, MOST_TABLE_BYTES, (*_NEEDED, *_OPTIONAL))
         ):
             if not self.lines:
-                self._headings = [f"{path}, line 1: {wrong}" for wrong in _misspelt(row)]
+                self._headings = [
+                    Message("{file}, line 1: {problem}", file=path, problem=wrong) for wrong in _misspelt(row)
+                ]
             acceptance = _acceptance(f"{path}, line {number}", number, row, more)
             self.lines.append(acceptance)
             self._by_place.setdefault(_key(*acceptance.answer_key), []).append(acceptance)
@@ -87,13 +90,20 @@ class Accepted:
     def unfollowed(self, issued: Issued, students: Iterable[str]) -> tuple[list[str], list[str]]:
         """Return the faults of the file (unknown headings and names, contradictory lines), and the issued
         answers named in it that nobody gave. ``students`` are those who answered."""
-        faults, notes = list(self._headings), []
+        faults: list[str] = list(self._headings)
+        notes: list[str] = []
         issued_parts = _IssuedParts(issued, tuple(students)) if self.lines else None
         for acceptance in self.lines:
             if issued_parts is not None and acceptance not in self._used:
-                note = f"accepted by hand, but never answered: {acceptance.answer_text}"
+                note = Message(
+                    "accepted by hand, but never answered: {answer}", answer=acceptance.answer_text
+                )
                 why = issued_parts.why_not(acceptance)
-                faults += [f"{acceptance.location}: {note}; {why}"] if why else []
+                faults += (
+                    [Message("{place}: {note}; {problem}", place=acceptance.location, note=note, problem=why)]
+                    if why
+                    else []
+                )
                 notes += [] if why else [note]
         faults += [] if issued_parts is None else self._contradictions(issued_parts)
         return faults, notes
@@ -108,9 +118,14 @@ class Accepted:
         for group in groups.values():
             for before, acceptance in _in_turn(group):
                 if issued_parts.points(before) != issued_parts.points(acceptance):
-                    yield (
-                        f"{acceptance.location}: {acceptance.gives} for {acceptance.answer_text}, and line {before.line} says {before.gives}; "
-                        f"line {acceptance.line} counts: take one of them away"
+                    yield Message(
+                        "{place}: {gives} for {answer}, and line {line} says {before}; line {last} counts: take one of them away",
+                        place=acceptance.location,
+                        gives=acceptance.gives,
+                        answer=acceptance.answer_text,
+                        line=before.line,
+                        before=before.gives,
+                        last=acceptance.line,
                     )
 
 
@@ -135,8 +150,12 @@ class Acceptance(NamedTuple):
         return ", ".join(filter(None, self.answer_key))
 
     @property
-    def gives(self) -> str:
-        return "full points" if self.points is None else f"points {self.points:g}"
+    def gives(self) -> Message:
+        return (
+            Message("full points")
+            if self.points is None
+            else Message("points {points:g}", points=self.points)
+        )
 
 
 def _in_turn(lines: Iterable[Acceptance]) -> Iterator[tuple[Acceptance, Acceptance]]:
@@ -164,11 +183,17 @@ def _key(student: str, exercise: str, seed: Any, part: str) -> tuple[str, str, s
 def _acceptance(location: str, number: int, row: dict[str, str], more: Sequence[str]) -> Acceptance:
     missing = [c for c in _NEEDED if not row.get(c)]
     if missing:
-        raise BadInput(f"{location}: {', '.join(missing)} missing; name the answer to accept")
+        raise BadInput(
+            "{place}: {columns} missing; name the answer to accept",
+            place=location,
+            columns=", ".join(missing),
+        )
     if any(cell.strip() for cell in more):
         raise BadInput(
-            f"{location}: {counted(len(more), 'cell')} more than there are headings, {', '.join(more)[:40]!r}; put a text with a comma, or a "
-            "number with one, between quotation marks"
+            "{place}: {cells} more than there are headings, {found!r}; put a text with a comma, or a number with one, between quotation marks",
+            place=location,
+            cells=counted(len(more), "cell"),
+            found=", ".join(more)[:40],
         )
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))  # as spreadsheets write whole numbers
     points = points_of(row.get("points", ""), location)
@@ -184,7 +209,9 @@ def _misspelt(columns: Iterable[str]) -> Iterator[str]:
         if column not in (*_NEEDED, *_OPTIONAL) and (
             meant := difflib.get_close_matches(column, absent, n=1, cutoff=_ALIKE)
         ):
-            yield f"no column {column!r} is read; did you mean {meant[0]!r}?"
+            yield Message(
+                "no column {column!r} is read; did you mean {near!r}?", column=column, near=meant[0]
+            )
 
 
 def points_of(text: str, location: str) -> float | None:
@@ -196,7 +223,9 @@ def points_of(text: str, location: str) -> float | None:
     except ValueError:
         points = math.nan
     if not 0 <= points < math.inf:
-        raise BadInput(f"{location}: points are a number, 0 or more; found {text[:40]!r}")
+        raise BadInput(
+            "{place}: points are a number, 0 or more; found {found!r}", place=location, found=text[:40]
+        )
     return points
 
 
@@ -221,7 +250,13 @@ def accepted_mark(line: Mark, points: float | None, reason: str, lang: str, loca
 def check_points(points: float, part: str, out_of: float, location: str) -> None:
     """Refuse more points than a part has."""
     if points > out_of:
-        raise BadInput(f"{location}: {points:g} points for {part}, which has {out_of:g}; give that or fewer")
+        raise BadInput(
+            "{place}: {points:g} points for {part}, which has {out_of:g}; give that or fewer",
+            place=location,
+            points=points,
+            part=part,
+            out_of=out_of,
+        )
 
 
 class _IssuedParts:
@@ -242,14 +277,18 @@ class _IssuedParts:
         """Return the reason for which a line names no issued answer; empty if it names one."""
         issued, parts = self._issued, self._parts.get((acceptance.exercise, acceptance.seed))
         if not issued.has_roster and folded(acceptance.student) not in self._answered:
-            return f"no student {acceptance.student!r} among those who answered{name_hint(acceptance.student, self._students)}"
+            return Message(
+                "no student {student!r} among those who answered{hint}",
+                student=acceptance.student,
+                hint=name_hint(acceptance.student, self._students),
+            )
         if issued.has_roster or parts is None:
             try:
                 _, exercise, seed = sheet_of_row(
                     issued, AnswerRow(*acceptance.answer_key, None, acceptance.location)
                 )
             except UnplacedError as why:
-                return str(why)
+                return as_message(why)
             parts = self._parts[exercise, str(seed)]
         return (
             ""

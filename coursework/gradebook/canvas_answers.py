@@ -11,9 +11,10 @@ from typing import NamedTuple
 from coursework.errors import counted
 from coursework.gradebook.item_label import NO_LABEL, label_in
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
+from coursework.messages import Message
 from coursework.system.tables import as_written
 
-WHAT = "Canvas's Student Analysis"
+WHAT = Message("Canvas's Student Analysis")
 _QUESTION = re.compile(r"\s*[0-9]+\s*:\s")
 _ATTEMPT = re.compile("[0-9]{1,9}")
 _IDS = ("sis_id", "id")
@@ -42,7 +43,9 @@ def is_another(header: Sequence[str]) -> str:
     """Return a message if this is another report of a Canvas quiz; empty otherwise."""
     titles = {title.strip().casefold() for title in header}
     if {"question id", "question title", "answered student count"} <= titles:
-        return "this is Canvas's Item Analysis, which holds nobody's answers: download the Student Analysis"
+        return Message(
+            "this is Canvas's Item Analysis, which holds nobody's answers: download the Student Analysis"
+        )
     return ""
 
 
@@ -67,7 +70,7 @@ def read_answers(
             if label is None:
                 yield Rejected(where, NO_LABEL, {"student": student, "answer": answer})
             elif not label.part:
-                reason = "the question's label names no part, and a question of Canvas asks one"
+                reason = Message("the question's label names no part, and a question of Canvas asks one")
                 yield Rejected(
                     where, reason, {"student": student, "exercise": label.exercise, "answer": answer}
                 )
@@ -76,7 +79,13 @@ def read_answers(
                 row_origin = origin._replace(version=label.version, apart=True)
                 yield AnswerRow(*names, label.answer(answer), where, warning, label.lang, row_origin)
     yield PlatformFile(
-        source, f"{WHAT}, {counted(sum(attempts.values()), 'attempt')} of {counted(len(attempts), 'student')}"
+        source,
+        Message(
+            "{report}, {items} of {students}",
+            report=WHAT,
+            items=counted(sum(attempts.values()), "attempt"),
+            students=counted(len(attempts), "student"),
+        ),
     )
 
 

@@ -190,7 +190,7 @@ def lines_of(
             reader = csv.DictReader(file, delimiter=delimiter)
             reader.fieldnames = next((row for row in reader.reader if any(map(str.strip, row))), [])
             if twice := duplicate_column(reader.fieldnames, once):
-                raise BadInput(f"{path}: {twice}")
+                raise BadInput("{file}: {problem}", file=path, problem=twice)
             cells: dict[Any, Any]
             for cells in reader:
                 more = cells.pop(None, [])
@@ -202,6 +202,6 @@ def lines_of(
                 further = sum(len(cell.splitlines()) - 1 for cell in row.values() if cell)
                 yield reader.line_num - further, row, more
     except OSError as fault:
-        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        raise BadInput("{file} cannot be read: {problem}", file=path, problem=fault.strerror) from fault
     except csv.Error as fault:
-        raise BadInput(f"{path} is not CSV: {fault}") from fault
+        raise BadInput("{file} is not CSV: {problem}", file=path, problem=fault) from fault

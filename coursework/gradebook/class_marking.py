@@ -11,7 +11,7 @@ from coursework.course.course import Course, opened
 from coursework.course.key_batch import keys_of
 from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
-from coursework.errors import BadCourse, BadInput, CourseworkError, NoSolution
+from coursework.errors import BadCourse, BadInput, CourseworkError, NoSolution, counted
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets, as_texts
 from coursework.gradebook.rows import Rejected
@@ -21,6 +21,7 @@ from coursework.marking.feedback import Said, right_feedback, right_says
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.marking.plain_answers import plainly_right
+from coursework.messages import Message, as_message
 from coursework.model import Part
 from coursework.system.processes import Task, in_turn, workers
 
@@ -60,7 +61,7 @@ def rules_of(course: Course, issued: Issued) -> Rules | None:
     try:
         return Rules.of(stated, "the assignment in issued.json", course.folder.rules)
     except BadCourse as fault:
-        raise BadInput(str(fault)) from fault
+        raise BadInput(as_message(fault)) from fault
 
 
 def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:
@@ -92,13 +93,17 @@ def _rejecting(sheets: Sheets, results: Iterable[_MarkedSheet]) -> Iterator[Grad
             yield result
             continue
         unmarked[sheet[1], result] += 1
-        reason = f"cannot be marked, somebody must look at it ({result})"
+        reason = Message("cannot be marked, somebody must look at it ({problem})", problem=result)
         rows = among.sheets[sheet].values()
         sheets.rejected += [Rejected(row.source, reason, as_texts(row)) for row in rows]
     for (exercise, why), count in unmarked.items():
-        counted_sheets = "1 sheet" if count == 1 else f"{count} sheets"
         sheets.warnings.append(
-            f"{counted_sheets} of {exercise} cannot be marked, see the rejected rows: {why}"
+            Message(
+                "{sheets} of {exercise} cannot be marked, see the rejected rows: {problem}",
+                sheets=counted(count, "sheet"),
+                exercise=exercise,
+                problem=why,
+            )
         )
 
 
@@ -208,7 +213,8 @@ def _mark_sheet(
     except NoSolution:
         raise  # no sheet is at fault
     except CourseworkError as fault:
-        return " ".join(str(fault).split())
+        message = as_message(fault)
+        return Message(" ".join(message.split())) if "\n" in message else message
     except Exception as fault:  # what the reader or a judge of the course did not foresee
         return f"{type(fault).__name__}: {' '.join(str(fault).split())[:80]}"
 

@@ -53,10 +53,10 @@ def class_points(marks: Path, score: str) -> list[Scored]:
     if path != marks:
         check_inside(path, marks)
     if not path.is_file():
-        raise BadInput(f"no {path}: name the folder of marks that 'coursework grade' wrote")
+        raise BadInput("no {file}: name the folder of marks that 'coursework grade' wrote", file=path)
     scored = list(_scored(path, score))
     if not scored:
-        raise BadInput(f"{path} has no student")
+        raise BadInput("{file} has no student", file=path)
     return scored
 
 
@@ -65,13 +65,21 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
         if score not in row or "student" not in row or "out_of" not in row:
             columns = [name for name in SCORES if name in row]
             raise BadInput(
-                f"{path} has no column {score!r}{nearest(score, columns)}; 'coursework grade' writes it"
+                "{file} has no column {score!r}{nearest}; 'coursework grade' writes it",
+                file=path,
+                score=score,
+                nearest=nearest(score, columns),
             )
         points, out_of, cells = (row.get(c, "").replace(",", ".") for c in (score, "out_of", LATE))
         for column, text in ((score, points), ("out_of", out_of), (LATE, cells)):
             if text and not math.isfinite(_number(text)):
                 raise BadInput(
-                    f"{path}, line {number}: {column} of {row['student']} are a number; found {text[:40]!r}"
+                    "{file}, line {number}: {column} of {student} are a number; found {found!r}",
+                    file=path,
+                    number=number,
+                    column=column,
+                    student=row["student"],
+                    found=text[:40],
                 )
         if score == "points" and (late := _number(cells or "0")):
             points = f"{float(exact(_number(points)) - exact(late)):.10g}"
@@ -79,7 +87,12 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
             points = "0"
         if math.isnan(_number(points)):
             raise BadInput(
-                f"{path}, line {number}: {score} of {row['student']} are a number; found {points[:40]!r}"
+                "{file}, line {number}: {column} of {student} are a number; found {found!r}",
+                file=path,
+                number=number,
+                column=score,
+                student=row["student"],
+                found=points[:40],
             )
         ids = tuple((title, value) for title, value in row.items() if value and identifies(title))
         total = {"points": out_of, "percent": "100"}.get(score, "")

@@ -12,9 +12,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
-from coursework.gradebook.rows import AnswerRow
+from coursework.gradebook.rows import AnswerRow, joined_by_and
 from coursework.making.issued import Issued
 from coursework.making.students import file_stems
+from coursework.messages import Message
 
 Sheet = tuple[str, str, int]  #: student, exercise and seed
 Doubts = Mapping[tuple[Sheet, str], str]  #: by sheet and file, why its rows wait
@@ -70,14 +71,21 @@ def _reasons_to_wait(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict
     student = sheet[0]
     theirs = [file for file in files if _student_of_file(issued, file, student) == student]
     if not theirs:
-        listed = " and ".join(files[:2]) + (f" and {len(files) - 2} more" if len(files) > 2 else "")
-        why = (
-            f"{listed} are different sheets of {student}: a person must say which is theirs; take the other away, or call "
-            "the file by its student"
+        listed = joined_by_and(files[:2])
+        if len(files) > 2:
+            listed = Message("{files} and {count} more", files=listed, count=len(files) - 2)
+        why = Message(
+            "{files} are different sheets of {student}: a person must say which is theirs; take the other away, or call the file by its student",
+            files=listed,
+            student=student,
         )
         return dict.fromkeys(files, why)
     return {
-        file: f"it names {student}, whose own sheet in {theirs[0]} is another: a person must say whose it is"
+        file: Message(
+            "it names {student}, whose own sheet in {file} is another: a person must say whose it is",
+            student=student,
+            file=theirs[0],
+        )
         for file in files
         if file not in theirs
     }

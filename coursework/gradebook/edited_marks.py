@@ -61,14 +61,23 @@ class EditedMarks:
         self.sheets: Sheets = placed_sheets(course, issued, rows)
         self.refuse(self.sheets.rejected)
         if not self.sheets.sheets:
-            raise BadInput(f"{path} holds no mark, so nothing is written; 'coursework grade' writes it")
+            raise BadInput(
+                "{file} holds no mark, so nothing is written; 'coursework grade' writes it", file=path
+            )
         self.sheets.rejected += _rejected_before(path.with_name("rejected.csv"))
 
     def refuse(self, rejected: list[Rejected]) -> None:
         """Raise an error if lines could not be read again; it states the reason of the first."""
         if rejected:
-            more = f" (and {len(rejected) - 1} lines more)" if len(rejected) > 1 else ""
-            raise BadInput(f"{rejected[0].source}: {rejected[0].reason}{more}; nothing is written")
+            first = rejected[0]
+            if len(rejected) == 1:
+                raise BadInput("{file}: {reason}; nothing is written", file=first.source, reason=first.reason)
+            raise BadInput(
+                "{file}: {reason} (and {count} lines more); nothing is written",
+                file=first.source,
+                reason=first.reason,
+                count=len(rejected) - 1,
+            )
 
     def _rows(self) -> Iterator[AnswerRow]:
         met: dict[tuple[str, ...], str] = {}
@@ -77,7 +86,9 @@ class EditedMarks:
             sitting = row.get(SITTING, "")
             named = folded(row["student"]), row["exercise"], row["seed"], row["part"], sitting
             if named in met:
-                raise BadInput(f"{location}: repeats {met[named]}; leave one mark an answer")
+                raise BadInput(
+                    "{place}: repeats {line}; leave one mark an answer", place=location, line=met[named]
+                )
             met[named] = f"line {number}"
             _check_verdict(location, row["verdict"])
             self._lines[location] = _MarksLine(
@@ -144,42 +155,65 @@ def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
             if missing := [c for c in _NEEDED if c not in header]:
                 titles = ", ".join(filter(None, header)) or "nothing"
                 raise BadInput(
-                    f"{path} needs the columns {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {titles[:200]}"
+                    "{file} needs the columns {needed}; {missing} missing, found {found}",
+                    file=path,
+                    needed=", ".join(_NEEDED),
+                    missing=", ".join(missing),
+                    found=titles[:200],
                 )
             if twice := duplicate_column(header, MARKS_COLUMNS):
-                raise BadInput(f"{path}: {twice}")
+                raise BadInput("{file}: {problem}", file=path, problem=twice)
             for cells in reader:
                 if any(cell.strip() for cell in cells):
                     if len(cells) < len(header):
                         raise BadInput(
-                            f"{path}, line {reader.line_num}: {len(cells)} cells where the header has {len(header)}"
+                            "{file}, line {line}: {cells} cells where the header has {most}",
+                            file=path,
+                            line=reader.line_num,
+                            cells=len(cells),
+                            most=len(header),
                         )
                     values = (as_written(cell.strip()) for cell in cells)
                     yield reader.line_num, dict(zip(header, values, strict=False))
     except OSError as fault:
-        raise BadInput(f"{path} cannot be read: {fault.strerror or fault}") from fault
+        raise BadInput(
+            "{file} cannot be read: {problem}", file=path, problem=fault.strerror or fault
+        ) from fault
     except csv.Error as fault:
-        raise BadInput(f"{path} is not CSV: {fault}") from fault
+        raise BadInput("{file} is not CSV: {problem}", file=path, problem=fault) from fault
 
 
 def _check_verdict(location: str, verdict: str) -> None:
     family = verdict.partition(":")[0]
     if family not in VERDICTS:
-        raise BadInput(f"{location}: no verdict {verdict[:40]!r}{nearest(family, VERDICTS)}")
+        raise BadInput(
+            "{place}: no verdict {verdict!r}{nearest}",
+            place=location,
+            verdict=verdict[:40],
+            nearest=nearest(family, VERDICTS),
+        )
 
 
 def _edited_mark(mark: Mark, line: _MarksLine) -> Mark:
     """Return the mark with the verdict, the points and the feedback of the file."""
     if _number(line.out_of) != float(f"{mark.out_of:g}"):
         raise BadInput(
-            f"{line.location}: {mark.part} is out of {mark.out_of:g} points, as issued; found out of {line.out_of[:40]!r}"
+            "{place}: {part} is out of {out_of:g} points, as issued; found out of {found!r}",
+            place=line.location,
+            part=mark.part,
+            out_of=mark.out_of,
+            found=line.out_of[:40],
         )
     points = mark.points
     if line.points.replace(",", ".") != f"{points:g}":
         points = _number(line.points)
         if not 0 <= points <= mark.out_of:
             raise BadInput(
-                f"{line.location}: points of {mark.part} are a number from 0 to {mark.out_of:g}; found {line.points[:40]!r}"
+                "{place}: points of {part} are a number from 0 to {out_of:g}; found {found!r}",
+                place=line.location,
+                part=mark.part,
+                out_of=mark.out_of,
+                found=line.points[:40],
             )
     messages = mark.told
     if line.feedback is not None and line.feedback != " ".join(mark.feedback.split()):

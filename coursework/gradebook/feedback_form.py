@@ -44,8 +44,9 @@ def shows_solutions(issued: Issued, form: FeedbackForm) -> bool:
         is_time = (form.today or datetime.date.today()) >= datetime.date.fromisoformat(after)
     except ValueError:
         raise BadInput(
-            f"the assignment in issued.json: solutions_after is a day such as 2026-12-04; found {after!r}"
+            "the assignment in issued.json: solutions_after is a day such as 2026-12-04; found {found!r}",
+            found=after,
         ) from None
     if form.solutions and not is_time:
-        raise BadInput(f"the assignment keeps its solutions back until {after} (solutions_after)")
+        raise BadInput("the assignment keeps its solutions back until {after} (solutions_after)", after=after)
     return is_time

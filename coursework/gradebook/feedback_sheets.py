@@ -30,6 +30,7 @@ from coursework.marking.feedback import localised
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.markup.markdown import plain_line
+from coursework.messages import Message
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.answer_sheet import answer_sheet, answer_text
 from coursework.sheets.following import follows_from
@@ -276,7 +277,9 @@ def write_feedback(
 
 
 def _warn(book: Gradebook, student: str, fault: CourseworkError) -> None:
-    book.warnings.append(f"no feedback sheet for {student}: {fault}")
+    book.warnings.append(
+        Message("no feedback sheet for {student}: {problem}", student=student, problem=fault)
+    )
 
 
 @dataclass(frozen=True, eq=False)

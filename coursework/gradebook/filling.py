@@ -12,6 +12,7 @@ from typing import NamedTuple
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.class_points import Scored
 from coursework.gradebook.platform_gradebooks import People, PlatformGradebook, people_in
+from coursework.gradebook.rows import joined_by_and
 from coursework.making.identity import same_id, words_of
 from coursework.making.platform_rosters import TEST_STUDENT, first_name_first
 from coursework.making.students import folded
@@ -58,7 +59,9 @@ def fill(
         table = CellTable(_bytes_of(template))
     except UnicodeDecodeError as fault:
         raise BadInput(
-            f"{template} is damaged: it begins as {fault.encoding} and does not go on as such"
+            "{file} is damaged: it begins as {encoding} and does not go on as such",
+            file=template,
+            encoding=fault.encoding,
         ) from fault
     sheet = _sheet(platform, table, item, template)
     result = Filled(column=sheet.title, most=_most(platform, sheet, most, template))
@@ -71,7 +74,11 @@ def fill(
             result.absent.append(name)
         elif sheet.column >= len(row):
             raise BadInput(
-                f"{template}: the line of {name} has {len(row)} cells, and {sheet.title} is further on"
+                "{file}: the line of {name} has {cells} cells, and {column} is further on",
+                file=template,
+                name=name,
+                cells=len(row),
+                column=sheet.title,
             )
         elif (content := _cell(row, sheet.column)) in platform.special_marks:
             result.unchanged.append(f"{name}: {content}")
@@ -110,8 +117,11 @@ def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Pat
     if not (people.names or people.ids):
         titles_text = ", ".join(title.strip() for title in titles if title.strip())[:200] or "nothing"
         raise BadInput(
-            f"{source} names nobody: a gradebook of {platform.title_of_platform} has columns for names or e-mails; found {titles_text}; "
-            f"download it by {platform.download}"
+            "{file} names nobody: a gradebook of {platform} has columns for names or e-mails; found {found}; download it by {menu}",
+            file=source,
+            platform=platform.title_of_platform,
+            found=titles_text,
+            menu=platform.download,
         )
     column = column_of(platform, titles, people, item, source)
     maxima = next((row for row in rows if platform.maxima and _first(row).startswith(platform.maxima)), None)
@@ -125,7 +135,7 @@ def _bytes_of(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as fault:
-        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        raise BadInput("{file} cannot be read: {problem}", file=path, problem=fault.strerror) from fault
 
 
 def _first(row: Sequence[PositionedCell]) -> str:
@@ -170,13 +180,21 @@ def column_of(
         if columns:
             named = ", ".join(repr(titles[k].strip()) for k in columns)
             raise BadInput(
-                f"{source} has several columns of {item!r}: {named}; name one whole, --item {titles[columns[0]].strip()!r}"
+                "{file} has several columns of {item!r}: {columns}; name one whole, --item {column!r}",
+                file=source,
+                item=item,
+                columns=named,
+                column=titles[columns[0]].strip(),
             )
     names = list(
         dict.fromkeys(name for k in places if k > people.last and (name := platform.item_in(titles[k])))
     )
     raise BadInput(
-        f"{source} has no column of {item!r}{nearest(item, names)}; make the item in {platform.title_of_platform} first, then export"
+        "{file} has no column of {item!r}{nearest}; make the item in {platform} first, then export",
+        file=source,
+        item=item,
+        nearest=nearest(item, names),
+        platform=platform.title_of_platform,
     )
 
 
@@ -189,7 +207,11 @@ def _most(platform: PlatformGradebook, sheet: _Sheet, stated: float | None, sour
         in_file = None
     if in_file is not None and stated is not None and in_file != stated:
         raise BadInput(
-            f"{source} says that {sheet.title} is out of {in_file:g}; --out-of says {stated:g}: leave it away, or change the item"
+            "{file} says that {column} is out of {maximum:g}; --out-of says {stated:g}: leave it away, or change the item",
+            file=source,
+            column=sheet.title,
+            maximum=in_file,
+            stated=stated,
         )
     return stated if in_file is None else in_file
 
@@ -198,8 +220,10 @@ def _check_alike(scored: Iterable[Scored], platform: PlatformGradebook, item: st
     totals = sorted({student.out_of for student in scored if student.out_of})
     if len(totals) > 1:
         raise BadInput(
-            f"the class has points out of {' and '.join(totals[:3])}, and {platform.title_of_platform}'s export does not tell what {item!r} is out of: "
-            "say it, --out-of 20"
+            "the class has points out of {totals}, and {platform}'s export does not tell what {item!r} is out of: say it, --out-of 20",
+            totals=joined_by_and(totals[:3]),
+            platform=platform.title_of_platform,
+            item=item,
         )
 
 
@@ -208,8 +232,11 @@ def _points(student: Scored, filled: Filled) -> str:
     limit = filled.most if filled.most is not None else float(student.out_of or "inf")
     if not 0 <= float(points) <= limit:
         raise BadInput(
-            f"{student.name} has {points}, and {filled.column} is out of {limit:g}: the platform would refuse the file, and nothing "
-            "is written"
+            "{name} has {points}, and {column} is out of {limit:g}: the platform would refuse the file, and nothing is written",
+            name=student.name,
+            points=points,
+            column=filled.column,
+            limit=limit,
         )
     return points
 

@@ -29,6 +29,7 @@ from coursework.gradebook.sheets_on_disk import placed_on_disk
 from coursework.gradebook.submissions import find, read_file
 from coursework.gradebook.to_mark import TO_MARK, TO_MARK_COLUMNS, ToMark, sorted_rows
 from coursework.making.issued import Issued
+from coursework.messages import Message
 from coursework.system.build_folder import free_name, is_as_written, write_down
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import Progress, TableFile, Tables, write_whole
@@ -91,8 +92,11 @@ def usual_feedback(sheets: Sheets) -> bool:
     count = sheets.students
     if count > FEEDBACK_STUDENTS:
         sheets.warnings.append(
-            f"no feedback sheets are printed for {count:,} students who answered, more than {FEEDBACK_STUDENTS:,}: "
-            "ask for them, --feedback"
+            Message(
+                "no feedback sheets are printed for {count:,} students who answered, more than {most:,}: ask for them, --feedback",
+                count=count,
+                most=FEEDBACK_STUDENTS,
+            )
         )
     return count <= FEEDBACK_STUDENTS
 
@@ -248,9 +252,17 @@ def _list_to_mark(by_person: ToMark, tables: Tables, book: Gradebook) -> None:
     if by_person.loses:
         copy = free_name(path)
         write_whole(copy, path.read_bytes())
-        changed = [f"marked by a person, but answered anew since: {answer}" for answer in by_person.changed]
-        unused = [f"marked by a person, but never answered: {answer}" for answer in by_person.unused]
-        book.warnings += [*changed, *unused, f"{path.name} as it was is kept as {copy}"]
+        book.warnings += [
+            *(
+                Message("marked by a person, but answered anew since: {answer}", answer=answer)
+                for answer in by_person.changed
+            ),
+            *(
+                Message("marked by a person, but never answered: {answer}", answer=answer)
+                for answer in by_person.unused
+            ),
+            Message("{file} as it was is kept as {copy}", file=path.name, copy=copy),
+        ]
     if by_person.rows or path.exists():
         table = tables.open(path.name, TO_MARK_COLUMNS)
         for row in sorted_rows(by_person.rows):
@@ -261,17 +273,29 @@ def _kept_copy(marks: Path) -> str:
     """Copy marks that were edited and are about to be replaced; return a warning."""
     copy = free_name(marks)
     write_whole(copy, marks.read_bytes())
-    return (
-        f"{marks.name} had been edited, and is written anew: the edited one is kept as {copy}; a mark that is to last is "
-        f"named in {marks.with_name('accepted.csv')}"
+    return Message(
+        "{file} had been edited, and is written anew: the edited one is kept as {copy}; a mark that is to last is named in {accepted}",
+        file=marks.name,
+        copy=copy,
+        accepted=marks.with_name("accepted.csv"),
     )
 
 
 def nothing_in(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
     """Return the message that nothing can be marked, with the reason."""
     where = ", ".join(map(str, submissions[:3])) + (", …" if len(submissions) > 3 else "")
-    message = f"nothing in {where} can be marked, so nothing is written"
+    message = Message("nothing in {where} can be marked, so nothing is written", where=where)
     if not rejected:
-        return f"{message}; a file of answers has a line of headings, then a line an answer"
-    count = "" if len(rejected) == 1 else f" ({len(rejected)} rows rejected; the first is told)"
-    return f"{message}{count}: {rejected[0].source}: {rejected[0].reason}"
+        return Message(
+            "{nothing}; a file of answers has a line of headings, then a line an answer", nothing=message
+        )
+    first = rejected[0]
+    if len(rejected) == 1:
+        return Message("{nothing}: {file}: {reason}", nothing=message, file=first.source, reason=first.reason)
+    return Message(
+        "{nothing} ({count} rows rejected; the first is told): {file}: {reason}",
+        nothing=message,
+        count=len(rejected),
+        file=first.source,
+        reason=first.reason,
+    )

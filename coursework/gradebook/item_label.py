@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from coursework.messages import Message
+
 _LABEL = re.compile(
     r"\[\s*(?P<exercise>\w+)\s*·\s*(?P<seed>[0-9]{1,30})\s*·\s*v(?P<version>\w+)"
     r"(?:\s*·\s*(?P<lang>[a-z]{2,3}))?(?:\s*·\s*(?P<part>\w+))?(?:\s*·\s*(?P<unit>[^\[\]]{1,40}?))?\s*\]"
@@ -31,7 +33,9 @@ class ItemLabel(NamedTuple):
         return f"{text}{'·' if self.unit.startswith('10') else ' '}{self.unit}"
 
 
-NO_LABEL = "the question's text has no label as [slotted_mechanism · 4 · v1 · en], which says whose answers these are"
+NO_LABEL = Message(
+    "the question's text has no label as [slotted_mechanism · 4 · v1 · en], which says whose answers these are"
+)
 
 
 def label_in(text: str) -> ItemLabel | None:

@@ -17,6 +17,7 @@ from coursework.gradebook.item_label import NO_LABEL, ItemLabel, label_in
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.gradebook.stack_responses import stack_answers
 from coursework.making.identity import EMAIL, FIRST_NAME, SURNAME, WHOLE, identifies, is_called
+from coursework.messages import Message
 from coursework.system.tables import as_written
 
 _NUMBERED = re.compile(r"(?P<what>\D*?[^\W\d])\s*(?P<number>[0-9]{1,3})")
@@ -25,8 +26,8 @@ _GRADES_REPORT = re.compile(r"\D{1,12}[0-9]+\s*/\s*[0-9]+(?:[.,][0-9]+)?")  #: `
 _NONE = ("", "-")  #: what Moodle writes for nothing
 _AVERAGE = ("average", "moyenne", "durchschnitt", "promedio", "media", "média", "gemiddelde", "średnia")
 
-WHAT = "Moodle's Responses report"
-NO_RESPONSES = (
+WHAT = Message("Moodle's Responses report")
+NO_RESPONSES = Message(
     "the Responses report tells neither questions nor responses: tick 'question text' and 'response' among what it displays, and "
     "download it again"
 )
@@ -86,7 +87,9 @@ def is_another(header: Sequence[str]) -> str:
     if sum(bool(_GRADES_REPORT.fullmatch(title.strip())) for title in header) >= 2 and any(
         is_called(title, EMAIL) for title in header
     ):
-        return "this is the Grades report of a Moodle quiz, which holds no answers: download the Responses report"
+        return Message(
+            "this is the Grades report of a Moodle quiz, which holds no answers: download the Responses report"
+        )
     singles = [match["number"] for match in map(_NUMBERED.fullmatch, map(str.strip, header)) if match]
     if (
         singles
@@ -126,9 +129,21 @@ def read_responses(
         for question, response in columns.questions:
             where = f"{location}, {header[response].strip()}"
             yield from _response(cells[question], cells[response], student[0], origin, where, warning)
-    summary = f"{counted(sum(attempts.values()), 'finished attempt')} of {counted(len(attempts), 'student')}"
-    summary += f", {counted(absent, 'student')} without an attempt" if absent else ""
-    yield PlatformFile(source, f"{WHAT}, {summary}")
+    numbers = {
+        "report": WHAT,
+        "items": counted(sum(attempts.values()), "finished attempt"),
+        "students": counted(len(attempts), "student"),
+    }
+    yield PlatformFile(
+        source,
+        Message(
+            "{report}, {items} of {students}, {absent} without an attempt",
+            **numbers,
+            absent=counted(absent, "student"),
+        )
+        if absent
+        else Message("{report}, {items} of {students}", **numbers),
+    )
 
 
 def _is_average(header: Sequence[str], columns: ResponseColumns, cells: Sequence[str]) -> bool:
@@ -152,7 +167,10 @@ def _unfinished(
 ) -> Iterator[Rejected]:
     """Yield the responses of an attempt that was not submitted, which has no end."""
     state = cells[columns.state].strip()
-    reason = f"the attempt is not finished, it is {state!r}: close it in Moodle, or let it be handed in, and download again"
+    reason = Message(
+        "the attempt is not finished, it is {state!r}: close it in Moodle, or let it be handed in, and download again",
+        state=state,
+    )
     answered = [pair for pair in columns.questions if cells[pair[1]].strip() not in _NONE]
     if not answered:
         yield Rejected(location, reason, {"student": student})
@@ -197,7 +215,7 @@ def _response(
         yield from (row(f"question_{number}", answer) for number, answer in enumerate(answers, start=1))
     else:
         columns = {"student": student, "exercise": label.exercise, "seed": label.seed, "answer": text}
-        reason = (
+        reason = Message(
             "a response of several parts is written 'part 1: …; part 2: …', each once: a person must look"
         )
         yield Rejected(location, reason, columns)

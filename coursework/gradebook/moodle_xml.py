@@ -42,7 +42,10 @@ def moodle_xml(
             limit = most if most is not None else float(student.out_of or "inf")
             if not 0 <= float(points) <= limit:
                 raise BadInput(
-                    f"{student.name} has {points} of {limit:g}: Moodle would refuse it, and nothing is written"
+                    "{name} has {points} of {limit:g}: Moodle would refuse it, and nothing is written",
+                    name=student.name,
+                    points=points,
+                    limit=limit,
                 )
             result = ET.SubElement(root, "result")
             for tag, text in (("state", "new"), ("assignment", item), ("student", number), ("score", points)):

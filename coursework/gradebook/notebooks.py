@@ -29,6 +29,7 @@ from coursework.gradebook.rows import (
     short_fault,
     with_unread,
 )
+from coursework.messages import Message
 from coursework.system import python_code
 
 # --------------------------------------------------------------------- notebook
@@ -49,13 +50,13 @@ def _read(data: bytes, source: str, by: str) -> Iterator[AnswerRow | Rejected]:
     try:
         notebook = load_json(text)
     except (ValueError, RecursionError) as fault:
-        yield Rejected(source, f"not a notebook: {short_fault(fault)}")
+        yield Rejected(source, Message("not a notebook: {problem}", problem=short_fault(fault)))
         return
     about = notebook.get("metadata", {}) if isinstance(notebook, dict) else {}
     about = about.get("coursework") if isinstance(about, dict) else None
     cells = notebook.get("cells") if isinstance(notebook, dict) else None
     if not isinstance(cells, list):
-        yield Rejected(source, "not a notebook of ours: it has no cells")
+        yield Rejected(source, Message("not a notebook of ours: it has no cells"))
         return
     cells = [cell for cell in cells if isinstance(cell, dict)]
     notes = [warning] if warning else []
@@ -63,7 +64,7 @@ def _read(data: bytes, source: str, by: str) -> Iterator[AnswerRow | Rejected]:
         about = printed_identity(cells)
         if about is None:
             yield Rejected(
-                source, "not a notebook of ours: it names no exercise, in its metadata or in print"
+                source, Message("not a notebook of ours: it names no exercise, in its metadata or in print")
             )
             return
         notes.append(f"{source}: its metadata is gone; whose it is, and of which variant, is as it prints it")
@@ -105,7 +106,7 @@ def _answers_code(cells: list[dict[str, Any]]) -> tuple[str | None, str]:
     if len(others) == 1:
         return others[0], _OTHER if tagged else _NO_TAG
     count = len(tagged) if len(tagged_texts) != 1 else len(tagged) + len(others)
-    return None, f"one cell must be tagged 'answers'; found {count}"
+    return None, Message("one cell must be tagged 'answers'; found {count}", count=count)
 
 
 def _filled(texts: Iterable[str]) -> list[str]:
@@ -171,8 +172,9 @@ def _read_paper(
         if isinstance(cell_answers, str):
             yield Rejected(location, cell_answers, _about(identity, source) | {"answer": quoted(code)})
         elif not exercise:
-            which = (
-                f"which exercise an answers cell is of cannot be told: write {_example(sheets)} after its {{"
+            which = Message(
+                "which exercise an answers cell is of cannot be told: write {example} after its {{",
+                example=_example(sheets),
             )
             yield Rejected(location, which, _about(identity, source) | {"answer": quoted(code)})
         else:
@@ -183,10 +185,12 @@ def _read_paper(
     for exercise, seed in sheets:
         if (exercise, seed) not in there:
             identity = {"student": name, "exercise": exercise, "seed": seed}
-            reason = f"no cell tagged 'answers' is of {exercise}, seed {seed}"
+            reason = Message(
+                "no cell tagged 'answers' is of {exercise}, seed {seed}", exercise=exercise, seed=seed
+            )
             yield Rejected(f"{source}, {exercise}", reason, _about(identity, source) | {"answer": code})
     if not sheets and not tagged:
-        yield Rejected(source, "the notebook holds no answers", _about({"student": name}, source))
+        yield Rejected(source, Message("the notebook holds no answers"), _about({"student": name}, source))
 
 
 _OF = re.compile(r"#[ \t]*(\w+)[ \t]+([0-9]{1,30})[ \t]*$", re.MULTILINE)
@@ -254,7 +258,7 @@ def literal_answers(code: str) -> dict[Any, Any] | str:
     them is the text that stands there; a cell that is no Python is read line by line.
     """
     if len(code) > _LONGEST:
-        return "the answers cell is too long to be read"
+        return Message("the answers cell is too long to be read")
     code = re.sub(r"\r\n?", "\n", code)
     answers = _literal_answers(code)
     return answers if isinstance(answers, str) else _with_hidden(answers, code)
@@ -266,15 +270,18 @@ def _literal_answers(code: str) -> dict[Any, Any] | str:
     except _NO_PYTHON:
         return _answers_by_line(code)
     if len(statements) != 1:
-        return f"the answers cell must hold one dict and nothing else; found {len(statements)} statements"
+        return Message(
+            "the answers cell must hold one dict and nothing else; found {count} statements",
+            count=len(statements),
+        )
     statement = statements[0]
     value = statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign, ast.Expr)) else None
     if not isinstance(value, ast.Dict):
-        return "the answers cell must hold one dict and nothing else; found code, which is never run"
+        return Message("the answers cell must hold one dict and nothing else; found code, which is never run")
     try:
         return object_once(_pairs(value, code))
     except _NO_PYTHON:
-        return "the answers cell must hold texts and numbers only; found code, which is never run"
+        return Message("the answers cell must hold texts and numbers only; found code, which is never run")
 
 
 _NO_PYTHON = (SyntaxError, ValueError, TypeError, RecursionError, MemoryError)
@@ -300,7 +307,7 @@ def _pairs(literal: ast.Dict, code: str) -> list[tuple[Any, Any]]:
 
 # ----------------------------------------------------------------- behind a hash
 
-_HIDDEN = "an answer stands behind a #, where nothing is read"
+_HIDDEN = Message("an answer stands behind a #, where nothing is read")
 _QUOTED_NUMBER = re.compile(r'"[^"]*[0-9][^"]*"')
 _NUMBER_OF = re.compile(r"""[0-9]\s*["']?\s*,""")  #: as a line of the cell ends
 _NUMBER_LAST = re.compile(r"""[0-9]\s*["']?\s*,\s*$""")  #: as the line of an answer ends
@@ -408,9 +415,15 @@ def _pairs_of_line(line: str) -> list[tuple[Any, Any]] | None:
 
 
 def _not_as_written(number: int, line: str) -> str:
-    key = _KEY.match(line)
-    part = f", part {key[2][:40]}" if key else ""
-    return (
-        f"the answers cell, line {number}{part}, is not written as in the notebook: quotes around text, "
-        f"a comma after each answer; found {line[:40]!r}"
+    if key := _KEY.match(line):
+        return Message(
+            "the answers cell, line {line}, part {part}, is not written as in the notebook: quotes around text, a comma after each answer; found {found!r}",
+            line=number,
+            part=key[2][:40],
+            found=line[:40],
+        )
+    return Message(
+        "the answers cell, line {line}, is not written as in the notebook: quotes around text, a comma after each answer; found {found!r}",
+        line=number,
+        found=line[:40],
     )

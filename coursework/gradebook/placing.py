@@ -12,11 +12,12 @@ from typing import Any
 
 from coursework.course.answer_keys import part_called
 from coursework.course.course import Course
-from coursework.errors import UnknownName, nearest
+from coursework.errors import CourseworkError, UnknownName, nearest
 from coursework.gradebook.conflicting_sheets import Doubts, doubts, file_of
-from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
+from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin, joined_by_and
 from coursework.making.issued import Issued
 from coursework.making.students import namesakes
+from coursework.messages import Message, as_message
 
 _LISTED = 8  #: names that a message lists
 _REMEMBERED = 10_000  #: places of rows, while the next rows are read
@@ -72,7 +73,7 @@ class Sheets:
 # ------------------------------------------------------------------------ placing
 
 
-class UnplacedError(Exception):
+class UnplacedError(CourseworkError, ValueError):
     """A row that belongs to no sheet; the message is the reason."""
 
 
@@ -81,7 +82,7 @@ def sheet_of_row(issued: Issued, row: AnswerRow) -> tuple[str, str, int]:
 
     Raises
     ------
-    Refused
+    UnplacedError
         It has none.
     """
     student = student_of(issued, row)
@@ -89,30 +90,43 @@ def sheet_of_row(issued: Issued, row: AnswerRow) -> tuple[str, str, int]:
         raise UnplacedError("no student's name")
     if student is None:
         raise UnplacedError(
-            f"no student {row.student!r} on the roster{_student_hint(row.student, issued.students)}"
+            "no student {student!r} on the roster{hint}",
+            student=row.student,
+            hint=_student_hint(row.student, issued.students),
         )
     if row.exercise not in issued.exercises:
         raise UnplacedError(
-            f"no exercise {row.exercise!r} was issued{_near_or_all(row.exercise, issued.exercises)}"
+            "no exercise {exercise!r} was issued{hint}",
+            exercise=row.exercise,
+            hint=_near_or_all(row.exercise, issued.exercises),
         )
     mine = issued.seeds_of(student, row.exercise)
     if not row.seed and mine:
         return student, row.exercise, mine[-1]
     if not row.seed and issued.has_roster and not issued.is_pool:
-        raise UnplacedError(f"{student} was issued no {row.exercise}")
+        raise UnplacedError("{student} was issued no {exercise}", student=student, exercise=row.exercise)
     if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
-        raise UnplacedError(f"a seed is a whole number; found {row.seed[:40]!r}")
+        raise UnplacedError("a seed is a whole number; found {seed!r}", seed=row.seed[:40])
     seed = int(row.seed.removesuffix(".0"))
     theirs = (
         _seeds_hint(issued, student, row.exercise, mine) if issued.has_roster and not issued.is_pool else ""
     )
     if (row.exercise, seed) not in issued.records:
-        raise UnplacedError(f"seed {seed} of {row.exercise} was not issued{theirs}")
+        raise UnplacedError(
+            "seed {seed} of {exercise} was not issued{hint}",
+            seed=seed,
+            exercise=row.exercise,
+            hint=theirs,
+        )
     if row.origin is not None:
         _check_version(issued.records[row.exercise, seed], row.origin.version)
     if issued.has_roster and seed not in mine and not issued.is_pool:
         raise UnplacedError(
-            f"seed {seed} of {row.exercise} is {_owner_of_seed(issued, row.exercise, seed)}{theirs}"
+            "seed {seed} of {exercise} is {owner}{hint}",
+            seed=seed,
+            exercise=row.exercise,
+            owner=_owner_of_seed(issued, row.exercise, seed),
+            hint=theirs,
         )
     return student, row.exercise, seed
 
@@ -122,7 +136,7 @@ def student_of(issued: Issued, row: AnswerRow) -> str | None:
 
     Raises
     ------
-    Refused
+    UnplacedError
         It names another than who handed it in.
     """
     return (
@@ -141,7 +155,10 @@ def _stated_student(issued: Issued, name: str, origin: RowOrigin) -> str | None:
     student = issued.student(name, origin.ids)
     if None not in (by, student) and by != student:
         raise UnplacedError(
-            f"handed in by {by} ({origin.by[0]}), but it names {student}: a person must say whose it is"
+            "handed in by {by} ({account}), but it names {student}: a person must say whose it is",
+            by=by,
+            account=origin.by[0],
+            student=student,
         )
     return student
 
@@ -149,29 +166,37 @@ def _stated_student(issued: Issued, name: str, origin: RowOrigin) -> str | None:
 def _check_version(record: Mapping[str, Any], version: str) -> None:
     if version and version != str(record["version"]):
         raise UnplacedError(
-            f"version {version} of {record['exercise']} was answered, and version {record['version']} is issued: name the "
-            "issued.json of the export that the platform had"
+            "version {version} of {exercise} was answered, and version {issued} is issued: name the issued.json of the export that the platform had",
+            version=version,
+            exercise=record["exercise"],
+            issued=record["version"],
         )
 
 
 def _owner_of_seed(issued: Issued, exercise: str, seed: int) -> str:
     version = issued.versions.get((exercise, seed))
-    return f"version {version}'s" if version else "another student's"
+    return Message("version {version}'s", version=version) if version else Message("another student's")
 
 
 def _seeds_hint(issued: Issued, student: str, exercise: str, mine: Sequence[int]) -> str:
     """Return the end of a refusal: the seeds that the student has."""
     if not mine:
-        return f"; {student} was issued none"
+        return Message("; {student} was issued none", student=student)
     version = issued.versions.get((exercise, mine[0]))
-    letter = f"version {version}, " if version else ""
-    return f"; {student} has {letter}seed {' and '.join(map(str, mine))}"
+    seeds = joined_by_and(mine)
+    if version:
+        return Message(
+            "; {student} has version {version}, seed {seeds}", student=student, version=version, seeds=seeds
+        )
+    return Message("; {student} has seed {seeds}", student=student, seeds=seeds)
 
 
 def _student_hint(name: str, students: Sequence[str]) -> str:
     """Return the end of a refusal: the similar names, all of them if there are several equal ones."""
     several = namesakes(name, students)
-    return f"; which of {', '.join(map(repr, several))}?" if len(several) > 1 else name_hint(name, students)
+    if len(several) > 1:
+        return Message("; which of {names}?", names=", ".join(map(repr, several)))
+    return name_hint(name, students)
 
 
 def name_hint(name: str, names: Iterable[str]) -> str:
@@ -183,7 +208,8 @@ def name_hint(name: str, names: Iterable[str]) -> str:
 def _near_or_all(name: str, names: Sequence[str]) -> str:
     if hint := name_hint(name, names):
         return hint
-    return f"; issued: {', '.join(names[:_LISTED])}{', …' if len(names) > _LISTED else ''}"
+    listed = ", ".join(names[:_LISTED]) + (", …" if len(names) > _LISTED else "")
+    return Message("; issued: {names}", names=listed)
 
 
 def placed_sheets(
@@ -257,8 +283,9 @@ def _check_records(course: Course, issued: Issued) -> None:
     for exercise, record_of_exercise in {key[0]: record for key, record in issued.records.items()}.items():
         if exercise not in course:
             raise UnknownName(
-                f"no exercise {exercise!r} in {course.folder.label}, though it was issued: name the course that it was built "
-                "from, coursework --course FOLDER grade …"
+                "no exercise {exercise!r} in {course}, though it was issued: name the course that it was built from, coursework --course FOLDER grade …",
+                exercise=exercise,
+                course=course.folder.label,
             )
         _ = course[exercise].solution
         course[exercise].from_record(record_of_exercise)
@@ -280,7 +307,7 @@ def _place_cache(issued: Issued) -> Callable[[AnswerRow], SheetKey | str]:
             try:
                 key = (*sheet_of_row(issued, row), 0 if row.origin is None else row.origin.sitting)
             except UnplacedError as why:
-                key = str(why)
+                key = as_message(why)
             memory[named] = key
         return key
 
@@ -318,7 +345,12 @@ def row_placer(
             row = row._replace(part=part_called(row.part, parts_of_variant[key]))
         if row.part not in parts_of_variant[key]:
             name_hint = nearest(row.part[:60], sorted(parts_of_variant[key]))
-            reason = f"{row.exercise} has no part {row.part[:60]!r}{name_hint}"
+            reason = Message(
+                "{exercise} has no part {part!r}{nearest}",
+                exercise=row.exercise,
+                part=row.part[:60],
+                nearest=name_hint,
+            )
         elif row.part in sheet:
             before = sheet[row.part]
             if _is_blank(row):
@@ -327,7 +359,7 @@ def row_placer(
             if _is_blank(before):
                 sheets.blanks += 1
             else:
-                reason = f"repeats {before.source}, which is marked"
+                reason = Message("repeats {file}, which is marked", file=before.source)
         if reason:
             return Rejected(row.source, reason, as_texts(row))
         sheet[row.part] = row
@@ -363,10 +395,12 @@ def _note(sheets: Sheets, key: SheetKey, origin: RowOrigin) -> None:
 
 def _latest_warning(issued: Issued, key: SheetKey) -> str:
     """Return the warning that answers without a seed count for the latest sitting."""
-    sitting = issued.sitting_of(*key[:3])
-    return (
-        f"{key[0]}, {key[1]}: answers without a seed are taken for sitting {sitting}, seed {key[2]}, the latest; "
-        "write the seed of the other sitting where they are of that one"
+    return Message(
+        "{student}, {exercise}: answers without a seed are taken for sitting {sitting}, seed {seed}, the latest; write the seed of the other sitting where they are of that one",
+        student=key[0],
+        exercise=key[1],
+        sitting=issued.sitting_of(*key[:3]),
+        seed=key[2],
     )
 
 

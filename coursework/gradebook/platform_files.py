@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from coursework.errors import counted
 from coursework.gradebook import canvas_answers, moodle_responses
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, name_in
+from coursework.messages import Message
 
 Rows = Iterator[tuple[str, Sequence[str]]]
 
@@ -49,12 +50,12 @@ def read_table(
             (f"{source}, line {reader.line_num}", cells) for cells in reader if any(c.strip() for c in cells)
         ]
     except csv.Error as fault:
-        yield Rejected(source, f"not CSV: {fault}")
+        yield Rejected(source, Message("not CSV: {problem}", problem=fault))
         return
     finally:
         csv.field_size_limit(before)
     if not records or not table.is_this(records[0][1]):  # one read by lines, one by quotation marks
-        yield Rejected(source, "the header is damaged: a quotation mark in it is never closed")
+        yield Rejected(source, Message("the header is damaged: a quotation mark in it is never closed"))
         return
     yield from table.read(records[0][1], iter(records[1:]), source, warning)
 
@@ -84,6 +85,10 @@ def read_records(
 def platform_file_lines(seen: Mapping[PlatformFile, int]) -> tuple[str, ...]:
     """Return a line about each file that a platform wrote."""
     return tuple(
-        f"{file.source} is {file.what}" + (f", {counted(count, 'file')}" if file.is_tree else "")
+        Message(
+            "{file} is {content}, {files}", file=file.source, content=file.what, files=counted(count, "file")
+        )
+        if file.is_tree
+        else Message("{file} is {content}", file=file.source, content=file.what)
         for file, count in seen.items()
     )

@@ -8,8 +8,9 @@ from collections.abc import Iterator
 
 from coursework.errors import counted
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin, decoded_text, short_fault
+from coursework.messages import Message
 
-WHAT = "a result of QTI"
+WHAT = Message("a result of QTI")
 _ITEM = re.compile(
     r"(?:.*[.-])?(?P<exercise>\w+)[.-]v(?P<version>\w+)[.-](?P<seed>[0-9]{1,30})[.-](?P<lang>[a-z]{2,3})"
 )
@@ -21,12 +22,12 @@ def read_results(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Pl
     """Yield the answers of a file of results; entities declared in a file are never followed."""
     text, warning = decoded_text(data, source)
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        yield Rejected(source, "results of QTI declare no entities; this file does, and is not read")
+        yield Rejected(source, Message("results of QTI declare no entities; this file does, and is not read"))
         return
     try:
         root = ET.fromstring(data)
     except (ET.ParseError, LookupError, ValueError) as fault:
-        yield Rejected(source, f"not XML: {short_fault(fault)}")
+        yield Rejected(source, Message("not XML: {problem}", problem=short_fault(fault)))
         return
     results = [element for element in root.iter() if _tag(element) == "assessmentResult"]
     items = 0
@@ -36,10 +37,22 @@ def read_results(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Pl
             items += 1
             yield from _item(item, student, source, warning)
     if items:
-        yield PlatformFile(source, f"{WHAT}, {counted(items, 'item')} of {counted(len(results), 'student')}")
+        yield PlatformFile(
+            source,
+            Message(
+                "{report}, {items} of {students}",
+                report=WHAT,
+                items=counted(items, "item"),
+                students=counted(len(results), "student"),
+            ),
+        )
     else:
         yield Rejected(
-            source, f"no answers: XML is read where it is {WHAT}, assessmentResult with itemResult in it"
+            source,
+            Message(
+                "no answers: XML is read where it is {what}, assessmentResult with itemResult in it",
+                what=WHAT,
+            ),
         )
 
 
@@ -68,7 +81,7 @@ def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator
         answer for answer in answers if _named(answer, "identifier").casefold() not in _NO_ANSWERS
     ]
     if match is None:
-        reason = (
+        reason = Message(
             "an item is called as exported, set-exercise-v1-4-en: which variant this one is cannot be told"
         )
         yield from (

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from coursework.making.identity import Ids
+from coursework.messages import Message
 from coursework.system.tables import decode
 
 
@@ -126,7 +127,7 @@ def sheet_rows(
 ) -> Iterator[AnswerRow | Rejected]:
     names = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
     if not answers and not getattr(answers, "unread", ()):
-        yield Rejected(location, "the sheet holds no answer", {**names, "part": "", "answer": ""})
+        yield Rejected(location, Message("the sheet holds no answer"), {**names, "part": "", "answer": ""})
     for key, text, why in getattr(answers, "unread", ()):
         row = {**names, "part": name_in(key), "answer": quoted(text)}
         where = f"{location}, part {name_in(key)[:40]}" if key else location
@@ -136,7 +137,7 @@ def sheet_rows(
         where = f"{location}, part {part[:40]}"
         if isinstance(answer, (dict, set, bytes)):
             row = {**names, "part": part, "answer": quoted(_text_of(answer))}
-            yield Rejected(where, "an answer is a text or a number", row)
+            yield Rejected(where, Message("an answer is a text or a number"), row)
             continue
         lang = name_in(about.get("lang"))
         yield AnswerRow(
@@ -163,6 +164,15 @@ def _text_of(value: Any) -> str:
         return _storable_text(str(value))
     except ValueError:  # an integer of too many digits
         return "a number of very many digits"
+
+
+def joined_by_and(items: Iterable[object]) -> Message:
+    """Return ``5 and 7``."""
+    first, *others = items
+    joined = Message("{item}", item=first)
+    for item in others:
+        joined = Message("{first} and {second}", first=joined, second=item)
+    return joined
 
 
 def name_in(value: Any) -> str:

@@ -33,6 +33,7 @@ from coursework.gradebook.rows import (
 )
 from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, latest_first, submitted_file
 from coursework.making.issued import COLUMNS
+from coursework.messages import Message
 from coursework.system.extras import NotAtHand, library
 from coursework.system.limits import MOST_BYTES as MAX_BYTES
 from coursework.system.limits import (
@@ -60,7 +61,7 @@ def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
     paths = tuple(paths)
     for path in paths:
         if not path.exists():
-            raise BadInput(f"no such file or folder: {path}{_similar_file(path)}")
+            raise BadInput("no such file or folder: {file}{hint}", file=path, hint=_similar_file(path))
     for path in paths:
         if path.is_dir():
             yield from _files_below(path)
@@ -77,7 +78,7 @@ def _files_below(folder: Path) -> Iterator[Path | Rejected]:
     yield from (Rejected(path_text(p), LEADS_OUT) for p in refused)
     yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in SIDE_FILES)
     if not files and not refused:
-        yield Rejected(path_text(folder), "the folder holds no file")
+        yield Rejected(path_text(folder), Message("the folder holds no file"))
 
 
 def _similar_file(path: Path) -> str:
@@ -87,7 +88,7 @@ def _similar_file(path: Path) -> str:
     if near is None:
         return ""
     meant = path.with_name(near)
-    return f" (did you mean {meant}{'/' if meant.is_dir() else ''}?)"
+    return Message(" (did you mean {file}?)", file=f"{meant}{'/' if meant.is_dir() else ''}")
 
 
 def _is_hidden(path: Path, below: Path) -> bool:
@@ -100,10 +101,14 @@ _SPREADSHEETS = (".xlsx", ".xls", ".ods")
 def _odd_file(path: Path) -> Rejected:
     if path.suffix.lower() in _SPREADSHEETS:
         return Rejected(
-            path_text(path), "a spreadsheet is not read: download the table as CSV (comma separated values)"
+            path_text(path),
+            Message("a spreadsheet is not read: download the table as CSV (comma separated values)"),
         )
     ending = Path(path_text(path)).suffix or "no ending"
-    return Rejected(path_text(path), f"answers come as {', '.join(ENDINGS)}; found {ending}")
+    return Rejected(
+        path_text(path),
+        Message("answers come as {endings}; found {found}", endings=", ".join(ENDINGS), found=ending),
+    )
 
 
 def read_file(path: Path, given: Iterable[Path] = ()) -> Iterator[AnswerRow | Rejected | PlatformFile]:
@@ -133,7 +138,11 @@ def _read(
     try:
         file = path.open("rb") if folder is None else open_inside(path, folder)
     except OSError as fault:
-        refused = LEADS_OUT if isinstance(fault, LeadsOut) else f"cannot be read: {fault.strerror}"
+        refused = (
+            LEADS_OUT
+            if isinstance(fault, LeadsOut)
+            else Message("cannot be read: {problem}", problem=fault.strerror)
+        )
         yield Rejected(path_text(path), refused)
         return
     with file:
@@ -155,7 +164,7 @@ def _read_whole(
             return
         data = file.read()
     except OSError as fault:
-        yield Rejected(path_text(path), f"cannot be read: {fault.strerror}")
+        yield Rejected(path_text(path), Message("cannot be read: {problem}", problem=fault.strerror))
         return
     rows = (
         reader(data, path_text(path)) if handed is None else read_notebook(data, path_text(path), handed.name)
@@ -169,11 +178,11 @@ def _read_whole(
 
 def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     if not data.strip():
-        yield Rejected(source, "the file is empty")
+        yield Rejected(source, Message("the file is empty"))
         return
     text, warning = decoded_text(data, source)
     if "\0" in text:
-        yield Rejected(source, "the file holds NUL bytes: it is not a CSV of answers")
+        yield Rejected(source, Message("the file holds NUL bytes: it is not a CSV of answers"))
         return
     lines = re.split(r"\r\n|\n|\r", text)
     del text, data
@@ -214,8 +223,11 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
             return
         if missing:
             titles = ", ".join(c for c in header if c) or "nothing"
-            wanted = (
-                f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {titles}"
+            wanted = Message(
+                "the header must name {columns}; {missing} missing, found {found}",
+                columns=", ".join(COLUMNS),
+                missing=", ".join(missing),
+                found=titles,
             )
             yield Rejected(location, fault_of(cells) or wanted)
             return
@@ -246,7 +258,7 @@ def _row_of(cells: Sequence[str], location: str, warning: str) -> AnswerRow:
 
 _kept = sys.intern
 
-NO_ANSWERS = "the file holds no answers"
+NO_ANSWERS = Message("the file holds no answers")
 
 
 def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[AnswerRow | Rejected]:
@@ -262,7 +274,11 @@ def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[AnswerRow | Rejected
         file = parquet.ParquetFile(opened)
         missing = [c for c in COLUMNS if c not in file.schema_arrow.names]
         if missing:
-            wanted = f"a Parquet file has the columns {', '.join(COLUMNS)}; {', '.join(missing)} missing"
+            wanted = Message(
+                "a Parquet file has the columns {columns}; {missing} missing",
+                columns=", ".join(COLUMNS),
+                missing=", ".join(missing),
+            )
             yield Rejected(path_text(path), wanted)
             return
         if refused := _beyond(file.metadata) or _odd_columns(pyarrow.types, file.schema_arrow):
@@ -285,7 +301,7 @@ def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[AnswerRow | Rejected
             yield Rejected(source, NO_ANSWERS)
     # What is damaged, pyarrow tells in one of many ways: by a column that is not there, too.
     except (OSError, ValueError, LookupError, OverflowError, pyarrow.ArrowException) as fault:
-        yield Rejected(path_text(path), f"not a Parquet file: {short_fault(fault)}")
+        yield Rejected(path_text(path), Message("not a Parquet file: {problem}", problem=short_fault(fault)))
 
 
 def _beyond(about: Any) -> str:
@@ -319,11 +335,13 @@ def _odd_columns(types: Any, schema: Any) -> str:
 
     for column in COLUMNS:
         if len(schema.get_all_field_indices(column)) > 1:
-            return f"the file has the column {column} twice"
+            return Message("the file has the column {column} twice", column=column)
         if not is_read(kind := schema.field(column).type):
             kind = getattr(kind, "value_type", kind)
-            return (
-                f"the column {column} holds {str(kind)[:40]}: an answer is a text or a number, a name a text"
+            return Message(
+                "the column {column} holds {kind}: an answer is a text or a number, a name a text",
+                column=column,
+                kind=str(kind)[:40],
             )
     return ""
 
@@ -334,16 +352,22 @@ def _csv_row(
     if len(cells) > len(header) and delimiter == ",":
         joined = _with_commas(header, cells)
         if header[-1] == "answer" and cells[header.index("seed")].strip().isdigit():
-            note = f"{location}: an answer with a comma and no quotation marks was read up to the end of its line"
+            note = Message(
+                "{place}: an answer with a comma and no quotation marks was read up to the end of its line",
+                place=location,
+            )
             yield _row_of([joined[c] for c in COLUMNS], location, warning or note)
             return
     row = dict(zip(header, cells, strict=False))
     if len(cells) != len(header):
         cells_read = {c: row.get(c, "") for c in COLUMNS}
-        reason = f"{len(cells)} cells where the header has {len(header)}"
+        reason = Message("{cells} cells where the header has {most}", cells=len(cells), most=len(header))
         if delimiter == "," and len(cells) > len(header):
             cells_read["answer"] = joined["answer"]
-            reason += "; put an answer with a comma between quotation marks, or semicolons between all cells"
+            reason = Message(
+                "{problem}; put an answer with a comma between quotation marks, or semicolons between all cells",
+                problem=reason,
+            )
         yield Rejected(location, reason, cells_read)
         return
     yield _row_of([row[c] for c in COLUMNS], location, warning)
@@ -365,7 +389,7 @@ def _read_json(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Plat
     try:
         content = load_json(text)
     except (ValueError, RecursionError) as fault:
-        yield Rejected(source, f"not JSON: {short_fault(fault)}")
+        yield Rejected(source, Message("not JSON: {problem}", problem=short_fault(fault)))
         return
     if (rows := read_records(content, source, warning)) is not None:
         yield from rows
@@ -376,7 +400,9 @@ def _read_json(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Plat
     for number, sheet in enumerate(sheets, start=1):
         location = f"{source}, item {number}" if isinstance(content, list) else source
         if not isinstance(sheet, dict) or not isinstance(sheet.get("answers"), dict):
-            yield Rejected(location, 'an item is {"student", "exercise", "seed", "answers": {part: text}}')
+            yield Rejected(
+                location, Message('an item is {"student", "exercise", "seed", "answers": {part: text}}')
+            )
             continue
         yield from sheet_rows(sheet, sheet["answers"], location, warning)
 

@@ -106,7 +106,13 @@ def _check_columns(path: Path, row: dict[str, str]) -> None:
     for column in (*TO_MARK_COLUMNS[:4], "points"):
         if column not in row:
             titles = ", ".join(filter(None, row)) or "nothing"
-            raise BadInput(f"{path} lacks the column {column!r}; found {titles}{nearest(column, row)}")
+            raise BadInput(
+                "{file} lacks the column {column!r}; found {found}{nearest}",
+                file=path,
+                column=column,
+                found=titles,
+                nearest=nearest(column, row),
+            )
 
 
 def _key(student: str, exercise: str, seed: str, part: str) -> tuple[str, ...]:

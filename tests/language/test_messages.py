@@ -15,11 +15,11 @@ from coursework.messages import Message, as_message, localised, messages_in, tra
 PACKAGE = Path(coursework.__file__).resolve().parent
 
 #: What takes a template first, and is read by those who use the product; errors in the code of a course stay English.
-FOR_USERS = {"BadInput", "Message", "Lost", "NotAtHand", "NotServed", "NoSolution"}
+FOR_USERS = {"BadInput", "Message", "UnplacedError", "Lost", "NotAtHand", "NotServed", "NoSolution"}
 
 #: Folders whose messages are not yet templates.
 LEFT = frozenset(
-    "accuracy authoring cli course database gradebook model.py motion reading rendering scanning selfstudy "
+    "accuracy authoring cli course model.py motion reading rendering scanning selfstudy "
     "statistics workbook".split()
 )
 
