@@ -165,7 +165,7 @@ class _Computed:
     def __init__(self, about: AssignmentOverview):
         self.about = about
         self.outdate: Collection[str] = ()  #: students who are noted
-        self.away: Collection[str] = ()  #: students whose rows go
+        self.away: Collection[str] = ()  #: students whose rows are deleted
         self.totals: list[dict[str, Any]] = []
         self.answers: list[dict[str, Any]] = []
         self.unplaced: list[dict[str, Any]] | None = None

@@ -19,7 +19,7 @@ from coursework.making.roster import Student
 
 _Place = tuple[
     str, int, str, str, int
-]  #: student, sitting, exercise, seed; which of several alike that are nobody's
+]  #: student, sitting, exercise, seed, and a count of equal items without a student
 
 
 # ---------------------------------------------------------------------- finding

@@ -11,7 +11,7 @@ from sqlalchemy import Connection, insert, select
 
 from coursework.database.tables import audit
 
-#: What happens to an account, which its holder is told of.
+#: Actions on an account that its holder is informed of.
 OF_ACCOUNTS = ("invited", "invitation taken up", "password changed", "role", "data given")
 
 

@@ -52,7 +52,7 @@ class UnplacedRow:
     id: str  #: digest of what it says and where
     row: Rejected
     student: str  #: whom it names, as issued; empty for a stranger
-    near: str  #: whose name is like the one that it tells, where it names a stranger
+    near: str  #: similar name of a student, if it names a stranger
     became: Placing | None
 
     @property
@@ -112,9 +112,9 @@ class ClassState:
     decisions: Decisions
     placings: Mapping[str, Placing]
     site_submissions: Mapping[str, SiteSubmissions]
-    charged: Mapping[Sitting, float]  #: shares that are taken off of what came late
+    charged: Mapping[Sitting, float]  #: penalties of late submissions, as shares of the points
     facts: Facts | None = None  #: of the whole class, where this is a part of it
-    is_part: bool = False  #: some students alone; which rows came is not read
+    is_part: bool = False  #: some students alone; the received rows are not read
 
     @cached_property
     def is_marked(self) -> bool:

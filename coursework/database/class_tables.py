@@ -326,7 +326,7 @@ def answers_waiting(connection: Connection, number: int, scope: Scope = ALL) -> 
 class Filter(NamedTuple):
     """Selection of the cards to show."""
 
-    why: str = ""  #: all but what waits for nobody, unless told
+    why: str = ""  #: all reasons except those shown on request
     exercise: str = ""
     part: str = ""
 

@@ -135,7 +135,7 @@ class Decisions:
         query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
         if student is not None:
             names = [student] if isinstance(student, str) else list(student)
-            # A file may spell a name in another way: what is spelled as nobody's is compared by hand.
+            # A file may spell a name differently: names that are no student's are compared after folding.
             is_student = select(student_total.c.id).where(
                 student_total.c.assignment_id == assignment_id, student_total.c.student == decision.c.student
             )
@@ -208,7 +208,7 @@ class HistoryEvent(NamedTuple):
     by: str  #: empty for the marking
     kind: str  #: marked, accepted, given, withdrawn
     seed: str
-    sitting: int  #: 0 where it is not told
+    sitting: int  #: 0 if unknown
     answer: str | None
     verdict: str
     points: float | None

@@ -28,7 +28,7 @@ from coursework.system.links import check_inside
 from coursework.system.tables import as_written, inert
 from coursework.system.writing import removed_on_failure, write_whole
 
-_NULL = "\\N"  #: what stands where there is no value; a text that begins with \ has another before it
+_NULL = "\\N"  #: marks a cell without a value; a text that begins with \ gets another before it
 CellText: TypeAlias = Callable[[str], str]
 _CHUNK = 5000  #: rows that are written at once
 FORMAT = "coursework database dump 2"

@@ -36,7 +36,7 @@ from coursework.database.tables import (
 )
 
 _CHUNK = 5000  #: rows that are taken away at once
-STRUCK = "…"  #: stands where a name stood
+STRUCK = "…"  #: replaces a name
 _SHORTEST = (
     3  #: characters of what is struck out of the texts of others: a shorter word says of nobody who it is
 )
@@ -45,7 +45,7 @@ _HEADS = (
     "asked",
 )  #: what an assignment says, where a name of letters alone is more likely another word
 
-#: Texts that say whose something is, or tell of somebody; answers of others are not among them.
+#: Texts that may name a person; answers of others are not among them.
 TELLING: tuple[tuple[Table, tuple[str, ...]], ...] = (
     (assignment, ("stated", "columns", "asked")),
     (delivery, ("source",)),

@@ -82,7 +82,7 @@ class AssignmentOverview(NamedTuple):
     columns: Mapping[str, Any]  #: of the roster, by student
     created: datetime
     deliveries: int
-    last: datetime | None  #: when something came in
+    last: datetime | None  #: time of the last submission
 
 
 def listed_assignments(connection: Connection, assignment_id: int | None = None) -> list[AssignmentOverview]:
@@ -208,7 +208,7 @@ def drop_placing(connection: Connection, assignment_id: int, row: str) -> None:
     connection.execute(delete(placing).where(*is_put_aside))
 
 
-# -------------------------------------------------------------------------- came
+# ------------------------------------------------------------------- submissions
 
 
 class SiteSubmissions(NamedTuple):
@@ -287,7 +287,7 @@ class StudentSubmission(NamedTuple):
     """Submission on the site, or file with answers, of a student."""
 
     source: str
-    number: int  #: which try on the site; 0 for a file
+    number: int  #: attempt on the site; 0 for a file
     receipt: str
     late: int  #: seconds
     received_at: datetime

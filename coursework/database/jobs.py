@@ -22,7 +22,7 @@ class WorkerJob(NamedTuple):
     """Job of a background worker."""
 
     id: int
-    kind: str  #: ``mark``: a delivery; ``rescue``: what a person saved before an assignment closed; ``prepare``: a person's page
+    kind: str  #: ``mark``: a submission; ``rescue``: drafts of a person when an assignment has closed; ``prepare``: a person's page
     assignment: int
     delivery: int | None
     person: int | None

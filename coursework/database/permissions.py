@@ -39,7 +39,7 @@ class Permission(StrEnum):
     PEOPLE_INVITE_STUDENTS = "people.invite_students"  #: links by which a student chooses a password
     PEOPLE_INVITE_STAFF = "people.invite_staff"  #: links by which somebody of the staff does
     PEOPLE_ROLES = "people.roles"  #: another role, groups and assignments of assistants
-    PEOPLE_EXPORT = "people.export"  #: all that is kept of a person
+    PEOPLE_EXPORT = "people.export"  #: all data of a person
     PEOPLE_ERASE = "people.erase"
     AUDIT_READ = "audit.read"
 
@@ -68,7 +68,7 @@ _INSTRUCTOR = _ASSISTANT | {
     Permission.PEOPLE_INVITE_STUDENTS,
 }
 
-#: The permissions of each role; ``""`` is nobody who is signed in.
+#: The permissions of each role; ``""`` is that of visitors who are not signed in.
 PERMISSIONS: Mapping[str, frozenset[Permission]] = {
     "": _VISITOR,
     STUDENT: _STUDENT,

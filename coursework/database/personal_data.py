@@ -34,14 +34,14 @@ from coursework.database.tables import (
 from coursework.making.identity import identifies
 from coursework.making.students import folded
 
-#: What a row holds for the database alone, or for nobody.
+#: Columns that concern the database alone, or nobody.
 _HIDDEN = {
     "account": {"secret", "invitation"},
     "session": {"digest"},
     "delivery": {"digest"},
     "progress": {"digest"},
     "marking": {"state"},
-    "prepared": {"state", "head", "body"},  # the paper may be to come; it is told with ``dealt``
+    "prepared": {"state", "head", "body"},  # the paper may not be open yet; ``dealt`` contains it
 }
 
 

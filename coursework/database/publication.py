@@ -21,11 +21,11 @@ from sqlalchemy import Connection, Select, bindparam, func, insert, select, upda
 from coursework.database.outdated import outdate_all, outdate_person
 from coursework.database.tables import assignment, dealt, delivery, extension, variant
 
-#: When marks and sentences are told; and when right answers and worked solutions.
+#: Release of marks and feedback, and of right answers and worked solutions.
 AT_ONCE, CLOSED, DATE, NEVER = "at_once", "closed", "date", "never"
 FEEDBACK = (AT_ONCE, CLOSED, DATE, NEVER)
 ANSWERS = (NEVER, CLOSED, DATE)
-#: What becomes of what comes late.
+#: Treatment of late submissions.
 REFUSE, ACCEPT, CHARGE = "refuse", "accept", "charge"
 LATE = (REFUSE, ACCEPT, CHARGE)
 MOST_TRIES = 1000
@@ -38,7 +38,7 @@ class Phase(Enum):
 
     TO_COME = "to_come"
     OPEN = "open"
-    LATE = "late"  #: it has closed, and what comes is still taken
+    LATE = "late"  #: it has closed, and submissions are still accepted
     CLOSED = "closed"
 
     @property
@@ -77,9 +77,7 @@ class Publication:
     feedback_on: datetime | None = None
     answers: str = NEVER
     answers_on: datetime | None = None
-    takes_saved: bool = (
-        False  #: what stood in the boxes when it closed is handed in for who handed in nothing
-    )
+    takes_saved: bool = False  #: drafts are submitted at the closing date for students without a submission
     reached: datetime | None = None  #: the last of its dates that has passed
 
     # ------------------------------------------------------------------ as JSON

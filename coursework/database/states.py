@@ -16,7 +16,7 @@ from coursework.course.marking_rules import Rules
 from coursework.course.sources import sources
 
 _PACKAGE = Path(__file__).parent.parent
-#: Rooms and files of the package that a mark comes from.
+#: Folders and files of the package that affect marks.
 ENGINE = (
     "errors.py degrees.py language system kinematics solids markup figures structure mechanics reading polygons quantities "
     "kinds model.py solution.py course marking gradebook/class_marking.py"

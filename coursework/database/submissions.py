@@ -38,16 +38,16 @@ from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrig
 from coursework.making.issued import Issued
 
 _CHUNK = 5000  #: rows that are written at once
-_PlacedRow = tuple[tuple[Any, ...], AnswerRow | Rejected | PlatformFile]  #: delivery and place in it
+_PlacedRow = tuple[tuple[Any, ...], AnswerRow | Rejected | PlatformFile]  #: submission and place in it
 
 
 class Submission(NamedTuple):
     """Submission of several answers together."""
 
     id: int
-    is_new: bool  #: False where the same had come before
+    is_new: bool  #: False if an equal one was stored before
     source: str
-    number: int  #: which try of the person; 0 for files
+    number: int  #: attempt of the person; 0 for files
     receipt: str
     late: int  #: seconds
     received_at: datetime

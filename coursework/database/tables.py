@@ -1,7 +1,7 @@
 """Tables of the database. A row that records an event is added and never changed; the last of its kind is the
 current one.
 
-Times are UTC. Texts are as they came. JSON holds what other files define: records (:mod:`coursework.course.records`), what
+Times are UTC. Texts are as received. JSON contains what other files define: records (:mod:`coursework.course.records`), what
 ``issued.json`` states, entries of progress (:mod:`coursework.selfstudy.progress`); it is kept as it was written, keys in
 their order.
 """
@@ -99,7 +99,7 @@ def _of(table: str, *, null: bool = False, index: bool = False) -> Column[int]:
 
 # ------------------------------------------------------------------------- people
 
-#: Somebody who answers, teaches or both. ``who`` is what a roster tells apart by: a number, an e-mail, else the folded name.
+#: Person who answers, teaches or both. ``who`` is the identifier in a roster: a number, an e-mail, else the folded name.
 person = Table(
     "person",
     METADATA,
@@ -112,29 +112,29 @@ person = Table(
     Column("sessions_from", UTCDateTime),  #: written by earlier versions, and read by none
 )
 
-#: How somebody signs in with a password; what a password becomes is argon2's business.
+#: Account with a password, stored as a hash of argon2.
 account = Table(
     "account",
     METADATA,
     _key(),
     _of("person", index=True),
     Column("login", SafeText, nullable=False, unique=True),
-    Column("secret", SafeText, nullable=False, default=""),  #: none before the invitation is taken up
+    Column("secret", SafeText, nullable=False, default=""),  #: empty before the invitation is accepted
     Column("invitation", String(64), index=True),  #: digest of what the invitation's address ends with
     Column("invited_until", UTCDateTime),
-    Column("joined", UTCDateTime),  #: when an invitation was taken up
+    Column("joined", UTCDateTime),  #: time at which an invitation was accepted
     Column("role", String(16), nullable=False),  #: student, assistant, instructor, administrator
     Column("created", UTCDateTime, nullable=False),
     Column("closed", UTCDateTime),
 )
 
-#: A browser in which somebody is signed in. No dump holds it: what is restored signs nobody in.
+#: Session of a signed-in browser. Dumps omit it, so that a restoration signs nobody in.
 session = Table(
     "session",
     METADATA,
     _key(),
     _of("person", index=True),
-    Column("digest", String(64), nullable=False, unique=True),  #: of the token that the browser holds
+    Column("digest", String(64), nullable=False, unique=True),  #: of the browser's token
     Column("browser", SafeText, nullable=False, default=""),  #: "Firefox, Linux"
     Column("created", UTCDateTime, nullable=False),
     Column("seen", UTCDateTime, nullable=False),  #: the last use, to some minutes
@@ -142,18 +142,17 @@ session = Table(
     info={"fleeting": True},
 )
 
-#: Assignments and groups in which an assistant works: in every assignment where none is named, in the whole class where no
-#: group is.
+#: Assignment and group in which an assistant works; every assignment, or the whole class, if none is named.
 area = Table(
     "area",
     METADATA,
     _key(),
     _of("person", index=True),
     Column("assignment_id", ForeignKey("assignment.id", ondelete="CASCADE")),
-    Column("class_group", SafeText),  #: whatever its case and spaces
+    Column("class_group", SafeText),  #: without differences of case and spaces
 )
 
-#: Passwords that did not fit, by a keyed digest of login and network: no login can be read from it.
+#: Failed attempts to sign in, by a keyed digest of login and network: no login can be read from it.
 failure = Table(
     "failure",
     METADATA,
@@ -163,7 +162,7 @@ failure = Table(
     info={"fleeting": True},
 )
 
-#: How a platform knows somebody.
+#: Identifier of a person on a platform.
 identity = Table(
     "identity",
     METADATA,
@@ -176,7 +175,7 @@ identity = Table(
 
 # -------------------------------------------------------------------- assignments
 
-#: What was issued under one name: an assignment, or a build of exercises. ``stated`` is what ``issued.json`` says of it.
+#: Assignment, or build of exercises, with a name. ``stated`` is its statement in ``issued.json``.
 assignment = Table(
     "assignment",
     METADATA,
@@ -185,16 +184,16 @@ assignment = Table(
     Column("course", SafeText, nullable=False, default=""),  #: the course's name
     Column("stated", Json),  #: none for exercises without an assignment
     Column("has_roster", Boolean, nullable=False, default=False),
-    Column("is_pool", Boolean, nullable=False, default=False),  #: a platform deals its variants out
+    Column("is_pool", Boolean, nullable=False, default=False),  #: a platform assigns its variants
     Column("columns", Json, nullable=False, default=dict),  #: of the roster, by student
-    Column("asked", Json),  #: what its file says, for who comes late; none of a build of exercises
-    #: keys the draws of who comes later; none of what was issued without one
+    Column("asked", Json),  #: content of its file, for students added later; none of a build of exercises
+    #: key for the draws of students added later; none if it was issued without one
     Column("secret", String(32)),
-    Column("published", Json),  #: dates, tries, feedback, late rules; none while it is not published
+    Column("published", Json),  #: dates, attempts, feedback, late rules; none while it is not published
     Column("created", UTCDateTime, nullable=False),
 )
 
-#: A variant that was issued; its record is what answers are marked against.
+#: Issued variant; answers are marked against its record.
 variant = Table(
     "variant",
     METADATA,
@@ -202,18 +201,18 @@ variant = Table(
     _of("assignment", index=True),
     Column("exercise", SafeText, nullable=False),
     Column("seed", SafeText, nullable=False),  #: whole, however large
-    Column("letter", String(2), nullable=False, default=""),  #: A to Z, of versions that are dealt out
+    Column("letter", String(2), nullable=False, default=""),  #: A to Z, of versions
     Column("record", Json, nullable=False),
     UniqueConstraint("assignment_id", "exercise", "seed"),
 )
 
-#: Whose a variant is, in which sitting, in which language. Its place is that in ``issued.json``.
+#: Assignment of a variant to a student, with sitting and language. ``place`` is its position in ``issued.json``.
 dealt = Table(
     "dealt",
     METADATA,
     _key(),
     _of("variant", index=True),
-    _of("person", null=True, index=True),  #: nobody's where there is no roster
+    _of("person", null=True, index=True),  #: none if there is no roster
     Column("place", Integer, nullable=False),
     Column("student", SafeText, nullable=False, default=""),  #: the name as it was issued
     Column("sitting", Integer, nullable=False, default=1),
@@ -222,25 +221,25 @@ dealt = Table(
 
 # ------------------------------------------------------------------------ answers
 
-#: What came in together: files, or what a person hands in on the site.
+#: Submission: a file, or the answers that a person submits on the site.
 delivery = Table(
     "delivery",
     METADATA,
     _key(),
     _of("assignment", index=True),
-    _of("person", null=True, index=True),  #: who handed in on the site; none for files
+    _of("person", null=True, index=True),  #: who submitted on the site; none for files
     Column("source", SafeText, nullable=False),
-    Column("digest", String(64), nullable=False),  #: of what it holds: the same twice is one
-    Column("number", Integer, nullable=False, default=0),  #: which try of the person; 0 for files
-    Column("receipt", String(40), nullable=False, default=""),  #: what the person is given to show
-    Column("late", Integer, nullable=False, default=0),  #: seconds after it closed for them
+    Column("digest", String(64), nullable=False),  #: of its content: the same content is stored once
+    Column("number", Integer, nullable=False, default=0),  #: attempt of the person; 0 for files
+    Column("receipt", String(40), nullable=False, default=""),  #: code shown to the person
+    Column("late", Integer, nullable=False, default=0),  #: seconds after the closing date of the person
     Column("came", UTCDateTime, nullable=False),
-    Column("replaced", UTCDateTime),  #: when a later file took its place; none while it counts
+    Column("replaced", UTCDateTime),  #: time at which a later file replaced it; none while it counts
     UniqueConstraint("assignment_id", "digest"),
     UniqueConstraint("assignment_id", "person_id", "number"),
 )
 
-#: An answer as it came. Answers, what was rejected and what was seen of a delivery have their places in one order.
+#: Answer as received. ``place`` numbers answers, rejected rows and platform files of a submission in one order.
 answer = Table(
     "answer",
     METADATA,
@@ -251,14 +250,16 @@ answer = Table(
     Column("exercise", SafeText, nullable=False),
     Column("seed", SafeText, nullable=False),
     Column("part", SafeText, nullable=False),
-    Column("answer", Json),  #: a text, a number, or nothing
+    Column("answer", Json),  #: text, number, or none
     Column("source", SafeText, nullable=False),
     Column("warning", SafeText, nullable=False, default=""),
     Column("lang", SafeText, nullable=False, default=""),
-    Column("origin", Json),  #: what a platform tells of it (:class:`coursework.gradebook.rows.RowOrigin`)
+    Column(
+        "origin", Json
+    ),  #: statements of a platform about it (:class:`coursework.gradebook.rows.RowOrigin`)
 )
 
-#: What came and could not be placed or read, with its reason.
+#: Row that could not be placed or read, with the reason.
 rejected = Table(
     "rejected",
     METADATA,
@@ -270,7 +271,7 @@ rejected = Table(
     Column("row", Json, nullable=False, default=dict),
 )
 
-#: What a platform wrote of what came (:class:`coursework.gradebook.rows.PlatformFile`).
+#: File written by a platform (:class:`coursework.gradebook.rows.PlatformFile`).
 seen = Table(
     "seen",
     METADATA,
@@ -284,8 +285,8 @@ seen = Table(
 
 # -------------------------------------------------------------------------- marks
 
-#: A sheet marked: of which answers, by which state of course and engine. The last of a sheet stands; one of no state says
-#: that nothing answers to it any more.
+#: Marking of a sheet, with the state of its answers, course and engine. The last one of a sheet counts; an empty state means
+#: that the sheet has no answers any more.
 marking = Table(
     "marking",
     METADATA,
@@ -294,18 +295,18 @@ marking = Table(
     Column("student", SafeText, nullable=False),
     Column("exercise", SafeText, nullable=False),
     Column("seed", SafeText, nullable=False),  #: whole, however large
-    Column("attempt", Integer, nullable=False, default=0),  #: where what came tells it, else 0
+    Column("attempt", Integer, nullable=False, default=0),  #: as stated in the submission, else 0
     Column("sitting", Integer, nullable=False, default=1),
     Column("state", String(64), nullable=False),  #: digest of record, answers, rules, course and engine
-    Column("lang", SafeText, nullable=False, default=""),  #: of the sheet that came back
+    Column("lang", SafeText, nullable=False, default=""),  #: of the returned sheet
     Column("apart", Boolean, nullable=False, default=False),  #: a platform asked these parts alone
-    Column("submitted", SafeText, nullable=False, default=""),  #: when, where a platform tells it
-    Column("fault", SafeText, nullable=False, default=""),  #: why it cannot be marked
+    Column("submitted", SafeText, nullable=False, default=""),  #: time, if a platform states it
+    Column("fault", SafeText, nullable=False, default=""),  #: reason for which it cannot be marked
     Column("made", UTCDateTime, nullable=False),
     Index("ix_marking_sheet", "assignment_id", "student", "exercise", "seed"),
 )
 
-#: What became of one answer.
+#: Mark of one answer.
 mark = Table(
     "mark",
     METADATA,
@@ -313,20 +314,20 @@ mark = Table(
     _of("marking", index=True),
     Column("place", Integer, nullable=False),  #: on the sheet
     Column("part", SafeText, nullable=False),
-    Column("came", Integer),  #: its place among what came; none where nothing did
+    Column("came", Integer),  #: position among the answers received; none without an answer
     Column("answer", SafeText, nullable=False),
     Column("read_as", SafeText, nullable=False),
     Column("verdict", SafeText, nullable=False),
     Column("points", Double, nullable=False),
     Column("out_of", Double, nullable=False),
     Column("lang", SafeText, nullable=False),
-    Column("matches", Json, nullable=False),  #: every verdict that explains the answer
+    Column("matches", Json, nullable=False),  #: all verdicts that explain the answer
     Column("in_other_order", Boolean, nullable=False),
     Column("says", SafeText, nullable=False),  #: Markdown
     Column("feedback", SafeText, nullable=False),
 )
 
-#: What a person decided of an answer, and who: it counts until another one of the same answer. ``answer`` is what they saw.
+#: Decision of a person on an answer; it counts until the next one on the same answer. ``answer`` is the text that they saw.
 decision = Table(
     "decision",
     METADATA,
@@ -334,17 +335,17 @@ decision = Table(
     _of("assignment", index=True),
     Column("student", SafeText, nullable=False),
     Column("exercise", SafeText, nullable=False),
-    Column("seed", SafeText, nullable=False),  #: empty for whatever variant they have
+    Column("seed", SafeText, nullable=False),  #: empty for any variant of the student
     Column("part", SafeText, nullable=False),
     Column("kind", String(16), nullable=False),  #: accepted, given, kept, withdrawn
-    Column("points", Double),  #: none for all of them
+    Column("points", Double),  #: none for full points
     Column("reason", SafeText, nullable=False, default=""),
     Column("answer", SafeText),
-    Column("by", SafeText, nullable=False),  #: who, or the file that says it
+    Column("by", SafeText, nullable=False),  #: person, or file that states it
     Column("made", UTCDateTime, nullable=False),
 )
 
-#: What became of a rejected row: placed by hand, as a delivery of its own, or put aside. ``row`` is its digest.
+#: Placing of a rejected row by a person: as a submission of its own, or put aside. ``row`` is its digest.
 placing = Table(
     "placing",
     METADATA,
@@ -357,19 +358,19 @@ placing = Table(
     Column("made", UTCDateTime, nullable=False),
 )
 
-#: A file in which people write decisions, as it stood when it was last read or written: what is new in it is what differs.
+#: File in which people write decisions, as last read or written: differences from it are new decisions.
 worksheet = Table(
     "worksheet",
     METADATA,
     _key(),
     _of("assignment"),
-    Column("file", String(64), nullable=False),  #: digest of where it stands
+    Column("file", String(64), nullable=False),  #: digest of its path
     Column("lines", Json, nullable=False),
     UniqueConstraint("assignment_id", "file"),
 )
 
-#: A page of a scan: what was read of it (:class:`coursework.scanning.kept.PageKept`), and its picture, a JPEG in base64. Of a
-#: file of which no page can be read there is one without a number.
+#: Page of a scan: its reading (:class:`coursework.scanning.kept.PageKept`), and its picture, a JPEG in base64. A
+#: file without a readable page has one row without a number.
 scanned = Table(
     "scanned",
     METADATA,
@@ -378,14 +379,14 @@ scanned = Table(
     Column("page", String(40), nullable=False),  #: digest of the file, and number
     Column("file", SafeText, nullable=False),
     Column("number", Integer, nullable=False),
-    Column("student", SafeText, nullable=False, default=""),  #: whose it is, where that is known
+    Column("student", SafeText, nullable=False, default=""),  #: empty if unknown
     Column("kept", Json, nullable=False),
     Column("picture", SafeText, nullable=False, default=""),
     Column("came", UTCDateTime, nullable=False),
     UniqueConstraint("assignment_id", "page"),
 )
 
-#: What a person typed where a scan could not be read: the last of a place stands. ``seen`` are the pages that they looked at.
+#: Text typed by a person for an unreadable place of a scan: the last of a place counts. ``seen`` are the pages shown to them.
 typed = Table(
     "typed",
     METADATA,
@@ -396,7 +397,7 @@ typed = Table(
     Column("seed", SafeText, nullable=False),
     Column("part", SafeText, nullable=False),
     Column("coordinate", SafeText, nullable=False, default=""),
-    Column("answer", SafeText),  #: none where it was withdrawn
+    Column("answer", SafeText),  #: none if it was withdrawn
     Column("seen", SafeText, nullable=False, default=""),
     Column("by", SafeText, nullable=False),
     Column("made", UTCDateTime, nullable=False),
@@ -404,7 +405,7 @@ typed = Table(
 
 # --------------------------------------------------------------------------- site
 
-#: What somebody did alone: entries of progress.
+#: Entry of a person's progress in practice.
 progress = Table(
     "progress",
     METADATA,
@@ -415,7 +416,7 @@ progress = Table(
     UniqueConstraint("person_id", "digest"),
 )
 
-#: What somebody has typed and not handed in, a row a box.
+#: Draft: typed text that is not submitted yet, one row per box.
 draft = Table(
     "draft",
     METADATA,
@@ -429,7 +430,7 @@ draft = Table(
     UniqueConstraint("person_id", "sheet", "box"),
 )
 
-#: The page of a paper, made before the assignment opens, without what somebody typed (:mod:`coursework.database.prepared`).
+#: Cached page of a paper, made before the assignment opens, without typed text (:mod:`coursework.database.prepared`).
 prepared = Table(
     "prepared",
     METADATA,
@@ -437,14 +438,14 @@ prepared = Table(
     _of("assignment"),
     _of("person", index=True),
     Column("lang", SafeText, nullable=False),
-    Column("state", String(64), nullable=False),  #: digest of all that the page depends on
+    Column("state", String(64), nullable=False),  #: digest of everything on which the page depends
     Column("head", CompressedText, nullable=False),
     Column("body", CompressedText, nullable=False),
     UniqueConstraint("assignment_id", "person_id", "lang"),
     info={"derived": True},
 )
 
-#: Other dates or tries for one person; the last stands.
+#: Extension: other dates or another number of attempts for one person; the last counts.
 extension = Table(
     "extension",
     METADATA,
@@ -458,8 +459,8 @@ extension = Table(
     Column("made", UTCDateTime, nullable=False),
 )
 
-#: Work that a worker does beside the requests: hand-ins to mark, what was saved to be handed in once it closed, pages to
-#: prepare. A row goes with its work; one with a ``fault`` is given up, and somebody has to look at it.
+#: Job of a background worker: a submission to mark, drafts to submit after the closing date, a page to prepare. The row is
+#: deleted when the job is done; one with a ``fault`` is given up and needs a person.
 job = Table(
     "job",
     METADATA,
@@ -468,14 +469,14 @@ job = Table(
     _of("assignment", index=True),
     _of("delivery", null=True, index=True),
     _of("person", null=True, index=True),
-    Column("tries", Integer, nullable=False, default=0),  #: how often it was begun
-    Column("worker", String(64), nullable=False, default=""),  #: which began it last
-    Column("until", UTCDateTime),  #: when another worker may take it; none while nobody works at it
-    Column("fault", SafeText, nullable=False, default=""),  #: why it was given up
+    Column("tries", Integer, nullable=False, default=0),  #: number of attempts
+    Column("worker", String(64), nullable=False, default=""),  #: last worker
+    Column("until", UTCDateTime),  #: end of the worker's lease; none while no worker has it
+    Column("fault", SafeText, nullable=False, default=""),  #: reason for giving it up
     Column("made", UTCDateTime, nullable=False),
 )
 
-#: Small things of the site itself: the key that signs its cookies.
+#: Setting of the site, such as the key that signs its cookies.
 setting = Table(
     "setting",
     METADATA,
@@ -483,7 +484,7 @@ setting = Table(
     Column("value", SafeText, nullable=False),
 )
 
-#: Who did what that another may ask about.
+#: Entry of the audit log.
 audit = Table(
     "audit",
     METADATA,
@@ -493,18 +494,18 @@ audit = Table(
     Column("what", SafeText, nullable=False),
     Column("about", Json, nullable=False, default=dict),  #: never an answer
     Column("actor", Integer),  #: id of the person who did it; none for commands and platforms
-    Column("subject", Integer, index=True),  #: id of the person of whom it tells
-    Column("address", String(64)),  #: of the machine from which it was done
+    Column("subject", Integer, index=True),  #: id of the person concerned
+    Column("address", String(64)),  #: network address of the actor
 )
 
 # --------------------------------------------------------------------- aggregates
-# What follows is computed from the tables above (:mod:`coursework.database.aggregates`), so that a page of the desk reads a
-# page of rows and not a class. No dump holds it.
+# The following tables are computed from those above (:mod:`coursework.database.aggregates`), so that an instructor's page
+# reads few rows and not a whole class. Dumps omit them.
 
 _DERIVED = {"derived": True}
 
-#: Aggregates to be computed anew, noted in the transaction that changed what they are made of: those of a student, of
-#: ``everybody``, or the ``rows`` that could not be placed.
+#: Outdated aggregates, noted in the transaction that changed their sources: those of a student, of ``everybody``, or the
+#: ``rows`` that could not be placed.
 outdated = Table(
     "outdated",
     METADATA,
@@ -515,7 +516,7 @@ outdated = Table(
     info=_DERIVED,
 )
 
-#: A student of a class: the sitting that counts, as ``summary.csv`` gives it.
+#: Student of a class, with the sitting that counts, as in ``summary.csv``.
 student_total = Table(
     "student_total",
     METADATA,
@@ -528,13 +529,13 @@ student_total = Table(
     Column("sitting", Integer, nullable=False),
     Column("points", Double, nullable=False),
     Column("out_of", Double, nullable=False),
-    Column("charged", Double, nullable=False, default=0.0),  #: points that are taken off for lateness
+    Column("charged", Double, nullable=False, default=0.0),  #: penalty for late submission, in points
     Column("mark", SafeText, nullable=False, default=""),
     Column("tries", Integer, nullable=False, default=0),
     Column("late", Integer, nullable=False, default=0),  #: seconds
-    Column("waits", Integer, nullable=False, default=0),  #: answers that count and that nobody could mark yet
+    Column("waits", Integer, nullable=False, default=0),  #: counting answers that wait for a person
     Column("handed_in", Boolean, nullable=False, default=False),
-    Column("answered", Boolean, nullable=False, default=False),  #: a sheet of theirs is marked
+    Column("answered", Boolean, nullable=False, default=False),  #: a sheet of the student is marked
     Column("verdicts", Json, nullable=False, default=dict),
     Column("by_exercise", Json, nullable=False, default=dict),
     UniqueConstraint("assignment_id", "student"),
@@ -542,14 +543,16 @@ student_total = Table(
     info=_DERIVED,
 )
 
-#: An answer of a class as it stands: last marked, and decided on; its texts are those of its row of ``mark``.
+#: Current answer of a class, with the last marking and the decisions; its texts are in its row of ``mark``.
 answer_now = Table(
     "answer_now",
     METADATA,
     _key(),
     _of("assignment"),
     Column("marking", Integer, nullable=False),
-    Column("first", Integer, nullable=False),  #: marking of its sheet: the order in which sheets came
+    Column(
+        "first", Integer, nullable=False
+    ),  #: first marking of its sheet: the order in which sheets were received
     Column("place", Integer, nullable=False),  #: on its sheet
     Column("student", SafeText, nullable=False),
     Column("exercise", SafeText, nullable=False),
@@ -561,12 +564,12 @@ answer_now = Table(
     Column("out_of", Double, nullable=False),
     Column("by_hand", Boolean, nullable=False),
     Column("counts", Boolean, nullable=False),  #: its sitting counts
-    Column("is_cell", Boolean, nullable=False),  #: it stands in the class table
+    Column("is_cell", Boolean, nullable=False),  #: it is in the class table
     Column("is_listed", Boolean, nullable=False),  #: it is a line of ``marks.csv``
-    Column("is_shown", Boolean, nullable=False),  #: something was answered, in a sitting that is looked at
+    Column("is_shown", Boolean, nullable=False),  #: it has an answer, in a sitting that is shown
     Column("wrote", String(16), nullable=False),  #: digest of the answer in one spelling
-    Column("why", String(16)),  #: why a person may look at it (:data:`coursework.gradebook.waiting.WHY`)
-    Column("card", String(16)),  #: of the queue: the same for all who wrote the same
+    Column("why", String(16)),  #: reason for a review (:data:`coursework.gradebook.waiting.WHY`)
+    Column("card", String(16)),  #: of the queue: equal for equal answers
     Column("decided", Boolean, nullable=False),
     Index("ix_answer_now_student", "assignment_id", "student"),
     Index("ix_answer_now_question", "assignment_id", "exercise", "part"),
@@ -574,7 +577,7 @@ answer_now = Table(
     info=_DERIVED,
 )
 
-#: A row that could not be placed or marked; what became of it is told by ``placing``.
+#: Row that could not be placed or marked; ``placing`` states what a person did with it.
 unplaced = Table(
     "unplaced",
     METADATA,
@@ -582,14 +585,14 @@ unplaced = Table(
     _of("assignment", index=True),
     Column("row", String(64), nullable=False),  #: digest, as in ``placing``
     Column("student", SafeText, nullable=False, default=""),  #: as issued; empty for a stranger
-    Column("near", SafeText, nullable=False, default=""),  #: whose name is like that of a stranger
+    Column("near", SafeText, nullable=False, default=""),  #: name that is similar to a stranger's
     Column("source", SafeText, nullable=False),
     Column("reason", SafeText, nullable=False),
     Column("said", Json, nullable=False, default=dict),
     info=_DERIVED,
 )
 
-#: What an assignment comes to.
+#: Totals of an assignment.
 assignment_total = Table(
     "assignment_total",
     METADATA,
@@ -599,11 +602,11 @@ assignment_total = Table(
     Column("handed_in", Integer, nullable=False, default=0),
     Column("answered", Integer, nullable=False, default=0),
     Column("waiting", Integer, nullable=False, default=0),  #: answers and rows that wait for a person
-    Column("facts", Json, nullable=False, default=dict),  #: what bears on the points of all
-    Column("version", Integer, nullable=False, default=0),  #: counts how often it was computed
+    Column("facts", Json, nullable=False, default=dict),  #: facts that affect the points of all
+    Column("version", Integer, nullable=False, default=0),  #: number of computations
     UniqueConstraint("assignment_id"),
     info=_DERIVED,
 )
 
-for _table in METADATA.tables.values():  # the number of a row that was erased is never given to another
+for _table in METADATA.tables.values():  # an id is never used again after its row was erased
     _table.dialect_options["sqlite"]["autoincrement"] = "id" in _table.c

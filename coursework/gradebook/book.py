@@ -101,8 +101,8 @@ class Gradebook:
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)  #: of what was accepted by hand, for somebody to mend
-    students: dict[Sitting, Total] = field(default_factory=dict)  #: of sheets that were handed in
-    exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers that came
+    students: dict[Sitting, Total] = field(default_factory=dict)  #: of submitted sheets
+    exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers received
     blank: dict[tuple[Sitting, str], set[str]] = field(
         default_factory=dict
     )  #: parts by sheet; see ``unread``
@@ -112,11 +112,11 @@ class Gradebook:
         default_factory=dict
     )  #: parts that a platform asked apart, by exercise
     asked_apart: dict[tuple[Sitting, str], set[str]] = field(default_factory=dict)  #: the same of somebody
-    complete: set[str] = field(default_factory=set)  #: exercises of which a variant came whole
+    complete: set[str] = field(default_factory=set)  #: exercises of which a complete variant was received
     seen: tuple[str, ...] = ()  #: what platforms wrote of what was read
     charged: Mapping[Sitting, float] = field(
         default_factory=dict
-    )  #: shares that are taken off of what came late
+    )  #: penalties of late submissions, as shares of the points
 
     @property
     def marked(self) -> int:
@@ -212,9 +212,7 @@ class Result:
     out_of: float
     by_exercise: Mapping[str, float]
     verdicts: Mapping[str, int]
-    late: float = (
-        0.0  #: points that are taken off since it came late; those of the answers stay what they are
-    )
+    late: float = 0.0  #: penalty for late submission, in points; those of the answers are unchanged
 
     @property
     def counts(self) -> float:

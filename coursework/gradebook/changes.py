@@ -21,7 +21,7 @@ CHANGES_COLUMNS = (
 )  # fmt: skip
 _PLACE = ("student", "exercise", "seed", "part")
 _TURN = ("verdict_before", "verdict_now", "points_before", "points_now")
-_USUAL_MARK = 20  #: out of what marks are told where no assignment states it
+_USUAL_MARK = 20  #: maximum of a mark if no assignment states one
 
 
 def _number(text: str) -> float:

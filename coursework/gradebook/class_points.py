@@ -23,7 +23,7 @@ class Scored(NamedTuple):
 
     name: str
     ids: Ids
-    points: str  #: as they stand, with a decimal point
+    points: str  #: as in the file, with a decimal point
     out_of: str  #: of which they are; empty of what has its own scale
     has_answered: bool = True
 

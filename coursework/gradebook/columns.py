@@ -18,7 +18,7 @@ SITTING = "sitting"  #: a column of the marks and of the summary where somebody 
 SUBMITTED = "submitted"  #: a column of the marks where a platform tells it
 REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
 MARK = "mark"
-LATE = "late"  #: a column of the summary where points are taken off of what came late
+LATE = "late"  #: column of the summary if late submissions have a penalty
 
 
 def marks_columns(issued: Issued, *, submitted: bool = False) -> tuple[str, ...]:

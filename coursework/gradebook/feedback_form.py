@@ -18,7 +18,7 @@ class FeedbackForm(NamedTuple):
 
     formats: Sequence[str] = ("pdf",)
     solutions: bool = False
-    today: datetime.date | None = None  #: that of the machine unless told
+    today: datetime.date | None = None  #: today, unless stated
 
 
 USUAL = FeedbackForm()

@@ -33,7 +33,7 @@ class Filled:
     unchanged: list[str] = field(default_factory=list)  #: who has a mark that stays, such as EX
     absent: list[str] = field(default_factory=list)  #: in the file, and without marks
     strangers: list[str] = field(default_factory=list)  #: with marks, and not in the file
-    unclear: list[str] = field(default_factory=list)  #: of whom it cannot be told which line is theirs
+    unclear: list[str] = field(default_factory=list)  #: students whose line cannot be identified
 
 
 def fill(

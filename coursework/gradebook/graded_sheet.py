@@ -16,7 +16,7 @@ class Graded(NamedTuple):
     seed: int
     lines: Mapping[str, Mark]
     answered: tuple[str, ...]
-    record: Mapping[str, Any]  #: what was issued, in the language of the sheet that came back
+    record: Mapping[str, Any]  #: issued record, in the language of the returned sheet
     unanswered: tuple[str, ...] = ()  #: parts accepted by hand that no row answers
     sitting: int = 1
     submitted: str = ""  #: when, where a platform tells it

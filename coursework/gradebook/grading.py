@@ -36,7 +36,7 @@ from coursework.system.writing import Progress, TableFile, Tables, write_whole
 
 BY_HAND = "by_hand.csv"  #: marks of the folder that a hand changed
 _WRITTEN = ".marks.json"  #: what was written as marks.csv
-#: For so many students at most, feedback sheets are printed unless told.
+#: Largest number of students for which feedback sheets are printed by default.
 FEEDBACK_STUDENTS = 1000
 
 

@@ -114,7 +114,7 @@ def read_responses(
         cells = [*map(as_written, cells), *[""] * (len(header) - len(cells))]
         if _is_average(header, columns, cells):
             continue
-        # Of a question tried several times the name stands once.
+        # The name of a student with several attempts is printed once.
         student = _student_of(header, columns, cells) or student
         if all(cells[k].strip() in _NONE for pair in columns.questions for k in pair):
             absent += 1

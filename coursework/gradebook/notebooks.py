@@ -349,7 +349,7 @@ def _behind(read: str, comment: str) -> Iterator[tuple[str, str, bool]]:
                 yield key[2], text, False
         number = _NUMBER_LAST if read.strip() else _NUMBER_OF
         if not keys and (_QUOTED_NUMBER.search(comment) or number.search(comment)):
-            yield "", f"{read}#{comment}".strip(), True  # whose it is cannot be told
+            yield "", f"{read}#{comment}".strip(), True  # its part cannot be identified
 
 
 def _parted(line: str) -> tuple[str, str]:

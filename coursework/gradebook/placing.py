@@ -37,10 +37,10 @@ class Sheets:
     blanks: int = 0  #: rows without an answer where another row answers to the same part, or is blank too
     langs: dict[SheetKey, str] = field(default_factory=dict)  #: of the sheets that tell theirs
     seen: Counter[PlatformFile] = field(default_factory=Counter)  #: what platforms wrote
-    submitted: dict[SheetKey, str] = field(default_factory=dict)  #: when, where that is told
+    submitted: dict[SheetKey, str] = field(default_factory=dict)  #: time, if it is stated
     apart: set[SheetKey] = field(
         default_factory=set
-    )  #: of which the platform asked those parts alone that came
+    )  #: sheets of which the platform asked only the parts received
 
     @property
     def count(self) -> int:
@@ -252,7 +252,7 @@ def _placed_in_order(
     issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], sheets: Sheets, waits: Doubts
 ) -> Iterator[PlacedRow]:
     place_told = _place_cache(issued)
-    unsaid: set[SheetKey] = set()  #: sheets of several sittings, whose answers do not say which
+    unsaid: set[SheetKey] = set()  #: sheets of several sittings whose answers do not state one
     for row in rows:
         if isinstance(row, PlatformFile):
             sheets.seen[row] += 1

@@ -19,7 +19,7 @@ class RowOrigin(NamedTuple):
 
     ids: Ids = ()  #: of the student: e-mail, number
     by: tuple[str, ...] = ()  #: who handed it in, as folders and files name them
-    sitting: int = 0  #: which attempt of the student; 0 unless told
+    sitting: int = 0  #: attempt of the student; 0 if unknown
     submitted: str = ""  #: when, as the platform writes it
     version: str = ""  #: of the exercise
     apart: bool = False  #: the platform asks part by part, each of a variant of its own
@@ -30,7 +30,7 @@ class PlatformFile(NamedTuple):
 
     source: str
     what: str
-    is_tree: bool = False  #: told once for each file
+    is_tree: bool = False  #: counted for each file
 
 
 class AnswerRow(NamedTuple):
@@ -39,11 +39,11 @@ class AnswerRow(NamedTuple):
     student: str
     exercise: str
     seed: str
-    part: str  #: empty where nothing came to any
+    part: str  #: empty if no part has an answer
     answer: Any  #: a text, a number, or None
     source: str  #: file and place, for reports
     warning: str = ""
-    lang: str = ""  #: of the sheet that it was written on, where that is told
+    lang: str = ""  #: of the sheet with the answer, if it is stated
     origin: RowOrigin | None = None  #: where a platform collected it
 
 

@@ -26,8 +26,8 @@ from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.making.issued import Issued
 from coursework.system.writing import writing
 
-AT_ONCE = 50_000  #: rows that are held; where there are more, they go by the disk
-PARTS = 256  #: of which one is held at a time
+AT_ONCE = 50_000  #: rows kept in memory; more are stored on disk
+PARTS = 256  #: number of parts, of which one is in memory at a time
 _BLOCK = 16  #: sheets of each part that are read at once
 
 
@@ -113,7 +113,7 @@ def _split_by_sheet(placements: Iterator[PlacedRow], by_part: _Blocks) -> list[_
 class _Stored(NamedTuple):
     """Sheet as stored on disk."""
 
-    number: int  #: of the first row that came
+    number: int  #: of the first row received
     key: SheetKey
     rows: dict[str, AnswerRow]
     lang: str | None
@@ -216,7 +216,7 @@ class _Blocks:
 
     def __exit__(self, *_: object) -> None:
         if self._file is not None:
-            with suppress(OSError):  # a full disk has been told already
+            with suppress(OSError):  # a full disk has been reported already
                 self._file.close()
 
     def add(self, number: int, items: Sequence[Any]) -> None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from coursework.gradebook.rows import PlatformFile, RowOrigin, path_text
 from coursework.system.links import open_inside
 
-#: Files that lie in such trees and hold no answers.
+#: Files in such folders that contain no answers.
 SIDE_FILES = frozenset(("timestamp.txt", "submission_secret.txt"))
 _LONGEST_TIME = 400  #: bytes of it
 _TIME = r"[0-9]{4}-[0-9]{2}-[0-9]{2}[ T_][0-9]{2}[:_][0-9]{2}[:_][0-9]{2}[^+]*"

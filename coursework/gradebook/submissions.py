@@ -244,7 +244,7 @@ def _row_of(cells: Sequence[str], location: str, warning: str) -> AnswerRow:
     student, exercise, seed, part, answer = cells
     if "'" in student or "'" in answer:
         student, answer = as_written(student), as_written(answer)
-    # Of a class they are a few texts, over and over: kept once.
+    # A class has a few texts that repeat: each is stored once.
     return AnswerRow(
         _kept(student.strip()),
         _kept(exercise.strip()),

@@ -28,7 +28,7 @@ LONGEST = 2000  #: characters by which texts are compared
 
 #: Why an answer may be looked at, in the order in which they are shown.
 WHY = ("unreadable", "drawn", "open", "unit", "near", "often", "just")
-SHOWN_ON_REQUEST = ("just",)  #: these wait for nobody
+SHOWN_ON_REQUEST = ("just",)  #: these need no review
 
 
 class AnswerToReview(NamedTuple):
