@@ -141,8 +141,8 @@ def _json_of(path: Path) -> Any:
 
 def _tell_new(now: GradedNow) -> None:
     """Print the submissions that arrived, and how many answers of them were marked."""
-    earlier = [delivery for delivery in now.deliveries if not delivery.is_new]
-    if now.deliveries:
+    earlier = [delivery for delivery in now.submissions if not delivery.is_new]
+    if now.submissions:
         click.echo(f"{counted(now.new, 'new file')}{f', {len(earlier)} that came before' if earlier else ''}")
     if now.decided:
         click.echo(f"{counted(now.decided, 'decision')} taken in")

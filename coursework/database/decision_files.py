@@ -115,7 +115,7 @@ def _accepted_decisions(by_hand: Accepted) -> list[_StatedDecision]:
     assert by_hand.path is not None
     name = by_hand.path.name
     return [
-        _StatedDecision(*line.answer_key, ACCEPTED, line.points, line.reason, None, name)
+        _StatedDecision(*line.answer_id, ACCEPTED, line.points, line.reason, None, name)
         for line in by_hand.lines
     ]
 

@@ -42,14 +42,14 @@ from coursework.system.writing import Progress
 class GradedNow:
     """Result of a grading run: submissions, new decisions, and marks."""
 
-    deliveries: list[Submission]
+    submissions: list[Submission]
     decided: int  #: decisions that are new in files
     marked: MarkedNow
     work: Work
 
     @property
     def new(self) -> int:
-        return sum(submission.is_new for submission in self.deliveries)
+        return sum(submission.is_new for submission in self.submissions)
 
 
 def grade_new(
@@ -80,7 +80,7 @@ def grade_new(
     with store.begin() as connection:
         issued = issued_of(connection, assignment_id)
         shows_solutions(issued, form)
-        submitted = _deliver(connection, assignment_id, submissions, replaces=replaces)
+        submitted = _store_submissions(connection, assignment_id, submissions, replaces=replaces)
         if not last_markings(connection, assignment_id):
             sheets = placed_sheets(course, issued, rows_of(connection, assignment_id))
             if not sheets.sheets:
@@ -100,7 +100,7 @@ def accepted_in(accepted: Path | None, out: Path | None) -> Path | None:
     return out / "accepted.csv" if (out / "accepted.csv").exists() else None
 
 
-def _deliver(
+def _store_submissions(
     connection: Connection, assignment_id: int, submissions: Sequence[Path], *, replaces: bool
 ) -> list[Submission]:
     """Store each file as a submission, unless an equal one is stored already."""

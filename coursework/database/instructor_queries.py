@@ -35,7 +35,7 @@ class Stamp(NamedTuple):
 
     markings: tuple[int, int]
     decisions: tuple[int, int]
-    deliveries: tuple[int, int]
+    submissions: tuple[int, int]
     placings: tuple[int, int]
     dealt: tuple[int, int]
     rules: tuple[int, int]  #: of publication, extensions and what is stated
@@ -81,7 +81,7 @@ class AssignmentOverview(NamedTuple):
     published: Mapping[str, Any] | None
     columns: Mapping[str, Any]  #: of the roster, by student
     created: datetime
-    deliveries: int
+    submissions: int
     last: datetime | None  #: time of the last submission
 
 

@@ -199,7 +199,7 @@ def mark_new(course: Course, store: Store, assignment_id: int) -> MarkedNow:
     return mark_changed(course, store, assignment_id).summary()
 
 
-def mark_delivery(course: Course, store: Store, delivery_id: int) -> MarkedNow:
+def mark_submission(course: Course, store: Store, delivery_id: int) -> MarkedNow:
     """Mark the changed sheets of one submission.
 
     Raises

@@ -55,7 +55,7 @@ class Accepted:
                 ]
             acceptance = _acceptance(f"{path}, line {number}", number, row, more)
             self.lines.append(acceptance)
-            self._by_place.setdefault(_key(*acceptance.answer_key), []).append(acceptance)
+            self._by_place.setdefault(_key(*acceptance.answer_id), []).append(acceptance)
 
     def apply(self, graded: Graded, lang: str) -> Graded:
         """Return the sheet with its accepted answers marked as such, including answers that no row gave.
@@ -142,12 +142,12 @@ class Acceptance(NamedTuple):
     reason: str
 
     @property
-    def answer_key(self) -> tuple[str, str, str, str]:
+    def answer_id(self) -> tuple[str, str, str, str]:
         return self.student, self.exercise, self.seed, self.part
 
     @property
     def answer_text(self) -> str:
-        return ", ".join(filter(None, self.answer_key))
+        return ", ".join(filter(None, self.answer_id))
 
     @property
     def gives(self) -> Message:
@@ -285,7 +285,7 @@ class _IssuedParts:
         if issued.has_roster or parts is None:
             try:
                 _, exercise, seed = sheet_of_row(
-                    issued, AnswerRow(*acceptance.answer_key, None, acceptance.location)
+                    issued, AnswerRow(*acceptance.answer_id, None, acceptance.location)
                 )
             except UnplacedError as why:
                 return as_message(why)

@@ -60,7 +60,7 @@ class EarlierMarks:
                 sitting = name, row.get("sitting", "")
                 self._points[sitting] = self._points.get(sitting, 0.0) + _number(mark[1])
                 self._verdicts.setdefault(sitting, Counter())[mark[0].partition(":")[0]] += 1
-                self._marks[_answer_key(row)] = alike.setdefault(mark, mark)
+                self._marks[_answer_id(row)] = alike.setdefault(mark, mark)
 
     @property
     def students(self) -> tuple[str, ...]:
@@ -87,7 +87,7 @@ class EarlierMarks:
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
         """Return the change of a row of the new marks; None if there is none."""
         now = (row["verdict"], row["points"])
-        before = self._marks.pop(_answer_key(row), ("", ""))
+        before = self._marks.pop(_answer_id(row), ("", ""))
         return None if before == now else _change(row, before, now)
 
     def gone(self) -> Iterator[dict[str, Any]]:
@@ -107,14 +107,14 @@ class History:
         path, summary = folder / "changes.csv", folder / "summary.csv"
         self._day = day
         self._earlier = [_plain_row(row) for row in rows_of(path)] if path.exists() else []
-        self._last = {_answer_key(row): row for row in self._earlier}
+        self._last = {_answer_id(row): row for row in self._earlier}
         self._marks = _marks_in(rows_of(summary)) if summary.exists() else {}
         self._new: list[dict[str, Any]] = []
 
     def add(self, change: dict[str, Any]) -> None:
         """Add a change, unless the last change of that answer is the same: an interrupted marking has written
         it already."""
-        last = self._last.get(_answer_key(change))
+        last = self._last.get(_answer_id(change))
         if last is None or any(last[column] != str(change[column]) for column in _TURN):
             self._new.append(change)
 
@@ -147,7 +147,7 @@ def _marks_in(summary: Iterable[Mapping[str, Any]]) -> dict[str, str]:
     return marks
 
 
-def _answer_key(row: Mapping[str, Any]) -> str:
+def _answer_id(row: Mapping[str, Any]) -> str:
     """Return the key of the answer of a row of marks: one text, to save memory in large classes."""
     student, *rest = (str(row.get(c, "")) for c in _PLACE)
     sitting = str(row.get("sitting", ""))

@@ -29,7 +29,7 @@ from coursework.database.jobs import (
     take_job,
     waiting,
 )
-from coursework.database.marking import mark_delivery
+from coursework.database.marking import mark_submission
 from coursework.database.publication import Publication
 from coursework.database.tables import assignment, extension
 from coursework.errors import CourseworkError
@@ -137,7 +137,7 @@ class Worker:
 
     def _do(self, job: WorkerJob) -> None:
         if job.kind == MARK and job.delivery is not None:
-            mark_delivery(self.site.course, self.site.store, job.delivery)
+            mark_submission(self.site.course, self.site.store, job.delivery)
         elif job.kind == RESCUE and job.person is not None:
             rescue(self.site, job.assignment, job.person, self.site.clock())
         elif job.kind == PREPARE and job.person is not None:

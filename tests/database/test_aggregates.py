@@ -31,7 +31,7 @@ from coursework.database.decisions import KINDS, DecidedAnswer, decide
 from coursework.database.dump import dump, restore
 from coursework.database.erasing import erase
 from coursework.database.instructor_queries import Placing, listed_assignments, put_placing
-from coursework.database.marking import mark_delivery, mark_new
+from coursework.database.marking import mark_new, mark_submission
 from coursework.database.publication import (
     CHARGE,
     Extension,
@@ -159,7 +159,7 @@ class Life:
                 connection, self.number, list(self.rows(student, RowOrigin(sitting=number))), source="site", received_at=AT,
                 person_id=self.people[student], number=number, late=self.random.choice([0, 0, 90000]),
             )  # fmt: skip
-        mark_delivery(self.course, self.store, came.id)
+        mark_submission(self.course, self.store, came.id)
 
     def file(self):
         rows = [row for name in self.random.sample(NAMES, 3) for row in self.rows(name)]

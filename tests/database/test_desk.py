@@ -66,7 +66,7 @@ def test_a_stamp_changes_with_what_is_added_and_says_whose_it_is(store, number):
     with store.reading() as connection:
         before = stamp(connection, number)
         assert Stamp.read(str(before)) == before
-        assert before.deliveries[0] == 2
+        assert before.submissions[0] == 2
     decided(store, number, "accepted", "Emmy")
     with store.reading() as connection:
         assert stamp(connection, number) != before
@@ -80,7 +80,7 @@ def test_who_came_when_and_how_late(store, number):
         assert (own.attempts, own.late, own.last) == (2, 60, AT + timedelta(hours=2))
         assert [one.number for one in submissions_of_student(connection, number, "Ada")] == [1, 2]
         (about,) = listed_assignments(connection, number)
-        assert (about.name, about.deliveries, about.last) == ("week3", 2, AT + timedelta(hours=2))
+        assert (about.name, about.submissions, about.last) == ("week3", 2, AT + timedelta(hours=2))
         assert set(site_submissions_of(connection, number)) == {"Ada"}
 
 

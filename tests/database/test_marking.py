@@ -15,7 +15,7 @@ import coursework
 from coursework.database import marking as marking_module
 from coursework.database.assignments import put_issued
 from coursework.database.current_marks import gradebook, graded
-from coursework.database.marking import mark_delivery, mark_new, would_change
+from coursework.database.marking import mark_new, mark_submission, would_change
 from coursework.database.states import ENGINE, exercise_state
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import mark, marking, person
@@ -223,13 +223,13 @@ def test_a_hand_in_on_the_site_marks_its_own_sheets(store, number, course):
             ).id
             for n in (2, 3)
         ]
-    now = mark_delivery(course, store, ids[1])
+    now = mark_submission(course, store, ids[1])
     assert (now.sheets, now.marked, now.new) == (1, 1, 1)
     assert [(g.sitting, g.submitted[:10]) for g in standing(store, number, BEN)] == [
         (1, ""),
         (3, "2026-11-23"),
     ]
-    assert mark_delivery(course, store, ids[1]).marked == 0
+    assert mark_submission(course, store, ids[1]).marked == 0
     assert mark_new(course, store, number).marked == 1
     assert sorted(g.sitting for g in standing(store, number, BEN)) == [1, 2, 3]
     assert mark_new(course, store, number).marked == 0
@@ -240,7 +240,7 @@ def test_a_file_marks_its_own_sheets_with_what_came_before(store, told, course):
     number = put(store, told, first[:1], rows(course, BEN, 1))
     with store.begin() as connection:
         late = insert_submission(connection, number, first[1:], source="late.csv", received_at=CAME)
-    assert mark_delivery(course, store, late.id).marked == 1
+    assert mark_submission(course, store, late.id).marked == 1
     (one,) = standing(store, number)
     assert one.answered == tuple(row.part for row in first)
 

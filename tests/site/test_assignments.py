@@ -400,7 +400,7 @@ def test_what_was_saved_counts_at_the_desk_before_any_student_comes(class_of_thr
 def test_a_fault_of_the_marking_is_no_fault_of_handing_in(class_of_three, monkeypatch):
     number = dealt(class_of_three)
     with monkeypatch.context() as falling:
-        falling.setattr(submission, "mark_delivery", lambda *all_of_it: 1 / 0)
+        falling.setattr(submission, "mark_submission", lambda *all_of_it: 1 / 0)
         assert handed_in(class_of_three.browser(ZOE), number, right(class_of_three, ZOE)).status_code == 303
     assert not marks(class_of_three, number)
     class_of_three.at += timedelta(minutes=2)

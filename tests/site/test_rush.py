@@ -95,7 +95,7 @@ def test_all_who_hand_in_before_it_closes_are_taken_while_every_thread_is_busy(s
     def slow(*told):
         served.at += SECOND
 
-    monkeypatch.setattr(submission, "mark_delivery", slow)
+    monkeypatch.setattr(submission, "mark_submission", slow)
     connect = served.site.store.begin
 
     def begin():
@@ -312,13 +312,13 @@ def test_a_job_that_always_fails_is_given_up_and_told(served, monkeypatch, caplo
     bad = delivered(served, number)[0].id
     from coursework.site import worker
 
-    whole, tried = worker.mark_delivery, []
+    whole, tried = worker.mark_submission, []
 
     def falls(course, store, made):
         tried.append(made)
         return 1 / 0 if made == bad else whole(course, store, made)
 
-    monkeypatch.setattr(worker, "mark_delivery", falls)
+    monkeypatch.setattr(worker, "mark_submission", falls)
     worked_off(served)
     assert tried.count(bad) == MOST_TRIES
     assert marks_of(served, number) == 2  # the others' are marked

@@ -375,7 +375,7 @@ def _read(
 
 def _has_come(at: Stamp, about: AssignmentOverview) -> tuple[Any, ...]:
     """Return the part of a stamp that decisions do not change."""
-    return at.markings, at.deliveries, at.dealt, about.columns, about.stated
+    return at.markings, at.submissions, at.dealt, about.columns, about.stated
 
 
 #: Cached properties that decisions do not change.

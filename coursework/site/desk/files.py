@@ -14,7 +14,7 @@ from typing import Any
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.audit import note
 from coursework.database.instructor_queries import decisions_of
-from coursework.database.marking import mark_delivery
+from coursework.database.marking import mark_submission
 from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission, rows_of, submissions_of
 from coursework.errors import BadInput, CourseworkError
@@ -97,7 +97,7 @@ def answers_in(request: Request) -> Response:
         )
     if not submission.is_new:
         return files_page(request, [texts["again"].format(moment(submission.received_at, request.lang))])
-    marked = mark_delivery(request.site.course, request.site.store, submission.id)
+    marked = mark_submission(request.site.course, request.site.store, submission.id)
     now = class_now(request.site, number)
     sources = {item.source for item in rows if not isinstance(item, PlatformFile)}
     lost = sum(item.row.source in sources for item in now.rejected)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from coursework.database.audit import note
 from coursework.database.instructor_queries import Placing, drop_placing, put_placing
-from coursework.database.marking import mark_delivery
+from coursework.database.marking import mark_submission
 from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission
 from coursework.errors import BadInput
@@ -89,7 +89,7 @@ def _decided(request: Request, now: CachedClass, row: RejectedRow) -> str:
             assignment=now.about.id,
             row=row.id,
         )
-    mark_delivery(request.site.course, request.site.store, submission.id)
+    mark_submission(request.site.course, request.site.store, submission.id)
     return str(texts["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from coursework.database.assignments import issued_content
 from coursework.database.current_marks import graded
-from coursework.database.marking import mark_delivery
+from coursework.database.marking import mark_submission
 from coursework.database.submissions import Submission
 from coursework.gradebook.feedback_form import FeedbackForm, shows_solutions
 from coursework.gradebook.feedback_sheets import FeedbackOptions, feedback_paper
@@ -25,7 +25,7 @@ def feedback_of(
     request: Request, state: AssignmentState, paper: StudentPaper, chosen: Submission
 ) -> tuple[FeedbackPaper, list[str]]:
     """Return the feedback on a submission, and the notes above it: for a late one, the penalty."""
-    mark_delivery(request.site.course, request.site.store, chosen.id)
+    mark_submission(request.site.course, request.site.store, chosen.id)
     with request.site.store.reading() as connection:
         sheets = [
             sheet

@@ -20,7 +20,7 @@ from sqlalchemy.exc import TimeoutError as NoConnection
 
 from coursework.database.drafts import drafts
 from coursework.database.jobs import MARK, drop_jobs, put_job
-from coursework.database.marking import mark_delivery
+from coursework.database.marking import mark_submission
 from coursework.database.people import lock_person
 from coursework.database.prepared import drop_prepared
 from coursework.database.publication import (
@@ -194,7 +194,7 @@ def mark(site: Site, delivery_id: int) -> None:
     if site.has_worker:
         return
     try:
-        mark_delivery(site.course, site.store, delivery_id)
+        mark_submission(site.course, site.store, delivery_id)
         with site.store.begin() as connection:
             drop_jobs(connection, delivery_id)
     except Exception as fault:  # the submission is confirmed even if marking fails
