@@ -89,8 +89,8 @@ def set_secret(connection: Connection, number: int, secret: str) -> None:
 def set_role(connection: Connection, number: int, role: str) -> bool:
     """Give a person who has an account another role; return True if they need a new invitation to sign in.
 
-    Their sessions end where the role changes. A link that was made for a student, and a password that a student chose by one,
-    are known to whoever could make links for students: both end with the student's role.
+    Their sessions end if the role changes. An invitation that was made for a student, and a password chosen
+    by one, are known to everybody who may invite students: both end with the student's role.
     """
     mine = account.c.person_id == number, account.c.closed.is_(None)
     before = connection.execute(select(account.c.role).where(*mine)).scalar()

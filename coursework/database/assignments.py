@@ -37,7 +37,7 @@ def assignment_called(connection: Connection, name: str = "") -> int:
     Raises
     ------
     BadInput
-        There is none of this name, or which one is meant is not told.
+        There is none of this name, or no name is given and there are several.
     """
     ids = names(connection)
     if name in ids:
@@ -65,8 +65,8 @@ def name_of(content: Mapping[str, Any], otherwise: str = "") -> str:
 def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "", course: str = "") -> int:
     """Store the content of ``issued.json``; return the assignment's id.
 
-    What was issued stays issued: the same content again adds nothing, a longer one adds what is new, and who is no more
-    in it is kept, after the others.
+    Issued items remain issued: the same content again adds nothing, and longer content adds the new items.
+    Students who are missing from it are kept, after the others.
 
     Raises
     ------

@@ -61,7 +61,7 @@ def noted(
     what
         Kinds of line; all where none is named.
     subject
-        Id of the person of whom it tells; None for whomever.
+        Id of the person concerned; None for any.
     """
     query = select(audit).order_by(audit.c.id.desc()).limit(count)
     if before:

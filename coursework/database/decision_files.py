@@ -1,7 +1,7 @@
 """Decisions written in files by people: ``accepted.csv``, and the points in ``to_mark.csv``.
 
-What differs in a file from what was last read or written there is a new decision, by the file's name. So a file that is
-old says nothing new, and one that somebody goes on with says what they changed.
+A difference between a file and its content when it was last read or written is a new decision, under the
+file's name. So an old file states nothing new, and one that somebody has edited states the changes.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ def save(
     """Store drafts; return the boxes that another page has changed meanwhile, with their current text. These
     are not overwritten.
 
-    The same text once more is no change, so that what is sent twice is kept once.
+    An unchanged text is not a change, so that a request sent twice is stored once.
     """
     stored, others = drafts(connection, person, sheet), {}
     for box, draft_sent in sent.items():

@@ -113,7 +113,8 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
     Raises
     ------
     BadInput
-        The folder holds no dump, or another than this version reads; the database is not empty. Then nothing is kept.
+        The folder contains no dump, or one that this version cannot read, or the database is not empty. Then
+        nothing is stored.
     """
     counted, cell_text = _about(folder)
     rows = {}

@@ -1,7 +1,7 @@
 """Erasure of all data of one person. Not even an anonymous mark remains: anybody with the printed paper,
 which states the name and the seed, could tell whose it is.
 
-What others wrote stays as it is; where they, a file or the staff *named* the person, the name is struck out.
+Texts of others remain; if they, a file or the staff *named* the person, the name is struck out.
 """
 
 from __future__ import annotations

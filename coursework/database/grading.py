@@ -65,8 +65,8 @@ def grade_new(
 ) -> GradedNow:
     """Store new files and new decisions, and mark the sheets that changed.
 
-    ``accepted`` and the files in ``out`` are those of :func:`coursework.gradebook.grading.grade_files`. A file that
-    ``replaces`` takes the place of what came from it before.
+    ``accepted`` and the files in ``out`` are those of :func:`coursework.gradebook.grading.grade_files`. A
+    file that ``replaces`` takes the place of its earlier version.
 
     Raises
     ------

@@ -205,9 +205,9 @@ def mark_submission(course: Course, store: Store, delivery_id: int) -> MarkedNow
     Raises
     ------
     BadInput
-        There is no such delivery.
+        There is no such submission.
     CourseworkError
-        The course cannot mark what was issued.
+        The course cannot mark the issued exercises.
     """
     with store.reading() as connection:
         query = select(delivery.c.assignment_id).where(delivery.c.id == delivery_id)

@@ -112,13 +112,13 @@ def may(
     Parameters
     ----------
     holder
-        Who asks; None where nobody is signed in.
+        Person who asks; None if nobody is signed in.
     permission
-        What they want to do.
+        Permission to check.
     assignment
-        The assignment's id; None asks whether they may in any.
+        Id of the assignment; None for any.
     group
-        The group of the student, empty for none; None asks whether they may for anybody of the assignment.
+        Group of the student, empty for none; None for any student of the assignment.
     """
     role = "" if holder is None else holder.role
     if permission not in PERMISSIONS.get(role, _STUDENT):

@@ -61,8 +61,8 @@ class PersonIdentifiers(NamedTuple):
 def identifiers_of(connection: Connection, number: int) -> PersonIdentifiers | None:
     """Return the identifiers of a person; None if there is no such person.
 
-    In an assignment with a roster it is who was issued something; in one without, whoever gave the same name, as long as
-    nobody else has it.
+    In an assignment with a roster, the students are those to whom the person's variants were issued; in one
+    without, everybody who gave the person's name, as long as no other person has it.
     """
     mine = person_by_id(connection, number)
     if mine is None:

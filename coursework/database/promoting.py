@@ -20,9 +20,9 @@ _OWNER = "owner"  #: login of who opens the site on their own machine
 def promote_first(connection: Connection) -> None:
     """Make the first instructor an administrator if there is none, and the owner of a machine in any case.
 
-    Only the first one: instructors of before could all take over each other's accounts, and this is to end; who else is to be
-    administrator is said by the first, or by a command on the server's machine. An instructor with a password comes before one
-    who is only invited.
+    Only the first one: instructors of older databases could take over each other's accounts, which is to end.
+    The first administrator, or a command on the server's machine, names the others. An instructor with a
+    password comes before one who is only invited.
     """
     instructors = sa.select(_ACCOUNT).where(_ACCOUNT.c.role == "instructor", _ACCOUNT.c.closed.is_(None))
     rows = connection.execute(instructors.order_by(_ACCOUNT.c.id)).all()

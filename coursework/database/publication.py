@@ -149,7 +149,7 @@ class Publication:
         Parameters
         ----------
         arrived, clock
-            What the clock said when it arrived, and what it says now.
+            Time of the clock when the request was received, and now.
         """
         return arrived if self.now(clock) == clock else self.now(clock)
 

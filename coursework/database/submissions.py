@@ -72,9 +72,10 @@ def insert_submission(
     """Store the rows of a submission as received; return an equal one from before, if there is one, and store
     nothing.
 
-    ``number`` is which try of the person it is (:func:`next_number`), ``late`` how many seconds after it closed for them.
-    A file that ``replaces`` takes the place of what came from the same source before: that is kept, and counts no more.
-    What a file holds of somebody who handed in on the site is a sitting after theirs, unless rows say ``in_place`` which.
+    ``number`` is the attempt of the person (:func:`next_number`), ``late`` the number of seconds after their
+    closing date. A file that ``replaces`` takes the place of earlier submissions from the same source: these
+    remain stored, and count no more. Rows of a file about a student who submitted on the site become a later
+    attempt, unless the rows state it (``in_place``).
     """
     came_rows = list(rows)
     digest = _digest(came_rows, person_id)
@@ -274,7 +275,7 @@ def rows_of(
     """Yield the rows that count, in the order in which they were received; if a submission is given, all of
     its rows and no others.
 
-    A row that says the very same as one of an earlier delivery is that one come again, and is given once.
+    A row that is equal to one of an earlier submission is yielded only once.
     """
 
     def of(table: Any) -> Select[Any]:

@@ -1,9 +1,9 @@
 """Gradebook of a class: totals of its marked sheets. Pure; :mod:`coursework.gradebook.grading` writes the
 files.
 
-Every row in comes out once, as a marked row or as a rejected one, or is counted where it is blank beside another to the
-same part. Sheets are marked by the hundred, so that
-what their variants share is computed once; many of them by several processes.
+Each row comes out once, as a marked or a rejected row, or is counted as blank if another row answers the same
+part. Sheets are marked by the hundred, so that shared parts of their variants are computed once; many of them
+by several processes.
 """
 
 from __future__ import annotations
@@ -223,8 +223,9 @@ class Result:
 def results(book: Gradebook) -> Iterator[tuple[str, Result]]:
     """Yield each student of the roster, and each other student who answered, with the sitting that counts.
 
-    Points are out of all that a student was issued, or without a roster of all that they answered to; those of an
-    assignment out of all of it. What came in rejected rows alone is unreadable, and not missing.
+    Points are out of all variants issued to a student, or without a roster out of all that they answered;
+    those of an assignment out of the whole assignment. Answers in rejected rows alone count as unreadable,
+    not as missing.
     """
     unread = book.unread()
     sittings: dict[str, set[int]] = {}

@@ -67,7 +67,7 @@ def rules_of(course: Course, issued: Issued) -> Rules | None:
 def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:
     """Yield the marked sheets, in their order; ``printed`` if feedback sheets are made of them.
 
-    A sheet that cannot be marked costs itself alone: its rows are added to the rejected, and the warnings tell it.
+    A sheet that cannot be marked affects no other: its rows are added to the rejected ones, with a warning.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Different sheets of one student in several files: the student's own sheet, as far as names of folders and
 files tell, and sheets that wait for a person.
 
-What a notebook says of itself anybody can write. Where two files answer differently for the same student and variant, the
-one that is called by the student, or lies in their folder, is theirs; where none is, or where nothing tells, all wait.
+Anybody can write a name in a notebook. If two files answer the same variant of a student differently, the
+file that is named after the student, or is in their folder, is theirs; if there is none, all of them wait.
 """
 
 from __future__ import annotations

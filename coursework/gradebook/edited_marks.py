@@ -47,7 +47,8 @@ class EditedMarks:
     Raises
     ------
     BadInput
-        A line that holds no mark, is of nothing that was issued, or repeats another; told by line.
+        A line that states no mark, is about nothing that was issued, or repeats another; the message names
+        the line.
     """
 
     def __init__(self, course: Course, issued: Issued, path: Path) -> None:

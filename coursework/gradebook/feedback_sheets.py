@@ -128,8 +128,8 @@ def feedback_paper(
 ) -> FeedbackPaper:
     """Return a student's marks on one sitting of an assignment: one total, the mark, and advice.
 
-    An exercise that was not handed in has its sheet too, without answers, unless it is ``waiting``: handed in, and not
-    read yet.
+    An exercise that was not submitted has a sheet without answers, unless it is ``waiting``: submitted, and
+    not read yet.
     """
     stated = issued.assignment or {}
     sitting = graded[0].sitting if graded else 1
@@ -318,7 +318,8 @@ def renew_feedback(
     """Print feedback, then move it to ``out / "feedback"``. Sheets of an earlier marking are replaced; a
     sheet that somebody has edited is kept under another name, with a warning; other files stay.
 
-    Nothing of before is touched while it is printed. ``ready`` is called before it is put there, and may refuse.
+    Earlier files remain unchanged while the new ones are printed. ``ready`` is called before these are moved,
+    and may raise an error.
     """
     printing = out / ".printing"
     shutil.rmtree(printing, ignore_errors=True)

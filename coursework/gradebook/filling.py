@@ -48,7 +48,8 @@ def fill(
 ) -> Filled:
     """Fill the column of an item; every byte elsewhere stays.
 
-    ``most`` is the item's maximum, unless the file tells it; ``zeros`` gives 0 to who answered nothing.
+    ``most`` is the item's maximum, unless the file states it; ``zeros`` gives 0 to students without an
+    answer.
 
     Raises
     ------

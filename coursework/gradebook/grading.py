@@ -55,9 +55,9 @@ def grade_files(
     """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``to_mark.csv`` where
     answers are marked by a person, whose points in an earlier one count.
 
-    Where marks were there before, ``changes.csv`` says what differs now. ``accepted`` names answers that
-    a person accepts; unless told, those of ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a
-    class of usual size, in the ``form`` that is asked for. ``spreadsheet`` is what the tables are written for.
+    If there are earlier marks, ``changes.csv`` lists the differences. ``accepted`` is a file of answers that
+    a person accepts; by default ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a class of
+    usual size, with the options of ``form``. ``spreadsheet`` is the program for which the tables are written.
 
     Raises
     ------
@@ -192,8 +192,8 @@ def grade_edited_marks(
 ) -> Gradebook:
     """Write ``summary.csv``, ``rejected.csv`` and feedback sheets for the marks in a file.
 
-    ``changes.csv`` says which of them are not what the marking gives: a hand changed them. They are kept in
-    ``by_hand.csv`` too, so that a later marking knows of them. The file itself stays as it is.
+    ``changes.csv`` lists the marks that differ from the marking, since they were edited. They are also stored
+    in ``by_hand.csv``, so that a later marking knows them. The file itself remains unchanged.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Notebooks without their tags and metadata: some editors drop them, some people cut and join cells.
 
-What a notebook prints for its reader is left: the line with exercise, seed and version, the name, and cells that say ``answers = {``. Nothing is
-run here either.
+The printed text remains: the line with exercise, seed and version, the name, and cells with ``answers = {``.
+Nothing is executed.
 """
 
 from __future__ import annotations

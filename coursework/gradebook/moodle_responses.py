@@ -228,7 +228,8 @@ def parts_of(text: str) -> list[str]:
     """Return the answers of ``part 1: 238.4 mm; part 2: …``, in any language; none if they cannot be
     separated.
 
-    An answer may hold semicolons. Where what parts two answers stands in one of them too, nobody knows which is which.
+    An answer may contain semicolons. If the separator of two answers also occurs in one of them, they cannot
+    be separated.
     """
     first = _FIRST.match(text)
     if first is None:

@@ -1,10 +1,11 @@
 """Sheets of a class that is too large for memory: on disk until they are marked.
 
-Rows come in the order of their files, and those of a sheet may be far apart. They are parted by sheet, so that all of one are in
-one part, and a part is small; each part is put together, and what it gives is read back in the order in which the sheets
-first appeared. So what comes out is what :func:`coursework.gradebook.placing.placed_sheets` gives.
+Rows come in the order of their files, and those of a sheet may be far apart. They are divided by sheet, so
+that all rows of a sheet are in one small part. Each part is processed, and its sheets are read back in the
+order in which they first appeared. So the result is that of
+:func:`coursework.gradebook.placing.placed_sheets`.
 
-What is written lies in files without a name, beside the result: they go with the process, however it ends.
+The data are in temporary files without a name, next to the result: they end with the process, in any case.
 """
 
 from __future__ import annotations

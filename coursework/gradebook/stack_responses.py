@@ -20,7 +20,7 @@ def stack_answers(text: str) -> dict[int, str] | None:
     """Return the text of each box, by its number; None if this is no such response, or if its answers cannot
     be separated.
 
-    Texts come in quotes, in which they may hold anything; what STACK refused comes as it was typed.
+    Texts are in quotes and may contain anything; a text that STACK refused is unchanged.
     """
     begins = _BEGINS.match(text)
     if begins is None:

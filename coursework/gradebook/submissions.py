@@ -1,7 +1,7 @@
 """Readers of submissions: CSV, JSON and notebooks of answers, and exports of platforms. Answers are data:
 nothing is executed.
 
-Every row of every file comes out, as a :class:`AnswerRow` or as a :class:`Rejected` with its reason.
+Each row of each file becomes an :class:`AnswerRow`, or a :class:`Rejected` with its reason.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ class GivenPoints(NamedTuple):
 class ToMark:
     """Answers that a person marks, with the points given so far.
 
-    A line counts for the very answer that it shows: where another came since, it waits anew.
+    A line counts only for the answer that it shows; a changed answer waits again.
 
     Raises
     ------

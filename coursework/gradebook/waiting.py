@@ -1,7 +1,8 @@
 """Answers that only a person can judge, grouped by equal content.
 
-An answer waits because it could not be read, is to be marked by a person, lacks its unit, is wrong by little, or because
-many wrote the very same and nothing explains it. What is right by little waits for nobody, and can be looked at.
+An answer waits if it is unreadable, is to be marked by a person, lacks its unit, is wrong by little, or is a
+wrong answer that many students gave and nothing explains. An answer that is right by little does not wait,
+and is shown on request.
 """
 
 from __future__ import annotations
