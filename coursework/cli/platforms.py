@@ -139,12 +139,12 @@ def export(
     students = read_roster(roster, notes.append, columns) if roster else []
     if issued is not None and (exercises or roster):
         raise BadInput(f"--issued {issued} says what was issued: name no exercises and no roster beside it")
-    if issued is not None and chosen.deals:
+    if issued is not None and chosen.draws_variants:
         raise BadInput(
             f"--issued is of gradescope, which marks what a build issued; {platform} deals a pool of its own"
         )
     wanted = _Wanted(context, exercises, count or 0, seed, langs, split_list(parts) or None)
-    if not chosen.deals:
+    if not chosen.draws_variants:
         tell(notes)
         _export_autograder(course, wanted, issued, students, out)
         return

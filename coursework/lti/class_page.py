@@ -35,7 +35,7 @@ def settings_rows(
 ) -> list[tuple[str, str]]:
     """Return the settings of the link, each with its label."""
     texts = words(visit.lang)["lti"]["class"]
-    dealt = (
+    variant_setting = (
         texts["own"]
         if versions is None
         else texts["same"]
@@ -44,7 +44,7 @@ def settings_rows(
     )
     return [
         (texts["opens"], title),
-        (texts["variants"], dealt),
+        (texts["variants"], variant_setting),
         (texts["tries"], texts["any_number"] if wanted.tries is None else str(wanted.tries)),
         (texts["counts"], texts["best" if wanted.counts == BEST else "last"]),
         (texts["answers"], texts["after" if wanted.shows_answers else "never"]),

@@ -24,8 +24,8 @@ def issued_again(course: Course, issued: Issued, langs: Sequence[str] = ()) -> l
     """
     if issued.assignment is not None or issued.is_pool:
         raise BadInput(
-            "what was issued is of an assignment or a platform's pool, which make papers of several exercises; who deals it "
-            "writes them once more"
+            "what was issued is of an assignment or a platform's pool, whose papers have several exercises; the command "
+            "that made them writes them again"
         )
     stems = dict(zip(issued.students, file_stems(issued.students), strict=True))
     issues = []

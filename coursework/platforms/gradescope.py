@@ -77,7 +77,7 @@ class Gradescope(Platform):
     variant."""
 
     name = "gradescope"
-    deals = False
+    draws_variants = False
 
     def files(self, pool: Pool) -> Iterator[File]:
         raise BadInput(

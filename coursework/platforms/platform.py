@@ -22,7 +22,7 @@ class Platform(ABC):
     """
 
     name: ClassVar[str] = ""
-    deals: ClassVar[bool] = (
+    draws_variants: ClassVar[bool] = (
         True  #: it draws a variant of a pool for each student; else it marks variants issued by name
     )
 
