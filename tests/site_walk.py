@@ -33,11 +33,11 @@ PLANTED = {ZOE: "zoespoke", MAX: "maxspoke"}  #: an answer of each that could no
 class Patient(Limits):
     """Counts, and lets all pass: a walk asks more in a minute than anybody does."""
 
-    def asked(self, kind: str, person: int, address: str, browser: str = "") -> int:
-        super().asked(kind, person, address, browser)
+    def wait_for_rate(self, kind: str, person: int, address: str, browser: str = "") -> int:
+        super().wait_for_rate(kind, person, address, browser)
         return 0
 
-    def owed(self, kind: str, person: int) -> int:
+    def wait_for_processor(self, kind: str, person: int) -> int:
         return 0
 
 

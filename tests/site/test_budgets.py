@@ -170,7 +170,9 @@ def test_each_page_of_a_student_is_counted_by_what_it_takes_of_a_processor(site,
     """Refusals too; what a process beside takes for it counts as well."""
     took = []
     monkeypatch.setattr(
-        site.site.limits, "took", lambda kind, person, seconds: took.append((kind, person, seconds))
+        site.site.limits,
+        "add_processor_time",
+        lambda kind, person, seconds: took.append((kind, person, seconds)),
     )
     pages = [page for page in ROUTES if not is_of_staff(page.permission)]
     for page in pages:
