@@ -254,7 +254,7 @@ def found_ahead():
     course = open_course()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as place:
         store = Store(str(Path(place) / "pool.db"))
-        pools = {name: PracticePool(course, store)._grown(name, READY) for name in EXERCISES}
+        pools = {name: PracticePool(course, store)._extended(name, READY) for name in EXERCISES}
         store.close()
     solutions = {(n, seed): course[n].variant(seed).solution() for n in EXERCISES for seed in pools[n].seeds}
     rest = {name: Pooled(are_all=True) for name in course if name not in pools}  # nobody asks for them here
