@@ -26,7 +26,7 @@ class CourseworkError(Exception):
         return super().__str__()
 
     def _render_traceback_(self) -> list[str]:
-        """What a notebook shows: the message, which says all that its reader needs."""
+        """Return the lines that a notebook shows: the message alone, which is all that its reader needs."""
         return [f"{type(self).__name__}: {self}"]
 
 
@@ -45,9 +45,9 @@ class MissingQuantity(CourseworkError, TypeError):
     def __str__(self) -> str:
         return self.advising(f"{', '.join(f'{name}=…' for name in self.names)} to the request")
 
-    def advising(self, what: str) -> str:
+    def advising(self, subject: str) -> str:
         """The message, with what to add."""
-        return f"{self.needed}; add {what}" if self.names else self.needed
+        return f"{self.needed}; add {subject}" if self.names else self.needed
 
 
 class Cycle(CourseworkError, ValueError):
@@ -95,7 +95,7 @@ class BadStatement(BadCourse):
 
 
 class BadInput(CourseworkError, ValueError):
-    """What a user gives, a file or what a call is told, is not what it should be."""
+    """Wrong input of a user, in a file or in the arguments of a call."""
 
 
 def counted(number: int, noun: str) -> Message:
@@ -103,7 +103,7 @@ def counted(number: int, noun: str) -> Message:
     return Message("{number} " + (noun if number == 1 else f"{noun}s"), number=number)
 
 
-def closest(name: str, known: Iterable[str]) -> str | None:
+def closest(name: str, names: Iterable[str]) -> str | None:
     """Return the known name that may have been meant, whatever its case and accents; None where none is near.
 
     Of a name of several words, in whatever order, each word must be near another one of the other's, so that nobody is
@@ -112,12 +112,14 @@ def closest(name: str, known: Iterable[str]) -> str | None:
     import difflib
 
     plain: dict[str, list[str]] = {}
-    for one in known:
-        plain.setdefault(_in_order(one), []).append(one)
+    for candidate in names:
+        plain.setdefault(_in_order(candidate), []).append(candidate)
     sought = _in_order(name)
     near = [sought] if sought in plain else difflib.get_close_matches(sought, plain, n=3, cutoff=_NEAR_SYMBOL)
-    found = next((plain[one] for one in near if _words_are_near(sought, one)), [])
-    return max(found, key=lambda one: difflib.SequenceMatcher(None, name, one).ratio(), default=None)
+    match = next((plain[candidate] for candidate in near if _words_are_near(sought, candidate)), [])
+    return max(
+        match, key=lambda candidate: difflib.SequenceMatcher(None, name, candidate).ratio(), default=None
+    )
 
 
 #: Of two names, twice the letters in common over the letters of both; of symbols, whose letters are few, at least.
@@ -137,35 +139,35 @@ def _in_order(name: str) -> str:
     return " ".join(sorted(_unaccented(name).split()))
 
 
-def _words_are_near(sought: str, known: str) -> bool:
+def _words_are_near(sought: str, name: str) -> bool:
     import difflib
 
-    words, others = sorted(sought.split(), key=lambda word: word not in known.split()), known.split()
+    words, others = sorted(sought.split(), key=lambda word: word not in name.split()), name.split()
     if min(len(words), len(others)) < 2:
         least = _NEAR_SYMBOL if len(sought) <= _SYMBOL else _NEAR
-        return difflib.SequenceMatcher(None, sought, known).ratio() >= least
+        return difflib.SequenceMatcher(None, sought, name).ratio() >= least
     for word in words:
         near = difflib.get_close_matches(word, others, n=1, cutoff=_NEAR)
         if not near and len(word) > 1:
             return False
-        for one in near:
-            others.remove(one)
+        for wanted in near:
+            others.remove(wanted)
     return True
 
 
-def nearest(name: str, known: Iterable[str]) -> Message:
+def nearest(name: str, names: Iterable[str]) -> Message:
     """Return ``"; did you mean 'x'?"``, or the whole list when nothing is near."""
-    known = list(known)
-    if (near := closest(name, known)) is not None:
+    names = list(names)
+    if (near := closest(name, names)) is not None:
         return Message("; did you mean {near!r}?", near=near)
-    if known:
-        return Message("; there is: {names}", names=", ".join(sorted(known)))
+    if names:
+        return Message("; there is: {names}", names=", ".join(sorted(names)))
     return Message("; there is none")
 
 
-def unknown(kind: str, name: str, known: Iterable[str], where: str = "") -> UnknownName:
+def unknown(kind: str, name: str, names: Iterable[str], where: str = "") -> UnknownName:
     """Return the error for a look-up that failed."""
-    place = Message(" in {where}", where=where) if where else ""
+    location = Message(" in {where}", where=where) if where else ""
     return UnknownName(
-        f"no {kind} {{name!r}}{{place}}{{nearest}}", name=name, place=place, nearest=nearest(name, known)
+        f"no {kind} {{name!r}}{{place}}{{nearest}}", name=name, place=location, nearest=nearest(name, names)
     )

@@ -59,9 +59,9 @@ class GivenSpec:
     def is_fixed(self) -> bool:
         return self.low is None and not self.choices
 
-    def is_listed(self, asked: Collection[str]) -> bool:
+    def is_listed(self, parts: Collection[str]) -> bool:
         """Return True if a sheet that asks these parts lists the quantity among its data."""
-        return self.shown if isinstance(self.shown, bool) else not {*self.shown}.isdisjoint(asked)
+        return self.shown if isinstance(self.shown, bool) else not {*self.shown}.isdisjoint(parts)
 
 
 def _bound(value: Bound | None) -> Bound | None:

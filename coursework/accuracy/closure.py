@@ -52,11 +52,11 @@ class Closure:
             rows += [list(of_x.values()), list(of_y.values())]
         return rows
 
-    def newton(self, known: Mapping[str, Any], start: Sequence[Any], steps: int) -> list[Any]:
+    def newton(self, given: Mapping[str, Any], start: Sequence[Any], steps: int) -> list[Any]:
         """Return the unknowns after a number of Newton steps, on arrays, real or complex."""
         x = list(start)
         for _ in range(steps):
-            values = {**known, **dict(zip(self.unknowns, x, strict=True))}
+            values = {**given, **dict(zip(self.unknowns, x, strict=True))}
             step = _solved(self.jacobian(values), self.gaps(values))
             x = [old - change for old, change in zip(x, step, strict=True)]
         return x

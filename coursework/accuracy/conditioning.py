@@ -43,8 +43,8 @@ def _moved(
     in_degrees = reference.exercise.units.get(datum) == "deg"
     size = abs(math.remainder(float(given[datum]), 360.0)) if in_degrees else abs(float(given[datum]))
     for sign in (1, -1):
-        beside = reference.at({**given, datum: exact + sign * _STEP * mp.mpf(size)})
-        results = {n: (beside[n], v) for n, v in values.items() if v is not None and beside[n] is not None}
+        shifted = reference.at({**given, datum: exact + sign * _STEP * mp.mpf(size)})
+        results = {n: (shifted[n], v) for n, v in values.items() if v is not None and shifted[n] is not None}
         if results:
             return {n: float(abs(difference(reference, n, a, b))) / _STEP for n, (a, b) in results.items()}
     return {}

@@ -275,9 +275,9 @@ class Terrain:
 
         def observe(name: str, value: Any) -> Any:
             for i, (kind, margin) in enumerate(self._notes):
-                own = np.asarray(margin)
-                if own.dtype.kind in "fc":
-                    self._margins[name, kind, i] = own if own.dtype.kind == "f" else abs(own)
+                values = np.asarray(margin)
+                if values.dtype.kind in "fc":
+                    self._margins[name, kind, i] = values if values.dtype.kind == "f" else abs(values)
             self._notes.clear()
             return value
 
@@ -499,8 +499,8 @@ def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
     results = []
     with np.errstate(all="ignore"):
         for least in (True, False):
-            own = m if least else -m
-            filled = np.where(np.isfinite(own), own, np.inf)
+            signed = m if least else -m
+            filled = np.where(np.isfinite(signed), signed, np.inf)
             j = filled.argmin(axis=1)
             rows = np.arange(len(m))
             value = filled[rows, j]
@@ -547,9 +547,9 @@ def _settled(terrain: Terrain, spots: Sequence[_Spot]) -> Iterator[_Spot]:
     Spots whose margin does not vanish, or outside the range, are left out.
     """
     short = [s.put(**{s.tuned: _short(v := s.given[s.tuned], 1e-5 * max(abs(v), 1.0))}) for s in spots]
-    left = [abs(_own_margins(terrain, own, _together(own), ())) for own in (short, spots)]
-    for own in zip(short, spots, *left, strict=True):
-        chosen = own[0] if own[2] < _ZERO else own[1] if own[3] < _ZERO else None
+    left = [abs(_own_margins(terrain, value, _together(value), ())) for value in (short, spots)]
+    for value in zip(short, spots, *left, strict=True):
+        chosen = value[0] if value[2] < _ZERO else value[1] if value[3] < _ZERO else None
         if chosen is not None and _is_inside(chosen.given[chosen.tuned], terrain.ranges[chosen.tuned]):
             yield chosen
 
@@ -573,10 +573,10 @@ def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
     for row, values in enumerate(plane):
         if not np.isfinite(values).all():
             continue
-        for own in (values, -values):
-            j = int(own.argmin())
+        for candidate in (values, -values):
+            j = int(candidate.argmin())
             if 0 < j < last:
-                a, b, c = own[j - 1], own[j], own[j + 1]
+                a, b, c = candidate[j - 1], candidate[j], candidate[j + 1]
                 bend = a - 2 * b + c
                 shift = 0.5 * (a - c) / bend if bend > 0 else 0.0
                 low = abs(b - 0.125 * (a - c) ** 2 / bend if bend > 0 else b)
@@ -628,10 +628,10 @@ def _ranked(terrain: Terrain, places: Sequence[HardPlace]) -> list[HardPlace]:
     weighed = sorted((replace(p, lost=_lost(terrain, p)) for p in places), key=lambda p: -p.lost)
     retained: dict[Any, list[HardPlace]] = {}
     for point in weighed:
-        own = retained.setdefault((point.kind, point.quantity, point.double and point.moved), [])
-        if point.lost > _LOST and len(own) < _OF_A_SORT:
-            own.append(point)
-    return sorted((p for own in retained.values() for p in own), key=lambda p: -p.lost)
+        group = retained.setdefault((point.kind, point.quantity, point.double and point.moved), [])
+        if point.lost > _LOST and len(group) < _OF_A_SORT:
+            group.append(point)
+    return sorted((p for group in retained.values() for p in group), key=lambda p: -p.lost)
 
 
 def _lost(terrain: Terrain, point: HardPlace) -> float:

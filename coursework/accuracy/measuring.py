@@ -116,9 +116,9 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Measur
             f"{exercise.name}: there is no reference of {', '.join(subject.reference.lacking)}: its formula cannot be followed "
             "in many digits; plain formulas with coursework.degrees and numpy's functions of numbers can"
         )
-    for what in WHATS:
-        if subject.quantities(what):
-            yield from _Trial(subject, what, quick).rows()
+    for sort in WHATS:
+        if subject.quantities(sort):
+            yield from _Trial(subject, sort, quick).rows()
     if subject.study.motion is not None:
         for m in motion_rows(exercise, subject.study, quick):
             yield Measurement(
@@ -148,42 +148,42 @@ def checked(subject: Subject, seeds: Sequence[int] = (0, 1)) -> ClosureResidual 
 class _Trial:
     """Ways to one kind of quantity: timed at generic places, compared there and at hard ones."""
 
-    def __init__(self, subject: Subject, what: str, quick: bool) -> None:
-        self.subject, self.what, self.quick = subject, what, quick
-        self.wanted = subject.quantities(what)
+    def __init__(self, subject: Subject, sort: str, quick: bool) -> None:
+        self.subject, self.what, self.quick = subject, sort, quick
+        self.wanted = subject.quantities(sort)
         self.timed = subject.generic(_TIMED)
         self.compared = _first(self.timed, 60 if quick else 400)
 
     def rows(self) -> Iterator[Measurement]:
         subject = self.subject
         fixed = subject.base if subject.driver else None
-        own = list(ways(subject, self.what, fixed))
+        methods = list(ways(subject, self.what, fixed))
         reference = self._reference(self.compared)
         scales = usual_sizes(subject, self.wanted, reference)
-        times = self._times(own)
-        for method, spent in zip(own, times, strict=True):
+        times = self._times(methods)
+        for method, spent in zip(methods, times, strict=True):
             compared = _first(self.compared, self._few) if method.one_by_one else self.compared
             error, failed, count = compare(subject, _computed(method, compared), reference, scales)
             yield self._row(method, GENERIC, spent, error, count, failed)
-        yield from self._hard_rows(own, times, scales)
+        yield from self._hard_rows(methods, times, scales)
 
     @property
     def _few(self) -> int:
         return 20 if self.quick else 200
 
-    def _times(self, own: Sequence[Way]) -> list[Times]:
+    def _times(self, methods: Sequence[Way]) -> list[Times]:
         """Return the times of every way at generic places, measured in rounds."""
-        counts = [10 if method.one_by_one else _TIMED for method in own]
+        counts = [10 if method.one_by_one else _TIMED for method in methods]
         calls = [
             partial(_computed, method, _first(self.timed, count))
-            for method, count in zip(own, counts, strict=True)
+            for method, count in zip(methods, counts, strict=True)
         ]
         at_least, budget = (1e-3, 0.05) if self.quick else (5e-3, 0.5)
         result = interleaved(calls, at_least, budget, 15 if self.quick else 25)
         return [spent.per(count) for spent, count in zip(result, counts, strict=True)]
 
     def _hard_rows(
-        self, own: Sequence[Way], times: Sequence[Times], scales: Mapping[str, float]
+        self, methods: Sequence[Way], times: Sequence[Times], scales: Mapping[str, float]
     ) -> Iterator[Measurement]:
         """Yield the rows at the places with the largest loss.
 
@@ -200,7 +200,7 @@ class _Trial:
             for method in ways(self.subject, self.what, fixed):
                 result = compare(self.subject, _computed(method, places), reference, sizes)
                 worst[method.name] = _worse(worst.get(method.name), result)
-        for method, spent in zip(own, times, strict=True):
+        for method, spent in zip(methods, times, strict=True):
             if method.name in worst and worst[method.name][2]:
                 error, failed, count = worst[method.name]
                 yield self._row(method, HARD, spent, error, count, failed)
@@ -309,7 +309,7 @@ def _count(results: Mapping[str, Any], reference: Mapping[str, Sequence[Any]]) -
     return min([full, *sizes])
 
 
-def _difference(value: Any, right: Any, whole: bool) -> float:
+def _difference(value: Any, right: Any, is_turn: bool) -> float:
     """Return |value - right|, modulo a turn for an angle; NaN where there is no value."""
     context = right.context
     if value is None:
@@ -320,7 +320,7 @@ def _difference(value: Any, right: Any, whole: bool) -> float:
             return math.nan
         value = context.mpf(near) + context.mpf(float(value - type(value)(near)))
     apart = context.mpf(value) - right
-    if whole:
+    if is_turn:
         apart -= 360 * context.nint(apart / 360)
     return float(abs(apart))
 

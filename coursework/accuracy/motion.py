@@ -287,11 +287,11 @@ class _Tabulated:
     """Driver's acceleration from tables over the cycle: inertia and the coefficient of the squared speed, as
     Fourier series."""
 
-    def __init__(self, whole: _Acceleration, nodes: int) -> None:
-        self.effort, self.start = whole.effort, whole.start
+    def __init__(self, acceleration: _Acceleration, nodes: int) -> None:
+        self.effort, self.start = acceleration.effort, acceleration.start
         at = np.arange(nodes) * (2 * np.pi / nodes)
-        still, inertia = whole.efforts(at, 0.0)
-        turning, _ = whole.efforts(at, 1.0)
+        still, inertia = acceleration.efforts(at, 0.0)
+        turning, _ = acceleration.efforts(at, 1.0)
         self.orders = np.fft.rfftfreq(nodes, 1 / nodes)
         rows = np.stack([still, turning - still, inertia])
         self.series = np.fft.rfft(rows, axis=-1) / nodes

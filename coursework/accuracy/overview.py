@@ -121,20 +121,20 @@ class _Survey:
         results: dict[str, Any] = {}
         losing: dict[str, float] = {}
         for point in self.subject.hard:
-            own = self._at(
+            subset = self._at(
                 point, dict.fromkeys(scales, 0.0) if point.kind in (VANISHING, GROWING) else scales
             )
-            if own is None:
+            if subset is None:
                 continue
-            for name, times in own.pop("losing").items():
+            for name, times in subset.pop("losing").items():
                 losing[name] = max(times, losing.get(name, 0.0))
-            if own["beyond"] > results.get("beyond", -1.0):
+            if subset["beyond"] > results.get("beyond", -1.0):
                 results["place"] = _place_text(point)
-            for name, value in own.items():
+            for name, value in subset.items():
                 if value is not None:
                     results[name] = max(results.get(name, 0), value)
-        asked = tuple(name for name in self.subject.numbers if name in losing)
-        return {**results, "losing": losing, "asked_losing": asked}
+        losing_names = tuple(name for name in self.subject.numbers if name in losing)
+        return {**results, "losing": losing, "asked_losing": losing_names}
 
     def _at(self, point: HardPlace, scales: dict[str, float]) -> dict[str, Any] | None:
         places = together(list(point.approach(point.distances(self.quick))))
@@ -176,8 +176,8 @@ class _Survey:
         for i, point in enumerate(one_by_one(places)):
             doubtful = {}
             for name in names:
-                own = {name: reference[name][i : i + 1]}
-                error, _, _ = compare(self.subject, {name: _entry(solver.get(name), i)}, own, {name: 0.0})
+                single = {name: reference[name][i : i + 1]}
+                error, _, _ = compare(self.subject, {name: _entry(solver.get(name), i)}, single, {name: 0.0})
                 if error and error > _RIGHT:
                     doubtful[name] = error
             # What is right to the last digits needs no conditioning.
@@ -189,11 +189,11 @@ class _Survey:
                 worst[name] = max(times, worst.get(name, 0.0))
         return worst
 
-    def _values(self, way: str, places: Places) -> dict[str, Any]:
+    def _values(self, method: str, places: Places) -> dict[str, Any]:
         results: dict[str, Any] = {}
         for name in self.wanted:
             try:
-                results |= self.graphs[way].evaluate((name,), places, self.subject.effects)
+                results |= self.graphs[method].evaluate((name,), places, self.subject.effects)
             except CourseworkError:
                 continue
         return results
@@ -204,8 +204,8 @@ class _Survey:
         at_least, rounds = (1e-3, 7) if self.quick else (1e-2, 11)
         return [t.per(_TIMED) for t in interleaved(calls, at_least, rounds=rounds)]
 
-    def _together(self, way: str, places: Places) -> Any:
-        return self.graphs[way].evaluate(self.wanted, places, self.subject.effects)
+    def _together(self, method: str, places: Places) -> Any:
+        return self.graphs[method].evaluate(self.wanted, places, self.subject.effects)
 
 
 def _entry(values: Any, i: int) -> Any:

@@ -30,13 +30,13 @@ def report(course: Course, rows: Sequence[Measurement], lang: str) -> Report:
     sections = []
     kinds = {POSITION: "positions", RATE: "rates", ACCELERATION: "accelerations", OTHER: "others"}
     for name, of_one in groupby(rows, key=lambda row: row.exercise):
-        own = list(of_one)
+        exercise_rows = list(of_one)
         title, data = course[name].title(lang), _data(Subject(course[name]), texts, lang)
-        for what, key in kinds.items():
-            if chosen := [row for row in own if row.what == what]:
-                sections.append(_quantities(f"{title} – {texts[key]}", chosen, data, texts, what))
+        for label, key in kinds.items():
+            if chosen := [row for row in exercise_rows if row.what == label]:
+                sections.append(_quantities(f"{title} – {texts[key]}", chosen, data, texts, label))
                 data = ""
-        if chosen := [row for row in own if row.what == MOTION]:
+        if chosen := [row for row in exercise_rows if row.what == MOTION]:
             sections.append(_motion(f"{title} – {texts['motion']}", chosen, texts))
     return Report(
         lang,
@@ -56,13 +56,13 @@ def no_charts(texts: Words) -> str:
 # ------------------------------------------------------------------------ sections
 
 
-def _quantities(title: str, rows: Sequence[Measurement], data: str, texts: Words, what: str) -> Section:
-    own = Rows(rows)
+def _quantities(title: str, rows: Sequence[Measurement], data: str, texts: Words, sort: str) -> Section:
+    table = Rows(rows)
     charts: list[Chart] = []
-    for point in own.places if what in (POSITION, RATE) else ():
-        charts += (_position_charts if what == POSITION else _rate_charts)(own, point, texts)
-    read = _read_rates(own, texts) if what == RATE else _read_positions(own, texts)
-    return Section(title, _paragraphs([data, *read]), tuple(charts), (_table(own, texts),))
+    for point in table.places if sort in (POSITION, RATE) else ():
+        charts += (_position_charts if sort == POSITION else _rate_charts)(table, point, texts)
+    read = _read_rates(table, texts) if sort == RATE else _read_positions(table, texts)
+    return Section(title, _paragraphs([data, *read]), tuple(charts), (_table(table, texts),))
 
 
 def _position_charts(rows: Rows, point: str, texts: Words) -> tuple[Chart, ...]:
@@ -287,7 +287,7 @@ def charts_of(
     """Return the chart; none where charts cannot be drawn."""
     if lacking():
         return ()
-    svg = scatter(points, heading, horizontal, texts["error"], whole=digits).decode("utf-8")
+    svg = scatter(points, heading, horizontal, texts["error"], integers=digits).decode("utf-8")
     return (Chart(svg, texts["alt"].format(heading)),)
 
 
@@ -298,12 +298,12 @@ def _table(rows: Rows, texts: Words) -> Table:
         by_method.setdefault(row.method, {})[row.place] = row
     has_tables = bool(rows.of("table"))
     lines = []
-    for own in by_method.values():
-        first = own.get(GENERIC)
-        displayed = next(iter(own.values()))
+    for method_rows in by_method.values():
+        first = method_rows.get(GENERIC)
+        displayed = next(iter(method_rows.values()))
         times = ("", "") if first is None else (number(first.median), _spread(first))
         paid = (_paid(first, rows, texts),) if has_tables else ()
-        errors = [_error_cell(own.get(p), texts) for p in rows.places]
+        errors = [_error_cell(method_rows.get(p), texts) for p in rows.places]
         lines.append((_method(displayed, texts), *times, *paid, *errors))
     heads = (
         texts["method"],

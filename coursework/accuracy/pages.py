@@ -175,12 +175,12 @@ def paper_report(course: Course, rows: Sequence[PaperRow], variants: int, lang: 
 def _paper_words(rows: Sequence[PaperRow], digits: int, texts: Words) -> str:
     by_digits = {row.digits: row for row in rows}
     results = []
-    if own := by_digits.get(digits):
+    if share := by_digits.get(digits):
         plain = by_digits[PLAIN]
         results += [
-            texts["kept"].format(digits=digits, plain=_percent(own.wronged, texts), ours=_percent(own.wronged_ours, texts)),
+            texts["kept"].format(digits=digits, plain=_percent(share.wronged, texts), ours=_percent(share.wronged_ours, texts)),
             texts["passes"].format(
-                mistakes=_percent(own.mistakes, texts), neighbours=_percent(own.neighbours, texts),
+                mistakes=_percent(share.mistakes, texts), neighbours=_percent(share.neighbours, texts),
                 plain_mistakes=_percent(plain.mistakes, texts), plain_neighbours=_percent(plain.neighbours, texts),
             ),
         ]  # fmt: skip

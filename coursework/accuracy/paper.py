@@ -110,7 +110,7 @@ class _Room:
                 )
             )
             wronged, wronged_ours = self._refused(rounded, PLAIN), self._refused(rounded, ours)
-        mistakes = sum((self._passed(own, stored) for own in self.wrong), Share())
+        mistakes = sum((self._passed(wrong, stored) for wrong in self.wrong), Share())
         return PaperRow(self.exercise.name, stored, wronged, wronged_ours, mistakes, self._neighbours(stored))
 
     def _refused(self, answers: Mapping[str, np.ndarray], margin: int) -> Share:
@@ -125,18 +125,18 @@ class _Room:
         """Return the share of accepted answers among those that are visibly wrong."""
         result = Share()
         for part in self.parts:
-            right, own = self.right[part.quantity], answers[part.quantity]
-            apart = abs(own - right)
+            right, pair = self.right[part.quantity], answers[part.quantity]
+            apart = abs(pair - right)
             if part.sort.turn:
                 apart = np.minimum(apart % part.sort.turn, -apart % part.sort.turn)
-            shows = self.asked[part.id] & np.isfinite(own) & (apart > _SEES * np.maximum(abs(right), 1e-9))
-            passed = shows & self._accepted(part, own, margin)
+            shows = self.asked[part.id] & np.isfinite(pair) & (apart > _SEES * np.maximum(abs(right), 1e-9))
+            passed = shows & self._accepted(part, pair, margin)
             result += Share(int(shows.sum()), int(passed.sum()))
         return result
 
     def _neighbours(self, margin: int) -> Share:
         shifted = [{n: np.roll(v, k) for n, v in self.right.items()} for k in _NEIGHBOURS]
-        return sum((self._passed(own, margin) for own in shifted), Share())
+        return sum((self._passed(value, margin) for value in shifted), Share())
 
     def _accepted(self, part: Part, answers: np.ndarray, margin: int) -> np.ndarray:
         right = self.right[part.quantity]

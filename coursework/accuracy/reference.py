@@ -144,19 +144,19 @@ class Reference:
         self.pinned = tuple(pinned)
         self.lacking = tuple(n for n in self.asked if n in lacking)
 
-    def _is_step(self, name: str, known: Mapping[str, Any]) -> bool:
+    def _is_step(self, name: str, values: Mapping[str, Any]) -> bool:
         """Return whether no small change of a datum changes a quantity."""
         graph = self.exercise.solution.graph
         try:
-            own = graph.evaluate((name,), known, self.effects)[name]
+            value = graph.evaluate((name,), values, self.effects)[name]
             changed = [
-                graph.evaluate((name,), {**known, n: v * (1 + 1e-9)}, self.effects)[name]
-                for n, v in known.items()
+                graph.evaluate((name,), {**values, n: v * (1 + 1e-9)}, self.effects)[name]
+                for n, v in values.items()
                 if isinstance(v, float)
             ]
         except _FAILURES:
             return False
-        return all(np.array_equal(own, other) for other in changed)
+        return all(np.array_equal(value, other) for other in changed)
 
     # ------------------------------------------------------------------ closing
 
@@ -209,8 +209,8 @@ class Reference:
         mp = self.mp
 
         def rate(name: Any, k: int) -> Any:
-            own = rates.get(name, ("", ""))[k] if isinstance(name, str) else ""
-            return values[own] if own else mp.zero
+            rate_name = rates.get(name, ("", ""))[k] if isinstance(name, str) else ""
+            return values[rate_name] if rate_name else mp.zero
 
         def degrees(angle: Any) -> Any:
             return values[angle] if isinstance(angle, str) else mp.mpf(round(np.degrees(angle), 10))

@@ -95,14 +95,14 @@ class Subject:
         rates = {n: pair[0] for loop in loops for n, pair in loop.rates.items() if pair[0]}
         return {n: rates[n] for n in self.unknowns} if all(n in rates for n in self.unknowns) else {}
 
-    def quantities(self, what: str) -> tuple[str, ...]:
+    def quantities(self, sort: str) -> tuple[str, ...]:
         """Return the quantities of one kind that have a reference."""
-        if what == POSITION and self.unknowns:
+        if sort == POSITION and self.unknowns:
             chosen = self.unknowns
-        elif what == RATE and self.rate_of:
+        elif sort == RATE and self.rate_of:
             chosen = tuple(self.rate_of.values())
         else:
-            chosen = tuple(n for n in self.numbers if self._sort(n) == what)
+            chosen = tuple(n for n in self.numbers if self._sort(n) == sort)
         return tuple(n for n in chosen if n not in self.reference.lacking)
 
     def _sort(self, name: str) -> str:

@@ -69,21 +69,21 @@ def misses_near(
 ) -> Iterator[Miss]:
     """Yield the misses on the approach to one hard place."""
     for side in point.sides:
-        way = [(d, point.at(side * d, aside)) for d in distances]
-        way = [(d, given) for d, given in way if _has_lengths(reference, given)]
-        if way:
-            yield from _along(reference, point, aside, way)
+        path = [(d, point.at(side * d, aside)) for d in distances]
+        path = [(d, given) for d, given in path if _has_lengths(reference, given)]
+        if path:
+            yield from _along(reference, point, aside, path)
 
 
 def _along(
-    reference: Reference, point: HardPlace, aside: float, way: Sequence[tuple[float, Mapping[str, Any]]]
+    reference: Reference, point: HardPlace, aside: float, path: Sequence[tuple[float, Mapping[str, Any]]]
 ) -> Iterator[Miss]:
     """Yield the misses from far to near on one side; a quantity that has an answer somewhere must have one
     everywhere."""
-    result = solved(reference, [given for _, given in way])
+    result = solved(reference, [given for _, given in path])
     answers = {n for n, values in result.items() if np.isfinite(values).any()}
     other: set[str] = set()
-    for i, (distance, given) in enumerate(way):
+    for i, (distance, given) in enumerate(path):
         right = {n: v for n, v in reference.at(given).items() if v is not None and n in answers - other}
         off = {n: _off(reference, n, result[n][i], v) for n, v in right.items()}
         if distance >= _FAR:

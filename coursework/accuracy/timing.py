@@ -72,7 +72,7 @@ def interleaved(
             for _ in range(repeats[i]):
                 calls[i]()
             samples[i].append((clock() - start) / repeats[i])
-    return [times_of(own) for own in samples]
+    return [times_of(times) for times in samples]
 
 
 def times_of(samples: Sequence[float]) -> Times:

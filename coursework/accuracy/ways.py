@@ -46,28 +46,28 @@ class Way:
         return self.family if self.setting is None else f"{self.family}-{self.setting:g}"
 
 
-def ways(subject: Subject, what: str, fixed: Mapping[str, Any] | None) -> Iterator[Way]:
+def ways(subject: Subject, sort: str, fixed: Mapping[str, Any] | None) -> Iterator[Way]:
     """Yield every way to the quantities of one kind; some only with a ``fixed`` mechanism, without its
     driver's angle."""
-    bench = _Bench(subject, what)
-    if what == POSITION:
+    bench = _Bench(subject, sort)
+    if sort == POSITION:
         yield bench.in_precision("single", np.float32)
     if fixed is not None:
-        yield from _tables(subject, what, fixed)
-    yield Way(what, "stable", bench.stable)
-    yield Way(what, "textbook", bench.textbook)
+        yield from _tables(subject, sort, fixed)
+    yield Way(sort, "stable", bench.stable)
+    yield Way(sort, "textbook", bench.textbook)
     if np.finfo(np.longdouble).eps < np.finfo(float).eps:
         yield bench.in_precision("extended", np.longdouble)
     if fixed is not None:
-        yield from _moved(subject, what, fixed)
-    yield Way(what, "mpmath", bench.many_digits, one_by_one=True)
+        yield from _moved(subject, sort, fixed)
+    yield Way(sort, "mpmath", bench.many_digits, one_by_one=True)
 
 
 class _Bench:
     """Formulas of one kind of quantity, in several precisions."""
 
-    def __init__(self, subject: Subject, what: str) -> None:
-        self.subject, self.what, self.wanted = subject, what, subject.quantities(what)
+    def __init__(self, subject: Subject, sort: str) -> None:
+        self.subject, self.what, self.wanted = subject, sort, subject.quantities(sort)
         graph = subject.exercise.solution.graph
         self._stable, self._textbook = graph, twinned(graph.textbook)
 
@@ -102,8 +102,8 @@ def _cast(value: Any, kind: type) -> Any:
 # ----------------------------------------------------------- with a fixed mechanism
 
 
-def _tables(subject: Subject, what: str, fixed: Mapping[str, Any]) -> Iterator[Way]:
-    if what == POSITION and subject.rate_of and subject.speed:
+def _tables(subject: Subject, sort: str, fixed: Mapping[str, Any]) -> Iterator[Way]:
+    if sort == POSITION and subject.rate_of and subject.speed:
         _Turning(subject, fixed).table(8)  # what is loaded for the first one is no cost of a table
         for nodes in (64, 512, 4096):
             start = clock()
@@ -111,11 +111,11 @@ def _tables(subject: Subject, what: str, fixed: Mapping[str, Any]) -> Iterator[W
             yield Way(POSITION, "table", table, nodes, build=clock() - start)
 
 
-def _moved(subject: Subject, what: str, fixed: Mapping[str, Any]) -> Iterator[Way]:
+def _moved(subject: Subject, sort: str, fixed: Mapping[str, Any]) -> Iterator[Way]:
     turning = _Turning(subject, fixed)
-    if what == POSITION and subject.closure is not None:
+    if sort == POSITION and subject.closure is not None:
         yield from turning.solvers()
-    if what == RATE and subject.rate_of and subject.speed:
+    if sort == RATE and subject.rate_of and subject.speed:
         yield Way(RATE, "complex_step", turning.complex_step())
         for step in STEPS:
             yield Way(RATE, "differences", turning.differences(step), step)
@@ -228,10 +228,10 @@ class _Turning:
             constants = self._known_values(0.0)
             turned = np.radians(angle)
             for i in range(len(angle)):
-                known = {**constants, self.angle: float(turned[i])}
+                given = {**constants, self.angle: float(turned[i])}
 
-                def gaps(x: np.ndarray, known: dict = known) -> list[float]:
-                    values = {**known, **dict(zip(self.subject.unknowns, map(float, x), strict=True))}
+                def gaps(x: np.ndarray, given: dict = given) -> list[float]:
+                    values = {**given, **dict(zip(self.subject.unknowns, map(float, x), strict=True))}
                     return closure.gaps(values, math.cos, math.sin)
 
                 if np.isfinite(starts[i]).all() and (solved := solve(gaps, starts[i])) is not None:
@@ -288,11 +288,11 @@ class _Turning:
         def compute(places: Places) -> Values:
             angle = places[self.angle]
             closed = self._in_radians(self._solve(self.subject.unknowns, angle))
-            known = self._known_values(angle)
-            known[self.angle] = known[self.angle] + 1j * step
+            values = self._known_values(angle)
+            values[self.angle] = values[self.angle] + 1j * step
             with np.errstate(all="ignore"):
                 start = [closed[n] + 0j for n in self.subject.unknowns]
-                result = closure.newton(known, start, 1)
+                result = closure.newton(values, start, 1)
             named = zip(self.subject.unknowns, result, strict=True)
             return {rates[n]: np.imag(x) * (self._speed / step) for n, x in named}
 

@@ -1,1 +1,1 @@
-"""What an author of exercises needs: a working skeleton, and the proof that an exercise keeps its promises."""
+"""Tools for authors of exercises: a working skeleton, and the proof that an exercise keeps its promises."""

@@ -45,15 +45,15 @@ def check_alone(drawn: Sequence[Variant], report: Report) -> None:
 
 
 def faults_alone(variant: Variant) -> Iterator[str]:
-    """What goes wrong with a variant that asks no more than it does, a sentence each."""
+    """Yield the faults of a variant by itself, a sentence each."""
     try:
         renderer = renderer_of(variant.exercise.folder)
         sheet = answer_sheet(variant)
         renderer.typst(handout(variant))
         renderer.typst(answer_sheet(variant, polygons=False))
-        told = {step.name for step in sheet.steps}
+        steps = {step.name for step in sheet.steps}
         for part in variant.parts:
-            if not part.sort.is_open and part.quantity not in told:
+            if not part.sort.is_open and part.quantity not in steps:
                 yield f"the worked solution has no step {part.quantity}"
         _leave_blanks(variant)
         yield from _unfair(variant)
@@ -62,10 +62,10 @@ def faults_alone(variant: Variant) -> Iterator[str]:
 
 
 def _leave_blanks(variant: Variant) -> None:
-    said, keys = words(variant.lang)["lesson"], answer_keys(variant.parts)
+    texts, keys = words(variant.lang)["lesson"], answer_keys(variant.parts)
     for level in range(1, LEVELS):
         left = blanks(variant, level, in_lesson=True)
-        told_steps(variant, level, left, keys, said, in_lesson=True)
+        told_steps(variant, level, left, keys, texts, in_lesson=True)
 
 
 def _unfair(variant: Variant) -> Iterator[str]:

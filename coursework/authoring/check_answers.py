@@ -44,61 +44,66 @@ def check_right_answers(variant: Variant, key: Key, report: Report) -> None:
 
 def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
     """The right answers of a variant in the ways people write them."""
-    sheets: dict[str, dict[str, Any]] = {way: {} for way in ("exact", "printed", "comma", "edge")}
+    sheets: dict[str, dict[str, Any]] = {spelling: {} for spelling in ("exact", "printed", "comma", "edge")}
     for part in variant.parts:
         if part.sort.is_open:
             continue
-        for way, answer in part.sort.spellings(
+        for spelling, answer in part.sort.spellings(
             part, key.reference[part.quantity], partial(variant.label, part.id)
         ):
-            sheets.setdefault(way, {})[part.id] = answer
+            sheets.setdefault(spelling, {})[part.id] = answer
     # Parts that are judged together stand on a sheet together.
-    beside = {part.id: sheets["printed"][part.id] for part in variant.parts if part.judge}
-    if not beside.keys().isdisjoint(sheets["comma"]):
-        sheets["comma"] = beside | sheets["comma"]
+    context = {part.id: sheets["printed"][part.id] for part in variant.parts if part.judge}
+    if not context.keys().isdisjoint(sheets["comma"]):
+        sheets["comma"] = context | sheets["comma"]
     yield from filter(None, sheets.values())
 
 
 def check_rounding_students(
     exercise: CourseExercise, drawn: Sequence[Variant], report: Report, digits: Sequence[int] = KEPT_DIGITS
 ) -> None:
-    """Who does everything right and rounds at every step is right, by rules that expect so many digits."""
+    """Check that a student who does everything right, and rounds to the expected digits at every step, is
+    marked right."""
     given = {
         n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given if n in exercise.quantity_names
     }
     effects, graph = exercise.spec.effects, exercise.solution.graph
     wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts if not p.is_exact))
     ranks = {p.quantity: p.sort.rank for p in exercise.spec.parts}
-    for kept in digits if wanted else ():
-        found = student_who_rounds(graph, wanted, given, effects, kept)
-        widths = envelopes(exercise, wanted, given, effects, min(kept, exercise.folder.rules.digits))
+    for digits_kept in digits if wanted else ():
+        rounded = student_who_rounds(graph, wanted, given, effects, digits_kept)
+        widths = envelopes(exercise, wanted, given, effects, min(digits_kept, exercise.folder.rules.digits))
         for index, variant in enumerate(drawn):
-            if kept >= exercise.folder.rules.digits:
-                own_answers = {q: _at(v, index, len(drawn), ranks[q]) for q, v in found.items()}
+            if digits_kept >= exercise.folder.rules.digits:
+                own_answers = {q: _at(v, index, len(drawn), ranks[q]) for q, v in rounded.items()}
                 _check_rounded_together(variant, own_answers, report)
             for part in variant.parts:
                 if not part.has_margin:
                     continue
-                own = _at(found[part.quantity], index, len(drawn), part.sort.rank)
+                value = _at(rounded[part.quantity], index, len(drawn), part.sort.rank)
                 width = _at(widths[part.quantity], index, len(drawn))
                 along = variant.key.reference.get(part.along)
-                gap = part.sort.distance(part, own, variant.key.reference[part.quantity], along, float(width))
-                report.counts[f"rounding to {kept}"] += 1
-                report.counts[f"outside the usual margin at {kept}"] += bool(
-                    part.sort.distance(part, own, variant.key.reference[part.quantity], along) > 1
+                gap = part.sort.distance(
+                    part, value, variant.key.reference[part.quantity], along, float(width)
+                )
+                report.counts[f"rounding to {digits_kept}"] += 1
+                report.counts[f"outside the usual margin at {digits_kept}"] += bool(
+                    part.sort.distance(part, value, variant.key.reference[part.quantity], along) > 1
                 )
                 if not gap <= 1:
                     report.fail(
-                        f"seed {variant.seed}: who rounds each step to {kept} digits lands {gap:.3g} half-widths "
+                        f"seed {variant.seed}: who rounds each step to {digits_kept} digits lands {gap:.3g} half-widths "
                         f"from {part.id}"
                     )
 
 
-def _check_rounded_together(variant: Variant, own: Mapping[str, Any], report: Report) -> None:
+def _check_rounded_together(variant: Variant, own_answers: Mapping[str, Any], report: Report) -> None:
     """The same for parts that are judged together, whose margin does not follow the rounding."""
     parts = {part.id: part for part in variant.parts}
     for name, ids in judges_of(variant):
-        answers = {i: own.get(parts[i].quantity, variant.key.reference[parts[i].quantity]) for i in ids}
+        answers = {
+            i: own_answers.get(parts[i].quantity, variant.key.reference[parts[i].quantity]) for i in ids
+        }
         for i, verdict in judged(variant, name, answers).items():
             report.counts["rounded, judged together"] += 1
             if verdict.share != 1:
@@ -119,18 +124,18 @@ def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
     apart = bool(variant.exercise.spec.either_order)
     for name in key.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
-        shown = {}
+        reported = {}
         for part, seen in visibility(key, name):
             tally[seen] += 1
             if seen == "shown":
-                shown[part.id] = (name, _written(key.wrong[name][part.quantity]))
+                reported[part.id] = (name, _written(key.wrong[name][part.quantity]))
         # What stands beside the shown answers where they are judged as a group.
-        beside = {i: ("", _written(v)) for _, answers in judged_wrong(key, name) for i, v in answers.items()}
-        sheet = next((s for s in sheets if not (apart or beside) and s.keys().isdisjoint(shown)), None)
+        context = {i: ("", _written(v)) for _, answers in judged_wrong(key, name) for i, v in answers.items()}
+        sheet = next((s for s in sheets if not (apart or context) and s.keys().isdisjoint(reported)), None)
         if sheet is None:
-            sheets.append({**beside, **shown})
+            sheets.append({**context, **reported})
         else:
-            sheet |= shown
+            sheet |= reported
     for sheet in sheets:
         _check_recognised(variant, sheet, report)
 
@@ -140,15 +145,15 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
 
     The first slip of every part on one sheet, then the second of every part, and so on.
     """
-    shown: list[dict[str, tuple[str, Any]]] = []
+    reported: list[dict[str, tuple[str, Any]]] = []
     for part in (part for part in variant.parts if not part.sort.is_open):
         reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
-        made = key.slip_values(part)
-        slips = [s for s in made if part.sort.distance(part, s[1], reference, None, width) > SHOWN]
-        for place, slip in enumerate(slips):
-            shown += [{}] * (place + 1 - len(shown))
-            shown[place] = {**shown[place], part.id: slip}
-    for sheet in shown:
+        values = key.slip_values(part)
+        slips = [s for s in values if part.sort.distance(part, s[1], reference, None, width) > SHOWN]
+        for index, slip in enumerate(slips):
+            reported += [{}] * (index + 1 - len(reported))
+            reported[index] = {**reported[index], part.id: slip}
+    for sheet in reported:
         marking = grade(variant, {part_id: value for part_id, (_, value) in sheet.items()})
         for part_id, (kind, value) in sheet.items():
             mark = marking[part_id]
@@ -163,15 +168,15 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
 
 
 def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
-    """Who errs once, much or little, and goes on rightly is marked wrong once."""
+    """Check that a student who errs once, much or little, and goes on rightly, is marked wrong once."""
     parts = [p for p in variant.parts if p.sort.is_followed and not p.judge]
     half = parts[variant.seed % 2 :: 2] or parts  # the other half on the next variant
     for first, wrong in ((part, value) for part in half for value in _little_and_much(part, key)):
-        answers, expected, own = {first.id: wrong}, {}, {first.quantity: wrong}
+        answers, expected, before = {first.id: wrong}, {}, {first.quantity: wrong}
         for part in parts[parts.index(first) + 1 :]:
-            follows = key.followed(part, own, (first.quantity,))
+            follows = key.followed(part, before, (first.quantity,))
             if follows is not None:
-                answers[part.id] = expected[part.id] = own[part.quantity] = follows
+                answers[part.id] = expected[part.id] = before[part.quantity] = follows
         marking = grade(variant, answers)
         for part_id in expected:
             report.counts["follow-through"] += 1
@@ -190,11 +195,11 @@ def _little_and_much(part: Part, key: Key) -> tuple[Any, ...]:
 def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any, report: Report) -> None:
     """The same for parts that are judged together."""
     parts = {part.id: part for part in variant.parts}
-    own = {first.quantity: wrong}
+    own_answers = {first.quantity: wrong}
     for name, ids in judges_of(variant):
-        follows = {i: key.followed(parts[i], own, own) for i in ids}
+        follows = {i: key.followed(parts[i], own_answers, own_answers) for i in ids}
         if None in follows.values() or any(
-            v.share != 1 for v in judged(variant, name, follows, own).values()
+            v.share != 1 for v in judged(variant, name, follows, own_answers).values()
         ):
             continue  # what is asked cannot be had from there
         marking = grade(variant, {first.id: wrong, **follows})

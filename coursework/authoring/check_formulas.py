@@ -30,7 +30,8 @@ _LAST_BITS = 1e-9  #: of a value: what computing it two ways may differ by
 
 @dataclass(frozen=True)
 class Proof:
-    """What evaluating a step's formula says: it gives the printed value, another one, or nothing for a reason."""
+    """Result of evaluating a step's formula: it gives the printed value, another one, or nothing for a
+    reason."""
 
     holds: bool = False
     gives: str = ""
@@ -42,9 +43,9 @@ def check_formulas(drawn: Sequence[Variant], report: Report) -> None:
     failed = set()
     for variant in drawn[:TRIED]:
         sheet = answer_sheet(variant, polygons=False)
-        shown = _shown_by_symbol(sheet)
+        printed = _shown_by_symbol(sheet)
         for step in sheet.steps:
-            proof = prove(step, shown)
+            proof = prove(step, printed)
             if proof is None:
                 continue
             report.counts["formulas proved"] += proof.holds
@@ -72,8 +73,9 @@ def _shown_by_symbol(sheet: AnswerSheet) -> dict[str, str]:
     return given | {step.symbol: _number_of(step.value) for step in sheet.steps}
 
 
-def prove(step: Step, shown: Mapping[str, str]) -> Proof | None:
-    """Whether a step's formula gives its value; None where it prints no number. ``shown``: printed numbers by symbol."""
+def prove(step: Step, by_symbol: Mapping[str, str]) -> Proof | None:
+    """Return the proof that a step's formula gives its value; None where it prints no number. ``printed``:
+    printed numbers by symbol."""
     printed = _number_of(step.value)
     is_angle = printed.endswith(r"^{\circ}")
     try:
@@ -82,13 +84,13 @@ def prove(step: Step, shown: Mapping[str, str]) -> Proof | None:
         return None  # an equation, a case
     if not step.formula:
         return Proof(why_not="told in words")
-    if not step.substitution and step.formula in shown:
-        return _compared(value, read(shown[step.formula], PRINTED_DIGITS), is_angle)
+    if not step.substitution and step.formula in by_symbol:
+        return _compared(value, read(by_symbol[step.formula], PRINTED_DIGITS), is_angle)
     try:
-        found = read(step.substitution or step.formula, PRINTED_DIGITS, is_angle=is_angle)
+        evaluated = read(step.substitution or step.formula, PRINTED_DIGITS, is_angle=is_angle)
     except NotEvaluable as fault:
         return Proof(why_not=str(fault))
-    return _compared(value, found, is_angle)
+    return _compared(value, evaluated, is_angle)
 
 
 def _number_of(value: str) -> str:
@@ -96,13 +98,13 @@ def _number_of(value: str) -> str:
     return value.partition(r"\ \mathrm")[0]
 
 
-def _compared(value: Reading, found: Reading, is_angle: bool) -> Proof:
-    gives = _told(found, is_angle)
-    if len(value.values) != len(found.values):
+def _compared(value: Reading, formula_value: Reading, is_angle: bool) -> Proof:
+    gives = _told(formula_value, is_angle)
+    if len(value.values) != len(formula_value.values):
         return Proof(gives=gives)
     is_told = True
     for printed, width, evaluated, moved in zip(
-        value.values, value.widths, found.values, found.widths, strict=True
+        value.values, value.widths, formula_value.values, formula_value.widths, strict=True
     ):
         allowed = _BEYOND_FIRST_ORDER * moved + width + _LAST_BITS * abs(printed)
         gap = evaluated - printed
@@ -119,6 +121,6 @@ def _turn_less(angle: float) -> float:
     return math.remainder(angle, 2 * math.pi) if math.isfinite(angle) else angle
 
 
-def _told(found: Reading, is_angle: bool) -> str:
+def _told(value: Reading, is_angle: bool) -> str:
     scale, unit = (1 / DEGREE, " deg") if is_angle else (1.0, "")
-    return "; ".join(f"{complex(v * scale):.7g}".replace("+0j", "") for v in found.values) + unit
+    return "; ".join(f"{complex(v * scale):.7g}".replace("+0j", "") for v in value.values) + unit

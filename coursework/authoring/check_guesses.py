@@ -27,14 +27,14 @@ def best_guess(drawn: Sequence[Variant]) -> Guess:
 
     A choice is guessed by its letter. Equations in symbols, measured numbers and what a person marks are not guessed.
     """
-    found: dict[str, Counter[str]] = {}
+    guesses: dict[str, Counter[str]] = {}
     total = 0.0
     for variant in drawn:
         for part in variant.parts:
             total += part.points
             if (text := _right(variant, part)) is not None:
-                found.setdefault(part.id, Counter())[text] += part.points  # type: ignore[assignment]
-    best = {part: counter.most_common(1)[0] for part, counter in found.items()}
+                guesses.setdefault(part.id, Counter())[text] += part.points  # type: ignore[assignment]
+    best = {part: counter.most_common(1)[0] for part, counter in guesses.items()}
     return Guess(
         sum(points for _, points in best.values()) / total if total else 0.0,
         {part: text for part, (text, _) in best.items()},
@@ -58,8 +58,8 @@ def check_guesses(drawn: Sequence[Variant], report: Report) -> None:
     guess = best_guess(drawn)
     report.counts["guessed"] += len(drawn)
     if guess.share > MOST + MOST / math.sqrt(len(drawn)):
-        told = ", ".join(f"{part} = {text}" for part, text in guess.texts.items())
+        answers = ", ".join(f"{part} = {text}" for part, text in guess.texts.items())
         report.fail(
             f"who writes the same on every sheet earns {100 * guess.share:.0f} % of the points, and at most "
-            f"{100 * MOST:.0f} % would do: {told}; vary what is drawn, shuffle cases, or weigh less what is always the same"
+            f"{100 * MOST:.0f} % would do: {answers}; vary what is drawn, shuffle cases, or weigh less what is always the same"
         )

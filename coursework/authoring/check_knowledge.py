@@ -38,12 +38,12 @@ def check_knowledge(drawn: Sequence[Variant], report: Report) -> None:
     for variant in drawn[:TRIED]:
         # Where parts are judged together many answers are right, and one number everywhere may be.
         numbers = [part.id for part in variant.parts if part.sort.is_scalar and not part.judge]
-        for who, answers in without_work(variant):
+        for method, answers in without_work(variant):
             marking = grade(variant, answers)
             report.counts["sheets without work"] += 1
             for i in numbers:
                 mark = marking[i]
                 if mark.verdict == "follow_through" and mark.points:
                     report.fail(
-                        f"seed {variant.seed}: who writes {who} is paid for {i}, which follows from nothing"
+                        f"seed {variant.seed}: who writes {method} is paid for {i}, which follows from nothing"
                     )

@@ -42,11 +42,11 @@ def check_loops(variant: Variant, report: Report) -> None:
 
 
 def equation_holds(variant: Variant, part: Part) -> bool:
-    """Whether a reference equation holds for the variant's own answers."""
+    """Return whether a reference equation holds for the variant's own answers."""
     exercise, equation = variant.exercise, variant.key.reference[part.quantity]
     angles = {n for loop in exercise.solution.loops.values() for n in loop.angles}
-    found = exercise.solve(**variant.used, only=part.variables, effects=variant.effects)
-    values = {n: math.radians(v) if n in angles else v for n, v in found.items()}
+    solved = exercise.solve(**variant.used, only=part.variables, effects=variant.effects)
+    values = {n: math.radians(v) if n in angles else v for n, v in solved.items()}
     size = max(abs(v) for n, v in values.items() if n not in angles) ** 2
     return abs(parse_equation(str(equation), part.variables).difference(values)) <= RESIDUAL * size
 

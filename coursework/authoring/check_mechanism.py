@@ -48,7 +48,7 @@ def check_mechanism(drawn: Sequence[Variant], report: Report) -> None:
 
 
 def counts(mechanism: Mechanism) -> Counts:
-    """What the joint graph counts of it: bodies, pairs, degrees of freedom."""
+    """Return the counts of the joint graph: bodies, pairs, degrees of freedom."""
     number = {GROUND: FRAME, **{name: k for k, name in enumerate(mechanism.names, start=FRAME + 1)}}
     joints: list[dict[str, Any]] = []
     for pin in mechanism.pins:
@@ -61,7 +61,8 @@ def counts(mechanism: Mechanism) -> Counts:
 
 
 def faults(variant: Variant) -> Iterator[str]:
-    """What does not agree in a variant: a pin that is not met, a rate that is another than the solution's."""
+    """Yield the contradictions in a variant: a pin that is not met, a rate that differs from the
+    solution's."""
     exercise = variant.exercise
     scene = Scene(exercise, variant.used)
     try:
@@ -83,13 +84,13 @@ def _other_shifts(scene: Scene, stance: Stance, angle: float, size: float) -> It
     if not scene.linkage.free:
         return
     near = scene.pose(angle + _STEP * np.array([-1.0, 1.0]), by_joints=True)
-    for own in scene.linkage.free:
-        slope = (near.origins[own, 1] - near.origins[own, 0]) / (2 * _STEP)
-        if not abs(slope - stance.origin_rates[own, 0]) <= 1e-6 * size:
-            name = scene.mechanism.names[own]
+    for body in scene.linkage.free:
+        slope = (near.origins[body, 1] - near.origins[body, 0]) / (2 * _STEP)
+        if not abs(slope - stance.origin_rates[body, 0]) <= 1e-6 * size:
+            name = scene.mechanism.names[body]
             yield (
                 f"body {name} goes otherwise than its slides let it: its origin by {slope * 1000:.4g} mm a radian of the "
-                f"driver, its joints by {stance.origin_rates[own, 0] * 1000:.4g}"
+                f"driver, its joints by {stance.origin_rates[body, 0] * 1000:.4g}"
             )
 
 
@@ -120,6 +121,6 @@ def _other_rates(variant: Variant, scene: Scene, stance: Stance) -> Iterator[str
         if rate is None or rate in variant.used:
             continue
         stated = exercise.solve(**variant.used, only=rate, effects=variant.effects)[rate]
-        found = float(stance.rates[number, 0]) * speed
-        if not abs(found - stated) <= _AGREES * largest:
-            yield f"body {body.name} turns at {found:.6g} rad/s by its joints, and {rate} = {stated:.6g}"
+        speed_found = float(stance.rates[number, 0]) * speed
+        if not abs(speed_found - stated) <= _AGREES * largest:
+            yield f"body {body.name} turns at {speed_found:.6g} rad/s by its joints, and {rate} = {stated:.6g}"

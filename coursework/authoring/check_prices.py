@@ -66,13 +66,13 @@ def usual_kinds(exercise: CourseExercise, mistake: str, drawn: Sequence[Variant]
                 yield error.kind
 
 
-def _same(one: np.ndarray, other: np.ndarray, right: np.ndarray, turn: float) -> bool:
-    """Whether two columns are the same, and are anything at all."""
-    there = np.isfinite(one) & np.isfinite(other)
-    gap = gaps(one, other, turn)
-    moves = np.abs(one - right) > _SAME * np.maximum(np.abs(right), 1e-300)
+def _same(first: np.ndarray, other: np.ndarray, right: np.ndarray, turn: float) -> bool:
+    """Return whether two columns agree where both are finite, and are not right everywhere there."""
+    there = np.isfinite(first) & np.isfinite(other)
+    gap = gaps(first, other, turn)
+    moves = np.abs(first - right) > _SAME * np.maximum(np.abs(right), 1e-300)
     return bool(
         there.any()
         and moves[there].any()
-        and np.all(gap[there] <= _SAME * np.maximum(np.abs(one[there]), turn / 360))
+        and np.all(gap[there] <= _SAME * np.maximum(np.abs(first[there]), turn / 360))
     )

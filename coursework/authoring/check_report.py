@@ -1,4 +1,4 @@
-"""What a check of exercises found, and how it is told."""
+"""Report of a check of exercises, and its printed form."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 
 @dataclass
 class Report:
-    """What the check of one exercise found."""
+    """Results of the check of one exercise."""
 
     name: str
     variants: int = 0
@@ -48,14 +48,14 @@ class Report:
     def passed(self) -> bool:
         return not self.failures
 
-    def fail(self, what: str) -> None:
+    def fail(self, message: str) -> None:
         """A promise is broken: how, in one line; said once, however often it is met."""
-        what = what.removeprefix(f"{self.name}: ")  # whoever prints it says whose it is
-        if what not in self.failures:
-            self.failures.append(what)
+        message = message.removeprefix(f"{self.name}: ")  # whoever prints it says whose it is
+        if message not in self.failures:
+            self.failures.append(message)
 
     def as_json(self) -> dict[str, Any]:
-        """What ``coursework check --json`` prints of it."""
+        """Return the report as ``coursework check --json`` prints it."""
         return {
             "exercise": self.name,
             "variants": self.variants,
@@ -93,7 +93,7 @@ def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
 
 
 def _tried(report: Report) -> dict[str, int]:
-    """How many answers of each kind were marked; not the kinds that the exercise has none of."""
+    """Return the number of marked answers by sort; sorts that the exercise does not have are left out."""
     counts = report.counts
     kinds = {
         "right answers": counts["right answers"],
@@ -110,47 +110,48 @@ def _tried(report: Report) -> dict[str, int]:
 
 
 def notes(reports: Sequence[Report]) -> list[str]:
-    """What was tried, and what the variants are like: conditioning, the branches met, what refuses most draws."""
+    """Return the counts of trials, and the properties of the variants: conditioning, branches met,
+    constraints that refuse most draws."""
     lines = []
     for r in reports:
         if not r.variants:
             continue
-        told = (
+        sentences = (
             [f"tried {', '.join(f'{count} {kind}' for kind, count in _tried(r).items())}"]
             if _tried(r)
             else []
         )
         median, largest = r.conditioning
         if math.isfinite(median):
-            told.append(
+            sentences.append(
                 f"rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} % at most"
             )
         for name, cases in r.cases.items():
             if len(cases) == 1 and cases.total() < r.variants:
                 continue  # a question of a bank: its answer is the same wherever it is asked
             met = ", ".join(f"{case} {100 * n / r.variants:.0f} %" for case, n in cases.most_common())
-            told.append(f"{name}: {met}")
+            sentences.append(f"{name}: {met}")
         if r.unproved:
-            told.append(f"formulas not proved: {_by_reason(r.unproved)}")
+            sentences.append(f"formulas not proved: {_by_reason(r.unproved)}")
         if r.by_person:
-            told.append(f"marked by a person: {', '.join(sorted(r.by_person))}")
+            sentences.append(f"marked by a person: {', '.join(sorted(r.by_person))}")
         if r.counts["units proved"]:
-            told.append(f"units proved: {r.counts['units proved']}")
+            sentences.append(f"units proved: {r.counts['units proved']}")
         if r.unproved_units:
-            told.append(f"units not proved: {_by_reason(r.unproved_units)}")
+            sentences.append(f"units not proved: {_by_reason(r.unproved_units)}")
         if r.unprotected:
             shares = (
                 f"{q} ({', '.join(f'{k} {100 * s:.0f} %' for k, s in kinds.items())})"
                 for q, kinds in r.unprotected.items()
             )
-            told.append(f"unseen on some variants: {', '.join(shares)}")
+            sentences.append(f"unseen on some variants: {', '.join(shares)}")
         if r.unmade:
-            told.append(f"no usual errors are made of: {', '.join(sorted(r.unmade))}")
+            sentences.append(f"no usual errors are made of: {', '.join(sorted(r.unmade))}")
         if r.refused:
             flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
-            told.append(f"passed over most for {flaws}")
-        if told:
-            lines.append(f"{r.name}: {'; '.join(told)}")
+            sentences.append(f"passed over most for {flaws}")
+        if sentences:
+            lines.append(f"{r.name}: {'; '.join(sentences)}")
     return lines
 
 

@@ -14,14 +14,14 @@ TRIED = 5  #: variants whose quantities are followed: enough to meet the branche
 
 def check_units(drawn: Sequence[Variant], report: Report) -> None:
     """Each quantity's formula gives its declared unit; what cannot be told is listed with its reason."""
-    found = Findings()
+    findings = Findings()
     for variant in drawn[:TRIED]:
-        found.merge(proof_of(variant))
-    for fault in found.wrong.values():
+        findings.merge(proof_of(variant))
+    for fault in findings.wrong.values():
         report.fail(fault)
-    report.counts["units proved"] += len(found.proved)
-    report.counts["units not proved"] += len(found.unproved)
-    report.unproved_units |= found.unproved
+    report.counts["units proved"] += len(findings.proved)
+    report.counts["units not proved"] += len(findings.unproved)
+    report.unproved_units |= findings.unproved
 
 
 def proof_of(variant: Variant) -> Findings:
@@ -29,9 +29,9 @@ def proof_of(variant: Variant) -> Findings:
     graph = exercise.solution.graph
     mixed = {p.quantity for p in exercise.spec.parts if len(p.sort.units(p.unit)) > 1}
     wanted = tuple(name for name in graph.quantities if name not in mixed)
-    found = prove(graph, variant.used, _declared(exercise), variant.effects, wanted)
-    found.unproved |= dict.fromkeys(mixed, "its columns are in two units")
-    return found
+    proof = prove(graph, variant.used, _declared(exercise), variant.effects, wanted)
+    proof.unproved |= dict.fromkeys(mixed, "its columns are in two units")
+    return proof
 
 
 def _declared(exercise: CourseExercise) -> dict[str, str]:

@@ -29,11 +29,11 @@ DIGITS = 5  #: significant digits of an answer
 def check_usual_errors(drawn: Sequence[Variant], report: Report) -> None:
     """Each error that shows is told by its kind, or as one of several; some on each variant, all over many."""
     for number, variant in enumerate(drawn[:TRIED]):
-        shown = {part.id: list(_shown(part, variant.key)) for part in variant.parts}
+        spellings = {part.id: list(_shown(part, variant.key)) for part in variant.parts}
         parts = {part.id: part for part in variant.parts}
-        most = max(map(len, shown.values()), default=0)
-        for place in range(number % 7, most, 7):
-            sheet = {i: errors[place] for i, errors in shown.items() if place < len(errors)}
+        most = max(map(len, spellings.values()), default=0)
+        for index in range(number % 7, most, 7):
+            sheet = {i: errors[index] for i, errors in spellings.items() if index < len(errors)}
             answers = {i: significant(value, DIGITS) for i, (_, value) in sheet.items()}
             marking = grade(variant, answers)
             for i, (error, _) in sheet.items():

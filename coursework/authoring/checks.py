@@ -142,7 +142,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     try:
         drawn = distinct_variants(exercise, 0, count, lang, report.refused, (ALL,))
     except Starved as fault:
-        if not any(told in str(fault) for told in report.failures):
+        if not any(failure in str(fault) for failure in report.failures):
             report.fail(str(fault))
         drawn = valid_variants(exercise, exercise.variants(range(count), lang, (ALL,)))
     report.variants = len(drawn)
@@ -176,7 +176,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
 
 
 def _describe(drawn: Sequence[Variant], report: Report) -> None:
-    """How alike the variants are in difficulty: conditioning, and the branches that are to be chosen."""
+    """Record the spread of the variants' difficulty: conditioning, and the branches to choose."""
     shares = [conditioning(variant.key) for variant in drawn]
     report.conditioning = float(np.median(shares)), max(shares)
     for variant in drawn:
@@ -223,12 +223,12 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
                 text.label(name, case)
         if exercise.spec.figure and not text.section("figure").text:
             report.fail(f"{text.source}: the figure has no words")
-        told = exercise.texts.text("solutions", lang, _every_name(exercise, variant))
-        if exercise.film and not told.section("motion").text:
-            report.fail(f"{told.source}: the film has no words")
+        section_text = exercise.texts.text("solutions", lang, _every_name(exercise, variant))
+        if exercise.film and not section_text.section("motion").text:
+            report.fail(f"{section_text.source}: the film has no words")
         for name in exercise.solution.mistakes:
-            if not told.section(f"mistake {name}").text:
-                report.fail(f"{told.source}: mistake {name} is told in no words")
+            if not section_text.section(f"mistake {name}").text:
+                report.fail(f"{section_text.source}: mistake {name} is told in no words")
         report.counts["texts"] += 1
 
 
@@ -237,7 +237,8 @@ def _every_name(exercise: CourseExercise, variant: Variant) -> dict[str, object]
 
 
 def check_needs(exercise: CourseExercise, report: Report) -> bool:
-    """What is asked follows from what is given; False where a function needs what nothing gives."""
+    """Check that the asked quantities follow from the given ones; return False where a function needs what
+    nothing gives."""
     try:
         exercise.plan([part.quantity for part in exercise.judged_parts], effects=exercise.spec.effects)
     except MissingQuantity as fault:
@@ -254,11 +255,11 @@ def check_reals(exercise: CourseExercise, report: Report) -> bool:
     for seed in range(_SOME):
         try:
             variant = exercise.variant(seed, parts=(ALL,))
-            found = variant.quantities(variant.asked_quantities)
+            values = variant.quantities(variant.asked_quantities)
         except Exception:
             continue  # it is told by what needs it
         try:
-            refuse_complex(exercise, variant.parts, found)
+            refuse_complex(exercise, variant.parts, values)
         except BadCourse as fault:
             report.fail(str(fault))
             return False
@@ -266,7 +267,7 @@ def check_reals(exercise: CourseExercise, report: Report) -> bool:
 
 
 def check_symbols(exercise: CourseExercise, report: Report) -> None:
-    """What is given or asked bears its symbol on the sheet too, not in the solution alone."""
+    """Check that each given or asked quantity has its symbol on the sheet too, not in the solution alone."""
     on_the_sheet = {*exercise.spec.given, *(part.quantity for part in exercise.spec.parts)}
     for name, symbol in exercise.solution.symbols.items():
         # Where the exercise has its own, another form in formulas, a fraction say, is the author's choice.
@@ -285,12 +286,12 @@ def check_known(exercise: CourseExercise, report: Report) -> None:
     """The solution gives the values known without it."""
     if not exercise.solution.known:
         report.fail("the solution states no KNOWN case; closure alone cannot tell the branch")
-    for given, expected, *called in exercise.solution.known:
-        effects = called[0] if called else exercise.spec.effects
-        found = exercise.solve(**given, only=tuple(expected), effects=effects)
+    for given, expected, *effect_names in exercise.solution.known:
+        effects = effect_names[0] if effect_names else exercise.spec.effects
+        values = exercise.solve(**given, only=tuple(expected), effects=effects)
         for name, value in expected.items():
-            if not agrees(found[name], value, is_angle=_is_orientation(exercise, name)):
-                report.fail(f"known case {dict(given)}: {name} is {found[name]!r}, not {value!r}")
+            if not agrees(values[name], value, is_angle=_is_orientation(exercise, name)):
+                report.fail(f"known case {dict(given)}: {name} is {values[name]!r}, not {value!r}")
             report.counts["known values"] += 1
 
 
@@ -298,17 +299,17 @@ def _is_orientation(exercise: CourseExercise, name: str) -> bool:
     return any(p.quantity == name and p.sort.turn for p in exercise.spec.parts)
 
 
-def agrees(found: Any, expected: Any, *, is_angle: bool = False) -> bool:
+def agrees(value: Any, expected: Any, *, is_angle: bool = False) -> bool:
     """A printed text agrees to its last digit, a number to 1e-9 relative, a vector likewise."""
-    if isinstance(found, str):
-        return found == expected
+    if isinstance(value, str):
+        return value == expected
     if isinstance(expected, str):
         digits = len(expected.partition(".")[2])
         allowed = 0.5 * 10.0**-digits * (1 + 1e-9)
     else:
         allowed = 1e-9 * max(1.0, float(np.max(np.abs(expected))))
-    gap = _numbers(found) - _numbers(expected)
-    if np.shape(gap) != np.shape(found):
+    gap = _numbers(value) - _numbers(expected)
+    if np.shape(gap) != np.shape(value):
         return False
     if is_angle:
         gap = gap - 360.0 * np.rint(gap / 360.0)
@@ -357,24 +358,24 @@ def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Rep
         for part in (part for part in variant.parts if not part.sort.is_open):
             value = together[part.quantity]
             varies = isinstance(value, np.ndarray) and value.ndim > part.sort.rank
-            one = value[index] if varies and len(value) == len(drawn) else value
-            if not _same(one, alone[part.quantity], part):
+            element = value[index] if varies and len(value) == len(drawn) else value
+            if not _same(element, alone[part.quantity], part):
                 report.fail(
-                    f"seed {variant.seed}: {part.id} is {alone[part.quantity]} alone, {one} in an array"
+                    f"seed {variant.seed}: {part.id} is {alone[part.quantity]} alone, {element} in an array"
                 )
             report.counts["arrays"] += 1
 
 
-def _same(one: Any, other: Any, part: Part) -> bool:
+def _same(first: Any, other: Any, part: Part) -> bool:
     if isinstance(other, str):
-        return str(one) == other
+        return str(first) == other
     if isinstance(other, (int, float)):
-        gap = one - other
+        gap = first - other
         gap = math.remainder(gap, part.sort.turn) if part.sort.turn else gap
         return abs(gap) <= 1e-9 * max(1.0, abs(other))
-    if np.shape(one) != np.shape(other):
+    if np.shape(first) != np.shape(other):
         return False
-    gap = _numbers(one) - _numbers(other)
+    gap = _numbers(first) - _numbers(other)
     return bool(np.all(np.abs(gap) <= 1e-9 * np.maximum(1.0, np.abs(other))))
 
 
@@ -387,13 +388,13 @@ def check_rendering(exercise: CourseExercise, count: int, report: Report) -> Non
     for lang in exercise.languages:
         for variant in exercise.variants(range(count), lang, (ALL,)):
             handout, sheet = handout_of(variant), answer_sheet(variant)
-            for made in (
+            for document in (
                 renderer.pdf(handout),
                 renderer.html(handout),
                 renderer.notebook(handout),
                 renderer.pdf(sheet),
                 renderer.html(sheet),
             ):
-                report.counts["sheets rendered"] += bool(made)
+                report.counts["sheets rendered"] += bool(document)
     if exercise.film and count:
         Animation(exercise.variant(0), count=8).frames  # noqa: B018  a film that cannot be shown says so here

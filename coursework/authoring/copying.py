@@ -29,7 +29,7 @@ _PICTURE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
 
 
 class Copied(NamedTuple):
-    """What became of a copy: files written, and files that were there already, the same."""
+    """Result of a copy: files written, and identical files that existed already."""
 
     written: list[Path]
     there: list[Path]
@@ -67,10 +67,10 @@ def copy_exercise(source: Folder, name: str, target: Path, renamed: str, langs: 
             raise BadInput(
                 f"{path}{more} exists already, with other content than {name} needs; copy it into another folder"
             )
-    made = {} if is_course else course_files(target, langs)
-    written = [path for path in (*made, *files) if path not in there]
+    scaffold = {} if is_course else course_files(target, langs)
+    written = [path for path in (*scaffold, *files) if path not in there]
     for path in written:
-        write_whole(path, files[path] if path in files else made[path])
+        write_whole(path, files[path] if path in files else scaffold[path])
     if not is_course:
         (target / "templates").mkdir(parents=True, exist_ok=True)
     return Copied(written, there)
@@ -99,7 +99,7 @@ class _Copy:
         return own_folder(self.source, kind, self.name)
 
     def _own(self, kind: str) -> Iterator[Path]:
-        """What bears the name of the exercise, texts in the languages that are asked for."""
+        """Yield the files that bear the name of the exercise, texts in the wanted languages only."""
         for path in own_files(self.source, kind, self.name):
             if path.suffix == ".draws" and self.renamed != self.name:
                 continue  # another name draws otherwise
@@ -108,11 +108,11 @@ class _Copy:
                 yield path
 
     def _needed(self, path: Path) -> list[Path]:
-        """What a file names: modules, texts, data and pictures of the course."""
+        """Return the files that a file names: modules, texts, data and pictures of the course."""
         if path.suffix == ".py":
             tree = parsed(path)
-            found = [*imported(tree, path), *named(tree, path)]
-            return found + [other for each in found for other in self._beside(each)]
+            paths = [*imported(tree, path), *named(tree, path)]
+            return paths + [other for each in paths for other in self._beside(each)]
         if path.name.endswith(".md.j2"):
             return [*included(self.source, path), *self._pictures(path)]
         return []
@@ -135,7 +135,8 @@ class _Copy:
     # -------------------------------------------------------------------- written
 
     def _place(self, path: Path) -> Path:
-        """Where a file goes: under the new name if it is the exercise's own, as a shared one if it is another's."""
+        """Return the target of a file: under the new name if it is the exercise's own, unchanged if it is
+        shared."""
         relative = path.relative_to(self.source.root)
         if path.name == f"_{self.name}_keep.py":
             return relative.with_name(f"_{self.renamed}_keep.py")  # the conditions beside its solution
@@ -154,8 +155,10 @@ class _Copy:
         if path.suffix == ".py":
             text = self._with_imports(text, path)
         # A file is named by what follows its stem: vocabulary.toml, vocabulary.*.md.j2.
-        own = rf"(?<![\w./]){re.escape(self.name)}(?=\.(?:[\w*]+\.)*(?:md\.j2|toml|csv|json|svg|png|py)\b)"
-        return re.sub(own, self.renamed, text).encode("utf-8")
+        own_name = (
+            rf"(?<![\w./]){re.escape(self.name)}(?=\.(?:[\w*]+\.)*(?:md\.j2|toml|csv|json|svg|png|py)\b)"
+        )
+        return re.sub(own_name, self.renamed, text).encode("utf-8")
 
     def _with_imports(self, text: str, path: Path) -> str:
         """A module that imports what was renamed by its new name."""

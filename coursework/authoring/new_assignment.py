@@ -38,29 +38,29 @@ def new_assignment(
         raise BadInput(f"an assignment asks exercises: coursework new assignment {path} {some}")
     if path.exists():
         raise BadInput(f"{path} exists already; choose another name")
-    asked = "".join(_asked(course, name) for name in names)
+    exercises = "".join(_asked(course, name) for name in names)
     for lang in langs or ():
         if silent := [name for name in names if lang not in course[name].languages]:
             speaks = ", ".join(course[silent[0]].languages)
             raise BadInput(f"{silent[0]} is not written in {lang!r}; it is in {speaks}")
-    common = [one for one in course.folder.languages if all(one in course[n].languages for n in names)]
+    common = [code for code in course.folder.languages if all(code in course[n].languages for n in names)]
     chosen = tuple(
-        langs or [one for one in (around, course.folder.language) if one in common][:1] or common[:1]
+        langs or [code for code in (around, course.folder.language) if code in common][:1] or common[:1]
     )
     head = _head(path.stem, course, chosen, tuple(dict.fromkeys((*chosen, *common))))
-    write_whole(path, (head + asked).encode("utf-8"))
+    write_whole(path, (head + exercises).encode("utf-8"))
     return path
 
 
 def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence[str]) -> str:
-    said = {lang: words(lang)["assignment"] for lang in langs}
-    title = _texts({lang: f"{s['title']} ({stem})" for lang, s in said.items()})
+    texts = {lang: words(lang)["assignment"] for lang in langs}
+    title = _texts({lang: f"{s['title']} ({stem})" for lang, s in texts.items()})
     return "\n".join([
         f"title = {title}",
         f"course = {_texts({lang: course.folder.title(lang) for lang in langs})}",
         "# date = 2026-12-04",
         '# duration = "1 h 30"',
-        f"# instructions = {_texts({lang: s['instructions'] for lang, s in said.items()})}",
+        f"# instructions = {_texts({lang: s['instructions'] for lang, s in texts.items()})}",
         "# cover = true",
         "mark = { of = 20, step = 0.5 }",
         'versions = "each"      # 4: versions A to D, dealt out; 1: the same for all',
@@ -68,7 +68,7 @@ def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence
         '# roster = "class.csv"',
         f'lang = "{",".join(sheets)}"',
         f'out = "{stem}"',
-        *(f"# {said[lang]['secret_line']}" for lang in langs),
+        *(f"# {texts[lang]['secret_line']}" for lang in langs),
         f'secret = "{Secret.new().text}"',
         "",
     ])  # fmt: skip

@@ -1,4 +1,5 @@
-"""What a students' copy draws by: which candidate of each seed is its variant, recorded beside the exercise.
+"""Recorded draws of a students' copy: the candidate that is the variant of each seed, in a file beside the
+exercise.
 
 An exercise that is kept by its solution cannot choose its variants without it. ``NAME.draws`` holds, for the first
 seeds in order, the place of the one that is chosen: no condition, and nothing of an answer. Written by
@@ -23,27 +24,27 @@ SEEDS = 1000  #: that are recorded
 
 
 def path_of(exercise: CourseExercise[Any]) -> Path:
-    """Where the draws of an exercise are recorded."""
+    """Return the path of an exercise's recorded draws."""
     home = exercise.folder.home("exercises", exercise.name)
     assert home is not None, f"{exercise.name} has a file"
     return home.with_name(f"{exercise.name}.draws")
 
 
 def recorded(exercise: CourseExercise[Any]) -> str:
-    """What the file says."""
+    """Return the content of the file."""
     places = draws.places(exercise.name, exercise.drawing, range(SEEDS))
     return textwrap.fill(" ".join(map(str, places)), 120) + "\n"
 
 
 def fault(exercise: CourseExercise[Any]) -> str:
-    """What is wrong with the record of an exercise; nothing where it is as it should be, or none is needed."""
+    """Return the fault of an exercise's record; an empty text where it is right, or where none is needed."""
     path = path_of(exercise)
     if not exercise.spec.kept_by_solution:
         return f"{path} is not read: the exercise draws by itself" if path.exists() else ""
-    told = path.read_text("ascii") if path.is_file() else ""
-    if told == recorded(exercise):
+    content = path.read_text("ascii") if path.is_file() else ""
+    if content == recorded(exercise):
         return ""
-    why = "is out of date" if told else "is missing"
+    why = "is out of date" if content else "is missing"
     return f"{path} {why}; write it: python -m coursework.authoring.recorded_draws {exercise.name}"
 
 

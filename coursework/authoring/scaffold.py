@@ -48,7 +48,7 @@ def _write_course_files(folder: Path, langs: Collection[str]) -> list[Path]:
 
 
 def course_files(folder: Path, langs: Collection[str]) -> dict[Path, bytes]:
-    """What a course in these languages has besides its exercises."""
+    """Return the files of a course in these languages, without its exercises."""
     content = (SKELETON / "exercises" / "course.toml").read_text("utf-8")
     lines = [
         line

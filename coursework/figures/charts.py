@@ -133,9 +133,9 @@ def scatter(
     vertical: str,
     *,
     joined: bool = True,
-    whole: bool = False,
+    integers: bool = False,
 ) -> bytes:
-    """Return named series of points on two logarithmic axes, as SVG; ``whole`` puts whole numbers on a linear
+    """Return named series of points on two logarithmic axes, as SVG; ``integers`` puts whole numbers on a linear
     axis."""
     pyplot = _pyplot()
     marks = "osD^v<>Px*hp+d"
@@ -144,9 +144,9 @@ def scatter(
         for number, (name, (x, y)) in enumerate(points.items()):
             line = LINES[number % len(LINES)] if joined else ""
             panel.plot(x, y, marks[number % len(marks)] + line, label=name, markersize=5, linewidth=0.9)
-        across = "linear" if whole else "log"
+        across = "linear" if integers else "log"
         panel.set(xscale=across, yscale="log", xlabel=horizontal, ylabel=vertical, title=title)
-        if whole:
+        if integers:
             panel.set_xticks(sorted({int(v) for x, _ in points.values() for v in x}))
         panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
         return _svg(pyplot, figure)

@@ -289,7 +289,7 @@ def _stages(frames: list[list[Element]], scale: float, middle: complex) -> list[
         return sides[key]
 
     bars = [[bar for element in elements for bar in element.bars()] for elements in frames]
-    stages = [_Stage(scale, own, middle, ground) for own in bars]
+    stages = [_Stage(scale, part, middle, ground) for part in bars]
     for stage, elements in zip(stages, frames, strict=True):
         for element in elements:
             element.draw(stage)

@@ -199,12 +199,12 @@ def _dangers(root: ElementTree.Element) -> Iterator[str]:
         ):  # those of drawing programs are inert
             yield f"<{name}>"
         for attribute, value in element.attrib.items():
-            own = attribute.rpartition("}")[2].lower()
-            if own.startswith("on"):
-                yield f"{own}=…"
-            if own in _LINKS and not re.match(r"\s*(?:#|data:image/(?:png|jpe?g|gif);)", value):
+            local_name = attribute.rpartition("}")[2].lower()
+            if local_name.startswith("on"):
+                yield f"{local_name}=…"
+            if local_name in _LINKS and not re.match(r"\s*(?:#|data:image/(?:png|jpe?g|gif);)", value):
                 yield f"a link to {value[:40]!r}"
             if "}" not in attribute and _FETCHES.search(value):
-                yield f"{own}={value[:40]!r}"
+                yield f"{local_name}={value[:40]!r}"
         if name == "style" and _FETCHES.search(element.text or ""):
             yield "a style that fetches"

@@ -48,21 +48,21 @@ class LabelPosition(NamedTuple):
 
 
 @lru_cache(maxsize=4)
-def _places(beside: bool, angle: bool) -> tuple[LabelPosition, ...]:
+def _places(is_beside: bool, angle: bool) -> tuple[LabelPosition, ...]:
     """Return all candidate positions for a kind of label, cheapest first; costs are in mm from the best
     position."""
     costed: list[tuple[float, tuple[complex, float, float | None]]] = []
-    if beside:
+    if is_beside:
         for side in (1, -1):
             for fraction in _FRACTIONS:
                 for step in _STEPS[:6]:
                     cost = step + 4 * abs(fraction - 0.5) + 0.4 * (side < 0)
                     costed.append((cost, (complex(side), step, fraction)))
-    late, turning = (3.0 if beside else 0.0), (1.6 if angle else 0.7)
+    late, turning = (3.0 if is_beside else 0.0), (1.6 if angle else 0.7)
     for ray in range(_ROUND):
         away = math.tau * min(ray, _ROUND - ray) / _ROUND
         # Beside a line, those round its middle are for labels with a leader.
-        for step in _STEPS[5:] if beside else _STEPS:
+        for step in _STEPS[5:] if is_beside else _STEPS:
             costed.append((late + step + turning * away, (turn(360 * ray / _ROUND), step, None)))
     rays: dict[tuple[complex, float | None], int] = {}
     for _, (direction, _, along) in costed:
@@ -375,8 +375,10 @@ class _Rivals:
         if not self.lines:
             return 0
         if leader is None:
-            own = 0.0 if self.own is None else _gap(self.own, center.real, center.imag, half.real, half.imag)
-            return 3 if self._within(own + _NEARER, center, half) else 0
+            own_gap = (
+                0.0 if self.own is None else _gap(self.own, center.real, center.imag, half.real, half.imag)
+            )
+            return 3 if self._within(own_gap + _NEARER, center, half) else 0
         if any(_crosses(line, *leader) for line in self.lines):
             return 2
         return int(self._within(_ALOOF, center, half))

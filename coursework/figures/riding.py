@@ -85,12 +85,12 @@ def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.nd
     a, b = segments
     middle, d = (a + b) / 2, (b - a) / 2
     across, up = half[0] + abs(d.real), half[1] + abs(d.imag)
-    beside = half[0] * abs(d.imag) + half[1] * abs(d.real)
+    extent = half[0] * abs(d.imag) + half[1] * abs(d.real)
     met = np.zeros(centres.shape, dtype=bool)
     for index, row in enumerate(centres):
         gap = middle - row[:, None]
         hit = (abs(gap.real) < across) & (abs(gap.imag) < up)
-        hit &= abs(gap.real * d.imag - gap.imag * d.real) < beside
+        hit &= abs(gap.real * d.imag - gap.imag * d.real) < extent
         met[index] = hit.any(axis=1)
     return met
 

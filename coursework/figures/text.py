@@ -221,8 +221,8 @@ class _LabelParser:
         elif name in GREEK or name in _SIGNS:
             self.letters(GREEK.get(name) or _SIGNS[name], style)
         else:
-            known = [*GREEK, *_SIGNS, *_ACCENTS, *_UPRIGHT]
-            raise unknown("label command", name, known, f"label {self.label!r}")
+            commands = [*GREEK, *_SIGNS, *_ACCENTS, *_UPRIGHT]
+            raise unknown("label command", name, commands, f"label {self.label!r}")
 
     def letters(self, text: str, style: LetterRun) -> None:
         style = replace(style, italic=style.italic and text.isalpha())

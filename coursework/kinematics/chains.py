@@ -206,9 +206,9 @@ class ClosedChain:
         for _ in range(_STEPS):
             if not len(working):
                 break
-            own = {name: value[working] for name, value in values.items()}
+            working_values = {name: value[working] for name, value in values.items()}
             scale = exponents[working]
-            jacobian = self._jacobian(own | self._named(x[working]), scale)
+            jacobian = self._jacobian(working_values | self._named(x[working]), scale)
             step = _steps(jacobian, -gaps[working], 0.0)
             trial, trial_gaps, trial_best, share = (
                 x[working],
@@ -219,7 +219,7 @@ class ClosedChain:
             pending = np.ones(len(working), dtype=bool)
             for _ in range(_HALVINGS):
                 moved = x[working] + share[:, None] * step
-                moved_gaps, _ = self._gaps(own, moved, scale)
+                moved_gaps, _ = self._gaps(working_values, moved, scale)
                 better = pending & (_norm(moved_gaps) < best[working])
                 trial = np.where(better[:, None], moved, trial)
                 trial_gaps = np.where(better[:, None], moved_gaps, trial_gaps)

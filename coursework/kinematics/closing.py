@@ -183,6 +183,6 @@ class Opening:
         return _share(self._close.folded, self._close.fold, self._flat_q)
 
 
-def _share(part: Any, whole: Any, flat: Any) -> Any:
+def _share(part: Any, total: Any, flat: Any) -> Any:
     """Return part / whole, and 0 where the factor of a smooth change point is divided out."""
-    return part / whole if flat is False else np.where(flat, 0.0, part / whole)
+    return part / total if flat is False else np.where(flat, 0.0, part / total)

@@ -45,8 +45,8 @@ def turning_points(slope: Slope, parameters: Sequence[Any], *, samples: int = 24
     count = len(parameters[0])
     rows, angles = [np.empty(0, dtype=np.intp)], [np.empty(0)]
     for start in range(0, count, _ROWS):
-        own, result = _turning_points(slope, [p[start : start + _ROWS] for p in parameters], samples)
-        rows.append(own + start)
+        points, result = _turning_points(slope, [p[start : start + _ROWS] for p in parameters], samples)
+        rows.append(points + start)
         angles.append(result)
     return _in_rows(np.concatenate(rows), np.concatenate(angles), count)
 
@@ -83,9 +83,9 @@ def _dips(slope: Slope, parameters: list[np.ndarray], theta: np.ndarray, seen: n
     if not len(row):
         return []
     sign, step = sign[row, column], _TURN / len(theta)
-    own = [p[row] for p in parameters]
+    row_parameters = [p[row] for p in parameters]
     deepest, depth = _lowest(
-        lambda angle: sign * slope(angle, *own), theta[column] - step, theta[column] + step
+        lambda angle: sign * slope(angle, *row_parameters), theta[column] - step, theta[column] + step
     )
     through = depth < 0
     row, column, sign, deepest, depth = (x[through] for x in (row, column, sign, deepest, depth))

@@ -230,13 +230,17 @@ def rpp_rates(
 
 
 def out_of_reach(
-    distance: float, p_length: float, q_length: float, gap: float | None = None, what: str = "the two bodies"
+    distance: float,
+    p_length: float,
+    q_length: float,
+    gap: float | None = None,
+    subject: str = "the two bodies",
 ) -> CannotAssemble:
     """Return the error for two bodies that do not span the distance between their pins, with the gap."""
     least, most = abs(p_length - q_length), p_length + q_length
     gap = max(distance - most, least - distance) if gap is None else gap
     return CannotAssemble(
-        f"the linkage does not close: the pins are {distance:.6g} apart, but {what}, "
+        f"the linkage does not close: the pins are {distance:.6g} apart, but {subject}, "
         f"{p_length:.6g} and {q_length:.6g} long, reach only {least:.6g} to {most:.6g} (gap {gap:.3g})"
     )
 
@@ -253,13 +257,13 @@ def _solved(kernel: Callable, failure: Callable[..., CourseworkError], *given: A
     return results if len(results) > 1 else results[0]
 
 
-def _rates(known: Callable, first: Any, second: Any, count: int) -> tuple[tuple, tuple]:
+def _rates(right_side: Callable, first: Any, second: Any, count: int) -> tuple[tuple, tuple]:
     """Solve ``first * x + second * y = known(order)`` for the rates x and y, order after order."""
     xs: list[Any] = []
     ys: list[Any] = []
     with np.errstate(all="ignore"):
         for n in range(1, count + 1):
-            x, y = components(known(n, xs, ys), first, second)
+            x, y = components(right_side(n, xs, ys), first, second)
             xs.append(x)
             ys.append(y)
     if xs and not np.ndim(xs[0]) and not (np.isfinite(xs[0]) and np.isfinite(ys[0])):

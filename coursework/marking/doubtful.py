@@ -92,8 +92,8 @@ def _decimal_mark(texts: Iterable[Any], lang: str) -> str:
     return "." if not marks and lang == "en" else ""
 
 
-def _are_alike(one: str, other: str) -> bool:
-    first, second = (float(re.search(_DIGITS, text)[0].replace(",", ".")) for text in (one, other))  # type: ignore[index]
+def _are_alike(candidate: str, other: str) -> bool:
+    first, second = (float(re.search(_DIGITS, text)[0].replace(",", ".")) for text in (candidate, other))  # type: ignore[index]
     return abs(first - second) <= _ALIKE * max(first, second)
 
 

@@ -146,8 +146,8 @@ class Forces:
 
     def _by_joint(self, rubs: np.ndarray) -> dict[str, np.ndarray]:
         results: dict[str, np.ndarray] = {}
-        for contact, own in zip(self.contacts, rubs.T, strict=True):
-            results[contact.joint.name] = results.get(contact.joint.name, 0.0) + own
+        for contact, moment in zip(self.contacts, rubs.T, strict=True):
+            results[contact.joint.name] = results.get(contact.joint.name, 0.0) + moment
         return results
 
     @staticmethod

@@ -160,8 +160,8 @@ class Rubbing:
         for _ in range(8):
             magnitudes = np.sqrt(np.bincount(self.owner, normals * normals, len(self.contacts)))
             lacking = normals - free + spread @ (strength * magnitudes)
-            whose = magnitudes[self.owner]
-            slopes = np.divide(normals, whose, out=np.zeros(len(normals)), where=whose > 0)
+            forces = magnitudes[self.owner]
+            slopes = np.divide(normals, forces, out=np.zeros(len(normals)), where=forces > 0)
             slope = unit + (spread * strength)[:, self.owner] * slopes
             size = np.abs(free).max() + np.abs(normals).max()
             if np.abs(lacking).max() <= 1e-14 * size and np.linalg.det(slope) > 0:

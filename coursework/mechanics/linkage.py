@@ -108,7 +108,7 @@ class Linkage:
         if self.free:
             return None
         bodies = zip(self.mechanism.bodies, self.coordinates, strict=False)
-        names = {own: body.angle for body, own in bodies if own > 0}
+        names = {coordinates: body.angle for body, coordinates in bodies if coordinates > 0}
         results = [names[k] for k in range(1, self.unknowns + 1)]
         return tuple(map(str, results)) if all(isinstance(n, str) for n in results) else None
 

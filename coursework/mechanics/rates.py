@@ -100,8 +100,8 @@ class Stance:
 
     def _partial(self, held: BodyPoint, origins: np.ndarray) -> np.ndarray:
         result = origins[held.body].copy()
-        if (own := self.linkage.coordinates[held.body]) != NONE:
-            result[own] += 1j * self.arm(held)
+        if (coordinates := self.linkage.coordinates[held.body]) != NONE:
+            result[coordinates] += 1j * self.arm(held)
         return result
 
     @cached_property
@@ -122,16 +122,16 @@ class Stance:
     def _sliding(self, slide: SlideJoint) -> np.ndarray:
         """Return the motion of a slide's point relative to the guide's point under it, by each coordinate."""
         moved = self._partial(slide.of, self._partials) - self._partials[slide.on]
-        if (own := self.linkage.coordinates[slide.on]) != NONE:
-            moved[own] -= 1j * (self.place(slide.of) - self.origins[slide.on])
+        if (coordinates := self.linkage.coordinates[slide.on]) != NONE:
+            moved[coordinates] -= 1j * (self.place(slide.of) - self.origins[slide.on])
         return moved
 
     def _rolling(self, gear: GearJoint) -> np.ndarray:
         row = np.zeros((self.linkage.unknowns + 1, self.count))
         first, second = gear.radii
         for body, share in ((gear.first, first), (gear.second, second), (gear.carrier, -first - second)):
-            if (own := self.linkage.coordinates[body]) != NONE:
-                row[own] += share
+            if (coordinates := self.linkage.coordinates[body]) != NONE:
+                row[coordinates] += share
         return row
 
     def _solved(self, right: np.ndarray) -> np.ndarray:
@@ -161,7 +161,9 @@ class Stance:
 
     def _by_body(self, coordinates: np.ndarray) -> np.ndarray:
         nothing = np.zeros(self.count)
-        return np.array([nothing if own == NONE else coordinates[own] for own in self.linkage.coordinates])
+        return np.array(
+            [nothing if columns == NONE else coordinates[columns] for columns in self.linkage.coordinates]
+        )
 
     @cached_property
     def origin_rates(self) -> np.ndarray:

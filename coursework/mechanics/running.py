@@ -69,9 +69,9 @@ class Trajectory:
         starts = np.array([phase.start for phase in self.phases])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
         for number in np.unique(which):
-            own = which == number
-            result[:, own] = self.phases[number].state(t[own])
-            ways[own] = self.phases[number].way
+            in_phase = which == number
+            result[:, in_phase] = self.phases[number].state(t[in_phase])
+            ways[in_phase] = self.phases[number].way
         return result, ways
 
     @property

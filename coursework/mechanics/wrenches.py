@@ -75,8 +75,8 @@ class BodyWrenches:
 def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> BodyWrenches:
     """Return the weights of the bodies; ``downwards`` is the acceleration of gravity."""
     wrench = BodyWrenches.none(stance)
-    for own in stance.linkage.masses:
-        wrench.push(BodyPoint(own.body, own.centre), own.mass * downwards)
+    for mass in stance.linkage.masses:
+        wrench.push(BodyPoint(mass.body, mass.centre), mass.mass * downwards)
     return wrench
 
 
@@ -94,7 +94,7 @@ def inertia_at_start(stance: Stance) -> BodyWrenches:
 def _inertia(stance: Stance, motion: Callable[[BodyPoint], np.ndarray], turning: np.ndarray) -> BodyWrenches:
     """Return the inertia forces for accelerations of positions and of the bodies' angles."""
     wrench = BodyWrenches.none(stance)
-    for own in stance.linkage.masses:
-        held = BodyPoint(own.body, own.centre)
-        wrench.push(held, -own.mass * motion(held)).turn(own.body, -own.inertia * turning[own.body])
+    for mass in stance.linkage.masses:
+        held = BodyPoint(mass.body, mass.centre)
+        wrench.push(held, -mass.mass * motion(held)).turn(mass.body, -mass.inertia * turning[mass.body])
     return wrench

@@ -95,10 +95,10 @@ class SceneData:
         for name in self.bodies:
             if name not in mechanism.names:
                 raise unknown("body", name, mechanism.names, "the mechanism")
-        known = [slide.at for slide in mechanism.slides]
+        points = [slide.at for slide in mechanism.slides]
         for name, length in self.lengths.items():
-            if name not in known:
-                raise unknown("slide", name, known, "the mechanism")
+            if name not in points:
+                raise unknown("slide", name, points, "the mechanism")
             if length < 0:
                 raise WrongValue(f"the length of slide {name} is not negative; found {length:g}")
         return dataclasses.replace(
@@ -113,21 +113,21 @@ class SceneData:
         )
 
 
-def _weighed(body: Body, own: BodyMass | None) -> Body:
-    if own is None:
+def _weighed(body: Body, mass: BodyMass | None) -> Body:
+    if mass is None:
         return body
     changes: dict[str, Any] = {
-        k: v for k, v in (("mass", own.mass), ("inertia", own.inertia)) if v is not None
+        k: v for k, v in (("mass", mass.mass), ("inertia", mass.inertia)) if v is not None
     }
     for name, value in changes.items():
         if value < 0:
             raise WrongValue(f"the {name} of body {body.name} is not negative; found {value:g}")
-    if isinstance(own.centre, str):
-        if own.centre not in body.places:
-            raise unknown("point", own.centre, body.places, f"body {body.name}")
-        changes["centre"] = own.centre
-    elif own.centre is not None:
+    if isinstance(mass.centre, str):
+        if mass.centre not in body.places:
+            raise unknown("point", mass.centre, body.places, f"body {body.name}")
+        changes["centre"] = mass.centre
+    elif mass.centre is not None:
         name = f"G{body.name}"
-        points: dict[str, Place | Callable[..., Any]] = {**body.points, name: own.centre}
+        points: dict[str, Place | Callable[..., Any]] = {**body.points, name: mass.centre}
         changes |= {"points": points, "centre": name}
     return dataclasses.replace(body, **changes)

@@ -65,9 +65,9 @@ def check_effect(effect: str, exercise: CourseExercise) -> None:
         raise WrongValue(refusal(effect))
     if effect == "flywheel":
         check_turns("a flywheel", exercise)
-    known = (*EFFECTS, *exercise.solution.graph.effects())
-    if effect not in known:
-        raise unknown("effect", effect, known, exercise.name)
+    names = (*EFFECTS, *exercise.solution.graph.effects())
+    if effect not in names:
+        raise unknown("effect", effect, names, exercise.name)
 
 
 def of_exercise(exercise: CourseExercise, driver: Driver) -> Mapping[str, tuple[str, ...]]:

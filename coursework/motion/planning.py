@@ -70,8 +70,8 @@ def _left_out(scene: Scene) -> Iterator[tuple[str, str]]:
     """Yield what no effect of the scene and no shown quantity requires."""
     kinds = {shown.what(name)[0] for name in scene.extra}
     bent = {"acceleration", "coriolis", INERTIA} & {*scene.called, *kinds}
-    own = scene.evaluated(scene.quantities)
-    if not bent and not set(own) & set(scene.accelerations):
+    values = scene.evaluated(scene.quantities)
+    if not bent and not set(values) & set(scene.accelerations):
         yield "no acceleration", "no effect needs one"
     if not kinds & {"", shown.REACTION} and not any(e not in (*KINEMATIC, ADVANTAGE) for e in scene.called):
         yield "no force", "no effect needs one"

@@ -127,8 +127,8 @@ class _SceneReader:
         for name in show:
             self._with_line(("show",), Scene, exercise, given, effects, (name,), added)
         for name, value in added.friction.items():
-            own = Scene(exercise, given, ("friction",), (), SceneData(friction={name: value}))
-            self._with_line(("friction", name), getattr, own, "contacts")
+            friction_scene = Scene(exercise, given, ("friction",), (), SceneData(friction={name: value}))
+            self._with_line(("friction", name), getattr, friction_scene, "contacts")
         return Scene(exercise, given, effects, show, added)
 
     def _check_names(self, exercise: CourseExercise) -> None:
@@ -163,18 +163,18 @@ class _SceneReader:
         except CourseworkError as fault:
             raise self.refused(at, str(fault)) from fault
 
-    def _checked_name(self, at: Path_, kind: str, name: str, known: Sequence[str]) -> None:
-        if name not in known:
-            raise self.refused(at, f"no {kind} {name!r}{nearest(name, known)}")
+    def _checked_name(self, at: Path_, kind: str, name: str, names: Sequence[str]) -> None:
+        if name not in names:
+            raise self.refused(at, f"no {kind} {name!r}{nearest(name, names)}")
 
     # -------------------------------------------------------------------- values
 
-    def _only(self, table: Mapping[str, Any], known: Sequence[str], at: Path_) -> None:
+    def _only(self, table: Mapping[str, Any], names: Sequence[str], at: Path_) -> None:
         for key in table:
             if key in REFUSED:
                 raise self.refused((*at, key), refusal(key))
-            if key not in known:
-                raise self.refused((*at, key), f"no key {key!r}{nearest(key, known)}")
+            if key not in names:
+                raise self.refused((*at, key), f"no key {key!r}{nearest(key, names)}")
 
     def _at(self, at: Path_) -> Any:
         """Return the value at a path; None where there is none."""
@@ -307,15 +307,15 @@ class _SceneReader:
 
     def _load(self, number: int, exercise: CourseExercise) -> Load:
         at: Path_ = ("loads", number)
-        own = self._loads_listed[number]
-        self._only(own, ("on", "body", "force", "moment", "angle", "against", "during", "by", "table"), at)
-        if "on" not in own:
+        listed = self._loads_listed[number]
+        self._only(listed, ("on", "body", "force", "moment", "angle", "against", "during", "by", "table"), at)
+        if "on" not in listed:
             raise self.refused(at, 'a load acts on something: on = "C"')
-        self._refuse_idle(at, own)
-        kind = "moment" if "moment" in own or self._is_body(exercise, str(own["on"])) else "force"
-        if own.get("against", "motion") != "motion":
-            raise self.refused((*at, "against"), f'against is "motion"; found {own["against"]!r}')
-        during = str(own.get("during", "always"))
+        self._refuse_idle(at, listed)
+        kind = "moment" if "moment" in listed or self._is_body(exercise, str(listed["on"])) else "force"
+        if listed.get("against", "motion") != "motion":
+            raise self.refused((*at, "against"), f'against is "motion"; found {listed["against"]!r}')
+        during = str(listed.get("during", "always"))
         if during not in STROKES:
             raise self.refused(
                 (*at, "during"),
@@ -324,26 +324,32 @@ class _SceneReader:
         if "stroke" in during:
             self._with_line((*at, "during"), check_turns, f"the {during}", exercise)
         values: dict[str, Place] = {kind: self._size(at, kind, exercise)}
-        if "angle" in own:
+        if "angle" in listed:
             values["angle"] = self._amount((*at, "angle"), "deg")
-        by = str(own.get("by", ""))
-        body = str(own.get("body", ""))
+        by = str(listed.get("by", ""))
+        body = str(listed.get("body", ""))
         pairs = self._pairs(at, kind, by, exercise)
-        if kind == "force" and not {"angle", "against"} & own.keys():
+        if kind == "force" and not {"angle", "against"} & listed.keys():
             raise self.refused(
                 at, 'a force has a direction: angle = "180 deg", from the x axis, or against = "motion"'
             )
         return Load(
-            str(own["on"]), against="against" in own, during=during, by=by, table=pairs, body=body, **values
+            str(listed["on"]),
+            against="against" in listed,
+            during=during,
+            by=by,
+            table=pairs,
+            body=body,
+            **values,
         )
 
-    def _refuse_idle(self, at: Path_, own: Mapping[str, Any]) -> None:
+    def _refuse_idle(self, at: Path_, values: Mapping[str, Any]) -> None:
         """Refuse a key that has no effect beside another one."""
         for key, other in (("force", "moment"), ("table", "force"), ("table", "moment"), ("angle", "against"),
                            ("angle", "moment"), ("body", "moment")):  # fmt: skip
-            if key in own and other in own:
+            if key in values and other in values:
                 raise self.refused((*at, key), f"a load has {key} or {other}, not both")
-        if "by" in own and "table" not in own:
+        if "by" in values and "table" not in values:
             raise self.refused(
                 (*at, "by"), "by is what a table goes by; the load has none: table = [[…, …], […, …]]"
             )

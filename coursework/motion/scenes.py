@@ -183,9 +183,9 @@ class Scene(Showing):
             INERTIA: "no mass",
             FRICTION: "no friction at a joint",
         }
-        for effect, what in lacks.items():
+        for effect, lacking in lacks.items():
             if effect in self.effects and effect not in data:
-                yield f"{effect}: the scene has {what}, so that it adds nothing; a scene file gives some"
+                yield f"{effect}: the scene has {lacking}, so that it adds nothing; a scene file gives some"
 
     @property
     def _resists(self) -> bool:

@@ -135,8 +135,8 @@ class Staged:
     @property
     def _graph_effects(self) -> tuple[str, ...]:
         """Requested effects that the exercise's own formulas know."""
-        own = self.exercise.solution.graph.effects()
-        return tuple(e for e in self.effects if e in own)
+        graph_effects = self.exercise.solution.graph.effects()
+        return tuple(e for e in self.effects if e in graph_effects)
 
     @property
     def _forces_called(self) -> bool:
@@ -235,11 +235,13 @@ class Staged:
         result = self.exercise.solve(**self._driven(degrees), only=wanted, effects=()) if wanted else {}
         turned = {**self._accepted, self.driver.angle: degrees, **result}
         turns = np.repeat(linkage.constant_turns[:, None], len(angles), axis=1)
-        for own, body in enumerate(bodies):
+        for index, body in enumerate(bodies):
             if isinstance(body.angle, str):
-                turns[own] = np.radians(turned[body.angle])
-        origins = {own: origin for own in linkage.free if (origin := bodies[own].origin) is not None}
-        shifts = {own: np.broadcast_to(number(at, turned), angles.shape) * MM for own, at in origins.items()}
+                turns[index] = np.radians(turned[body.angle])
+        origins = {index: origin for index in linkage.free if (origin := bodies[index].origin) is not None}
+        shifts = {
+            index: np.broadcast_to(number(at, turned), angles.shape) * MM for index, at in origins.items()
+        }
         return Stance(linkage, turns, None if by_joints else partial(self._stated_rates, degrees), shifts)
 
     def _stated_rates(self, degrees: np.ndarray, order: int) -> np.ndarray | None:

@@ -150,28 +150,28 @@ def _times(scenes: Mapping[str, Scene], run: Run) -> dict[str, list[float]]:
 
 
 def _worth(
-    effect: str, scene: Scene, other: Scene | None, whole: SceneTable, run: Run, times: Mapping[str, Sequence[float]], needed: str
+    effect: str, scene: Scene, other: Scene | None, full: SceneTable, run: Run, times: Mapping[str, Sequence[float]], needed: str
 ) -> EffectInfluence:  # fmt: skip
     if other is None:
         return EffectInfluence(effect, float("nan"), float("nan"), (), needed)
     differences = [all_of_it - without for all_of_it, without in zip(times[""], times[effect], strict=True)]
     quartiles = statistics.quantiles(differences, n=4)
-    changes = tuple(_changes(whole, run(other)))
+    changes = tuple(_changes(full, run(other)))
     return EffectInfluence(effect, statistics.median(differences), quartiles[2] - quartiles[0], changes)
 
 
-def _changes(whole: SceneTable, other: SceneTable) -> Iterator[OutputChange]:
+def _changes(full: SceneTable, other: SceneTable) -> Iterator[OutputChange]:
     """Yield the change of every output that both tables contain, at their common instants."""
-    stored, there = (~_dead(table) for table in (whole, other))
+    stored, there = (~_dead(table) for table in (full, other))
     largest: dict[str, float] = {}
-    for name, values in whole.columns.items():
-        largest[whole.units[name]] = max(largest.get(whole.units[name], 0.0), _largest(values))
-    for name, values in whole.columns.items():
-        if name in ("t", "dead_centre") or name not in other.columns or name == next(iter(whole.columns)):
+    for name, values in full.columns.items():
+        largest[full.units[name]] = max(largest.get(full.units[name], 0.0), _largest(values))
+    for name, values in full.columns.items():
+        if name in ("t", "dead_centre") or name not in other.columns or name == next(iter(full.columns)):
             continue
-        own, changed = values[stored], other.columns[name][there]
-        if own.shape == changed.shape and _largest(own) > _ROUNDING * largest[whole.units[name]]:
-            yield _change(name, whole.units[name], own, changed, "t" not in whole.columns)
+        pair, changed = values[stored], other.columns[name][there]
+        if pair.shape == changed.shape and _largest(pair) > _ROUNDING * largest[full.units[name]]:
+            yield _change(name, full.units[name], pair, changed, "t" not in full.columns)
 
 
 def _largest(values: np.ndarray) -> float:
@@ -183,11 +183,11 @@ def _dead(table: SceneTable) -> np.ndarray:
     return table.columns.get("dead_centre", np.zeros(len(first))) > 0
 
 
-def _change(name: str, unit: str, own: np.ndarray, changed: np.ndarray, wraps: bool) -> OutputChange:
-    apart = np.abs(changed - own)
+def _change(name: str, unit: str, values: np.ndarray, changed: np.ndarray, wraps: bool) -> OutputChange:
+    apart = np.abs(changed - values)
     if unit == "deg" and wraps:
         apart = np.abs(apart - 360.0 * np.rint(apart / 360.0))
-    size = (_largest(own), _rms(own))
+    size = (_largest(values), _rms(values))
     largest, rms = _largest(apart), _rms(apart)
     if largest <= _ROUNDING * size[0]:
         largest = rms = 0.0
@@ -201,7 +201,7 @@ def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.nanmean(np.square(values)))) if np.isfinite(values).any() else 0.0
 
 
-def _lacking(scene: Scene, run: Run, whole: SceneTable) -> Iterator[EffectInfluence]:
+def _lacking(scene: Scene, run: Run, full: SceneTable) -> Iterator[EffectInfluence]:
     """Yield the effects for which the scene has data but which it does not request, if it shows forces or
     moves in time."""
     for effect in scene.with_data():
@@ -211,4 +211,4 @@ def _lacking(scene: Scene, run: Run, whole: SceneTable) -> Iterator[EffectInflue
             added = run(replace(scene, effects=(*scene.effects, effect)))
         except CourseworkError:
             continue
-        yield EffectInfluence(effect, float("nan"), float("nan"), tuple(_changes(whole, added)))
+        yield EffectInfluence(effect, float("nan"), float("nan"), tuple(_changes(full, added)))

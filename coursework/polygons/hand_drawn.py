@@ -238,15 +238,15 @@ def _known_vector(
     anchor = _anchor(side, point)
     right, direction = side.value / scale, 1 if side.end == point else -1
     ratio = polygon.ratio(side)
-    own = (
+    vector = (
         right if ratio is None or side.image is None else ratio * (here[side.image[1]] - here[side.image[0]])
     )
-    if abs(own) <= width < abs(right):  # nothing is in proportion to what is not drawn
-        own = right
-    right, ideal = direction * right, here[anchor] + direction * own
+    if abs(vector) <= width < abs(right):  # nothing is in proportion to what is not drawn
+        vector = right
+    right, ideal = direction * right, here[anchor] + direction * vector
     if point not in drawn:
         return ideal, DrawingFault(MISSING)
-    kind = vector_fault(drawn[point] - here[anchor], direction * own, width)
+    kind = vector_fault(drawn[point] - here[anchor], direction * vector, width)
     if not kind or abs(drawn[point] - here[anchor] - right) <= width:
         return ideal, None
     for other in here:

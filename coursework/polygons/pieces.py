@@ -95,11 +95,11 @@ def guide_v(A: str, of_guide: str, line: str, vector: complex, omega: float, sli
     ``vector`` leads from the guide's pivot to A; ``sliding`` is positive away from it. ``of_guide`` is the
     guide's own point at A.
     """
-    a, own = A.lower(), of_guide.lower()
+    a, names = A.lower(), of_guide.lower()
     along = vector / abs(vector)
     return (
-        turning("p_v", own, of_guide, line, vector, omega),
-        Side(own, a, rf"\vec{{V}}_{{{A}/{of_guide}}}", sliding * along, rf"\parallel {line}", way=along),
+        turning("p_v", names, of_guide, line, vector, omega),
+        Side(names, a, rf"\vec{{V}}_{{{A}/{of_guide}}}", sliding * along, rf"\parallel {line}", way=along),
     )
 
 
@@ -110,7 +110,7 @@ def guide_a(
 ) -> Sides:  # fmt: skip
     """Return the accelerations of a guide and its block. The Coriolis term is laid off back from the image of
     A; ``gain`` is the rate of ``sliding``."""
-    a, own = A.lower(), of_guide.lower()
+    a, names = A.lower(), of_guide.lower()
     along = vector / abs(vector)
     slide = f"{A}/{of_guide}"
     return (
@@ -118,7 +118,7 @@ def guide_a(
             "k", a, rf"\vec{{a}}^c_{{{slide}}}", 2j * omega * sliding * along, rf"\perp {line}",
             rf"2 \left|{rate}\right| V_{{{slide}}}", 1j * along,
         ),
-        normal("p_a", f"{own}'", of_guide, line, vector, omega, rf"V_{{{of_guide}}}^2 / {length}"),
-        tangential(f"{own}'", own, of_guide, line, vector, alpha),
-        Side(own, "k", rf"\vec{{a}}^s_{{{slide}}}", gain * along, rf"\parallel {line}", way=along),
+        normal("p_a", f"{names}'", of_guide, line, vector, omega, rf"V_{{{of_guide}}}^2 / {length}"),
+        tangential(f"{names}'", names, of_guide, line, vector, alpha),
+        Side(names, "k", rf"\vec{{a}}^s_{{{slide}}}", gain * along, rf"\parallel {line}", way=along),
     )  # fmt: skip

@@ -26,14 +26,14 @@ def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> 
     return result.reshape(shape) if dtype is object else result.reshape(shape).astype(dtype)
 
 
-def each_stacked(read: Callable[[Any], Any], whole: Any) -> Any:
+def each_stacked(read: Callable[[Any], Any], stacked: Any) -> Any:
     """Evaluate ``read`` on a single object, or on each of an array of objects; vectors lie along a last axis."""
-    if not isinstance(whole, np.ndarray):
-        return read(whole)
-    if whole.dtype != object or not whole.size:
-        raise WrongValue(f"joints is a list of joints, each a mapping; found {str(whole)[:60]!r}")
-    result = np.array([read(item) for item in whole.ravel()])
-    return result.reshape(whole.shape + result.shape[1:])
+    if not isinstance(stacked, np.ndarray):
+        return read(stacked)
+    if stacked.dtype != object or not stacked.size:
+        raise WrongValue(f"joints is a list of joints, each a mapping; found {str(stacked)[:60]!r}")
+    result = np.array([read(item) for item in stacked.ravel()])
+    return result.reshape(stacked.shape + result.shape[1:])
 
 
 def vector(*entries: Any) -> np.ndarray:

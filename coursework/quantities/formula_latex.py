@@ -119,8 +119,8 @@ def _square(node: ast.expr) -> ast.expr:
 class _Printer:
     """Printer from an expression tree to LaTeX; private helpers are those of ``helpers``."""
 
-    def __init__(self, shown: Shown, helpers: Mapping[str, Any]):
-        self.shown = shown
+    def __init__(self, names: Shown, helpers: Mapping[str, Any]):
+        self.shown = names
         self.helpers = helpers
 
     def latex(self, node: ast.expr, within: int = _SUM) -> str:

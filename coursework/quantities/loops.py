@@ -159,8 +159,8 @@ class Loop:
         for link in self.links:
             pieces = self._pieces(link, order)
             sign = link.vector.sign
-            own = link.complex_terms(pieces) if form == "complex" else link.projection(form, pieces)
-            terms += [(sign * s, text) for s, text in own]
+            own_terms = link.complex_terms(pieces) if form == "complex" else link.projection(form, pieces)
+            terms += [(sign * s, text) for s, text in own_terms]
         left = [text for sign, text in terms if sign > 0]
         right = [text for sign, text in terms if sign < 0]
         return f"{' + '.join(left) or '0'} = {' + '.join(right) or '0'}"
@@ -241,8 +241,8 @@ class Loop:
         named = [k.vector.angle for k in self.links if isinstance(k.vector.angle, str)]
 
         def wrong(link: LoopLink) -> list[LoopLink]:
-            own = link.vector.angle
-            others = dict.fromkeys(a for a in named if a != own)
+            angle = link.vector.angle
+            others = dict.fromkeys(a for a in named if a != angle)
             return [replace(link, vector=link.vector._replace(angle=a)) for a in others]
 
         return self._changed(wrong)
@@ -284,10 +284,12 @@ def stated(
                 raise BadCourse(
                     f"{source}: the loop {name!r} names no quantity by {item!r}{nearest(item, names)}"
                 )
-        own = {n: rates.get(n) or usual_rates(n, names) for n in loop.names}
-        first = all(r[0] or n not in computed for n, r in own.items())
-        second = first and all(r[1] or r[0] not in computed for r in own.values())
-        results[name] = replace(loop, rates={n: r for n, r in own.items() if r[0]}, known=first + second)
+        rate_names = {n: rates.get(n) or usual_rates(n, names) for n in loop.names}
+        first = all(r[0] or n not in computed for n, r in rate_names.items())
+        second = first and all(r[1] or r[0] not in computed for r in rate_names.values())
+        results[name] = replace(
+            loop, rates={n: r for n, r in rate_names.items() if r[0]}, known=first + second
+        )
     return results
 
 

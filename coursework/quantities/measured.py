@@ -175,10 +175,10 @@ def _takes_numbers(ratio: Size) -> bool:
     )
 
 
-def needs(value: Any, wanted: Size, what: str) -> None:
+def needs(value: Any, wanted: Size, subject: str) -> None:
     """Refuse a value that cannot have a unit; a plain number fits any."""
     if isinstance(value, UnitValue) and not any(s.is_like(wanted) for s in value.sizes):
-        raise UnitFault(f"{what} {told(wanted)}, and gets {told(value.sizes[0])}")
+        raise UnitFault(f"{subject} {told(wanted)}, and gets {told(value.sizes[0])}")
 
 
 def product(first: Any, other: Any, power: float = 1) -> Sizes:

@@ -75,10 +75,10 @@ DEGREE = size(math.pi / 180, angle=1)
 
 def sizes_of(unit: str) -> Sizes:
     """Return the possible sizes of a unit: a turn a minute is an angular rate, or a frequency."""
-    known = find_unit(unit)
-    if known is None:
+    unit_found = find_unit(unit)
+    if unit_found is None:
         raise Unprovable(f"no unit {unit!r}")
-    first = Size(known.factor, (*map(float, known.dimension), 0.0))
+    first = Size(unit_found.factor, (*map(float, unit_found.dimension), 0.0))
     return (first, *_counted(first), *_turning(first))
 
 
@@ -193,8 +193,12 @@ _NAMES = (
 def told(item: Size) -> str:
     """Return a size by a unit's name, else by powers of base units."""
     for name in _NAMES:
-        known = sizes_of(name)[0]
-        if item.is_like(known) and known.angle == item.angle and known.powers[_CYCLE] == item.powers[_CYCLE]:
+        unit_size = sizes_of(name)[0]
+        if (
+            item.is_like(unit_size)
+            and unit_size.angle == item.angle
+            and unit_size.powers[_CYCLE] == item.powers[_CYCLE]
+        ):
             return "a plain number" if name == "1" else name
     for name in _NAMES:
         if item.is_like(sizes_of(name)[0]):

@@ -118,12 +118,12 @@ class _Changes:
                 yield from self._inside(items, lambda changed: _changed(node, "elts", changed))
 
     def _inside(
-        self, items: Sequence[ast.expr], whole: Callable[[list[ast.expr]], ast.expr]
+        self, items: Sequence[ast.expr], rebuild: Callable[[list[ast.expr]], ast.expr]
     ) -> Iterator[_Change]:
         """Yield the changes of each operand, within the tree that the operands form."""
         for index, item in enumerate(items):
             for kind, about, tree in self.of(item):
-                yield kind, about, whole([*items[:index], tree, *items[index + 1 :]])
+                yield kind, about, rebuild([*items[:index], tree, *items[index + 1 :]])
 
     # ------------------------------------------------------------- sums, products
 

@@ -16,15 +16,16 @@ from coursework.sheets.sheet import Handout
 Writes = Callable[[str, dict[str, Any]], str]  #: renders a template with these names
 
 
-def names(handouts: Sequence[Handout], called: str, student: str, lang: str, write: Writes) -> dict[str, Any]:
-    """What the template of a sheet or a paper sees of its answer pages: the code of its own pages, and theirs, written out."""
+def names(handouts: Sequence[Handout], title: str, student: str, lang: str, write: Writes) -> dict[str, Any]:
+    """Return the variables for the template of a sheet's or a paper's answer pages: the code of the
+    statement's pages, and the answer pages as source text."""
     pages = handouts[0].answer_pages if handouts else ()
     if not pages:
         return {"scanned": False}
-    told = {
+    variables = {
         "lang": lang,
         "words": words(lang),
-        "called": called,
+        "called": title,
         "student": student,
         "left": LEFT,
         "titles": [handout.title for handout in handouts],
@@ -32,33 +33,33 @@ def names(handouts: Sequence[Handout], called: str, student: str, lang: str, wri
     return {
         "scanned": True,
         "statement_code": statement_code(pages),
-        "answer_bodies": [Markup(write("_answer_page.typ.j2", told | {"page": page})) for page in pages],
+        "answer_bodies": [Markup(write("_answer_page.typ.j2", variables | {"page": page})) for page in pages],
     }
 
 
 def statement_code(pages: Sequence[AnswerPage]) -> str:
-    """What the code on the pages of the statement says: that nothing is to be read there."""
+    """Return the code on the pages of the statement, which says that nothing is to be read there."""
     _, code, _ = pages[0].code_text.split()
     return code_text(code, 0, len(pages))
 
 
 def filters() -> dict[str, Callable[..., Any]]:
-    """What the template asks of a layout."""
+    """Return the filters with which the template asks for the layout."""
     return {"mm": _mm, "qr": lambda text: f"bytes({markup.typst_string(qr_svg(text))})"}
 
 
 def queries() -> dict[str, Callable[..., Any]]:
-    """What the template asks of a layout that is no text."""
+    """Return the functions with which the template asks about the layout."""
     return {"drawn_on": _drawn_on, "span": _span, "cells": _cells, "ticked": _ticked, "captions": _captions}
 
 
-def _mm(told: float | Box | Sequence[Any]) -> str:
+def _mm(length: float | Box | Sequence[Any]) -> str:
     """A length, a box or a point, or several of them, as Typst's numbers."""
-    if isinstance(told, (int, float)):
-        return f"{told:.3f}".rstrip("0").rstrip(".")
-    if isinstance(told, Box):
-        told = (told.x, told.y, told.width, told.height)
-    return f"({''.join(f'{_mm(one)}, ' for one in told)})"
+    if isinstance(length, (int, float)):
+        return f"{length:.3f}".rstrip("0").rstrip(".")
+    if isinstance(length, Box):
+        length = (length.x, length.y, length.width, length.height)
+    return f"({''.join(f'{_mm(item)}, ' for item in length)})"
 
 
 def _drawn_on(sheet: Handout) -> int:
@@ -84,7 +85,7 @@ def _cells(field: Field) -> tuple[Box, ...]:
 
 
 def _ticked(field: Field) -> Iterator[tuple[str, Box]]:
-    """What is printed beside each box to tick, and the box."""
+    """Yield each box to tick, after the text that is printed beside it."""
     return zip(field.printed, (box for _, box in field.ticks), strict=True)
 
 

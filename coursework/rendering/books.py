@@ -29,7 +29,11 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
     """The Typst source of a book; ``apart``: of its solutions alone."""
     env = pdf.environment_of(tuple(folders), book.lang)
     names = _of_book(book) | {"paper": paper, "apart": apart, "tall": _TALL}
-    names |= {"exercises": {one.handout.exercise: _exercise(env, one, "typ.j2") for one in book.exercises}}
+    names |= {
+        "exercises": {
+            exercise.handout.exercise: _exercise(env, exercise, "typ.j2") for exercise in book.exercises
+        }
+    }
     names["pieces"] = partial(_typst_pieces, env, book)
     names["exercises_of"] = partial(_own_exercises, book)
     body = Markup(render(env, "book.typ.j2", names))
@@ -40,23 +44,26 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
 
 
 def _of_book(book: Book) -> dict[str, Any]:
-    said = words(book.lang)
-    names = {one.name for one in book.lessons}
-    return {"book": book, "lang": book.lang, "words": said, "title": book.title, "lesson_names": names}
+    book_words = words(book.lang)
+    names = {lesson.name for lesson in book.lessons}
+    return {"book": book, "lang": book.lang, "words": book_words, "title": book.title, "lesson_names": names}
 
 
-def _exercise(env: Environment, one: Practised, end: str) -> dict[str, Any]:
-    """What the templates see of an exercise: its body, and that of its solution."""
-    names = views.context(one.handout, 1, numbered=False)
+def _exercise(env: Environment, exercise: Practised, end: str) -> dict[str, Any]:
+    """Return the variables for the template of an exercise: its body, and that of its solution."""
+    names = views.context(exercise.handout, 1, numbered=False)
     names["body"] = Markup(render(env, f"_sheet_body.{end}", names))
-    if one.solution is not None:
-        solved = views.context(one.solution, 1, numbered=False)
+    if exercise.solution is not None:
+        solved = views.context(exercise.solution, 1, numbered=False)
         names["solution_body"] = Markup(render(env, f"_solution_body.{end}", solved))
     return names
 
 
 def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequence[Piece]) -> Markup:
-    here = {one.handout.exercise for one in book.exercises}, {one.name for one in book.lessons}
+    here = (
+        {exercise.handout.exercise for exercise in book.exercises},
+        {exercise.name for exercise in book.lessons},
+    )
 
     def write(link: Link) -> str:
         if link.kind == TERM:
@@ -66,7 +73,11 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
         section = f"-{link.section}" if link.section else ""
         return f"[{link.said}](#{link.kind}-{link.name}{section})"
 
-    names = _of_book(book) | {"lesson": lesson, "pieces": [_told(one) for one in pieces], "tall": _TALL}
+    names = _of_book(book) | {
+        "lesson": lesson,
+        "pieces": [_told(exercise) for exercise in pieces],
+        "tall": _TALL,
+    }
     names["relinked"] = lambda text: relinked(text, write)
     return Markup(render(env, "_book_pieces.typ.j2", names))
 
@@ -94,23 +105,25 @@ def pages(
     """The pages of a book by their files, each a function that makes it: contents, lessons, exercises, the index, and solutions
     where they are wanted. Each stands alone; those of exercises run the one script that keeps answers."""
     env = html.environment_of(tuple(folders), book.lang)
-    found = list(_pages(book))
+    book_pages = list(_pages(book))
     shared = _of_book(book) | {"paper": paper, "sheet": {"course": book.title}, "variant": ""}
-    shared |= {"files": {page.file for page in found}, "before": None, "after": None}
-    made: dict[str, Callable[[], str]] = {"terms.html": partial(_terms, env, book, shared)}
+    shared |= {"files": {page.file for page in book_pages}, "before": None, "after": None}
+    writers: dict[str, Callable[[], str]] = {"terms.html": partial(_terms, env, book, shared)}
     more = {"title": words(book.lang)["book"]["symbols"]}
-    made["symbols.html"] = partial(render, env, "book_symbols.html.j2", shared | more)
-    for place, page in enumerate(found):
+    writers["symbols.html"] = partial(render, env, "book_symbols.html.j2", shared | more)
+    for index, page in enumerate(book_pages):
         around = {
-            "before": found[place - 1] if place else None,
-            "after": found[place + 1] if place + 1 < len(found) else None,
+            "before": book_pages[index - 1] if index else None,
+            "after": book_pages[index + 1] if index + 1 < len(book_pages) else None,
         }
-        made[page.file] = partial(_page, env, book, page, shared | around)
+        writers[page.file] = partial(_page, env, book, page, shared | around)
     if solutions:
-        for one in book.exercises:
-            if one.solution is not None:
-                made[f"solutions/{one.handout.exercise}.html"] = partial(_solution, env, one, shared)
-    return made
+        for exercise in book.exercises:
+            if exercise.solution is not None:
+                writers[f"solutions/{exercise.handout.exercise}.html"] = partial(
+                    _solution, env, exercise, shared
+                )
+    return writers
 
 
 def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
@@ -126,32 +139,36 @@ def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
     return render(env, "book_terms.html.j2", {**names, **more})
 
 
-def _solution(env: Environment, one: Practised, names: Mapping[str, Any]) -> str:
-    assert one.solution is not None  # only those that have one are asked for
-    own = views.context(one.solution) | {"one": one, "title": views.title(one.solution)}
-    return render(env, "book_solution.html.j2", {**names, **own})
+def _solution(env: Environment, exercise: Practised, names: Mapping[str, Any]) -> str:
+    assert exercise.solution is not None  # only those that have one are asked for
+    variables = views.context(exercise.solution) | {"one": exercise, "title": views.title(exercise.solution)}
+    return render(env, "book_solution.html.j2", {**names, **variables})
 
 
 def _pages(book: Book) -> Iterator[Page]:
-    said = words(book.lang)["book"]
-    yield Page("index.html", said["contents"])
+    book_words = words(book.lang)["book"]
+    yield Page("index.html", book_words["contents"])
     for chapter in book.chapters:
         for section in chapter.sections:
             if section.lesson:
                 yield Page(f"{section.lesson.name}.html", section.lesson.title, section.lesson)
-            for one in section.exercises:
-                yield Page(f"{one.handout.exercise}.html", f"{one.number} {one.handout.title}", one)
+            for exercise in section.exercises:
+                yield Page(
+                    f"{exercise.handout.exercise}.html",
+                    f"{exercise.number} {exercise.handout.title}",
+                    exercise,
+                )
 
 
 def _title_of(book: Book, lesson: str) -> str:
-    return next(one.title for one in book.lessons if one.name == lesson)
+    return next(lesson_page.title for lesson_page in book.lessons if lesson_page.name == lesson)
 
 
 def _page(env: Environment, book: Book, page: Page, names: Mapping[str, Any]) -> str:
     names = {**names, "page": page, "title": page.title}
     if isinstance(page.of, LessonText):
-        shown = _html_pieces(env, book, page.of, names)
-        more = {"lesson": page.of, "shown": shown, "own": _own_exercises(book, page.of)}
+        pieces = _html_pieces(env, book, page.of, names)
+        more = {"lesson": page.of, "shown": pieces, "own": _own_exercises(book, page.of)}
         return render(env, "book_lesson.html.j2", {**names, **more})
     if isinstance(page.of, Practised):
         sheet = page.of.handout
@@ -161,7 +178,9 @@ def _page(env: Environment, book: Book, page: Page, names: Mapping[str, Any]) ->
 
 
 def _own_exercises(book: Book, lesson: LessonText) -> tuple[Practised, ...]:
-    return tuple(one for one in book.exercises if lesson.name in {name for name, _ in one.lessons})
+    return tuple(
+        exercise for exercise in book.exercises if lesson.name in {name for name, _ in exercise.lessons}
+    )
 
 
 def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mapping[str, Any]) -> Markup:
@@ -176,7 +195,7 @@ def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mappin
         section = f"#section-{link.section}" if link.section else ""
         return f"[{link.said}]({file}{section})" if file in names["files"] else link.said
 
-    answers = {number: [_told(one) for one in pieces] for number, pieces in lesson.answers}
-    told = {"lesson": lesson, "pieces": [_told(one) for one in lesson.pieces], "answers": answers}
-    told["relinked"] = lambda text: relinked(text, write)
-    return Markup(render(env, "_book_pieces.html.j2", {**names, **told}))
+    answers = {number: [_told(piece) for piece in pieces] for number, pieces in lesson.answers}
+    variables = {"lesson": lesson, "pieces": [_told(piece) for piece in lesson.pieces], "answers": answers}
+    variables["relinked"] = lambda text: relinked(text, write)
+    return Markup(render(env, "_book_pieces.html.j2", {**names, **variables}))

@@ -28,7 +28,7 @@ def qr_svg(text: str) -> str:
 
 
 def qr_modules(text: str) -> np.ndarray:
-    """Which modules of the code are dark, shape ``(n, n)``."""
+    """Return the dark modules of the code, shape ``(n, n)``."""
     zxing = library("zxingcpp", "pages that a scanner reads need", "scan")
     code = zxing.create_barcode(text, zxing.BarcodeFormat.QRCode, ec_level=CORRECTION)
     return np.asarray(code.to_image(scale=1, add_quiet_zones=False)) < 128

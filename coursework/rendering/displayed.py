@@ -1,4 +1,4 @@
-"""What a notebook's cell shows by itself: a mechanism in motion, a polygon under construction."""
+"""Objects that a notebook's cell displays: a mechanism in motion, a polygon under construction."""
 
 from __future__ import annotations
 

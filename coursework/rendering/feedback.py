@@ -1,4 +1,4 @@
-"""What feedback says to a student: a word and a sign for what became of an answer, and what these words mean."""
+"""Feedback to a student: a word and a sign for each verdict, and the legend of these words."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def context(
     sheet: FeedbackSheet,
     end: str,
     write: Callable[[str, Mapping[str, object]], str],
-    place: int = 0,
+    index: int = 0,
     *,
     numbered: bool = True,
 ) -> dict[str, object]:
@@ -37,13 +37,13 @@ def context(
 
     ``end`` is that of the templates' names, and ``write`` renders one; the rest is as for :func:`views.context`.
     """
-    shown = sheet.solution
-    solution = shown and {
-        **views.context(shown, place, numbered=numbered),
-        "figures": f"{place}-" if place else "",
+    solution_sheet = sheet.solution
+    solution = solution_sheet and {
+        **views.context(solution_sheet, index, numbered=numbered),
+        "figures": f"{index}-" if index else "",
     }
     return {
-        **views.context(sheet, place, numbered=numbered),
+        **views.context(sheet, index, numbered=numbered),
         "answer_mm": ANSWER_MM,
         "legend": legend([sheet], sheet.handout.lang),
         "solution_body": Markup(write(f"_solution_body.{end}", solution)) if solution else "",
@@ -81,20 +81,24 @@ def sign(line: FeedbackLine) -> str:
 
 
 def tally(sheet: FeedbackSheet) -> tuple[tuple[str, int], ...]:
-    """How many answers have each sign, those that some has."""
+    """Return the number of answers with each sign; signs without an answer are left out."""
     counts = [sign(line) for line in sheet.lines]
-    return tuple((one, counts.count(one)) for one in SIGNS if one in counts)
+    return tuple((listed_sign, counts.count(listed_sign)) for listed_sign in SIGNS if listed_sign in counts)
 
 
 def legend(sheets: Iterable[FeedbackSheet], lang: str) -> tuple[Meaning, ...]:
-    """What the verdicts of some sheets mean, in the order of the language's words, each with what it is worth there."""
-    said = words(lang)["feedback"]
+    """Return the meanings of the verdicts on some sheets, in the order of the language's words, each with its
+    share of the points."""
+    feedback_words = words(lang)["feedback"]
     met: dict[str, list[FeedbackLine]] = {}
     for line in (line for sheet in sheets for line in sheet.lines):
         met.setdefault(kind_of(line.verdict), []).append(line)
     order = [kind for kind in _ORDER if kind in met] + [kind for kind in met if kind not in _ORDER]
     return tuple(
-        Meaning(said["verdicts"][kind], said["means"][kind], _worth(kind, met[kind], lang)) for kind in order
+        Meaning(
+            feedback_words["verdicts"][kind], feedback_words["means"][kind], _worth(kind, met[kind], lang)
+        )
+        for kind in order
     )
 
 
@@ -105,26 +109,26 @@ _ORDER = (
 
 
 def _worth(kind: str, lines: Sequence[FeedbackLine], lang: str) -> str:
-    """Which share of its points a verdict has on a sheet, in words."""
-    said = words(lang)["feedback"]["worth"]
+    """Return the share of its points that a verdict earns on a sheet, in words."""
+    worth_words = words(lang)["feedback"]["worth"]
     shares = {round(line.points / line.out_of, 6) for line in lines if line.out_of}
     if kind in WAITING and shares <= {0.0}:
-        return str(said["later"])
+        return str(worth_words["later"])
     if shares <= {1.0}:
-        return str(said["all"])
+        return str(worth_words["all"])
     if shares == {0.0}:
-        return str(said["none"])
+        return str(worth_words["none"])
     if len(shares) > 1:
-        return str(said["beside"])
+        return str(worth_words["beside"])
     percent = localise(plain(round(100 * shares.pop(), 1)), lang)
-    return str(said["share"]).format(words(lang)["statistics"]["percent"].format(percent))
+    return str(worth_words["share"]).format(words(lang)["statistics"]["percent"].format(percent))
 
 
 # ------------------------------------------------------------------------- lines
 
 
 def note(line: FeedbackLine, lang: str, prefix: str = "") -> str:
-    """What a line says beyond its verdict; a right or a missing answer needs no sentence.
+    """Return the message of a line beyond its verdict; a right or a missing answer needs no sentence.
 
     A question that it names is called as the paper does, ``prefix`` before its number.
     """
@@ -133,12 +137,12 @@ def note(line: FeedbackLine, lang: str, prefix: str = "") -> str:
     if line.verdict != "correct":
         return renumbered(line.says, lang, prefix)
     usual = words(lang)["marking"]["correct"].rpartition("}")[2]
-    said, mark, more = line.says.partition(usual)
-    return renumbered(more.strip() if mark else said, lang, prefix)
+    rest, mark, more = line.says.partition(usual)
+    return renumbered(more.strip() if mark else rest, lang, prefix)
 
 
 def hint(line: FeedbackLine, lang: str, prefix: str = "") -> str:
-    """What to look at, where points were lost and the answer was read, or there was none."""
+    """Return a hint where points were lost and the answer was read, or where there was none."""
     lost = line.points < line.out_of and line.verdict not in WAITING
     return renumbered(line.hint, lang, prefix) if lost else ""
 
@@ -149,7 +153,7 @@ def right_answer(line: FeedbackLine) -> str:
 
 
 def read_otherwise(line: FeedbackLine) -> str:
-    """What was read in an answer, where it is written otherwise than the answer."""
+    """Return the text that was read in an answer, where it differs from the answer."""
     return "" if _plainly(line.read_as) == _plainly(line.answer) else line.read_as
 
 
@@ -162,9 +166,9 @@ def _plainly(text: str) -> str:
 
 
 def is_brief(line: FeedbackLine, lang: str, prefix: str = "") -> bool:
-    """Whether a line has nothing to say but the answer, and that is short."""
-    says = note(line, lang, prefix) or hint(line, lang, prefix) or right_answer(line)
-    return not says and all(_is_short(text) for text in (line.answer, read_otherwise(line)))
+    """Return whether a line consists of a short answer alone."""
+    message = note(line, lang, prefix) or hint(line, lang, prefix) or right_answer(line)
+    return not message and all(_is_short(text) for text in (line.answer, read_otherwise(line)))
 
 
 def _is_short(text: str) -> bool:
@@ -173,7 +177,7 @@ def _is_short(text: str) -> bool:
 
 
 def is_long(line: FeedbackLine) -> bool:
-    """Whether an answer may be longer than what a page holds."""
+    """Return whether an answer may be longer than a page."""
     return len(line.answer) > _LONG or line.answer.count("\n") > _LONG / 60
 
 
@@ -201,15 +205,17 @@ def _bare(latex: str) -> str:
 
 
 def command(practice: Practice, lang: str) -> str:
-    """What opens the variant to try, as a command."""
+    """Return the command that opens the variant to try."""
     course = f"--course {practice.course} " if practice.course else ""
     return f"coursework {course}notebook {practice.exercise} --seed {practice.seed} --lang {lang}"
 
 
 def lesson_words(lesson: Lesson, lang: str) -> str:
-    """Where a lesson is to be read again, as Markdown."""
-    said = words(lang)["feedback"]["next"]
+    """Return the advice to read a lesson again, as Markdown."""
+    next_words = words(lang)["feedback"]["next"]
     if not lesson.sections:
-        return str(said["lesson"]).format(lesson.title)
+        return str(next_words["lesson"]).format(lesson.title)
     named = [quoted(section, lang) for section in lesson.sections]
-    return str(said["section" if len(named) == 1 else "sections"]).format(lesson.title, listed(named, lang))
+    return str(next_words["section" if len(named) == 1 else "sections"]).format(
+        lesson.title, listed(named, lang)
+    )

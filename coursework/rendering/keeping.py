@@ -1,4 +1,4 @@
-"""What a page is told so that its script keeps the answers typed in it, and hands them in as a file that is marked."""
+"""Settings of a page whose script stores the answers typed in it, and saves them as a file to hand in."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ def keeping(handouts: Sequence[Handout], student: str, lang: str, *, numbered: b
 
     A seed is a text, since the numbers of a script have sixteen digits.
     """
-    variants = [f"{one.exercise}-{one.seed}" for one in handouts]
-    said = {
-        "key": " ".join(["coursework", *(f"{one.exercise} {one.seed} v{one.version}" for one in handouts), student]),
+    variants = [f"{handout.exercise}-{handout.seed}" for handout in handouts]
+    settings = {
+        "key": " ".join(["coursework", *(f"{handout.exercise} {handout.seed} v{handout.version}" for handout in handouts), student]),
         "file": variants[0] if len(variants) == 1 else f"{variants[0]}-{len(variants)}",
         "student": student,
         "lang": lang,
         "sheets": [
             {
-                "exercise": one.exercise,
-                "seed": str(one.seed),
-                "own": f"e{place}-" if numbered else "",
-                "parts": [question.id for question in one.questions if question.box not in _UNTYPED],
+                "exercise": handout.exercise,
+                "seed": str(handout.seed),
+                "own": f"e{number}-" if numbered else "",
+                "parts": [question.id for question in handout.questions if question.box not in _UNTYPED],
             }
-            for place, one in enumerate(handouts, 1)
+            for number, handout in enumerate(handouts, 1)
         ],
         "words": words(lang)["page"],
     }  # fmt: skip
-    return in_script(said)
+    return in_script(settings)
 
 
 def in_script(data: object) -> Markup:

@@ -33,18 +33,18 @@ def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> st
     return render(environment_of(tuple(folders), variant.lang), "motion.html.j2", names)
 
 
-def context(animation: Animation, *, told: bool = True) -> dict[str, Any]:
-    """The names that ``_motion_body.html.j2`` sees; the numbers beside the drawing only where they are to be ``told``."""
+def context(animation: Animation, *, is_described: bool = True) -> dict[str, Any]:
+    """The names that ``_motion_body.html.j2`` sees; the numbers beside the drawing only where they are to be ``is_described``."""
     variant = animation.variant
     lang = variant.lang
-    shown = animation.drawing(animation.available)
+    drawing = animation.drawing(animation.available)
     first = animation.first
     film = animation.film is not None
     turned = animation.angles if film else animation.angles % 360.0
     angles = [f"{localise(significant(a, 5), lang)}°" for a in turned]
-    readings = animation.readings if told else ()
+    readings = animation.readings if is_described else ()
     data = {
-        "tracks": [_numbers(track) for track in shown.tracks if track.moves],
+        "tracks": [_numbers(track) for track in drawing.tracks if track.moves],
         "order": list(animation.order),
         "times": [rounded(float(t), 6) for t in animation.times],
         "seconds": animation.seconds,
@@ -54,11 +54,11 @@ def context(animation: Animation, *, told: bool = True) -> dict[str, Any]:
         "degrees": [rounded(float(a), 4) for a in animation.angles],
         "readings": [list(reading.values) for reading in readings],
     }
-    said = words(lang)
+    texts = words(lang)
     return {
-        "words": said,
-        "said": said["motion"],
-        "drawing": Markup(_svg(shown.tracks, shown.size, first, animation)),
+        "words": texts,
+        "said": texts["motion"],
+        "drawing": Markup(_svg(drawing.tracks, drawing.size, first, animation)),
         "effects": [(e, e in animation.effects, COLOURS[e]) for e in animation.available],
         "points": list(animation.points),
         "readings": readings,
@@ -66,7 +66,7 @@ def context(animation: Animation, *, told: bool = True) -> dict[str, Any]:
         "count": len(animation.angles),
         "first": first,
         "angle": angles[first],
-        "start": said["motion"]["film" if film else "statement"],
+        "start": texts["motion"]["film" if film else "statement"],
         "swings": not animation.turns,
         "turns": localise(significant(float(np.ptp(animation.angles)) / 360.0, 3), lang) if film else "",
         "has_vectors": bool(animation.scales),

@@ -88,29 +88,35 @@ def paper(folders: Sequence[Path], handed: Paper, *, collected: bool = False) ->
     return _json(cells, {"student": handed.heading.student, "sheets": about, "lang": handed.heading.lang})
 
 
-def feedback(folders: Sequence[Path], told: FeedbackSheet | FeedbackPaper) -> str:
+def feedback(folders: Sequence[Path], feedback_sheet: FeedbackSheet | FeedbackPaper) -> str:
     """Feedback as a notebook to read, as JSON text, valid nbformat 4.5; where another variant is offered, cells that
     open and check it."""
-    if isinstance(told, FeedbackPaper):
-        env = _environment(tuple(folders), told.heading.lang)
-        names = papers.context(told, "md.j2", partial(render, env))
-        sheets, template, student = told.sheets, "paper_feedback.md.j2", told.heading.student
+    if isinstance(feedback_sheet, FeedbackPaper):
+        env = _environment(tuple(folders), feedback_sheet.heading.lang)
+        names = papers.context(feedback_sheet, "md.j2", partial(render, env))
+        sheets, template, student = (
+            feedback_sheet.sheets,
+            "paper_feedback.md.j2",
+            feedback_sheet.heading.student,
+        )
     else:
-        env = _environment(tuple(folders), told.handout.lang)
-        names = own.context(told, "md.j2", partial(render, env))
-        sheets, template, student = (told,), "feedback.md.j2", told.handout.student
+        env = _environment(tuple(folders), feedback_sheet.handout.lang)
+        names = own.context(feedback_sheet, "md.j2", partial(render, env))
+        sheets, template, student = (feedback_sheet,), "feedback.md.j2", feedback_sheet.handout.student
     seeds = " ".join(f"{sheet.handout.exercise} {sheet.handout.seed}" for sheet in sheets)
     cells = list(_cells(render(env, template, names), f"feedback {student} {seeds}"))
     for cell in cells:
-        for place, sheet in enumerate(sheets, start=1):
+        for number, sheet in enumerate(sheets, start=1):
             if sheet.solution is not None:
-                _attach_figure(cell, sheet.solution, f"{place}-" if isinstance(told, FeedbackPaper) else "")
+                _attach_figure(
+                    cell, sheet.solution, f"{number}-" if isinstance(feedback_sheet, FeedbackPaper) else ""
+                )
     return _json(cells, {"feedback": seeds, "student": student, "lang": names["lang"]})
 
 
-def _exercise(sheet: Handout, body: str, place: int) -> list[dict[str, Any]]:
+def _exercise(sheet: Handout, body: str, number: int) -> list[dict[str, Any]]:
     """The cells of an exercise of a paper."""
-    cells = list(_cells(body, f"{place} {sheet.exercise} {sheet.version} {sheet.seed} {sheet.student}"))
+    cells = list(_cells(body, f"{number} {sheet.exercise} {sheet.version} {sheet.seed} {sheet.student}"))
     for cell in cells:
         _attach_figure(cell, sheet)
         if "answers" in cell["metadata"].get("tags", ()):
@@ -137,12 +143,14 @@ def lesson(
     names = {"words": words(lang), "package": DISTRIBUTION, "install": install}
     guard = f"```python\n{render(env, '_import.md.j2', names)}\n```\n"
     first = next((f.start() for f in _FENCE.finditer(text) if "import coursework" in f[2]), None)
-    whole = text if first is None else f"{text[:first]}{guard}\n{text[first:]}"
-    cells = list(_cells(whole, f"{name} {lang}"))
+    content = text if first is None else f"{text[:first]}{guard}\n{text[first:]}"
+    cells = list(_cells(content, f"{name} {lang}"))
     for cell in cells:
-        shown = {n: dict(p) for n, p in pictures.items() if f"(attachment:{n})" in "".join(cell["source"])}
-        if shown:
-            cell["attachments"] = shown
+        attachments = {
+            n: dict(p) for n, p in pictures.items() if f"(attachment:{n})" in "".join(cell["source"])
+        }
+        if attachments:
+            cell["attachments"] = attachments
     return _json(cells, {"lesson": name, "lang": lang})
 
 
@@ -196,11 +204,12 @@ def _attach_figure(cell: dict[str, Any], sheet: Handout | AnswerSheet, before: s
     """The figures that a cell shows, by name: ``before`` it what tells those of several exercises apart."""
     figures = {f"{before}{FIGURE}": views.figure_of(sheet)}
     figures |= {
-        f"{before}{MORE.format(k)}": one for k, (one, _) in enumerate(views.more_figures(sheet), start=2)
+        f"{before}{MORE.format(k)}": drawing
+        for k, (drawing, _) in enumerate(views.more_figures(sheet), start=2)
     }
     for name, figure in figures.items():
-        shown = any(f"attachment:{name}" in line for line in cell["source"])
-        if cell["cell_type"] == "markdown" and figure is not None and shown:
+        is_referenced = any(f"attachment:{name}" in line for line in cell["source"])
+        if cell["cell_type"] == "markdown" and figure is not None and is_referenced:
             png = base64.b64encode(figure.png(ppi=_FIGURE_PPI)).decode()
             cell["attachments"] = {**cell.get("attachments", {}), name: {"image/png": png}}
 
@@ -222,7 +231,7 @@ def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
 
 
 def _typed(text: str) -> str:
-    """What somebody typed, as a piece of code that shows these characters and is copied as they are."""
+    """Return a typed text as inline code, which shows its characters literally and copies as they are."""
     one_line = " ".join(text.split("\n"))
     runs = re.findall("`+", one_line)
     fence = "`" * (1 + max(map(len, runs), default=0))

@@ -52,7 +52,7 @@ def sheets_of(paper: AnyPaper) -> tuple[views.Sheet, ...]:
 
 
 def points_of(paper: AnyPaper) -> float:
-    """What a paper is out of."""
+    """Return the total points of a paper."""
     if isinstance(paper, FeedbackPaper):
         return paper.out_of
     return sum(views.handout_of(sheet).points for sheet in sheets_of(paper))
@@ -86,45 +86,46 @@ def context(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] = ())
 
 
 def _of_feedback(paper: FeedbackPaper) -> dict[str, Any]:
-    """What the template of feedback sees besides: what all its sheets say together."""
-    met = {one for sheet in paper.sheets for one, _ in feedback.tally(sheet)}
+    """Return the further variables for the template of feedback: the summary of all its sheets."""
+    met = {sign for sheet in paper.sheets for sign, _ in feedback.tally(sheet)}
     practices = [sheet.practice for sheet in paper.sheets if sheet.practice]
     return {
         "feedback": paper,
         "answer_mm": feedback.ANSWER_MM,
         "legend": feedback.legend(paper.sheets, paper.heading.lang),
-        "tallied": [one for one in feedback.SIGNS if one in met],
-        "has_next": any(one.seed is not None or one.lessons for one in practices),
+        "tallied": [sign for sign in feedback.SIGNS if sign in met],
+        "has_next": any(sign.seed is not None or sign.lessons for sign in practices),
     }
 
 
 def exercises_of(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] = ()) -> list[dict[str, Any]]:
-    """What each exercise's sheet would show, its body, and of a solution its rows of the marking guide."""
-    found = []
-    for place, sheet in enumerate(sheets_of(paper), 1):
+    """Return the variables of each exercise's sheet and its body; of a solution its rows of the marking guide
+    too."""
+    exercises = []
+    for number, sheet in enumerate(sheets_of(paper), 1):
         names: dict[str, Any]
         if isinstance(sheet, FeedbackSheet):
-            names = feedback.context(sheet, end, write, place, numbered=_numbered(paper))
+            names = feedback.context(sheet, end, write, number, numbered=_numbered(paper))
         else:
-            names = views.context(sheet, place)
-        names |= dict(files[place - 1] if files else {})
+            names = views.context(sheet, number)
+        names |= dict(files[number - 1] if files else {})
         handout = views.handout_of(sheet)
-        names["called"] = _called(paper, place, handout.title)
+        names["called"] = _called(paper, number, handout.title)
         names["start_mm"] = _start_mm(sheet)
         names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
         if isinstance(paper, SolutionPaper):
             names["guide"] = Markup(write(f"_guide_rows.{end}", names))
-        found.append(names)
-    return found
+        exercises.append(names)
+    return exercises
 
 
 def _numbered(paper: AnyPaper) -> bool:
     return not isinstance(paper, FeedbackPaper) or paper.numbered
 
 
-def _called(paper: AnyPaper, place: int, title: str) -> str:
-    """What an exercise of a paper is called; by its title alone where it was no paper that was handed out."""
-    return words(paper.heading.lang)["paper"]["numbered"].format(place, title) if _numbered(paper) else title
+def _called(paper: AnyPaper, number: int, title: str) -> str:
+    """Return the heading of an exercise of a paper; its title alone where no paper was handed out."""
+    return words(paper.heading.lang)["paper"]["numbered"].format(number, title) if _numbered(paper) else title
 
 
 def _start_mm(sheet: views.Sheet) -> int:
@@ -145,15 +146,16 @@ def title(paper: AnyPaper) -> str:
 
 
 def variants(paper: AnyPaper) -> str:
-    """Which variants a paper holds, in a line: names and seeds, or seeds alone in the order of its exercises."""
+    """Return the variants of a paper in a line: names and seeds, or seeds alone in the order of its
+    exercises."""
     handouts = [views.handout_of(sheet) for sheet in sheets_of(paper)]
-    named = " · ".join(f"{one.exercise} {one.seed}" for one in handouts)
-    return named if len(named) <= _LINE else " · ".join(str(one.seed) for one in handouts)
+    named = " · ".join(f"{handout.exercise} {handout.seed}" for handout in handouts)
+    return named if len(named) <= _LINE else " · ".join(str(handout.seed) for handout in handouts)
 
 
-def _number(said: str, lang: str) -> str:
+def _number(text: str, lang: str) -> str:
     """A plain number as the language prints it; anything else as it is."""
-    return localise(said, lang) if re.fullmatch(r"-?\d+(\.\d+)?", said) else said
+    return localise(text, lang) if re.fullmatch(r"-?\d+(\.\d+)?", text) else text
 
 
 _PNG = b"\x89PNG\r\n\x1a\n"
@@ -190,12 +192,12 @@ def _harmless(svg: str) -> str:
 
 def _text(data: bytes) -> str:
     try:
-        found = data.decode("utf-8-sig")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        found = ""
-    if "<svg" not in found:
+        text = ""
+    if "<svg" not in text:
         raise BadInput("the logo is no SVG picture; give a file that is one, or a PNG")
-    return found
+    return text
 
 
 def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
@@ -223,7 +225,9 @@ def tex(
     """The LaTeX source of a paper; beside it are the PDF of each exercise's figure and that of its polygons."""
     env, lang = latex.environment_of(tuple(folders), paper.heading.lang), paper.heading.lang
     drawn = polygons or ["polygons.pdf"] * len(figures)
-    files = [{"figure_file": one, "polygons_file": two} for one, two in zip(figures, drawn, strict=True)]
+    files = [
+        {"figure_file": drawing, "polygons_file": two} for drawing, two in zip(figures, drawn, strict=True)
+    ]
     names = context(paper, "tex.j2", partial(render, env), files) | {
         "paper": size,
         "figure_file": ", ".join(figures),

@@ -57,8 +57,8 @@ def _context(folders: Sequence[Path], sheet: views.Sheet) -> dict[str, Any]:
         return feedback.context(sheet, "typ.j2", partial(render, env))
     if isinstance(sheet, AnswerSheet):
         return views.context(sheet)
-    called = answer_pages.names([sheet], sheet.title, sheet.student, sheet.lang, partial(render, env))
-    return views.context(sheet) | called
+    names = answer_pages.names([sheet], sheet.title, sheet.student, sheet.lang, partial(render, env))
+    return views.context(sheet) | names
 
 
 # ------------------------------------------------------------------------ fonts
@@ -82,7 +82,8 @@ def undrawn(text: str, folders: Sequence[Path]) -> list[str]:
 
 @lru_cache(maxsize=16_384)
 def _has_glyph(fonts: tuple[str, ...], char: str) -> bool:
-    """Whether a course's fonts draw a character: the standard of the PDF refuses one that has no glyph."""
+    """Return whether a course's fonts draw a character: the standard of the PDF refuses one that has no
+    glyph."""
     import typst
 
     if not fonts or not char.isprintable():
@@ -99,10 +100,10 @@ def _compiler(fonts: tuple[str, ...]) -> Any:
     """A compiler serves one thread, and is kept: fonts are read once."""
     import typst
 
-    kept = _LOCAL.__dict__.setdefault("compilers", {})
-    if fonts not in kept:
-        kept[fonts] = typst.Compiler(font_paths=list(fonts), ignore_system_fonts=True)
-    return kept[fonts]
+    compilers = _LOCAL.__dict__.setdefault("compilers", {})
+    if fonts not in compilers:
+        compilers[fonts] = typst.Compiler(font_paths=list(fonts), ignore_system_fonts=True)
+    return compilers[fonts]
 
 
 _DEFINITIONS_END = "\n//=\n"
@@ -119,16 +120,16 @@ def files(typst_source: str) -> dict[str, bytes]:
     if not cut:
         return {"main.typ": typst_source.encode()}
     opening = '#import "definitions.typ": *\n'
-    found = {"definitions.typ": definitions.encode()}
+    sources = {"definitions.typ": definitions.encode()}
     first, *marked = rest.split(_PIECE_START)
     main = [opening, first]
-    for one in marked:
-        piece, _, after = one.partition(_PIECE_END)
-        name = f"{len(found)}.typ"
-        found[name] = (opening + piece).encode()
+    for figure in marked:
+        piece, _, after = figure.partition(_PIECE_END)
+        name = f"{len(sources)}.typ"
+        sources[name] = (opening + piece).encode()
         main += [f'#include "{name}"\n', after]
-    found["main.typ"] = "".join(main).encode()
-    return found
+    sources["main.typ"] = "".join(main).encode()
+    return sources
 
 
 def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
@@ -157,13 +158,13 @@ def compile_booklet(
         opened: Any = typst.Compiler  # takes the files by name as well, which its types do not say
         compiler = opened(input=written, font_paths=list(fonts_of(folders)), ignore_system_fonts=True)
         ends = json.loads(compiler.query("<sheet-last>", field="value"))
-        made = _written(compiler, written)
+        document = _written(compiler, written)
         # The typesetter remembers what the last documents were made of, and a booklet is large: small
         # documents make it forget.
         for _ in range(_FORGETTING):
             compiler.compile(input=b"", format="pdf", timestamp=0)
     starts = [1, *(end + 1 + end % 2 for end in ends[:-1])]
-    return made, tuple(zip(starts, ends, strict=True))
+    return document, tuple(zip(starts, ends, strict=True))
 
 
 def _written(compiler: Any, sources: Mapping[str, bytes]) -> bytes:
@@ -173,7 +174,7 @@ def _written(compiler: Any, sources: Mapping[str, bytes]) -> bytes:
 
 @contextmanager
 def _complaints() -> Iterator[None]:
-    """What the typesetter refuses, a query's plain error among it, as :class:`BadStatement`."""
+    """Raise errors of the typesetter, a query's plain error among them, as :class:`BadStatement`."""
     import typst
 
     try:
@@ -204,7 +205,7 @@ def _drawing(figure: Figure | Picture | Beginning, alt: str, room: tuple[float, 
     """The figure inside the source, which so stands alone: an SVG without letters, its size, and the letters; and by
     how much it is made smaller for a room of so many mm that it was not laid out for."""
     width, height = figure.size_mm
-    listed = json.dumps([_letters(one, width) for one in figure.letters()], ensure_ascii=False)
+    listed = json.dumps([_letters(letter, width) for letter in figure.letters()], ensure_ascii=False)
     svg, letters, words = map(markup.typst_string, (figure.bare_svg(), listed, alt))
     ratio = min(room[0] / width, room[1] / height) if room else 1
     smaller = f", ratio: {ratio:.4f}" if ratio < 1 else ""

@@ -94,14 +94,14 @@ class Renderer:
         """The figure that a sheet shows, as a PDF of its own, several on a page each; nothing when it shows none."""
         from coursework.rendering import views
 
-        figure, more = views.figure_of(sheet), [one for one, _ in views.more_figures(sheet)]
+        figure, more = views.figure_of(sheet), [drawing for drawing, _ in views.more_figures(sheet)]
         if figure is None:
             return None
         if not more:
             return figure.pdf()
         from coursework.figures.typesetting import pages
 
-        return pages([(one.svg(), one.size_mm[0]) for one in (figure, *more)])
+        return pages([(drawing.svg(), drawing.size_mm[0]) for drawing in (figure, *more)])
 
     def polygons_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
         """The drawings of a solution's polygons, one a page of its own size; nothing when it has none."""
@@ -169,11 +169,11 @@ class Renderer:
 
         return notebook.paper(self.template_folders, paper, collected=collected)
 
-    def feedback_notebook(self, told: FeedbackSheet | FeedbackPaper) -> str:
+    def feedback_notebook(self, sheet: FeedbackSheet | FeedbackPaper) -> str:
         """Feedback as a notebook to read (JSON, nbformat 4.5), with cells to try another variant where one is offered."""
         from coursework.rendering import notebook
 
-        return notebook.feedback(self.template_folders, told)
+        return notebook.feedback(self.template_folders, sheet)
 
     def construction_html(self, construction: Construction) -> str:
         """A polygon, its equations, table and steps, as a piece of a web page."""

@@ -16,7 +16,7 @@ WIDTH = 88
 def statement(handout: Handout) -> str:
     """The statement, the given data and the questions as lines of at most 88 characters."""
     lang = handout.lang
-    said = words(lang)["sheet"]
+    sheet_words = words(lang)["sheet"]
     code = views.variant_code(handout)
     total = views.points_text(handout.points, lang)
     parts = [
@@ -24,15 +24,17 @@ def statement(handout: Handout) -> str:
         to_text(handout.statement, lang, WIDTH),
     ]
     if handout.figure is not None:
-        parts.append(textwrap.fill(f"[{said['figure']}{said['colon']} {handout.figure_alt}]", WIDTH))
+        parts.append(
+            textwrap.fill(f"[{sheet_words['figure']}{sheet_words['colon']} {handout.figure_alt}]", WIDTH)
+        )
     for _, alt in handout.more_figures:
-        parts.append(textwrap.fill(f"[{said['figure']}{said['colon']} {alt}]", WIDTH))
+        parts.append(textwrap.fill(f"[{sheet_words['figure']}{sheet_words['colon']} {alt}]", WIDTH))
     if handout.given:
         lines = (f"  {_given(given, lang)}" for given in handout.given)
-        parts.append("\n".join([said["data"], *lines]))
+        parts.append("\n".join([sheet_words["data"], *lines]))
     parts += [_question(question, lang) for question in handout.questions]
     parts += [
-        f"{said['tolerance']}{said['colon']} {f'{numbers}, ' if numbers else ''}{margin}"
+        f"{sheet_words['tolerance']}{sheet_words['colon']} {f'{numbers}, ' if numbers else ''}{margin}"
         for numbers, margin in views.tolerances(handout.questions, lang)
     ]
     return "\n\n".join(parts) + "\n"

@@ -1,4 +1,4 @@
-"""What the templates place and should not work out: codes, plurals, groups of questions."""
+"""Values that templates place and should not compute: codes, plurals, groups of questions."""
 
 from __future__ import annotations
 
@@ -58,11 +58,11 @@ def handout_of(sheet: Sheet) -> Handout:
     return sheet if isinstance(sheet, Handout) else sheet.handout
 
 
-def context(sheet: Sheet, place: int = 0, *, numbered: bool = True) -> dict[str, object]:
-    """The names that a page's template sees; ``place`` is that of the exercise in a paper, 0 where it stands alone, and
+def context(sheet: Sheet, index: int = 0, *, numbered: bool = True) -> dict[str, object]:
+    """The names that a page's template sees; ``index`` is that of the exercise in a paper, 0 where it stands alone, and
     its questions have it before their numbers where they are ``numbered``."""
     handout = handout_of(sheet)
-    prefix = f"{place}." if place and numbered else ""
+    prefix = f"{index}." if index and numbered else ""
     return {
         "sheet": handout,
         TEMPLATES[type(sheet)]: sheet,
@@ -83,15 +83,15 @@ def context(sheet: Sheet, place: int = 0, *, numbered: bool = True) -> dict[str,
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": variant_code(handout),
         "tolerances": tolerances(handout.questions, handout.lang, prefix),
-        "place": place,
+        "place": index,
         "prefix": prefix,
-        "own": f"e{place}-" if place else "",
-        "level": 3 if place else 2,
+        "own": f"e{index}-" if index else "",
+        "level": 3 if index else 2,
     }
 
 
 def variant_code(handout: Handout) -> str:
-    """What a sheet is told by: exercise, seed and version."""
+    """Return the code that identifies a sheet: exercise, seed and version."""
     return f"{handout.exercise} · {handout.seed} · v{handout.version}"
 
 
@@ -108,12 +108,12 @@ def more_figures(sheet: Sheet) -> tuple[tuple[Figure | Picture, str], ...]:
 
 def room(sheet: Sheet) -> tuple[float, float]:
     """Width and height in mm that a sheet leaves its figure."""
-    handout, beside = handout_of(sheet), _data_beside(sheet)
-    wide, tall = ROOM_BESIDE if beside else ROOM_ALONE
+    handout, is_beside = handout_of(sheet), _data_beside(sheet)
+    wide, tall = ROOM_BESIDE if is_beside else ROOM_ALONE
     # Paper to draw on stands below the figure, on the same page if it may.
     if handout.drawing_mm and isinstance(sheet, Handout):
         return wide, _by_paper(handout.drawing_mm[1], len(handout.statement))
-    return wide, tall + _left(len(handout.questions), beside)
+    return wide, tall + _left(len(handout.questions), is_beside)
 
 
 def _by_paper(paper: int, letters: int) -> float:
@@ -122,36 +122,36 @@ def _by_paper(paper: int, letters: int) -> float:
     return float(round(min(most, max(least, _PAGE - paper - _LINE_MM * letters / _LETTERS))))
 
 
-def _left(questions: int, beside: bool) -> float:
-    """What the questions of a sheet leave of a page's height to its figure, mm."""
+def _left(questions: int, is_beside: bool) -> float:
+    """Return the height that the questions of a sheet leave to its figure on a page, mm."""
     if _MANY <= questions < _FULL:
-        return _LEFT_BY_MANY[0 if beside else 1]
-    return _LEFT + _EACH * (_FEW - questions) if beside and questions <= _FEW else 0.0
+        return _LEFT_BY_MANY[0 if is_beside else 1]
+    return _LEFT + _EACH * (_FEW - questions) if is_beside and questions <= _FEW else 0.0
 
 
 def _shown(sheet: Sheet) -> Figure | Picture | None:
-    own = sheet.figure if isinstance(sheet, AnswerSheet) else None
-    return own or handout_of(sheet).figure
+    figure = sheet.figure if isinstance(sheet, AnswerSheet) else None
+    return figure or handout_of(sheet).figure
 
 
 def _data_beside(sheet: Sheet) -> bool:
-    """Whether the data stand beside the figure; a longer list stands below it."""
+    """Return whether the data stand beside the figure; a longer list stands below it."""
     return _shown(sheet) is not None and 0 < len(handout_of(sheet).given) <= _BESIDE
 
 
 def _data_width(handout: Handout) -> str:
     """Of the data beside a figure: what they take where each surely is on one line, else all the room they have."""
-    told = (given_words(one, handout.lang) for one in handout.given if not one.is_number)
-    return "auto" if all(_surely_fits(text, ROOM_DATA, handout.lang) for text in told) else f"{ROOM_DATA}mm"
+    texts = (given_words(datum, handout.lang) for datum in handout.given if not datum.is_number)
+    return "auto" if all(_surely_fits(text, ROOM_DATA, handout.lang) for text in texts) else f"{ROOM_DATA}mm"
 
 
 def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
     """The drawings of a solution's polygons in the order in which it shows them: steps, then the whole."""
     stated = sheet.polygons if isinstance(sheet, AnswerSheet) else ()
-    found: list[Figure | Beginning] = []
-    for one in stated:
-        found += (*(step.figure for step in one.steps), one.figure)
-    return tuple(found)
+    drawings: list[Figure | Beginning] = []
+    for polygon in stated:
+        drawings += (*(step.figure for step in polygon.steps), polygon.figure)
+    return tuple(drawings)
 
 
 def title(sheet: Sheet) -> str:
@@ -172,14 +172,14 @@ def points_number(points: float, lang: str) -> str:
     return localise(plain(round(points, 3)), lang)
 
 
-def renumbered(said: str, lang: str, prefix: str) -> str:
+def renumbered(text: str, lang: str, prefix: str) -> str:
     """The questions that a sentence names by their numbers, with what stands before these in a paper."""
     if not prefix:
-        return said
+        return text
     noun, marking = words(lang)["sheet"]["question"], words(lang)["marking"]
     joins = "|".join(re.escape(word) for word in (", ", f" {marking['and']} ", f" {marking['or']} "))
     named = rf"\b(?:{noun['one']}|{noun['many']}) \d+(?:(?:{joins})\d+)*"
-    return re.sub(named, lambda found: re.sub(r"\d+", rf"{prefix}\g<0>", found[0]), said, flags=re.IGNORECASE)
+    return re.sub(named, lambda match: re.sub(r"\d+", rf"{prefix}\g<0>", match[0]), text, flags=re.IGNORECASE)
 
 
 def given_formula(given: Given) -> str:
@@ -207,11 +207,11 @@ def tolerances(questions: Sequence[Question], lang: str, prefix: str = "") -> tu
         if question.tolerance:
             groups.setdefault(question.tolerance, []).append(question.number)
     if len(groups) == 1 and all(q.tolerance or q.is_exact for q in questions):
-        return tuple(("", said) for said in groups)
+        return tuple(("", words_of_group) for words_of_group in groups)
     noun = words(lang)["sheet"]["question"]
     return tuple(
-        (f"{noun['one' if len(numbers) == 1 else 'many']} {_ranges(numbers, prefix)}", said)
-        for said, numbers in groups.items()
+        (f"{noun['one' if len(numbers) == 1 else 'many']} {_ranges(numbers, prefix)}", words_of_group)
+        for words_of_group, numbers in groups.items()
     )
 
 
@@ -235,23 +235,23 @@ def worked(solution: AnswerSheet, lang: str, prefix: str = "") -> tuple[tuple[An
     Steps stand in the order in which they follow from one another; what no question asks goes with the last.
     """
     named = {part["id"]: part["quantity"] for part in _parts(solution.handout)}
-    place = {step.name: number for number, step in enumerate(solution.steps, 1)}
-    shown, found = 0, []
+    step_numbers = {step.name: number for number, step in enumerate(solution.steps, 1)}
+    position, numbered = 0, []
     for answer in solution.answers:
-        end = place.get(named.get(answer.question.id, answer.question.id), 0)
+        end = step_numbers.get(named.get(answer.question.id, answer.question.id), 0)
         if answer is solution.answers[-1]:
             end = len(solution.steps)
-        steps = (_below(answer.question, step, lang, prefix) for step in solution.steps[shown:end])
-        found.append((answer, tuple(steps)))
-        shown = max(shown, end)
-    return tuple(found)
+        steps = (_below(answer.question, step, lang, prefix) for step in solution.steps[position:end])
+        numbered.append((answer, tuple(steps)))
+        position = max(position, end)
+    return tuple(numbered)
 
 
 def _below(question: Question, step: Step, lang: str, prefix: str) -> Step:
     """A step as it stands below its question, whose number it need not say."""
-    own = rf"\*{words(lang)['sheet']['question']['one']} {question.number}\.\*\s*"
-    told = re.sub(rf"^{own}", "", step.words, flags=re.IGNORECASE)
-    return replace(step, words=renumbered(told, lang, prefix))
+    heading = rf"\*{words(lang)['sheet']['question']['one']} {question.number}\.\*\s*"
+    text = re.sub(rf"^{heading}", "", step.words, flags=re.IGNORECASE)
+    return replace(step, words=renumbered(text, lang, prefix))
 
 
 def _parts(handout: Handout) -> Sequence[Mapping[str, str]]:
@@ -262,7 +262,8 @@ def _parts(handout: Handout) -> Sequence[Mapping[str, str]]:
 
 @lru_cache(maxsize=256)
 def chain(step: Step) -> tuple[str, ...]:
-    """What a worked step equals, in order: formula, numbers put in, value; those that add something."""
+    """Return the equalities of a worked step, in order: formula, numbers put in, value; those that add
+    something."""
     value = "".join(step.value.split())
     repeats = value.startswith("".join(step.substitution.split()))
     parts = (_without_idle_signs(step.formula), "" if repeats else _without_idle_signs(step.substitution))
@@ -298,17 +299,17 @@ _SURELY_FITS = 85  #: characters of a formula written out that a printed line ho
 
 
 def is_short(step: Step, lang: str) -> bool:
-    """Whether the step's chain is on one line without any doubt."""
+    """Return whether the step's chain surely fits on one line."""
     return len(to_line(chain_on_one_line(step), lang)) <= _SURELY_FITS
 
 
 def fits_on_lines(step: Step, lang: str) -> bool:
-    """Whether each equality of the step's chain is on a line of its own without any doubt."""
+    """Return whether each equality of the step's chain surely fits on a line of its own."""
     if _is_equation(step):
         return False
-    own = len(to_line(step.symbol, lang)) + 3
+    width = len(to_line(step.symbol, lang)) + 3
     lines = (line for member in chain(step) for line in _broken(member))
-    return all(own + len(to_line(line.replace("&", ""), lang)) <= _SURELY_FITS for line in lines)
+    return all(width + len(to_line(line.replace("&", ""), lang)) <= _SURELY_FITS for line in lines)
 
 
 _LINE = 85  #: characters of a formula written out that a printed line holds
@@ -343,19 +344,19 @@ def _terms(latex: str) -> list[str]:
 
 
 def quantity_words(question: Question, lang: str) -> str:
-    """What a solution's summary calls an answer that has no symbol."""
+    """Return the name of an answer without a symbol in a solution's summary."""
     return words(lang)["solution"]["kinds"].get(question.kind, question.id)
 
 
 def margin_words(answer: Answer, lang: str) -> str:
-    """How far from the reference an answer may be, in the summary's few words."""
-    said = words(lang)["solution"]
+    """Return the accepted deviation from the reference, in the summary's few words."""
+    solution_words = words(lang)["solution"]
     margin = f"±\N{NO-BREAK SPACE}{answer.margin}" if answer.margin else answer.question.tolerance
     if answer.question.room:
-        return said["none"]
+        return solution_words["none"]
     if not margin:
-        return said["together" if answer.question.judge else "exact"]
-    return said["margins"].get(answer.question.kind, "{0}").format(margin)
+        return solution_words["together" if answer.question.judge else "exact"]
+    return solution_words["margins"].get(answer.question.kind, "{0}").format(margin)
 
 
 #: What a table's row on one line takes, without an arrow over a letter and with one, mm; and the sides of a cell.
@@ -407,7 +408,7 @@ def _is_low(markdown: str) -> bool:
 
 
 def _has_power_inside(latex: str) -> bool:
-    """Whether a bracket holds another one with an exponent, and so is drawn taller than a line."""
+    """Return whether a bracket holds another one with an exponent, and so is drawn taller than a line."""
     depth = 0
     for bracket in _BRACKET.findall(latex):
         depth += 1 if bracket == r"\left" else -1
@@ -418,9 +419,10 @@ def _has_power_inside(latex: str) -> bool:
 
 @lru_cache(maxsize=2048)
 def _surely_fits(markdown: str, wide: float, lang: str) -> bool:
-    """Whether a cell holds a text on one line: its room less its sides, its letters measured with some to spare."""
-    said = re.sub("[_^\N{COMBINING RIGHT ARROW ABOVE}]", "", to_text(markdown, lang, sys.maxsize))
-    return 1.2 * LetterRun(said, italic=False).width * SIZE <= wide - _SIDES
+    """Return whether a cell holds a text on one line, by its width less its padding, with letters measured
+    generously."""
+    text = re.sub("[_^\N{COMBINING RIGHT ARROW ABOVE}]", "", to_text(markdown, lang, sys.maxsize))
+    return 1.2 * LetterRun(text, italic=False).width * SIZE <= wide - _SIDES
 
 
 def offered(question: Question) -> tuple[tuple[str, str], ...]:
@@ -457,18 +459,18 @@ def python_name(name: str) -> str:
 
 
 def answer_comment(question: Question, lang: str, prefix: str = "") -> str:
-    """What a notebook says beside an answer: the question's number where its key is another, its unit, the letters of a choice,
-    or the form it takes."""
-    said = words(lang)
+    """Return the comment beside an answer in a notebook: the question's number where its key is another, its
+    unit, the letters of a choice, or the form of the answer."""
+    texts = words(lang)
     if question.choices and question.box != "several":
         offered = question.letters or [to_text(label, lang, sys.maxsize) for _, label in question.choices]
-        note = said["notebook"]["one_of"].format(", ".join(offered))
+        note = texts["notebook"]["one_of"].format(", ".join(offered))
     else:
-        unit = said["sheet"]["with_unit"] if question.asks_unit else question.unit
-        note = ", ".join(filter(None, (said["hints"].get(question.kind, question.hint), unit)))
+        unit = texts["sheet"]["with_unit"] if question.asks_unit else question.unit
+        note = ", ".join(filter(None, (texts["hints"].get(question.kind, question.hint), unit)))
     key = question.key or question.id
     number = (
-        "" if key == f"q{question.number}" else said["notebook"]["question"].format(prefix, question.number)
+        "" if key == f"q{question.number}" else texts["notebook"]["question"].format(prefix, question.number)
     )
-    note = f"{said['sheet']['colon']} ".join(filter(None, (number, note)))
+    note = f"{texts['sheet']['colon']} ".join(filter(None, (number, note)))
     return f"  # {note}" if note else ""

@@ -33,13 +33,13 @@ def written_beside(page: Straight, field: Field) -> bool:
     """Return True if ink lies beside the boxes of a row and is not part of the writing in them."""
     boxes = boxes_of(field)
     ink, span = row_ink(page, boxes, within=field.whole)
-    found = pieces(255 - ink > STRONG)
-    beside = np.zeros(len(found.areas), int)
+    connected = pieces(255 - ink > STRONG)
+    pixel_counts = np.zeros(len(connected.areas), int)
     for bare in _bare(field):
-        beside += found.inside(part_of(found.labels, bare, span))
+        pixel_counts += connected.inside(part_of(connected.labels, bare, span))
     for box in boxes:
-        beside[found.inside(part_of(found.labels, box, span, _INSIDE)) > 0] = 0
-    return bool((beside[1:] > _LEAST * SCALE**2).any())
+        pixel_counts[connected.inside(part_of(connected.labels, box, span, _INSIDE)) > 0] = 0
+    return bool((pixel_counts[1:] > _LEAST * SCALE**2).any())
 
 
 def written_below(page: Straight, sheet: AnswerPage) -> bool:
@@ -51,10 +51,10 @@ def written_below(page: Straight, sheet: AnswerPage) -> bool:
     bottom = min(y for _, y in corners) - _MARK
     if bottom - top < _TALL:
         return False
-    found = pieces(255 - page.cut(Box(left, top, right - left, bottom - top)) > STRONG)
-    wide, high = found.boxes[1:, 2] / SCALE, found.boxes[1:, 3] / SCALE
+    connected = pieces(255 - page.cut(Box(left, top, right - left, bottom - top)) > STRONG)
+    wide, high = connected.boxes[1:, 2] / SCALE, connected.boxes[1:, 3] / SCALE
     is_writing = (high >= _SMALL) & (high <= _TALL) & (wide <= _LONG)
-    return float(found.areas[1:][is_writing].sum()) >= _WRITING * SCALE**2
+    return float(connected.areas[1:][is_writing].sum()) >= _WRITING * SCALE**2
 
 
 def boxes_of(field: Field) -> list[Box]:

@@ -27,9 +27,9 @@ def codes_in(grey: np.ndarray) -> tuple[Code, ...]:
     """Return the codes in a picture, each text once; a picture that is hard to read is also tried sharpened,
     softened and evenly lit."""
     for scale, tried in _tries(grey):
-        found = {code.text: code for code in _read(tried, scale)}
-        if found:
-            return tuple(found[text] for text in sorted(found))
+        by_text = {code.text: code for code in _read(tried, scale)}
+        if by_text:
+            return tuple(by_text[text] for text in sorted(by_text))
     return ()
 
 
@@ -55,7 +55,7 @@ def _tries(grey: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
 
 def _read(grey: np.ndarray, scale: float) -> Iterator[Code]:
     zxing: Any = library("zxingcpp", "reading scans needs", "scan")
-    for found in zxing.read_barcodes(np.ascontiguousarray(grey), formats=zxing.BarcodeFormat.QRCode):
-        at = found.position
+    for barcodes in zxing.read_barcodes(np.ascontiguousarray(grey), formats=zxing.BarcodeFormat.QRCode):
+        at = barcodes.position
         corners = [(p.x, p.y) for p in (at.top_left, at.top_right, at.bottom_right, at.bottom_left)]
-        yield Code(found.text, (np.array(corners, float) + 0.5) / scale - 0.5)
+        yield Code(barcodes.text, (np.array(corners, float) + 0.5) / scale - 0.5)

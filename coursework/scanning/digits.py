@@ -48,8 +48,8 @@ def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np
         it is low where the box holds something else: a letter, a struck-out digit, two digits, a part of one.
     """
     chances = probabilities(prepared(cells))
-    taken = chances[:, : BLANK + 1].argmax(axis=1)
-    return np.where(taken == BLANK, EMPTY, taken), chances[np.arange(len(taken)), taken]
+    likeliest = chances[:, : BLANK + 1].argmax(axis=1)
+    return np.where(likeliest == BLANK, EMPTY, likeliest), chances[np.arange(len(likeliest)), likeliest]
 
 
 def read_signs(cells: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
@@ -66,8 +66,8 @@ def prepared(cells: NDArray[np.uint8]) -> Floats:
     """Return boxes as input of the network: darkness relative to the paper, 0 to 1, on the scale of the
     darkest ink; shape (n, 40, 32)."""
     seen = np.zeros((len(cells), HEIGHT + 2 * RIM, WIDTH + 2 * RIM), np.float32)
-    for cell, place in zip(cells, seen, strict=True):
-        place[RIM:-RIM, RIM:-RIM] = _darkness(_resized(cell))
+    for cell, index in zip(cells, seen, strict=True):
+        index[RIM:-RIM, RIM:-RIM] = _darkness(_resized(cell))
     return seen
 
 

@@ -80,8 +80,8 @@ class Card:
 
     @property
     def id(self) -> str:
-        told = (self.student, self.paper, self.exercise, self.seed, self.part, self.coordinate, *self.pages)
-        return sha256("\0".join(map(str, told)).encode()).hexdigest()[:16]
+        key = (self.student, self.paper, self.exercise, self.seed, self.part, self.coordinate, *self.pages)
+        return sha256("\0".join(map(str, key)).encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
@@ -146,30 +146,30 @@ def gather(
     parts: Parts,
 ) -> Gathered:
     """Combine pages and typed texts."""
-    found = Gathered()
+    combined = Gathered()
     by_paper: dict[str, dict[int, dict[str, PageKept]]] = {}
     lost: dict[str, str] = {}
-    for one in pages:
-        if one.page.what == ANSWERS and one.page.code in papers:
-            by_paper.setdefault(one.page.code, {}).setdefault(one.page.number, {})[one.id] = one.page
-        elif one.page.what == LOST:
-            lost[one.id] = OTHER_NAME if one.page.reason == OTHER_NAME else CODE
-    decided = {one.place: one for one in typed}
+    for page in pages:
+        if page.page.what == ANSWERS and page.page.code in papers:
+            by_paper.setdefault(page.page.code, {}).setdefault(page.page.number, {})[page.id] = page.page
+        elif page.page.what == LOST:
+            lost[page.id] = OTHER_NAME if page.page.reason == OTHER_NAME else CODE
+    decided = {page.place: page for page in typed}
     used: set[Any] = set()
     for code, paper in papers.items():
         scans = by_paper.get(code, {})
-        found.whose[code] = whose = _whose(paper, scans, decided, used, found)
+        combined.whose[code] = student = _whose(paper, scans, decided, used, combined)
         missing = tuple(n for n in range(1, paper.pages + 1) if n not in scans)
         if missing:
-            found.missing.append((paper, missing))
-        _gather_paper(found, paper, whose, scans, decided, used, parts)
+            combined.missing.append((paper, missing))
+        _gather_paper(combined, paper, student, scans, decided, used, parts)
     for name in sorted(lost):
-        found.cards.append(Card("", "", PAGE, 0, name, 1, 1, PAGE, lost[name], "", 0.0, (), (name,)))
-    for card in found.cards:
+        combined.cards.append(Card("", "", PAGE, 0, name, 1, 1, PAGE, lost[name], "", 0.0, (), (name,)))
+    for card in combined.cards:
         for name in card.pages:
-            found.waits[name] = found.waits.get(name, 0) + 1
-    found.unused = [one for one in decided.values() if one.place not in used]
-    return found
+            combined.waits[name] = combined.waits.get(name, 0) + 1
+    combined.unused = [page for page in decided.values() if page.place not in used]
+    return combined
 
 
 def _whose(
@@ -177,101 +177,110 @@ def _whose(
     scans: Mapping[int, Mapping[str, PageKept]],
     decided: Mapping[Any, Typed],
     used: set[Any],
-    found: Gathered,
+    combined: Gathered,
 ) -> str:
     """Return the student of a paper; for a paper without a name, the student whom a person has typed, or else
     the code."""
     if paper.student or not scans:
         return paper.student or paper.code
-    told = decided.get((paper.code, NAME, "", "", "1"))
-    if told is not None and told.answer.strip():
-        used.add(told.place)
-        return told.answer.strip()
+    typed = decided.get((paper.code, NAME, "", "", "1"))
+    if typed is not None and typed.answer.strip():
+        used.add(typed.place)
+        return typed.answer.strip()
     first = tuple(sorted(scans[min(scans)]))
-    found.cards.append(Card(paper.code, paper.code, NAME, 0, "", 1, 1, NAME, NOBODY, "", 0.0, (), first[:1]))
+    combined.cards.append(
+        Card(paper.code, paper.code, NAME, 0, "", 1, 1, NAME, NOBODY, "", 0.0, (), first[:1])
+    )
     return paper.code
 
 
 def _gather_paper(
-    found: Gathered,
+    combined: Gathered,
     paper: PaperAsked,
-    whose: str,
+    student: str,
     scans: Mapping[int, Mapping[str, PageKept]],
     decided: Mapping[Any, Typed],
     used: set[Any],
     parts: Parts,
 ) -> None:
-    said = _said(scans)
+    readings = _said(scans)
     by_part: dict[Part, list[Asked]] = {}
-    for one in paper.asked:
-        by_part.setdefault(one.place[:3], []).append(one)
-    for part, asked in by_part.items():
+    for printed in paper.asked:
+        by_part.setdefault(printed.place[:3], []).append(printed)
+    for part, fields in by_part.items():
         if not part[2]:  # paper to draw on, which is no answer by itself
-            _note_drawing(found, paper, said.get(asked[0].place, ()))
+            _note_drawing(combined, paper, readings.get(fields[0].place, ()))
             continue
         settled = [
-            _settle(one, paper, whose, said.get(one.place, ()), decided, used, parts.is_open(part))
-            for one in asked
+            _settle(
+                printed, paper, student, readings.get(printed.place, ()), decided, used, parts.is_open(part)
+            )
+            for printed in fields
         ]
-        if (paper.code, *part[:2]) in found.drawn and parts.is_drawn(part):
-            settled = [_to_click(s, one, paper, whose, said) for s, one in zip(settled, asked, strict=True)]
-        _put(found, whose, part, settled, parts)
+        if (paper.code, *part[:2]) in combined.drawn and parts.is_drawn(part):
+            settled = [
+                _to_click(s, printed, paper, student, readings)
+                for s, printed in zip(settled, fields, strict=True)
+            ]
+        _put(combined, student, part, settled, parts)
 
 
-def _note_drawing(found: Gathered, paper: PaperAsked, said: Sequence[Said]) -> None:
-    drawn = next((s for s in said if s.field.waits), None)
+def _note_drawing(combined: Gathered, paper: PaperAsked, readings: Sequence[Said]) -> None:
+    drawn = next((s for s in readings if s.field.waits), None)
     if drawn is not None:
-        found.drawn[paper.code, drawn.field.exercise, drawn.field.seed] = drawn
+        combined.drawn[paper.code, drawn.field.exercise, drawn.field.seed] = drawn
 
 
 def _to_click(
     settled: _Settled | Card | None,
-    one: Asked,
+    printed: Asked,
     paper: PaperAsked,
-    whose: str,
-    said: Mapping[Place, Sequence[Said]],
+    student: str,
+    readings: Mapping[Place, Sequence[Said]],
 ) -> _Settled | Card | None:
     """Return a card for a blank coordinate beside a drawing, since a person may click it there; any other
     state unchanged."""
     if not isinstance(settled, _Settled) or settled.text or settled.by_hand:
         return settled
-    own = said[one.place]
-    return _card(one, paper, whose, own, DRAWN, "", 0.0)
+    field_readings = readings[printed.place]
+    return _card(printed, paper, student, field_readings, DRAWN, "", 0.0)
 
 
 def _put(
-    found: Gathered, whose: str, part: Part, settled: Sequence[_Settled | Card | None], parts: Parts
+    combined: Gathered, student: str, part: Part, settled: Sequence[_Settled | Card | None], parts: Parts
 ) -> None:
     """Add the answer to a question if all its coordinates are known; otherwise add their cards, and list the
     answer as pending if all its pages were scanned."""
-    cards = [one for one in settled if isinstance(one, Card)]
-    known = [one for one in settled if isinstance(one, _Settled)]
-    found.cards += cards
-    if len(cards) + len(known) < len(settled):
+    cards = [item for item in settled if isinstance(item, Card)]
+    values = [item for item in settled if isinstance(item, _Settled)]
+    combined.cards += cards
+    if len(cards) + len(values) < len(settled):
         return  # of its pages not all were scanned
     if cards:
-        pieces = tuple(one if isinstance(one, Card) else one.text for one in settled if one is not None)
-        found.pending.append(Pending(whose, part, pieces))
+        pieces = tuple(item if isinstance(item, Card) else item.text for item in settled if item is not None)
+        combined.pending.append(Pending(student, part, pieces))
         return
-    texts = [one.text for one in known]
-    ids = tuple(sorted({name for one in known for name in one.pages}))
-    found.answers.append(
+    texts = [item.text for item in values]
+    ids = tuple(sorted({name for item in values for name in item.pages}))
+    combined.answers.append(
         Answer(
-            whose, *part, texts[0] if len(texts) == 1 else parts.joined(part, texts), ids, any(one.by_hand for one in known),
-            tuple(s for one in known for s in one.pictures),
+            student, *part, texts[0] if len(texts) == 1 else parts.joined(part, texts), ids, any(item.by_hand for item in values),
+            tuple(s for item in values for s in item.pictures),
         )
     )  # fmt: skip
 
 
 def _said(scans: Mapping[int, Mapping[str, PageKept]]) -> dict[Place, tuple[Said, ...]]:
     """Return the readings of a paper's scans by place, ordered by the ids of the scans."""
-    found: dict[Place, list[Said]] = {}
+    by_position: dict[Place, list[Said]] = {}
     for number in sorted(scans):
         for name in sorted(scans[number]):
-            for index, one in enumerate(scans[number][name].fields):
-                place = Place(one.exercise, one.seed, one.part, one.coordinate)
-                found.setdefault(place, []).append(Said(name, one, index))
-    return {place: tuple(said) for place, said in found.items()}
+            for index, scanned_field in enumerate(scans[number][name].fields):
+                position = Place(
+                    scanned_field.exercise, scanned_field.seed, scanned_field.part, scanned_field.coordinate
+                )
+                by_position.setdefault(position, []).append(Said(name, scanned_field, index))
+    return {position: tuple(readings) for position, readings in by_position.items()}
 
 
 @dataclass(frozen=True)
@@ -283,10 +292,10 @@ class _Settled:
 
 
 def _settle(
-    one: Asked,
+    printed: Asked,
     paper: PaperAsked,
-    whose: str,
-    said: Sequence[Said],
+    student: str,
+    readings: Sequence[Said],
     decided: Mapping[Any, Typed],
     used: set[Any],
     is_open: bool,
@@ -296,61 +305,69 @@ def _settle(
 
     None where nothing was scanned nor typed.
     """
-    ids = tuple(s.page for s in said)
-    typed = _typed_at(one.place, paper, whose, decided, used)
-    if typed is not None and _holds(typed, said):
+    ids = tuple(s.page for s in readings)
+    typed = _typed_at(printed.place, paper, student, decided, used)
+    if typed is not None and _holds(typed, readings):
         return _Settled(typed.answer, ids, by_hand=True)
-    if not said:
+    if not readings:
         return None
-    texts = {s.field.text for s in said}
-    if len(texts) == 1 and all(s.is_sure for s in said) and typed is None:
-        return _Settled(said[0].field.text, ids)
+    texts = {s.field.text for s in readings}
+    if len(texts) == 1 and all(s.is_sure for s in readings) and typed is None:
+        return _Settled(readings[0].field.text, ids)
     if is_open:
-        return _Settled("", ids, pictures=tuple(s for s in said if s.field.waits or s.field.text))
-    likeliest = max(said, key=lambda s: (s.is_sure, s.field.confidence, s.page))
+        return _Settled("", ids, pictures=tuple(s for s in readings if s.field.waits or s.field.text))
+    likeliest = max(readings, key=lambda s: (s.is_sure, s.field.confidence, s.page))
     if typed is not None:
-        return _card(one, paper, whose, said, DIFFERS, typed.answer, 0.0)
-    return _card(one, paper, whose, said, _why(said, texts), likeliest.field.text, likeliest.field.confidence)
+        return _card(printed, paper, student, readings, DIFFERS, typed.answer, 0.0)
+    return _card(
+        printed,
+        paper,
+        student,
+        readings,
+        _why(readings, texts),
+        likeliest.field.text,
+        likeliest.field.confidence,
+    )
 
 
 def _card(
-    one: Asked,
+    printed: Asked,
     paper: PaperAsked,
-    whose: str,
-    said: Sequence[Said],
+    student: str,
+    readings: Sequence[Said],
     waits: str,
     candidate: str,
     confidence: float,
 ) -> Card:
-    place = one.place
+    position = printed.place
     return Card(
-        whose, paper.code, place.exercise, place.seed, place.part, place.coordinate, one.coordinates, one.what, waits, candidate,
-        confidence, tuple(said), tuple(s.page for s in said),
+        student, paper.code, position.exercise, position.seed, position.part, position.coordinate, printed.coordinates, printed.what, waits, candidate,
+        confidence, tuple(readings), tuple(s.page for s in readings),
     )  # fmt: skip
 
 
-def _why(said: Sequence[Said], texts: set[str]) -> str:
+def _why(readings: Sequence[Said], texts: set[str]) -> str:
     """Why a place waits: its scans differ, or the first reason that one of them has."""
     if len(texts) > 1:
         return DIFFERS
-    return next(s.field.waits for s in said if s.field.waits)
+    return next(s.field.waits for s in readings if s.field.waits)
 
 
 def _typed_at(
-    place: Place, paper: PaperAsked, whose: str, decided: Mapping[Any, Typed], used: set[Any]
+    position: Place, paper: PaperAsked, student: str, decided: Mapping[Any, Typed], used: set[Any]
 ) -> Typed | None:
-    for name in (whose, paper.code):
-        key = (name, place.exercise, str(place.seed), place.part, str(place.coordinate + 1))
+    for name in (student, paper.code):
+        key = (name, position.exercise, str(position.seed), position.part, str(position.coordinate + 1))
         if key in decided:
             used.add(key)
             return decided[key]
     return None
 
 
-def _holds(typed: Typed, said: Sequence[Said]) -> bool:
+def _holds(typed: Typed, readings: Sequence[Said]) -> bool:
     """Return True if a typed text still applies: its author saw these scans, or later ones agree with it."""
     if not typed.pages:
         return True
-    seen = {s.field.text for s in said if s.page in typed.pages and s.is_sure}
-    new = [s for s in said if s.page not in typed.pages]
+    seen = {s.field.text for s in readings if s.page in typed.pages and s.is_sure}
+    new = [s for s in readings if s.page not in typed.pages]
     return all(s.is_sure and s.field.text in {typed.answer, *seen} for s in new)

@@ -94,19 +94,21 @@ def picture_of(name: str) -> str:
     return f"{PICTURES}/{name}.jpg"
 
 
-def crop_of(name: str, place: int) -> str:
+def crop_of(name: str, index: int) -> str:
     """Return the file of a field's picture, relative to the folder of the job."""
-    return f"{CROPS}/{name}-{place:02d}.png"
+    return f"{CROPS}/{name}-{index:02d}.png"
 
 
-def page_of(told: Mapping[str, Any]) -> PageKept | None:
+def page_of(content: Mapping[str, Any]) -> PageKept | None:
     """Return the page in JSON; None if it is of another format."""
-    own = dict(told)
+    fields_left = dict(content)
     try:
-        if own.pop("format") != FORMAT:
+        if fields_left.pop("format") != FORMAT:
             return None
-        fields = tuple(_checked(FieldKept(**{**one, "box": _box(one["box"])})) for one in own.pop("fields"))
-        return _checked(PageKept(**own, fields=fields))
+        fields = tuple(
+            _checked(FieldKept(**{**entry, "box": _box(entry["box"])})) for entry in fields_left.pop("fields")
+        )
+        return _checked(PageKept(**fields_left, fields=fields))
     except (ValueError, KeyError, TypeError):
         return None
 
@@ -128,7 +130,7 @@ def _box(numbers: Any) -> tuple[float, float, float, float]:
 _TYPES = {str: (str,), int: (int,), float: (int, float), bool: (bool,)}
 
 
-def _checked(kept: _Kept) -> _Kept:
+def _checked(stored: _Kept) -> _Kept:
     """Check that the fields of a stored object have their declared types; return the object.
 
     Raises
@@ -136,10 +138,10 @@ def _checked(kept: _Kept) -> _Kept:
     TypeError
         One is not.
     """
-    for name, sort in get_type_hints(type(kept)).items():
-        if sort in _TYPES and type(getattr(kept, name)) not in _TYPES[sort]:
-            raise TypeError(f"{name} is {getattr(kept, name)!r}"[:80])
-    return kept
+    for name, sort in get_type_hints(type(stored)).items():
+        if sort in _TYPES and type(getattr(stored, name)) not in _TYPES[sort]:
+            raise TypeError(f"{name} is {getattr(stored, name)!r}"[:80])
+    return stored
 
 
 def page_as_json(page: PageKept) -> dict[str, Any]:
@@ -150,13 +152,13 @@ def page_as_json(page: PageKept) -> dict[str, Any]:
 def page_kept(out: Path, name: str) -> PageKept | None:
     """Return the stored result of a page; None if there is none, or if it is of another format."""
     try:
-        told = read_json(out / FOLDER / f"{name}.json")
+        content = read_json(out / FOLDER / f"{name}.json")
     except BadInput:
         return None
-    found = page_of(told) if isinstance(told, dict) else None
-    if found is None:
+    page = page_of(content) if isinstance(content, dict) else None
+    if page is None:
         return None
-    return found if not found.has_picture or (out / picture_of(name)).is_file() else None
+    return page if not page.has_picture or (out / picture_of(name)).is_file() else None
 
 
 def files_kept(out: Path) -> list[FileKept]:
@@ -171,7 +173,7 @@ def files_kept(out: Path) -> list[FileKept]:
     if not path.exists():
         return []
     try:
-        return [_checked_file(FileKept(**one)) for one in read_json(path)]
+        return [_checked_file(FileKept(**entry)) for entry in read_json(path)]
     except (ValueError, TypeError) as fault:
         raise BadInput(
             f"{path} is not as 'coursework scan' leaves it ({str(fault)[:80]}): remove it and name all scans again, or choose "
@@ -179,21 +181,21 @@ def files_kept(out: Path) -> list[FileKept]:
         ) from fault
 
 
-def _checked_file(kept: FileKept) -> FileKept:
-    if not 0 <= _checked(kept).pages <= MOST_PAGES:
-        raise ValueError(f"{kept.name} of {str(kept.pages)[:20]} pages")
-    return kept
+def _checked_file(file: FileKept) -> FileKept:
+    if not 0 <= _checked(file).pages <= MOST_PAGES:
+        raise ValueError(f"{file.name} of {str(file.pages)[:20]} pages")
+    return file
 
 
 def put_files(out: Path, files: Iterable[FileKept]) -> None:
     """Keep the list of files."""
-    write_whole(out / FOLDER / FILES, json_text([asdict(one) for one in files]).encode())
+    write_whole(out / FOLDER / FILES, json_text([asdict(file) for file in files]).encode())
 
 
 def joined(before: Iterable[FileKept], now: Iterable[FileKept]) -> list[FileKept]:
     """Return the earlier and the current files, each once, in the order of their names."""
-    found = {(one.name, one.digest): one for one in (*before, *now)}
-    return [found[key] for key in sorted(found)]
+    by_key = {(file.name, file.digest): file for file in (*before, *now)}
+    return [by_key[key] for key in sorted(by_key)]
 
 
 # ------------------------------------------------------------------------- copies
@@ -213,26 +215,26 @@ def look_of(paper: np.ndarray) -> str:
 def with_copies(pages: Iterable[Scanned]) -> list[Scanned]:
     """Return the pages, with those marked as copies that look like an earlier page of the same sheet."""
     met: dict[tuple[str, int], list[tuple[np.ndarray, PageKept]]] = {}
-    found = []
-    for one in pages:
-        cells = _cells(one.page.look)
-        if cells is not None and not one.is_copy:
-            others = met.setdefault((one.page.code, one.page.number), [])
-            if any(_is_alike(cells, o) and _says_the_same(one.page, page) for o, page in others):
-                one = replace(one, is_copy=True)
+    result = []
+    for scan in pages:
+        cells = _cells(scan.page.look)
+        if cells is not None and not scan.is_copy:
+            others = met.setdefault((scan.page.code, scan.page.number), [])
+            if any(_is_alike(cells, o) and _says_the_same(scan.page, page) for o, page in others):
+                scan = replace(scan, is_copy=True)
             else:
-                others.append((cells, one.page))
-        found.append(one)
-    return found
+                others.append((cells, scan.page))
+        result.append(scan)
+    return result
 
 
 def _is_alike(cells: np.ndarray, others: np.ndarray) -> bool:
     return cells.shape == others.shape and bool(np.abs(cells - others).max() <= _SAME)
 
 
-def _says_the_same(one: PageKept, other: PageKept) -> bool:
+def _says_the_same(page: PageKept, other: PageKept) -> bool:
     """Return True if two pages agree in every field of which both are certain."""
-    sure = ((a, b) for a, b in zip(one.fields, other.fields, strict=False) if not (a.waits or b.waits))
+    sure = ((a, b) for a, b in zip(page.fields, other.fields, strict=False) if not (a.waits or b.waits))
     return all(a.text == b.text for a, b in sure)
 
 

@@ -48,11 +48,11 @@ def name_strips(
     folders
         Folders of templates, which may bring fonts.
     """
-    said = words(lang)["sheet"]
-    own = {"width": f"{width:.3f}", "height": f"{height:.3f}"}
-    label = typst_string(f"{said['name']}{said['colon']}")
-    lines = [f"#{_LINE.format(label=label, name=typst_string(name), **own)}" for name in names]
-    source = _NAME.format(lang=f'"{lang}"', **own) + "\n#pagebreak()\n".join(lines)
+    sheet_words = words(lang)["sheet"]
+    size = {"width": f"{width:.3f}", "height": f"{height:.3f}"}
+    label = typst_string(f"{sheet_words['name']}{sheet_words['colon']}")
+    lines = [f"#{_LINE.format(label=label, name=typst_string(name), **size)}" for name in names]
+    source = _NAME.format(lang=f'"{lang}"', **size) + "\n#pagebreak()\n".join(lines)
     pdfium: Any = library("pypdfium2", "reading scans needs", "scan")
     with pdfium.PdfDocument(compile_pdf(source, folders)) as document:
         drawn = [
@@ -60,13 +60,13 @@ def name_strips(
             for k in range(len(document))
         ]
         return {
-            name: 1 - np.array(one, np.float32).reshape(one.shape[:2]) / 255
-            for name, one in zip(names, drawn, strict=True)
+            name: 1 - np.array(picture, np.float32).reshape(picture.shape[:2]) / 255
+            for name, picture in zip(names, drawn, strict=True)
         }
 
 
 def other_name(
-    paper: np.ndarray, place: Box, owner: str, names: Sequence[str], lang: str, folders: Sequence[Path] = ()
+    paper: np.ndarray, box: Box, owner: str, names: Sequence[str], lang: str, folders: Sequence[Path] = ()
 ) -> str:
     """Return whose name of the class is printed on a page, where it is plainly another than its owner's; else nothing.
 
@@ -82,29 +82,29 @@ def other_name(
     others = [name for name in dict.fromkeys(names) if name and name != owner]
     if not owner or not others or len(others) > _MOST:
         return ""
-    seen = _ink_about(paper, place)
+    seen = _ink_about(paper, box)
     if seen is None:
         return ""
     try:
-        strips = name_strips(tuple(sorted({owner, *others})), lang, place.width, place.height, tuple(folders))
+        strips = name_strips(tuple(sorted({owner, *others})), lang, box.width, box.height, tuple(folders))
     except CourseworkError:  # a name that cannot be drawn alone
         return ""
     high, wide = strips[owner].shape
     seen = seen[: high + 2 * _REACH, : wide + 2 * _REACH]
-    own, _ = _best(seen, strips[owner])
-    if own >= _OWN:
+    own_share, _ = _best(seen, strips[owner])
+    if own_share >= _OWN:
         return ""
-    found, at, name = max((*_best(seen, strips[name]), name) for name in others)
-    if found < _SEEN or found < own + _BETTER or _leaning(seen, strips[owner], strips[name], at) < _LEANS:
+    best, at, name = max((*_best(seen, strips[name]), name) for name in others)
+    if best < _SEEN or best < own_share + _BETTER or _leaning(seen, strips[owner], strips[name], at) < _LEANS:
         return ""
     return name
 
 
-def _ink_about(paper: np.ndarray, place: Box) -> np.ndarray | None:
+def _ink_about(paper: np.ndarray, box: Box) -> np.ndarray | None:
     """Return the ink at the place of the name and a little around, 0 to 1; None if it exceeds the page."""
     reach, scale = _REACH / _SCALE, 10
-    top, left = round((place.y - reach) * scale), round((place.x - reach) * scale)
-    bottom, right = (round((v + reach) * scale) + scale for v in (place.y + place.height, place.right))
+    top, left = round((box.y - reach) * scale), round((box.x - reach) * scale)
+    bottom, right = (round((v + reach) * scale) + scale for v in (box.y + box.height, box.right))
     if min(top, left) < 0 or bottom > paper.shape[0] or right > paper.shape[1]:
         return None
     cut = opencv().resize(
@@ -133,8 +133,8 @@ def _leaning(seen: np.ndarray, owner: np.ndarray, other: np.ndarray, at: tuple[i
     row, column = at
     here = seen[row : row + owner.shape[0], column : column + owner.shape[1]]
     here = np.clip(here / max(1e-6, float(np.quantile(here, 0.995))), 0, 1)
-    theirs, own = np.clip(other - owner, 0, 1), np.clip(owner - other, 0, 1)
-    sums = (float(theirs.sum()), float(own.sum()))
+    theirs, differences = np.clip(other - owner, 0, 1), np.clip(owner - other, 0, 1)
+    sums = (float(theirs.sum()), float(differences.sum()))
     if min(sums) < 1:
         return 0.0
-    return float((here * theirs).sum() / sums[0] - (here * own).sum() / sums[1])
+    return float((here * theirs).sum() / sums[0] - (here * differences).sum() / sums[1])

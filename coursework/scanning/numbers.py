@@ -95,51 +95,51 @@ def _written(
 ) -> Reading:
     """Return the reading of a row that is not empty."""
     rows = [[*field.digits, *field.decimals], list(field.power)]
-    found: dict[Box, tuple[int, float]] = {}
-    told = "digit" if any(runs_through(page, box) for box, empty in bare.items() if not empty) else ""
+    texts: dict[Box, tuple[int, float]] = {}
+    reason = "digit" if any(runs_through(page, box) for box, empty in bare.items() if not empty) else ""
     for row in rows:
         if row:
             pictures, across = cells(page, row)
             read = _digits(pictures, [bare[b] for b in row], reader)
-            told = told or across or ("digit" if _has_bar(pictures, [digit for digit, _ in read]) else "")
-            found |= zip(row, read, strict=True)
-    if not told and any(
+            reason = reason or across or ("digit" if _has_bar(pictures, [digit for digit, _ in read]) else "")
+            texts |= zip(row, read, strict=True)
+    if not reason and any(
         digit in _LIKE_EDGES and cuts_a_corner(page, box)
-        for box, (digit, _) in found.items()
+        for box, (digit, _) in texts.items()
         if not bare[box]
     ):
-        told = "digit"
+        reason = "digit"
     signs = [_sign(page, box, bare) for box in (field.sign, field.power_sign)]
     row_read = _Row(
-        tuple(found[b][0] for b in field.digits),
-        tuple(found[b][0] for b in field.decimals),
-        tuple(found[b][0] for b in field.power),
+        tuple(texts[b][0] for b in field.digits),
+        tuple(texts[b][0] for b in field.decimals),
+        tuple(texts[b][0] for b in field.power),
         signs[0],
         signs[1],
         unit,
     )
-    confidence = min((c for _, c in found.values()), default=1.0)
-    told = told or ("digit" if confidence < least else "") or _against_rules(row_read)
-    return Reading(_text(row_read, field.unit_text), confidence, told)
+    confidence = min((c for _, c in texts.values()), default=1.0)
+    reason = reason or ("digit" if confidence < least else "") or _against_rules(row_read)
+    return Reading(_text(row_read, field.unit_text), confidence, reason)
 
 
 def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader) -> list[tuple[int, float]]:
     """Each box's digit, -1 for an empty one, and the confidence in it: none in a box that is neither."""
-    found = [(-1, 1.0)] * len(bare)
+    digits = [(-1, 1.0)] * len(bare)
     inked = [k for k, empty in enumerate(bare) if not empty]
     if inked:
         read, sure = reader(np.stack([_framed(pictures[k]) for k in inked]))
         for k, digit, c in zip(inked, read, sure, strict=True):
-            found[k] = int(digit), float(c) if digit >= 0 else 0.0
-    return found
+            digits[k] = int(digit), float(c) if digit >= 0 else 0.0
+    return digits
 
 
 def _has_bar(pictures: Sequence[np.ndarray], digits: Sequence[int]) -> bool:
     """Return True if a one between two digits leans like the bar of a fraction: ``1/3`` is not 113."""
     between = zip(digits, digits[1:], digits[2:], strict=False)
     return any(
-        one == 1 and min(before, after) >= 0 and _leans(pictures[k])
-        for k, (before, one, after) in enumerate(between, start=1)
+        column == 1 and min(before, after) >= 0 and _leans(pictures[k])
+        for k, (before, column, after) in enumerate(between, start=1)
     )
 
 
@@ -214,8 +214,8 @@ def _text(row: _Row, unit: str) -> str:
 
     decimals = f".{joined(row.decimals)}" if _any(row.decimals) else ""
     power = f"e{row.power_sign}{joined(row.power)}" if _any(row.power) else ""
-    said = f" {unit}" if row.unit == TICKED and unit else ""
-    return f"{row.sign}{joined(row.digits)}{decimals}{power}{said}".replace("?", "")
+    suffix = f" {unit}" if row.unit == TICKED and unit else ""
+    return f"{row.sign}{joined(row.digits)}{decimals}{power}{suffix}".replace("?", "")
 
 
 __all__ = ["LEAST", "UNSURE", "Reader", "Reading", "number"]

@@ -69,14 +69,14 @@ class Shifts:
         plate = RBFInterpolator(at / 100, offs, smoothing=1e-3)
         x, y = np.meshgrid(np.arange(0, wide + 50, 50), np.arange(0, high + 50, 50))
         coarse = plate(np.column_stack([x.ravel(), y.ravel()]) / scale / 100).reshape(*x.shape, 2)
-        place = np.stack(np.meshgrid(np.arange(wide), np.arange(high)), axis=-1).astype(np.float32)
+        grid = np.stack(np.meshgrid(np.arange(wide), np.arange(high)), axis=-1).astype(np.float32)
         fine = [
             cv2.remap(
-                coarse[..., k].astype(np.float32), place[..., 0] / 50, place[..., 1] / 50, cv2.INTER_LINEAR
+                coarse[..., k].astype(np.float32), grid[..., 0] / 50, grid[..., 1] / 50, cv2.INTER_LINEAR
             )
             for k in (0, 1)
         ]
-        along, down = (place[..., k] + scale * np.clip(fine[k], -8, 8) for k in (0, 1))
+        along, down = (grid[..., k] + scale * np.clip(fine[k], -8, 8) for k in (0, 1))
         return np.asarray(cv2.remap(picture, along, down, cv2.INTER_LINEAR, borderValue=255))
 
 
@@ -89,16 +89,16 @@ def outline_shifts(ink: np.ndarray, page: AnswerPage, scale: int) -> Shifts:
     lines = _lines(ink)
     centres = np.array([_centre(group) for group in groups])
     offs, shares = _each(_found(lines, group, scale, (0.0, 0.0), _REACH) for group in groups)
-    surface, kept = _smooth(centres, offs, shares > _SEEN)
-    again = [_found(lines, groups[k], scale, surface[k], _NEAR) for k in np.flatnonzero(~kept)]
+    surface, smooth = _smooth(centres, offs, shares > _SEEN)
+    again = [_found(lines, groups[k], scale, surface[k], _NEAR) for k in np.flatnonzero(~smooth)]
     if again:
-        offs[~kept], shares[~kept] = _each(again)
-        surface, kept = _smooth(centres, offs, shares > _SEEN)
-    return Shifts(centres, np.where(kept[:, None], offs, surface), float(kept.mean()))
+        offs[~smooth], shares[~smooth] = _each(again)
+        surface, smooth = _smooth(centres, offs, shares > _SEEN)
+    return Shifts(centres, np.where(smooth[:, None], offs, surface), float(smooth.mean()))
 
 
-def _each(found: Iterable[tuple[np.ndarray, float]]) -> tuple[np.ndarray, np.ndarray]:
-    offs, shares = zip(*found, strict=True)
+def _each(measurements: Iterable[tuple[np.ndarray, float]]) -> tuple[np.ndarray, np.ndarray]:
+    offs, shares = zip(*measurements, strict=True)
     return np.array(offs), np.array(shares)
 
 
@@ -183,9 +183,9 @@ def _found(
         total = total + cv2.matchTemplate(window, mask.astype(np.float32), cv2.TM_CCORR)
     total = cv2.GaussianBlur(total, (0, 0), 1.0)
     row, column = (int(v) for v in np.unravel_index(int(total.argmax()), total.shape))
-    found = at[0] + column, at[1] + row
-    off = np.array([found[0] - round(left * scale), found[1] - round(top * scale)]) / scale
-    return off, _share(lines, masks, *found)
+    peak = at[0] + column, at[1] + row
+    off = np.array([peak[0] - round(left * scale), peak[1] - round(top * scale)]) / scale
+    return off, _share(lines, masks, *peak)
 
 
 def _masks(group: Group, left: float, top: float, scale: int) -> tuple[np.ndarray, np.ndarray]:
@@ -217,38 +217,38 @@ def _window(
 
 def _share(lines: Sequence[np.ndarray], masks: Sequence[np.ndarray], left: int, top: int) -> float:
     """Return the share of the outlines' length that is darker than its surroundings."""
-    seen = asked = 0
+    seen = total = 0
     for line, mask in zip(lines, masks, strict=True):
         piece = _window(line, left, top, mask.shape)
         seen += int((piece[mask > 0] >= _LINE).sum())
-        asked += int(mask.sum())
-    return seen / max(asked, 1)
+        total += int(mask.sum())
+    return seen / max(total, 1)
 
 
 def _smooth(centres: np.ndarray, offs: np.ndarray, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return a smooth surface through the found displacements, at all centres, and the groups that agree with
     it."""
-    kept, surface = seen, np.zeros_like(offs)
+    smoothed, surface = seen, np.zeros_like(offs)
     for _ in range(4):
-        if not kept.any():
+        if not smoothed.any():
             break
-        surface = _surface(centres, centres[kept], offs[kept])
+        surface = _surface(centres, centres[smoothed], offs[smoothed])
         away = np.abs(offs - surface).max(axis=1)
-        kept = seen & (away < max(_OFF, 1.5 * float(np.median(away[seen]))))
+        smoothed = seen & (away < max(_OFF, 1.5 * float(np.median(away[seen]))))
     return surface, seen & (np.abs(offs - surface).max(axis=1) < _OFF)
 
 
-def _surface(at: np.ndarray, known: np.ndarray, offs: np.ndarray) -> np.ndarray:
+def _surface(at: np.ndarray, measured: np.ndarray, offs: np.ndarray) -> np.ndarray:
     """Return a smooth surface through the known points, at ``at``: of the second degree at most, of a lower
     one for few points."""
-    degree = 2 if len(known) >= 9 else 1 if len(known) >= 4 else 0
+    degree = 2 if len(measured) >= 9 else 1 if len(measured) >= 4 else 0
 
     def terms(points: np.ndarray) -> np.ndarray:
         x, y = (points / 100 - 1).T
         return np.column_stack([x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)])
 
     # towards no shift, where the points leave a direction open
-    a = np.vstack([terms(known), 0.1 * np.eye(terms(known).shape[1])])
+    a = np.vstack([terms(measured), 0.1 * np.eye(terms(measured).shape[1])])
     b = np.vstack([offs, np.zeros((a.shape[0] - len(offs), 2))])
     solved = np.linalg.lstsq(a, b, rcond=None)[0]
     return terms(at) @ solved

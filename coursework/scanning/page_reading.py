@@ -93,9 +93,9 @@ class Papers(Mapping[str, Sequence[AnswerPage]]):
     def __len__(self) -> int:
         return len(self.papers)
 
-    def _variant(self, code: str, place: int) -> Variant:
+    def _variant(self, code: str, index: int) -> Variant:
         """Return the variant of an exercise of a paper."""
-        record = self.papers[code].records[place]
+        record = self.papers[code].records[index]
         return self.course[record["exercise"]].from_record(record)
 
 
@@ -137,36 +137,36 @@ def _read(
     except CourseworkError as fault:
         return PageKept(REFUSED, str(fault), has_picture=False, least=least), {}
     try:
-        found = read_page(picture, papers, read_digits, least)
+        page_read = read_page(picture, papers, read_digits, least)
     except opencv().error as fault:  # one picture does not stop a pile: a person looks at it
         reason = f"reading it failed: {str(fault.err or fault)[:100]}"
         return PageKept(LOST, reason, least=least), {picture_of(name): _jpeg(picture.grey, _HIGHEST)}
-    if found.found == "no code" and _is_bare(picture.grey):
+    if page_read.found == "no code" and _is_bare(picture.grey):
         return PageKept(BLANK, least=least), {picture_of(name): _jpeg(picture.grey, 600)}
-    if found.page is None or found.found == "statement":
-        what, reason = _FOUND.get(found.found, (LOST, found.found))
-        return PageKept(what, reason, _code(found.code), least=least), {
-            picture_of(name): _jpeg(found.grey, _HIGHEST)
+    if page_read.page is None or page_read.found == "statement":
+        state, reason = _FOUND.get(page_read.found, (LOST, page_read.found))
+        return PageKept(state, reason, _code(page_read.code), least=least), {
+            picture_of(name): _jpeg(page_read.grey, _HIGHEST)
         }
-    code = _code(found.code)
-    if not found.fields:  # known, but it could not be laid flat
-        return typed_page(papers, code, found.page.number, least), {
-            picture_of(name): _jpeg(found.grey, _HIGHEST)
+    code = _code(page_read.code)
+    if not page_read.fields:  # known, but it could not be laid flat
+        return typed_page(papers, code, page_read.page.number, least), {
+            picture_of(name): _jpeg(page_read.grey, _HIGHEST)
         }
-    pictures = {picture_of(name): _jpeg(found.grey, round(found.page.height * SCALE))}
-    if _is_of_another(found.grey, found.page, papers, code):
+    pictures = {picture_of(name): _jpeg(page_read.grey, round(page_read.page.height * SCALE))}
+    if _is_of_another(page_read.grey, page_read.page, papers, code):
         return PageKept(LOST, OTHER_NAME, least=least), pictures
     fields = []
-    for place, one in enumerate(found.fields):
+    for index, field in enumerate(page_read.fields):
         crop = ""
-        if one.crop is not None:
-            crop = crop_of(name, place)
-            pictures[crop] = _png(one.crop)
-        text = _text(one.field, one.text, one.cases, papers, code)
-        fields.append(_kept(one.field, text, float(one.confidence), one.waits, crop))
-    look = look_of(found.grey)
+        if field.crop is not None:
+            crop = crop_of(name, index)
+            pictures[crop] = _png(field.crop)
+        text = _text(field.field, field.text, field.cases, papers, code)
+        fields.append(_kept(field.field, text, float(field.confidence), field.waits, crop))
+    look = look_of(page_read.grey)
     return PageKept(
-        ANSWERS, "", code, found.page.number, tuple(fields), True, least=least, look=look
+        ANSWERS, "", code, page_read.page.number, tuple(fields), True, least=least, look=look
     ), pictures
 
 

@@ -71,9 +71,9 @@ def read_page(
     codes = codes_in(picture.grey)
     ours = [code for code in codes if _CODE.fullmatch(code.text)]
     if len(ours) != 1:
-        found = "two pages" if ours else "no sheet" if codes else "no code"
+        reason = "two pages" if ours else "no sheet" if codes else "no code"
         texts = " ".join(code.text for code in ours or codes)
-        return PageRead(picture.file, picture.page, found, picture.grey, texts)
+        return PageRead(picture.file, picture.page, reason, picture.grey, texts)
     return _of_ours(picture, ours[0], papers, reader, least)
 
 
@@ -87,8 +87,8 @@ def _of_ours(
     paper, page_number, _ = _CODE.fullmatch(code.text).groups()  # type: ignore[union-attr]
     pages = {page.number: page for page in papers.get(paper, ())}
 
-    def told(found: str, page: AnswerPage | None = None) -> PageRead:
-        return PageRead(picture.file, picture.page, found, picture.grey, code.text, page)
+    def told(reason: str, page: AnswerPage | None = None) -> PageRead:
+        return PageRead(picture.file, picture.page, reason, picture.grey, code.text, page)
 
     if not pages:
         return told("other assignment")
@@ -104,42 +104,42 @@ def _of_ours(
     if is_two_toned(picture.grey):
         least = 1 - (1 - least) / _SURER
     fields = tuple(read_field(flat, field, reader, least) for field in page.fields)
-    if any(_is_blank(one) for one in fields) and written_below(flat, page):
-        fields = tuple(_gone_astray(flat, one) if _is_blank(one) else one for one in fields)
+    if any(_is_blank(item) for item in fields) and written_below(flat, page):
+        fields = tuple(_gone_astray(flat, item) if _is_blank(item) else item for item in fields)
     return PageRead(picture.file, picture.page, "answers", flat.paper, code.text, page, fields)
 
 
-def _is_blank(one: FieldRead) -> bool:
-    return not one.waits and not one.text and not one.cases
+def _is_blank(field: FieldRead) -> bool:
+    return not field.waits and not field.text and not field.cases
 
 
-def _gone_astray(page: Straight, one: FieldRead) -> FieldRead:
+def _gone_astray(page: Straight, field: FieldRead) -> FieldRead:
     """Return the reading of a blank field on a page with writing elsewhere, which may be its answer."""
-    return replace(one, confidence=0.0, waits="elsewhere", crop=cropped(page, one.field))
+    return replace(field, confidence=0.0, waits="elsewhere", crop=cropped(page, field.field))
 
 
 def read_field(page: Straight, field: Field, reader: Reader, least: float = LEAST) -> FieldRead:
     """Return the reading of a field on a flattened page."""
     if field.what == "ticks":
-        said = _ticks(page, field)
+        ticks = _ticks(page, field)
     elif field.what == "number":
-        said = number(page, field, reader, least)
+        ticks = number(page, field, reader, least)
     else:
-        said = Reading("", waits="" if is_bare(page, field.whole, 1.2) else field.what)
-    crop = cropped(page, field) if said.waits else None
-    return FieldRead(field, said.text, said.confidence, said.waits, said.cases, crop)
+        ticks = Reading("", waits="" if is_bare(page, field.whole, 1.2) else field.what)
+    crop = cropped(page, field) if ticks.waits else None
+    return FieldRead(field, ticks.text, ticks.confidence, ticks.waits, ticks.cases, crop)
 
 
 def _ticks(page: Straight, field: Field) -> Reading:
     """Return the reading of tick boxes: one choice, or several if allowed, but none together with others."""
-    said = {case: tick(page, box) for case, box in field.ticks}
-    cases = tuple(case for case, word in said.items() if word == TICKED)
+    states = {case: tick(page, box) for case, box in field.ticks}
+    cases = tuple(case for case, word in states.items() if word == TICKED)
     waits = (
         ("free", field.free is not None and not is_bare(page, field.free, 0.7)),
         ("free", written_beside(page, field)),
-        ("tick", UNSURE in said.values()),
+        ("tick", UNSURE in states.values()),
         ("two ticks", len(cases) > 1 and (not field.several or field.none in cases)),
-        ("taken back", not cases and TAKEN_BACK in said.values()),
+        ("taken back", not cases and TAKEN_BACK in states.values()),
     )
     word = next((word for word, is_so in waits if is_so), "")
     return Reading(", ".join(cases), 0.0 if word in ("free", "tick") else 1.0, word, cases)

@@ -12,12 +12,12 @@ from coursework.scanning.page_reading import Papers
 class Joins:
     """Composition of answers from several coordinates, by the kinds of their questions."""
 
-    def __init__(self, papers: Papers, asked: Mapping[str, PaperAsked]):
+    def __init__(self, papers: Papers, papers_asked: Mapping[str, PaperAsked]):
         self._papers = papers
         self._places: dict[tuple[str, int], tuple[str, int]] = {}
-        for code in asked:
-            for place, record in enumerate(papers.papers[code].records):
-                self._places[str(record["exercise"]), int(record["seed"])] = code, place
+        for code in papers_asked:
+            for index, record in enumerate(papers.papers[code].records):
+                self._places[str(record["exercise"]), int(record["seed"])] = code, index
 
     def part_of(self, part: tuple[str, int, str]) -> tuple[Any, Any]:
         """Return the variant and the question."""
@@ -33,15 +33,15 @@ class Joins:
         return bool(self.part_of(part)[1].sort.is_open)
 
     def is_drawn(self, part: tuple[str, int, str]) -> bool:
-        variant, own = self.part_of(part)
-        return own.unit == "mm" and len(own.sort.coordinates(own, variant)) == 2
+        variant, question = self.part_of(part)
+        return question.unit == "mm" and len(question.sort.coordinates(question, variant)) == 2
 
     def joined(self, part: tuple[str, int, str], texts: Sequence[str]) -> str:
         """Return the texts of several coordinates as one answer; empty if none is written. A ticked unit
         applies to all of them."""
         if not any(text.strip() for text in texts):
             return ""
-        variant, asked = self.part_of(part)
+        variant, question = self.part_of(part)
         behind = f" {self.unit_of(part)}"
         bare = [text.removesuffix(behind) if behind.strip() else text for text in texts]
-        return str(asked.sort.from_paper(bare, asked, variant, unit=bare != list(texts)))
+        return str(question.sort.from_paper(bare, question, variant, unit=bare != list(texts)))

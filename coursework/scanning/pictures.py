@@ -126,11 +126,11 @@ def _is_scanned(pdfium: Any, page: Any) -> bool:
     """Return whether a page is what scanners write: few pictures, of no more dots than a page has, and the words that were
     found on them. Anything else may take any time to be drawn."""
     pictures = dots = 0
-    for count, one in enumerate(page.get_objects(max_depth=1)):
-        if one.type == pdfium.raw.FPDF_PAGEOBJ_IMAGE:
-            pictures, dots = pictures + 1, dots + int(np.prod(one.get_px_size()))
+    for count, item in enumerate(page.get_objects(max_depth=1)):
+        if item.type == pdfium.raw.FPDF_PAGEOBJ_IMAGE:
+            pictures, dots = pictures + 1, dots + int(np.prod(item.get_px_size()))
         if (
-            one.type not in (pdfium.raw.FPDF_PAGEOBJ_IMAGE, pdfium.raw.FPDF_PAGEOBJ_TEXT)
+            item.type not in (pdfium.raw.FPDF_PAGEOBJ_IMAGE, pdfium.raw.FPDF_PAGEOBJ_TEXT)
             or count >= _MOST_PIECES
         ):
             return False
@@ -158,8 +158,8 @@ def _decoded(cv2: Any, path: Path, number: int) -> np.ndarray:
     """Return a page of an image, rotated by its orientation tag."""
     try:
         if number or path.suffix.lower() in (".tif", ".tiff"):
-            _, found = cv2.imreadmulti(str(path), number, 1, flags=cv2.IMREAD_GRAYSCALE)
-            grey = found[0] if found else None
+            _, result = cv2.imreadmulti(str(path), number, 1, flags=cv2.IMREAD_GRAYSCALE)
+            grey = result[0] if result else None
         else:
             grey = _single(cv2, path)
     except cv2.error as fault:
@@ -180,11 +180,11 @@ def _single(cv2: Any, path: Path) -> Any:
     """Return a picture of one page; a transparent PNG is laid on white paper."""
     if path.suffix.lower() != ".png" or not _may_be_transparent(path):
         return cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
-    found = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-    if found is None or found.ndim != 3 or found.shape[2] != 4:
-        return found if found is None else cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
-    most = float(np.iinfo(found.dtype).max)
-    grey, cover = cv2.cvtColor(found, cv2.COLOR_BGRA2GRAY), found[..., 3] / np.float32(most)
+    image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    if image is None or image.ndim != 3 or image.shape[2] != 4:
+        return image if image is None else cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    most = float(np.iinfo(image.dtype).max)
+    grey, cover = cv2.cvtColor(image, cv2.COLOR_BGRA2GRAY), image[..., 3] / np.float32(most)
     return np.rint((255 / most) * grey * cover + 255 * (1 - cover)).astype(np.uint8)
 
 
@@ -272,8 +272,8 @@ def _streaks(grey: np.ndarray) -> np.ndarray:
     high = max(1, grey.shape[0] // _STRIPS)
     strips = opencv().resize(grey, (grey.shape[1], grey.shape[0] // high), interpolation=opencv().INTER_AREA)
     strips = strips.astype(np.int16)
-    beside = np.minimum(np.roll(strips, _BESIDE, axis=1), np.roll(strips, -_BESIDE, axis=1))
-    low, middle = np.percentile(beside - strips, (15, 40), axis=0)
+    neighbours = np.minimum(np.roll(strips, _BESIDE, axis=1), np.roll(strips, -_BESIDE, axis=1))
+    low, middle = np.percentile(neighbours - strips, (15, 40), axis=0)
     lost = np.where((low > 0.5 * middle) & (low >= _STREAK), middle, 0).astype(np.int16)
     lost[: 2 * _BESIDE] = lost[-2 * _BESIDE :] = 0
     return lost

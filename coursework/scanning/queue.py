@@ -55,13 +55,13 @@ class Queue:
         spoken = Counter(
             str(record.get("lang", "en")) for paper in self.papers.papers.values() for record in paper.records
         )
-        return max(sorted(spoken), key=lambda one: spoken[one]) if spoken else "en"
+        return max(sorted(spoken), key=lambda code: spoken[code]) if spoken else "en"
 
     @cached_property
     def _order(self) -> dict[tuple[str, str], int]:
         """The questions in the order in which they were printed."""
         places = ((f.place.exercise, f.place.part) for paper in self.asked.values() for f in paper.asked)
-        return {one: number for number, one in enumerate(dict.fromkeys(places))}
+        return {key: number for number, key in enumerate(dict.fromkeys(places))}
 
     @cached_property
     def cards(self) -> list[Card]:
@@ -94,28 +94,28 @@ class Queue:
                 "letters": [],
             }
         paper = self.papers.papers[card.paper]
-        place = next(
+        index = next(
             k
             for k, r in enumerate(paper.records)
             if (r["exercise"], int(r["seed"])) == (card.exercise, card.seed)
         )
-        variant = self.papers.variant(card.paper, place)
+        variant = self.papers.variant(card.paper, index)
         part = next(p for p in variant.parts if p.id == card.part)
-        own = [
+        fields = [
             f
             for page in self.papers[card.paper]
             for f in page.fields
-            if (f.place, f.part) == (place, card.part)
+            if (f.place, f.part) == (index, card.part)
         ]
         letters = [part.sort.from_paper([t.case], part, variant) for t in part.sort.ticks(part, variant)]
         return {
             "id": f"{card.exercise}/{card.part}",
             "sort": "question",
-            "number": next((f.number for f in own if f.number), ""),
+            "number": next((f.number for f in fields if f.number), ""),
             "exercise": card.exercise,
             "part": card.part,
             "title": _titles(self.papers.course[card.exercise]),
-            "unit": next((f.unit_text for f in own if f.unit_text), ""),
+            "unit": next((f.unit_text for f in fields if f.unit_text), ""),
             "letters": letters if card.what == "ticks" else [],
         }
 
@@ -126,20 +126,20 @@ def _titles(exercise: Any) -> dict[str, str]:
 
 def write_queue(queue: Queue, cut: Cut) -> None:
     """Write the folder of the queue: its page and its data, each whole."""
-    shown = [_shown(queue, card, cut) for card in queue.cards]
+    cards = [_shown(queue, card, cut) for card in queue.cards]
     groups: dict[str, dict[str, Any]] = {}
-    for card, one in zip(queue.cards, shown, strict=True):
-        if one["group"] not in groups:
-            groups[one["group"]] = queue.group(card)
-    told = {"lang": queue.lang, "groups": list(groups.values()), "cards": shown}
-    write_whole(queue.out / FOLDER / "queue.json", json_text(told).encode())
-    write_whole(queue.out / FOLDER / "index.html", page(queue, told).encode())
+    for card, entry in zip(queue.cards, cards, strict=True):
+        if entry["group"] not in groups:
+            groups[entry["group"]] = queue.group(card)
+    content = {"lang": queue.lang, "groups": list(groups.values()), "cards": cards}
+    write_whole(queue.out / FOLDER / "queue.json", json_text(content).encode())
+    write_whole(queue.out / FOLDER / "index.html", page(queue, content).encode())
 
 
 def _shown(queue: Queue, card: Card, cut: Cut) -> dict[str, Any]:
     """Return a card for the page, with files relative to the folder of the page."""
     sort = {PAGE: "pages", NAME: "names"}.get(card.exercise, "question")
-    crops = [cut(queue.out, said.page, said.field, said.index) for said in card.said]
+    crops = [cut(queue.out, reading.page, reading.field, reading.index) for reading in card.said]
     pages = [picture_of(name) for name in card.pages]
     return {
         "id": card.id,
@@ -179,12 +179,12 @@ def place_of_card(card: Card) -> list[str]:
 def _drawing(queue: Queue, card: Card, cut: Cut) -> dict[str, Any] | None:
     """Return the paper of a drawing, for a point in millimetres that a person can click; None for other
     cards."""
-    said = queue.found.drawn.get((card.paper, card.exercise, card.seed))
-    if said is None or not queue.joins.is_drawn((card.exercise, card.seed, card.part)):
+    reading = queue.found.drawn.get((card.paper, card.exercise, card.seed))
+    if reading is None or not queue.joins.is_drawn((card.exercise, card.seed, card.part)):
         return None
-    _, _, width, height = said.field.box
+    _, _, width, height = reading.field.box
     return {
-        "source": f"../{cut(queue.out, said.page, said.field, said.index)}",
+        "source": f"../{cut(queue.out, reading.page, reading.field, reading.index)}",
         "width": width,
         "height": height,
     }
@@ -193,15 +193,15 @@ def _drawing(queue: Queue, card: Card, cut: Cut) -> dict[str, Any] | None:
 # ---------------------------------------------------------------------------- page
 
 
-def page(queue: Queue, told: Mapping[str, Any]) -> str:
+def page(queue: Queue, content: Mapping[str, Any]) -> str:
     """Return the page on which people type: it embeds its pictures, unless they are too many, and needs no
     server."""
     folder = queue.papers.course.folder
-    embedded = dict(_embedded(queue.out / FOLDER, told["cards"]))
-    cards = [_with_pictures(card, embedded) for card in told["cards"]]
-    key = hashlib.sha256(json.dumps([one["place"] for one in told["cards"]]).encode()).hexdigest()[:16]
+    embedded = dict(_embedded(queue.out / FOLDER, content["cards"]))
+    cards = [_with_pictures(card, embedded) for card in content["cards"]]
+    key = hashlib.sha256(json.dumps([entry["place"] for entry in content["cards"]]).encode()).hexdigest()[:16]
     data = {
-        **told,
+        **content,
         "cards": cards,
         "key": f"coursework scan {key}",
         "words": {lang: words(lang, "scan") for lang in languages()},
@@ -226,10 +226,10 @@ def _embedded(folder: Path, cards: list[dict[str, Any]]) -> Iterator[tuple[str, 
         for card in cards
         for file in (*card["crops"], *([card["drawing"]["source"]] if card["drawing"] else ()))
     )
-    found = {file: (folder / file).read_bytes() for file in files}
-    if sum(map(len, found.values())) > _EMBEDDED:
+    pictures = {file: (folder / file).read_bytes() for file in files}
+    if sum(map(len, pictures.values())) > _EMBEDDED:
         return
-    for file, data in found.items():
+    for file, data in pictures.items():
         kind = "png" if file.endswith(".png") else "jpeg"
         yield file, f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
 
@@ -257,17 +257,19 @@ def _papers(queue: Queue) -> Iterator[dict[str, Any]]:
 def _joins(queue: Queue) -> Iterator[dict[str, Any]]:
     """Yield the rules by which the page composes pending answers: a pattern with a letter for each
     coordinate, and another in which the printed unit applies to all."""
-    for one in queue.found.pending:
-        exercise, seed, part = one.part
-        places = list(_PLACES[: len(one.pieces)])
-        unit = f" {queue.joins.unit_of(one.part)}".rstrip()
+    for pending in queue.found.pending:
+        exercise, seed, part = pending.part
+        places = list(_PLACES[: len(pending.pieces)])
+        unit = f" {queue.joins.unit_of(pending.part)}".rstrip()
         patterns = [places[0]] * 2
         if len(places) > 1:
-            patterns = [queue.joins.joined(one.part, texts) for texts in (places, [p + unit for p in places])]
+            patterns = [
+                queue.joins.joined(pending.part, texts) for texts in (places, [p + unit for p in places])
+            ]
         yield {
-            "row": [one.student, exercise, str(seed), part],
-            "cards": [piece.id if isinstance(piece, Card) else None for piece in one.pieces],
-            "texts": [piece if isinstance(piece, str) else "" for piece in one.pieces],
+            "row": [pending.student, exercise, str(seed), part],
+            "cards": [piece.id if isinstance(piece, Card) else None for piece in pending.pieces],
+            "texts": [piece if isinstance(piece, str) else "" for piece in pending.pieces],
             "patterns": patterns,
             "unit": unit if len(places) > 1 else "",
         }

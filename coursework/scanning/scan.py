@@ -125,17 +125,17 @@ def scan(
         Something that was named is not there or is none, or the folder cannot be written.
     """
     papers = Papers(course, _read_issued(issued))
-    wanted = [one for path in typed for one in read_typed(path)]
-    kept = out / TYPED
-    stands = merged(read_typed(kept) if kept.exists() else (), wanted)
+    wanted = [text for path in typed for text in read_typed(path)]
+    typed_path = out / TYPED
+    typed_texts = merged(read_typed(typed_path) if typed_path.exists() else (), wanted)
     files, read_now = read_files(papers, sources, issued, out, least, progress)
     everything = joined(files_kept(out), files)
     if not everything:
         raise BadInput(f"nothing to read: name scans; {out} holds none of before")
     put_files(out, everything)
-    if stands:
-        write_whole(kept, typed_file(stands))
-    book = write_read(papers, with_copies(scanned(out, everything)), stands, out, spreadsheet, least)
+    if typed_texts:
+        write_whole(typed_path, typed_file(typed_texts))
+    book = write_read(papers, with_copies(scanned(out, everything)), typed_texts, out, spreadsheet, least)
     book.read_now = read_now
     return book
 
@@ -165,32 +165,32 @@ def read_files(
 
 def _read_issued(path: Path) -> Mapping[str, Any]:
     try:
-        found = json.loads(path.read_bytes())
+        content = json.loads(path.read_bytes())
     except OSError as fault:
         raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
     except (ValueError, RecursionError) as fault:
         raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
-    if not isinstance(found, dict):
+    if not isinstance(content, dict):
         raise BadInput(f"{path} is no list of issued records; 'coursework build' writes issued.json")
-    Issued(found, str(path))
-    return found
+    Issued(content, str(path))
+    return content
 
 
 # ------------------------------------------------------------------------ reading
 
 
 def _read(
-    desk: Desk, papers: Papers, found: Sequence[Scan], progress: Progress
+    desk: Desk, papers: Papers, sources: Sequence[Scan], progress: Progress
 ) -> tuple[list[FileKept], int]:
     """Read the pages of files that were not read before; gives the files and how many pages were read now."""
-    count = workers(len(found)) if len(found) >= _WORTH_COUNTING else 1
-    whole = [scan for scan in found if not scan.fault]
-    paths = {scan.digest: scan.path for scan in whole}
+    count = workers(len(sources)) if len(sources) >= _WORTH_COUNTING else 1
+    readable = [scan for scan in sources if not scan.fault]
+    paths = {scan.digest: scan.path for scan in readable}
     with _shared(count) as share:
         counted = dict(zip(paths, share(count_pages, [(str(path),) for path in paths.values()]), strict=True))
     files = [
-        FileKept(one.name, one.digest, *((0, one.fault) if one.fault else counted[one.digest]))
-        for one in found
+        FileKept(source.name, source.digest, *((0, source.fault) if source.fault else counted[source.digest]))
+        for source in sources
     ]
     wanted = [
         piece
@@ -239,13 +239,13 @@ class _shared:
     def __exit__(self, *fault: Any) -> None:
         self._pool.__exit__(*fault)
 
-    def _each(self, work: Callable[..., Any], asked: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
+    def _each(self, work: Callable[..., Any], calls: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
         if self._submit is None:
-            yield from (work(*one) for one in asked)
+            yield from (work(*arguments) for arguments in calls)
             return
         ahead: deque[Future[Any]] = deque()
-        for one in asked:
-            ahead.append(self._submit(work, *one))
+        for arguments in calls:
+            ahead.append(self._submit(work, *arguments))
             if len(ahead) > _AHEAD * self._count:
                 yield ahead.popleft().result()
         while ahead:
@@ -264,137 +264,154 @@ def write_read(
     least: float,
 ) -> ScanBook:
     """Write what pages say together: answers, the queue, what was rejected, what is missing, and the list of pages."""
-    pages = [as_told(one, papers, typed, least) for one in pages]
-    asked = papers_asked(papers, pages)
-    found = together(papers, asked, pages, typed)
+    pages = [as_told(scanned_page, papers, typed, least) for scanned_page in pages]
+    printed = papers_asked(papers, pages)
+    combined = together(papers, printed, pages, typed)
     book = ScanBook(
-        len([one for one in pages if one.number]),
+        len([scanned_page for scanned_page in pages if scanned_page.number]),
         0,
-        len(found.answers),
-        len(found.cards),
-        unused=len(found.unused),
+        len(combined.answers),
+        len(combined.cards),
+        unused=len(combined.unused),
     )
     with Tables(out, spreadsheet) as tables:
-        _write_answers(tables.open("answers.csv", ANSWER_COLUMNS), found, pages)
-        _write_pages(tables, book, found, asked, pages)
-        _write_missing(tables.open("missing.csv", MISSING_COLUMNS), book, found, papers, asked)
-        queue = Queue(papers, asked, found, Joins(papers, asked), out)
+        _write_answers(tables.open("answers.csv", ANSWER_COLUMNS), combined, pages)
+        _write_pages(tables, book, combined, printed, pages)
+        _write_missing(tables.open("missing.csv", MISSING_COLUMNS), book, combined, papers, printed)
+        queue = Queue(papers, printed, combined, Joins(papers, printed), out)
         write_queue(queue, _cut)
         tables.commit()
     return book
 
 
-def as_told(one: Scanned, papers: Papers, typed: Sequence[Typed], least: float) -> Scanned:
+def as_told(scanned_page: Scanned, papers: Papers, typed: Sequence[Typed], least: float) -> Scanned:
     """Return a page in its current state: refused if it is of another issue, or replaced by a person's
     statement."""
-    page = one.page
+    page = scanned_page.page
     if page.what == ANSWERS and page.code not in papers:
-        return replace(one, page=PageKept(REFUSED, _OTHER, page.code))
+        return replace(scanned_page, page=PageKept(REFUSED, _OTHER, page.code))
     if page.what != LOST:
-        return one
-    told = next((t.answer for t in typed if (t.exercise, t.part) == (PAGE, one.id)), None)
-    if told is None:
-        return one
-    code, _, number = told.strip().partition(" ")
-    if not told.strip():
-        return replace(one, page=PageKept(REFUSED, "set aside by hand: no answer page", ""))
+        return scanned_page
+    answer = next((t.answer for t in typed if (t.exercise, t.part) == (PAGE, scanned_page.id)), None)
+    if answer is None:
+        return scanned_page
+    code, _, number = answer.strip().partition(" ")
+    if not answer.strip():
+        return replace(scanned_page, page=PageKept(REFUSED, "set aside by hand: no answer page", ""))
     if code in papers and number.isdecimal() and len(number) < 7 and 1 <= int(number) <= len(papers[code]):
-        return replace(one, page=typed_page(papers, code, int(number), least))
-    return one
+        return replace(scanned_page, page=typed_page(papers, code, int(number), least))
+    return scanned_page
 
 
 def papers_asked(papers: Papers, pages: Sequence[Scanned]) -> dict[str, PaperAsked]:
     """Return the papers of which some page was scanned, in the order of issue."""
-    met = {one.page.code for one in pages if one.page.what == ANSWERS}
+    met = {scanned_page.page.code for scanned_page in pages if scanned_page.page.what == ANSWERS}
     return {code: _asked(papers, code) for code in papers if code in met}
 
 
 def _asked(papers: Papers, code: str) -> PaperAsked:
     laid_out = papers[code]
-    asked = tuple(
+    fields = tuple(
         Asked(Place(f.exercise, f.seed, f.part, f.coordinate), f.coordinates, f.what, page.number)
         for page in laid_out
         for f in page.fields
     )
-    return PaperAsked(code, papers.papers[code].student, len(laid_out), asked)
+    return PaperAsked(code, papers.papers[code].student, len(laid_out), fields)
 
 
 def together(
-    papers: Papers, asked: Mapping[str, PaperAsked], pages: Sequence[Scanned], typed: Sequence[Typed]
+    papers: Papers, printed: Mapping[str, PaperAsked], pages: Sequence[Scanned], typed: Sequence[Typed]
 ) -> Gathered:
     """Combine the content of pages and typed texts."""
-    return gather(pages, asked, typed, Joins(papers, asked))
+    return gather(pages, printed, typed, Joins(papers, printed))
 
 
 # ------------------------------------------------------------------------- writing
 
 
-def _write_answers(table: TableFile, found: Gathered, pages: Sequence[Scanned]) -> None:
+def _write_answers(table: TableFile, combined: Gathered, pages: Sequence[Scanned]) -> None:
     sources = _sources(pages)
-    for one in sorted(found.answers, key=lambda a: (a.student, a.exercise, a.seed)):
-        source = "; ".join(sources[name] for name in one.pages)
+    for answer in sorted(combined.answers, key=lambda a: (a.student, a.exercise, a.seed)):
+        source = "; ".join(sources[name] for name in answer.pages)
         row = dict(
-            zip(COLUMNS, (one.student, one.exercise, str(one.seed), one.part, answer_text(one)), strict=True)
+            zip(
+                COLUMNS,
+                (answer.student, answer.exercise, str(answer.seed), answer.part, answer_text(answer)),
+                strict=True,
+            )
         )
-        table.write({**row, "source": f"{source} (by hand)" if one.by_hand else source})
+        table.write({**row, "source": f"{source} (by hand)" if answer.by_hand else source})
 
 
-def answer_text(one: Answer) -> str:
+def answer_text(answer: Answer) -> str:
     """Return an answer as it is marked: for one marked from its picture, the place of the picture."""
-    return "; ".join(s.field.crop or picture_of(s.page) for s in one.pictures) or one.answer
+    return "; ".join(s.field.crop or picture_of(s.page) for s in answer.pictures) or answer.answer
 
 
 def _sources(pages: Sequence[Scanned]) -> dict[str, str]:
     """Return the place of each page: the first file that contains it."""
-    found: dict[str, str] = {}
-    for one in pages:
-        found.setdefault(one.id, f"{one.file.name} p. {one.number}")
-    return found
+    sources: dict[str, str] = {}
+    for scanned_page in pages:
+        sources.setdefault(scanned_page.id, f"{scanned_page.file.name} p. {scanned_page.number}")
+    return sources
 
 
 def _write_pages(
-    tables: Tables, book: ScanBook, found: Gathered, asked: Mapping[str, PaperAsked], pages: Sequence[Scanned]
+    tables: Tables,
+    book: ScanBook,
+    combined: Gathered,
+    printed: Mapping[str, PaperAsked],
+    pages: Sequence[Scanned],
 ) -> None:
     table, rejected = tables.open("pages.csv", PAGE_COLUMNS), tables.open("rejected.csv", REJECTED_COLUMNS)
-    for one in pages:
-        what, page = "copy" if one.is_copy else one.page.what, one.page
-        picture = picture_of(one.id) if one.id and page.has_picture else ""
-        place = {"file": one.file.name, "page": one.number or ""}
-        paper = asked.get(page.code)
-        whose = {"student": found.whose.get(page.code, ""), "paper": page.code, "number": page.number or ""}
+    for scanned_page in pages:
+        state, page = "copy" if scanned_page.is_copy else scanned_page.page.what, scanned_page.page
+        picture = picture_of(scanned_page.id) if scanned_page.id and page.has_picture else ""
+        source = {"file": scanned_page.file.name, "page": scanned_page.number or ""}
+        paper = printed.get(page.code)
+        owner = {
+            "student": combined.whose.get(page.code, ""),
+            "paper": page.code,
+            "number": page.number or "",
+        }
         asking = [f for f in page.fields if f.part]
         read = {
             "of": paper.pages if paper else "", "fields": len(asking) if paper else "",
-            "read": sum(not f.waits for f in asking) if paper else "", "waiting": found.waits.get(one.id, 0) if paper or page.what == LOST else "",
+            "read": sum(not f.waits for f in asking) if paper else "", "waiting": combined.waits.get(scanned_page.id, 0) if paper or page.what == LOST else "",
         }  # fmt: skip
-        table.write({**place, "what": what, **whose, **read, "picture": picture})
-        book.copies += one.is_copy
-        if one.is_copy:
+        table.write({**source, "what": state, **owner, **read, "picture": picture})
+        book.copies += scanned_page.is_copy
+        if scanned_page.is_copy:
             continue
         book.statements += page.what == "statement"
         book.blank += page.what == "blank"
         if page.what == REFUSED:
-            rejected.write({**place, "reason": page.reason, "picture": picture})
+            rejected.write({**source, "reason": page.reason, "picture": picture})
             book.rejected.append(
-                (f"{one.file.name} p. {one.number}" if one.number else one.file.name, page.reason)
+                (
+                    f"{scanned_page.file.name} p. {scanned_page.number}"
+                    if scanned_page.number
+                    else scanned_page.file.name,
+                    page.reason,
+                )
             )
 
 
 def _write_missing(
-    table: TableFile, book: ScanBook, found: Gathered, papers: Papers, asked: Mapping[str, PaperAsked]
+    table: TableFile, book: ScanBook, combined: Gathered, papers: Papers, printed: Mapping[str, PaperAsked]
 ) -> None:
-    for paper, missing in found.missing:
-        whose, numbers = found.whose[paper.code], ", ".join(map(str, missing))
+    for paper, missing in combined.missing:
+        owner, numbers = combined.whose[paper.code], ", ".join(map(str, missing))
         row = {
-            "student": whose,
+            "student": owner,
             "paper": paper.code,
             "pages": paper.pages,
             "scanned": paper.pages - len(missing),
             "missing": numbers,
         }
         table.write(row)
-        book.missing.append(f"{whose}: page {numbers} of {paper.pages}")
-    met = {_sheet(papers.papers[code]) for code in asked}
+        book.missing.append(f"{owner}: page {numbers} of {paper.pages}")
+    met = {_sheet(papers.papers[code]) for code in printed}
     absent = {
         _sheet(paper): code for code, paper in reversed(papers.papers.items()) if _sheet(paper) not in met
     }
@@ -409,7 +426,7 @@ def _sheet(paper: AnswerPaper) -> tuple[str, int, tuple[tuple[str, int], ...]]:
     return paper.student, paper.sitting, tuple((str(r["exercise"]), int(r["seed"])) for r in paper.records)
 
 
-def _cut(out: Path, name: str, field_: FieldKept, place: int) -> str:
+def _cut(out: Path, name: str, field_: FieldKept, index: int) -> str:
     """Return the file of a field's picture; cut it now if it does not exist. For a page that is not flat, the
     picture of the whole page."""
     if field_.crop:
@@ -417,7 +434,7 @@ def _cut(out: Path, name: str, field_: FieldKept, place: int) -> str:
     page = page_kept(out, name)
     if page is None or not page.is_straight:
         return picture_of(name)
-    file = crop_of(name, place)
+    file = crop_of(name, index)
     if not (out / file).is_file():
         write_whole(out / file, cut((out / picture_of(name)).read_bytes(), field_))
     return file

@@ -41,17 +41,17 @@ def scans(paths: Iterable[Path], unpacked: Path) -> list[Scan]:
     for path in paths:
         if not path.exists():
             raise BadInput(f"no such file or folder: {path}")
-    found = {(scan.name, scan.digest): scan for path in paths for scan in _of(path, unpacked)}
-    return [found[key] for key in sorted(found)]
+    by_key = {(scan.name, scan.digest): scan for path in paths for scan in _of(path, unpacked)}
+    return [by_key[key] for key in sorted(by_key)]
 
 
 def _of(path: Path, unpacked: Path) -> Iterator[Scan]:
     if not path.is_dir():
         yield from _file(path, _text(path.name), unpacked)
         return
-    found = walked(path)
-    files = [file for file in found.files if not _is_hidden(file, path)]
-    refused = [link for link in found.refused if not _is_hidden(link, path)]
+    paths = walked(path)
+    files = [file for file in paths.files if not _is_hidden(file, path)]
+    refused = [link for link in paths.refused if not _is_hidden(link, path)]
     for file in files:
         yield from _file(file, _text(file.relative_to(path).as_posix()), unpacked, path)
     for link in refused:

@@ -126,12 +126,12 @@ def _dark_squares(grey: np.ndarray, per_mm: float) -> np.ndarray:
     kernel = int(side * 1.8) | 1
     around = cv2.morphologyEx(small, cv2.MORPH_CLOSE, np.ones((kernel, kernel), np.uint8))
     dark = (small < 0.62 * around.astype(np.float32)).astype(np.uint8)
-    found = []
+    squares = []
     for outline in cv2.findContours(dark, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]:
         centre = _centre_of_square(cv2, outline, side, dark.shape)
         if centre is not None:
-            found.append((np.array(centre) + 0.5) / scale - 0.5)
-    return np.array(found).reshape(-1, 2)
+            squares.append((np.array(centre) + 0.5) / scale - 0.5)
+    return np.array(squares).reshape(-1, 2)
 
 
 def _centre_of_square(
@@ -159,12 +159,12 @@ def _candidates(spots: np.ndarray, across: tuple[complex, complex], page: Answer
     """For each mark the spots near where the code places it, the nearest first."""
     a, b = across
     mm = a * (spots @ (1, 1j)) + b
-    found = []
+    candidates = []
     for x, y in page.marks:
         off = np.abs(mm - (x + 1j * y))
         order = np.argsort(off, kind="stable")[:_NEAREST]
-        found.append(spots[order[off[order] < _REACH]])
-    return found
+        candidates.append(spots[order[off[order] < _REACH]])
+    return candidates
 
 
 def _four_marks(cv2: Any, candidates: list[np.ndarray], code: Code, page: AnswerPage) -> np.ndarray | None:
@@ -205,10 +205,10 @@ def _three_marks(cv2: Any, candidates: list[np.ndarray], code: Code, page: Answe
     large."""
     best, least = None, _CODE_OFF_OF_THREE
     for missing in range(4):
-        kept = [k for k in range(4) if k != missing]
-        for three in product(*(candidates[k] for k in kept)):
+        indices = [k for k in range(4) if k != missing]
+        for three in product(*(candidates[k] for k in indices)):
             spots = np.vstack([np.array(three), code.corners])
-            mm = np.vstack([np.array(page.marks)[kept], _corners(page.code)])
+            mm = np.vstack([np.array(page.marks)[indices], _corners(page.code)])
             matrix, _ = cv2.findHomography(spots, mm, 0)
             if matrix is None:
                 continue

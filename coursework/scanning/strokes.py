@@ -78,9 +78,9 @@ def has_stroke(page: Straight, box: Box, length: float) -> bool:
     dust is round."""
     dark = darkness(page, box, 0.9)
     for limit in (STRONG, faint_limit(page)):
-        found = pieces(dark > limit)
-        long = found.boxes[1:, 2:].max(axis=1, initial=0) >= length * SCALE
-        if bool((long & (found.areas[1:] >= _THIN_STROKE * SCALE**2)).any()):
+        connected = pieces(dark > limit)
+        long = connected.boxes[1:, 2:].max(axis=1, initial=0) >= length * SCALE
+        if bool((long & (connected.areas[1:] >= _THIN_STROKE * SCALE**2)).any()):
             return True
     return False
 
@@ -100,10 +100,10 @@ def cuts_a_corner(page: Straight, box: Box) -> bool:
     that touches its neighbour may do so too."""
     near, far = _BEYOND
     least, rim = _THIN_STROKE * SCALE**2, round((far - near) / 2 * SCALE)  # a dark outline is broad
-    found = pieces(darkness(page, box, -far) > faint_limit(page))
+    connected = pieces(darkness(page, box, -far) > faint_limit(page))
     within = slice(4 * rim, -4 * rim)  # where no outline runs, of this box or of those beside it
     inside, above, below, left, right = (
-        found.inside(found.labels[part]) >= limit
+        connected.inside(connected.labels[part]) >= limit
         for part, limit in (
             ((within, within), least), (np.s_[:rim], least / 3), (np.s_[-rim:], least / 3),
             ((within, np.s_[:rim]), least / 3), ((within, np.s_[-rim:]), least / 3),
@@ -158,29 +158,29 @@ def cells(page: Straight, boxes: Sequence[Box]) -> tuple[list[np.ndarray], str]:
     ``struck`` if ink runs across several boxes, ``joined`` if it joins two of them.
     """
     ink, span = row_ink(page, boxes)
-    found = pieces(255 - ink > STRONG)
-    shares = np.array([found.inside(part_of(found.labels, box, span)) for box in boxes])
+    connected = pieces(255 - ink > STRONG)
+    shares = np.array([connected.inside(part_of(connected.labels, box, span)) for box in boxes])
     shares[:, 0] = 0
-    told = _across(found, shares, boxes)
+    assigned = _across(connected, shares, boxes)
     owner = shares.argmax(axis=0)
     views = []
     for k, box in enumerate(boxes):
         view = part_of(ink, box, span).copy()
-        labels = part_of(found.labels, box, span)
+        labels = part_of(connected.labels, box, span)
         foreign = np.isin(labels, np.flatnonzero((owner != k) & (shares[k] > 0)))
         view[_grown(foreign)] = 255
         views.append(view)
-    return views, told
+    return views, assigned
 
 
-def _across(found: Pieces, shares: np.ndarray, boxes: Sequence[Box]) -> str:
+def _across(connected: Pieces, shares: np.ndarray, boxes: Sequence[Box]) -> str:
     """Return the fault of ink in several boxes: more than a millimetre of a stroke in a second one."""
     unit = SCALE**2
     pitch = min((b.x - a.x for a, b in pairwise(boxes)), default=boxes[0].width)
-    wide = found.boxes[1:, 2] > 1.9 * pitch * SCALE
-    if len(boxes) > 1 and bool((wide & (found.areas[1:] > unit)).any()):
+    wide = connected.boxes[1:, 2] > 1.9 * pitch * SCALE
+    if len(boxes) > 1 and bool((wide & (connected.areas[1:] > unit)).any()):
         return "struck"
-    second = np.sort(shares, axis=0)[-2] if len(boxes) > 1 else np.zeros(len(found.areas))
+    second = np.sort(shares, axis=0)[-2] if len(boxes) > 1 else np.zeros(len(connected.areas))
     return "joined" if bool((second[1:] > 1.1 * unit).any()) else ""
 
 

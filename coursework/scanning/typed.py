@@ -67,22 +67,22 @@ def read_typed(path: Path) -> list[Typed]:
 
 
 def _typed(header: Sequence[str], cells: Sequence[str]) -> Typed:
-    told = dict(zip(header, map(as_written, cells), strict=False))
-    own = {c: told.get(c, "").replace("\0", "") for c in COLUMNS}
-    stripped = {c: text if c == "answer" else text.strip() for c, text in own.items()}
+    values = dict(zip(header, map(as_written, cells), strict=False))
+    fields = {c: values.get(c, "").replace("\0", "") for c in COLUMNS}
+    stripped = {c: text if c == "answer" else text.strip() for c, text in fields.items()}
     return Typed(**stripped)
 
 
 def merged(before: Iterable[Typed], more: Iterable[Typed]) -> list[Typed]:
     """Return the earlier and the new typed texts, sorted by place; a new one replaces an earlier one."""
-    found = {one.place: one for one in (*before, *more)}
-    return [found[place] for place in sorted(found)]
+    by_position = {text.place: text for text in (*before, *more)}
+    return [by_position[position] for position in sorted(by_position)]
 
 
 def by_place(typed: Iterable[Typed]) -> Mapping[tuple[str, str, str, str, str], Typed]:
-    return {one.place: one for one in typed}
+    return {text.place: text for text in typed}
 
 
 def typed_file(typed: Iterable[Typed]) -> bytes:
     """``typed.csv``."""
-    return csv_file((one._asdict() for one in typed), COLUMNS)
+    return csv_file((text._asdict() for text in typed), COLUMNS)

@@ -25,8 +25,8 @@ def next_step(
 ) -> Advice | None:
     """Return the recommendation for a day; None for a course without exercises. ``order`` is the study order,
     by default the course's."""
-    known = course.folder.study_order if order is None else order
-    return advised(progress, on, known, _Errors(course))
+    order_known = course.folder.study_order if order is None else order
+    return advised(progress, on, order_known, _Errors(course))
 
 
 class _Errors(Mapping[str, Iterable[str]]):
@@ -95,8 +95,8 @@ def _skill(course: Course[Any], skill: Skill, text: str, lang: str, label: Calle
     texts = words(lang)["study"]["progress"]
     displayed = texts["shown"].format(count=skill.shown, of=HELD) if skill.shown and skill.is_open else ""
     position = "" if skill.id.startswith("kind:") else label(course[skill.exercise], lang)
-    beside = texts["separator"].join(filter(None, (position, displayed)))
-    return f"- {' '.join(text.split())}{f' ({beside})' if beside else ''}"
+    heading = texts["separator"].join(filter(None, (position, displayed)))
+    return f"- {' '.join(text.split())}{f' ({heading})' if heading else ''}"
 
 
 def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str:

@@ -48,8 +48,8 @@ class CheckedAnswers(NamedTuple):
 class StudyAttempt:
     """Variant with the stored answers to it."""
 
-    def __init__(self, variant: Variant, kept: ExerciseStore):
-        self.variant, self.kept = variant, kept
+    def __init__(self, variant: Variant, store: ExerciseStore):
+        self.variant, self.kept = variant, store
 
     @property
     def answers(self) -> dict[str, Any]:
@@ -138,11 +138,11 @@ class StudyAttempt:
                 self.note(REVEAL, part.id)
         self.note(EXAMPLE, "", step=0)
 
-    def note(self, what: str, part: str, **more: Any) -> None:
+    def note(self, event: str, part: str, **more: Any) -> None:
         """Record that something was shown, once."""
-        entries = {"part": part, "what": what, **more}
+        entries = {"part": part, "what": event, **more}
         if not any(entries.items() <= item.items() for item in self.kept.happened(self.variant.seed)):
             self.kept.note(self.variant.seed, [entries])
 
-    def _happened(self, what: str) -> Collection[Mapping[str, Any]]:
-        return [e for e in self.kept.happened(self.variant.seed) if e["what"] == what]
+    def _happened(self, event: str) -> Collection[Mapping[str, Any]]:
+        return [e for e in self.kept.happened(self.variant.seed) if e["what"] == event]

@@ -197,7 +197,7 @@ def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
     return results
 
 
-def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
+def _formula(variant: Variant, quantity: str, numbers: Mapping[str, Any]) -> str:
     """Return the formula with numbers for known quantities; empty where only words describe it or it would be
     the value."""
     values, units = variant.walk, variant.exercise.units
@@ -205,7 +205,7 @@ def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
     symbols = {n: PrintedName(_symbol(variant, n), False, kinds[n]) for n in values}
     displayed = symbols | {
         n: PrintedName(number_latex(value, units.get(n, "1"), _DIGITS), True, kinds[n])
-        for n, value in known.items()
+        for n, value in numbers.items()
         if isinstance(values.get(n), (int, float, complex))
     }
     function = variant.exercise.solution.graph.node(quantity).function

@@ -56,9 +56,9 @@ def curves(
         axes.append(Axis(exercise.symbol(part.quantity), unit_text(part.unit, lang), values))
         spots.append(_spots(variant, part, answers.get(part.id), own_answers.get(part.quantity), at, values))
     plot = Plot(Axis(exercise.symbol(driver), "°", angles), axes, lang, at, spots)
-    beside = tuple(p for p in parts if p.quantity in own_answers and not own_answers[p.quantity].is_usual)
+    answered = tuple(p for p in parts if p.quantity in own_answers and not own_answers[p.quantity].is_usual)
     outside = tuple(p for p, far in zip(parts, plot.has_outside, strict=True) if far)
-    return Curves(plot, driver, tuple(parts), beside, outside)
+    return Curves(plot, driver, tuple(parts), answered, outside)
 
 
 def _spots(

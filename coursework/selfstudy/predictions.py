@@ -159,8 +159,8 @@ def _differs_among(exercise: CourseExercise, part: str, quantity: str) -> bool:
 
 
 def _differ(holds: np.ndarray, values: np.ndarray) -> bool:
-    known = holds[np.isfinite(values)]
-    return min(int(known.sum()), int((~known).sum())) >= _FEW
+    finite = holds[np.isfinite(values)]
+    return min(int(finite.sum()), int((~finite).sum())) >= _FEW
 
 
 @lru_cache(maxsize=64)
@@ -280,11 +280,11 @@ def is_understood(variant: Variant, prediction: Prediction, text: Any) -> bool:
 
 
 def compared(
-    variant: Variant, prediction: Prediction, text: Any, own: float | None = None
+    variant: Variant, prediction: Prediction, text: Any, own_answer: float | None = None
 ) -> PredictionOutcome | None:
     """Return a prediction with its outcome; None where nothing was predicted.
 
-    ``own`` is the student's own right value, where it is not the reference's: the prediction was of that.
+    ``own_answer`` is the student's own right value, where it is not the reference's: the prediction was of that.
 
     Raises
     ------
@@ -293,10 +293,10 @@ def compared(
     """
     if is_blank(text):
         return None
-    said = _READ[prediction.kind](variant, prediction, text)
-    value = variant.walk[prediction.quantity] if own is None else own
-    result, right = _FOUND[prediction.kind](variant, prediction, value, said)
-    return PredictionOutcome(prediction, str(text).strip(), result, None if said is None else right)
+    reading = _READ[prediction.kind](variant, prediction, text)
+    value = variant.walk[prediction.quantity] if own_answer is None else own_answer
+    result, right = _FOUND[prediction.kind](variant, prediction, value, reading)
+    return PredictionOutcome(prediction, str(text).strip(), result, None if reading is None else right)
 
 
 def _read_guess(variant: Variant, prediction: Prediction, text: Any) -> tuple[Any, ...] | None:

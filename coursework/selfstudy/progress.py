@@ -99,10 +99,10 @@ class Progress:
             content = json_of(text.encode("utf-8", "replace"), "progress")
             entries = [_checked(entry) for entry in content["entries"]]
             later = content["version"] > VERSION
-            known = content["format"] == FORMAT
+            is_current = content["format"] == FORMAT
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as fault:
             raise NotProgress(str(fault)) from fault
-        if not known:
+        if not is_current:
             raise NotProgress("no format of ours")
         if later:
             raise LaterVersion(str(content["version"]))
@@ -128,10 +128,10 @@ def read_brought(data: bytes, most: int) -> tuple[type[ValueError] | None, tuple
     return (TooLong, ()) if len(result) > most else (None, tuple(result))
 
 
-def entry(at: datetime, exercise: str, seed: int, part: str, what: str, **more: Any) -> dict[str, Any]:
+def entry(at: datetime, exercise: str, seed: int, part: str, event: str, **more: Any) -> dict[str, Any]:
     """Return an entry for an event, as it is stored."""
     text = at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
-    return {"at": text, "exercise": exercise, "seed": seed, "part": part, "what": what, **more}
+    return {"at": text, "exercise": exercise, "seed": seed, "part": part, "what": event, **more}
 
 
 def date_of(item: Entry) -> datetime:

@@ -10,7 +10,7 @@ from coursework.errors import BadInput, UnknownName, closest
 from coursework.language.words import words
 
 
-def expect(lang: str, kind: str, name: object, known: Collection[str]) -> None:
+def expect(lang: str, kind: str, name: object, names: Collection[str]) -> None:
     """Refuse a name that is not one of the known ones.
 
     ``kind`` says of what: ``exercise``, ``question``, ``prediction``, ``curve`` or ``effect``.
@@ -20,33 +20,33 @@ def expect(lang: str, kind: str, name: object, known: Collection[str]) -> None:
     UnknownName
         The name is none of them; the message has the nearest, or all.
     """
-    if not (isinstance(name, str) and name in known):
-        raise stranger(lang, kind, name, known)
+    if not (isinstance(name, str) and name in names):
+        raise stranger(lang, kind, name, names)
 
 
-def stranger(lang: str, kind: str, name: object, known: Collection[str]) -> UnknownName:
+def stranger(lang: str, kind: str, name: object, names: Collection[str]) -> UnknownName:
     """Return the error for a name that is none of the known ones."""
     texts = words(lang)["study"]["refused"]
-    return UnknownName(f"{texts[kind].format(name=name)} {would_do(lang, str(name), known)}")
+    return UnknownName(f"{texts[kind].format(name=name)} {would_do(lang, str(name), names)}")
 
 
-def would_do(lang: str, name: str, known: Collection[str]) -> str:
+def would_do(lang: str, name: str, names: Collection[str]) -> str:
     """Return the nearest known name, or all."""
     texts = words(lang)["study"]["refused"]
-    near = closest(name, known)
+    near = closest(name, names)
     if near is not None:
         return texts["near"].format(name=near)
-    return texts["known"].format(names=", ".join(known)) if known else texts["none"]
+    return texts["known"].format(names=", ".join(names)) if names else texts["none"]
 
 
 class UnknownMethod(UnknownName, AttributeError):
     """Method that a session does not have."""
 
 
-def no_method(lang: str, name: str, known: Collection[str]) -> UnknownMethod:
+def no_method(lang: str, name: str, names: Collection[str]) -> UnknownMethod:
     """Return the error for an unknown method."""
     texts = words(lang)["study"]["refused"]["method"].format(name=name)
-    return UnknownMethod(f"{texts} {would_do(lang, name, known)}")
+    return UnknownMethod(f"{texts} {would_do(lang, name, names)}")
 
 
 def by_name(lang: str, call: str, text: object) -> Mapping[str, Any]:

@@ -64,8 +64,8 @@ def open_session(
     refusals.expect(lang, "exercise", exercise, course.names)
     item = course[exercise]
     if version is not None and version != item.version:
-        own = f"--course {named} " if named is not None else ""
-        again = f"coursework {own}notebook {exercise} --seed {seed} --lang {lang} --out DIR"
+        course_option = f"--course {named} " if named is not None else ""
+        again = f"coursework {course_option}notebook {exercise} --seed {seed} --lang {lang} --out DIR"
         entries = {"exercise": exercise, "version": version, "installed": item.version, "command": again}
         raise refusals.refused(lang, "version", **entries)
     return StudySession(item.variant(seed, lang), ExerciseStore(ProgressFile(Path(folder), clock), exercise))
@@ -102,10 +102,10 @@ class StudySession:
     _variable = ""  #: what the notebook calls this session, where it is neither the first nor another variant
     _opening = ""  #: why it is proposed
 
-    def __init__(self, variant: Variant, kept: ExerciseStore, base: int | None = None):
+    def __init__(self, variant: Variant, store: ExerciseStore, base: int | None = None):
         self.variant = variant
-        self._store = kept
-        self._attempt = StudyAttempt(variant, kept)
+        self._store = store
+        self._attempt = StudyAttempt(variant, store)
         self._base = variant.seed if base is None else base
         self._hints: dict[str, int] = {}
         self._texts = words(variant.lang)["study"]
@@ -233,7 +233,7 @@ class StudySession:
         return self._display(*strange, *lines, self._trouble)
 
     def _arguments_of(
-        self, method: str, kind: str, text: Any, named: Mapping[str, Any], known: Collection[str]
+        self, method: str, kind: str, text: Any, named: Mapping[str, Any], names: Collection[str]
     ) -> tuple[dict[str, Any], list[str]]:
         """Return what a method is told, by the names that it knows, and what is said of names that it does not know.
 
@@ -251,10 +251,10 @@ class StudySession:
             if name == "student" and kind == "question":
                 continue
             name = by_key.get(name, name) if isinstance(name, str) else name
-            name = name if isinstance(name, str) and name in known else self._named(name)
+            name = name if isinstance(name, str) and name in names else self._named(name)
             if self._is_passed_over(kind, name):
                 continue
-            if not isinstance(name, str) or name not in known:
+            if not isinstance(name, str) or name not in names:
                 strange.append(refusals.stranger(self.variant.lang, kind, name, tuple(by_key)))
             elif is_blank(results.get(name)):
                 results[name] = wording.unwrapped(value)
@@ -439,9 +439,9 @@ class StudySession:
         self._note(REVEAL, name)
         return self._display(text, self._trouble)
 
-    def _note(self, what: str, part: Any, **more: Any) -> None:
+    def _note(self, event: str, part: Any, **more: Any) -> None:
         """Record that something was shown, once."""
-        self._attempt.note(what, str(part), **more)
+        self._attempt.note(event, str(part), **more)
 
     # -------------------------------------------------------------------- plots
 
@@ -466,16 +466,16 @@ class StudySession:
         for name in label:
             if not isinstance(name, str) or name not in parts:
                 refusals.expect(self.variant.lang, "curve", name, [self._keys[n] for n in parts])
-        own = self._right_answers
+        own_answers = self._right_answers
         wanted = [parts[name] for name in label] or list(parts.values())
-        free = [p for p in wanted if p.quantity in own or self._attempt.is_revealed(p)]
+        free = [p for p in wanted if p.quantity in own_answers or self._attempt.is_revealed(p)]
         held = [self._keys[p.id] for p in wanted if p not in free]
         not_yet = self._texts["not_yet"].format(names=_names(held)) if held else ""
         if not free:
             return self._display(not_yet, self._trouble)
         chosen = free if label else list(usual_parts(self.variant, free))
         symbol = self.variant.exercise.symbol
-        drawn = curves(self.variant, chosen, self.answers, own)
+        drawn = curves(self.variant, chosen, self.answers, own_answers)
         texts = self._texts["plot"].format(list=_symbols(chosen, symbol), driver=f"${symbol(drawn.driver)}$")
         notes = [
             self._texts[note].format(list=_symbols(result, symbol))
@@ -493,7 +493,7 @@ class StudySession:
         seen = {p.quantity for p in chosen}
         requested = [p.id for p in predictions.over_the_cycle(self.variant) if p.quantity in seen]
         picture = SvgPicture(drawn.plot.svg(), drawn.plain)
-        return self._display(texts, picture, *notes, more, not_yet, self._compared(requested, own))
+        return self._display(texts, picture, *notes, more, not_yet, self._compared(requested, own_answers))
 
     # ----------------------------------------------------------- other variants
 
@@ -620,8 +620,8 @@ class StudySession:
         """Refuse an unknown method in the session's language, with the nearest name."""
         if name.startswith("_"):
             raise AttributeError(name)
-        known = [n for n in dir(type(self)) if not n.startswith("_")]
-        raise refusals.no_method(self.variant.lang, name, known)
+        names = [n for n in dir(type(self)) if not n.startswith("_")]
+        raise refusals.no_method(self.variant.lang, name, names)
 
     def _call(self, method: str, name: str) -> str:
         """Return the call of a method in the notebook, as code in Markdown."""
@@ -657,9 +657,9 @@ class ExampleSession(StudySession):
 
     _variable = "example"
 
-    def __init__(self, variant: Variant, kept: ExerciseStore, base: int, level: int):
+    def __init__(self, variant: Variant, store: ExerciseStore, base: int, level: int):
         self._full_sheet, self.level = variant, level
-        super().__init__(variant.asking(blanks(variant, level)), kept, base)
+        super().__init__(variant.asking(blanks(variant, level)), store, base)
         self._note(EXAMPLE, "", step=level)
 
     @property

@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 
-def study_sheet(variant: Variant, student: str = "", beside: Collection[str] = ()) -> StudySheet:
-    """Return the self-study notebook of a variant, before it is printed, with links to the lessons that stand ``beside`` it."""
+def study_sheet(variant: Variant, student: str = "", neighbours: Collection[str] = ()) -> StudySheet:
+    """Return the self-study notebook of a variant, before it is printed, with links to the lessons in ``neighbours``, the folder of the notebook."""
     exercise = variant.exercise
-    own = exercise.folder.root != builtin_root().resolve()
+    is_other_course = exercise.folder.root != builtin_root().resolve()
     return StudySheet(
         handout=handout(variant, student),
         file=FILE,
         package=DISTRIBUTION,
         install=exercise.folder.install,
-        course=exercise.folder.root.name if own else "",
+        course=exercise.folder.root.name if is_other_course else "",
         before=tuple(_ask(variant, p) for p in predictions.before_answers(variant)),
         cycle=tuple(_ask(variant, p) for p in predictions.over_the_cycle(variant)),
         moves=bool(predictions.moving(variant)),
@@ -42,7 +42,7 @@ def study_sheet(variant: Variant, student: str = "", beside: Collection[str] = (
         theory=theory(exercise),
         has_example=has_example(variant),
         lessons=taught_by(exercise.folder, exercise.name, variant.lang),
-        beside=frozenset(beside),
+        beside=frozenset(neighbours),
     )
 
 

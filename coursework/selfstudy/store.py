@@ -128,9 +128,9 @@ class ProgressFile:
         path = self.path.parent / f"{exercise}{EARLIER}"
         if not path.exists():
             return
-        known = {(e["seed"], e["part"], e["what"]) for e in self.progress.of(exercise)}
+        existing = {(e["seed"], e["part"], e["what"]) for e in self.progress.of(exercise)}
         result = self._of_earlier(path, exercise)
-        self.add(e for e in result if (e["seed"], e["part"], e["what"]) not in known)
+        self.add(e for e in result if (e["seed"], e["part"], e["what"]) not in existing)
 
     def _of_earlier(self, path: Path, exercise: str) -> list[dict[str, Any]]:
         try:
@@ -219,8 +219,8 @@ class ExerciseStore:
 
     def add(self, seed: int, kind: str, texts: dict[str, Any]) -> None:
         """Store the texts that are neither blank nor unchanged."""
-        known = self.of(seed, kind)
-        new = {n: t for n, t in texts.items() if not is_blank(t) and (n not in known or known[n] != t)}
+        events = self.of(seed, kind)
+        new = {n: t for n, t in texts.items() if not is_blank(t) and (n not in events or events[n] != t)}
         self.note(seed, [{"part": n, "what": _KINDS[kind], "answer": t} for n, t in new.items()])
 
     def note(self, seed: int, happened: Iterable[dict[str, Any]]) -> None:

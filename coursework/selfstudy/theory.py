@@ -63,5 +63,5 @@ def _agree(first: Any, other: Any) -> bool:
 
 def without_theory(variant: Variant) -> Variant:
     """Return the variant without the questions that another variant has already asked."""
-    known = theory(variant.exercise)
-    return variant.asking([p for p in variant.parts if p.id not in known]) if known else variant
+    theory_steps = theory(variant.exercise)
+    return variant.asking([p for p in variant.parts if p.id not in theory_steps]) if theory_steps else variant

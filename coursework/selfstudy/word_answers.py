@@ -32,8 +32,8 @@ def folded(text: Any) -> str:
 
 
 @cache
-def _spellings(what: str) -> frozenset[str]:
-    return frozenset(folded(w) for lang in languages() for w in words(lang)["study"]["reads"][what])
+def _spellings(category: str) -> frozenset[str]:
+    return frozenset(folded(w) for lang in languages() for w in words(lang)["study"]["reads"][category])
 
 
 def _one_of(text: str, kinds: tuple[str, ...]) -> str:

@@ -1,1 +1,1 @@
-"""What a sheet says, before it is rendered: questions, answers, worked solutions."""
+"""Content of sheets, before it is rendered: questions, answers, worked solutions."""

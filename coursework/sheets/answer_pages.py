@@ -113,8 +113,8 @@ class Field:
     @property
     def none(self) -> str:
         """The case to tick where none of the others is right; empty where that is none."""
-        told = zip(self.ticks, self.printed, strict=True)
-        return next((case for (case, _), printed in told if not printed), "")
+        pairs = zip(self.ticks, self.printed, strict=True)
+        return next((case for (case, _), printed in pairs if not printed), "")
 
 
 @dataclass(frozen=True)
@@ -157,13 +157,13 @@ def paper_code(
     ``assignment`` is its name, empty where exercises are handed out by themselves; ``records`` are the paper's. The code
     tells nothing of who and what, and is another on another size of paper.
     """
-    said = json.dumps([assignment, student, sitting, paper, *records], sort_keys=True, ensure_ascii=True)
-    digest = hashlib.sha256(f"coursework/paper/{said}".encode()).digest()
+    content = json.dumps([assignment, student, sitting, paper, *records], sort_keys=True, ensure_ascii=True)
+    digest = hashlib.sha256(f"coursework/paper/{content}".encode()).digest()
     return base64.b32encode(digest).decode()[:_CODE_CHARACTERS]
 
 
 def code_text(code: str, number: int, pages: int) -> str:
-    """What the QR code of a page says; the pages of the statement have number 0."""
+    """Return the text of a page's QR code; the pages of the statement have number 0."""
     return f"CW1 {code} {number}/{pages}"
 
 
@@ -186,10 +186,10 @@ def answer_pages(
     if paper not in SIZES:
         raise unknown("paper", paper, tuple(SIZES))
     sheets = _Pages(*SIZES[paper])
-    for place, variant in enumerate(variants):
+    for index, variant in enumerate(variants):
         if len(variants) > 1:
-            sheets.head(place)
-        for block in _blocks(variant, place, lang, sheets.width, alone=len(variants) == 1):
+            sheets.head(index)
+        for block in _blocks(variant, index, lang, sheets.width, alone=len(variants) == 1):
             sheets.add(block)
     return sheets.pages(code)
 
@@ -208,18 +208,18 @@ class _Block:
         return sum(height for _, height in self.rows)
 
 
-def _blocks(variant: Answerable, place: int, lang: str, width: float, *, alone: bool) -> Iterator[_Block]:
+def _blocks(variant: Answerable, index: int, lang: str, width: float, *, alone: bool) -> Iterator[_Block]:
     if variant.exercise.spec.drawing_mm:
-        yield _exercise_drawing(variant, place, width)
+        yield _exercise_drawing(variant, index, width)
     for number, part in enumerate(variant.parts, start=1):
-        called = str(number) if alone else f"{place + 1}.{number}"
-        yield _block(variant, place, part, called, lang, width)
+        label = str(number) if alone else f"{index + 1}.{number}"
+        yield _block(variant, index, part, label, lang, width)
 
 
-def _block(variant: Answerable, place: int, part: Part, number: str, lang: str, width: float) -> _Block:
+def _block(variant: Answerable, index: int, part: Part, number: str, lang: str, width: float) -> _Block:
     symbol = variant.exercise.symbol(part.quantity) if part.sort.has_symbol else ""
     blank = Field(
-        place, variant.exercise.name, variant.seed, part.id, 0, 1, part.sort.field, Box(0, 0, 0, 0),
+        index, variant.exercise.name, variant.seed, part.id, 0, 1, part.sort.field, Box(0, 0, 0, 0),
         number=number, symbol=symbol,
     )  # fmt: skip
     if part.sort.field == "ticks":
@@ -284,7 +284,7 @@ def _cell(x: float) -> Box:
 
 
 def _cells(x: float, count: int) -> tuple[Box, ...]:
-    return tuple(_cell(x + place * CELL[0]) for place in range(count))
+    return tuple(_cell(x + index * CELL[0]) for index in range(count))
 
 
 def _free(width: float, y: float) -> Box:
@@ -293,12 +293,12 @@ def _free(width: float, y: float) -> Box:
 
 def _ticks(blank: Field, ticks: Sequence[Tick], width: float, *, several: bool) -> _Block:
     boxes = []
-    for place, tick in enumerate(ticks):
-        row, column = divmod(place, _PER_ROW)
+    for index, tick in enumerate(ticks):
+        row, column = divmod(index, _PER_ROW)
         y = _PAD + (CELL[1] - TICK) / 2 + row * _TICKS_ROW
         boxes.append((tick.case, Box(LEFT + _BOXES + column * _PITCH, y, TICK, TICK)))
     height = _ROW + (len(ticks) - 1) // _PER_ROW * _TICKS_ROW
-    found = replace(
+    ticked_field = replace(
         blank,
         whole=_whole(width, height),
         ticks=tuple(boxes),
@@ -306,7 +306,7 @@ def _ticks(blank: Field, ticks: Sequence[Tick], width: float, *, several: bool) 
         several=several,
         free=_free(width, _PAD),
     )
-    return _Block(((found, height),))
+    return _Block(((ticked_field, height),))
 
 
 def _written(blank: Field, lines: int, width: float) -> _Block:
@@ -315,9 +315,9 @@ def _written(blank: Field, lines: int, width: float) -> _Block:
     return _Block(((replace(blank, whole=box, free=box, lines=lines), height + 2 * _PAD),))
 
 
-def _exercise_drawing(variant: Answerable, place: int, width: float) -> _Block:
+def _exercise_drawing(variant: Answerable, index: int, width: float) -> _Block:
     blank = Field(
-        place, variant.exercise.name, variant.seed, "", 0, 1, "drawing", Box(0, 0, 0, 0), is_millimetre=True
+        index, variant.exercise.name, variant.seed, "", 0, 1, "drawing", Box(0, 0, 0, 0), is_millimetre=True
     )
     return _drawing(blank, variant.exercise.spec.drawing_mm or (0, 0), width)
 
@@ -363,9 +363,9 @@ class _Pages:
         self._made: list[_Page] = []
         self._waiting: int | None = None  #: the exercise whose heading stands before the next row
 
-    def head(self, place: int) -> None:
+    def head(self, index: int) -> None:
         """The heading of an exercise, which stands with its first row."""
-        self._waiting = place
+        self._waiting = index
 
     def add(self, block: _Block) -> None:
         """A block on this page, or on the next where it does not fit; a long one is cut between rows."""
@@ -384,7 +384,7 @@ class _Pages:
             self._made[-1].put(row, height)
 
     def _alone(self, row: Field, height: float, above: float) -> None:
-        """What is higher than a usual page has one without rules and guides."""
+        """Place a row that is higher than a usual page on a page of its own, without rules and guides."""
         left = self.height - FRAME - _TOP_BARE - above
         if height > left:
             raise BadCourse(

@@ -52,8 +52,8 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
         for question, part in zip(sheet.questions, variant.parts, strict=True)
     )
     figure = solution_figure(variant)
-    says = text.sections.get("figure") if figure is not None else None
-    alt = " ".join(says.text.split()) if says else ""
+    caption = text.sections.get("figure") if figure is not None else None
+    alt = " ".join(caption.text.split()) if caption else ""
     drawn = stated_polygons(variant) if polygons else ()
     return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, drawn)
 
@@ -62,12 +62,12 @@ def _models(variant: Variant, text: Text) -> Iterator[Step]:
     """The model answers of the questions that a person marks: sections of the solution's text."""
     for part in variant.parts:
         if part.sort.is_open and (section := text.sections.get(part.id)) is not None:
-            said = f"{question_called(variant, part)} {section.text}"
-            yield Step(part.id, "", "", "", "", said, (), asked=True)
+            model = f"{question_called(variant, part)} {section.text}"
+            yield Step(part.id, "", "", "", "", model, (), asked=True)
 
 
 def question_called(variant: Variant, part: Part) -> str:
-    """Which question it is, at the head of a step: ``*Question 3.*``"""
+    """Return the name of a question at the head of a step: ``*Question 3.*``"""
     number = 1 + variant.parts.index(part)
     asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
     return f"*{asks[:1].upper()}{asks[1:]}*"
@@ -97,7 +97,8 @@ def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step
 
 
 def _named_besides(variant: Variant, values: Mapping[str, Any]) -> set[str]:
-    """What formulas are stated with that itself needs what they give, so that it is no step before them."""
+    """Return the names in formulas whose own values need the formula's result, so that they are no step
+    before it."""
     graph = variant.exercise.solution.graph
     nodes = (graph.node(name) for name in values if name in graph.names)
     named = {name for node in nodes for name in node.printed if name not in node.arguments}
@@ -107,7 +108,7 @@ def _named_besides(variant: Variant, values: Mapping[str, Any]) -> set[str]:
 def _step(
     variant: Variant,
     name: str,
-    found: Any,
+    result: Any,
     text: Any,
     symbols: tuple[tuple[str, str, str], ...],
     numbers: Shown,
@@ -116,7 +117,7 @@ def _step(
     exercise = variant.exercise
     function = exercise.solution.graph.node(name).function
     section = text.sections.get(name)
-    value = _value_latex(variant, name, placed_points(variant).get(name, found))
+    value = _value_latex(variant, name, placed_points(variant).get(name, result))
     try:
         formula = formula_in_symbols(function, symbols)
         substitution = formula_latex(function, numbers) if formula and value else ""
@@ -131,7 +132,7 @@ def _step(
         formula=formula if formula not in (value, symbol) else "",
         substitution=substitution if substitution not in (formula, value) else "",
         value=value,
-        words=_words_of(variant, name, found, section.text if section else ""),
+        words=_words_of(variant, name, result, section.text if section else ""),
         remarks=tuple(remarks),
         asked=any(p.quantity == name for p in variant.parts),
     )
@@ -145,7 +146,7 @@ def _remarks(variant: Variant, values: Mapping[str, Any], text: Any) -> dict[str
     """
     solution, units = variant.exercise.solution, variant.exercise.units
     steps = [q for q in values if q not in variant.given]
-    found: dict[str, list[Remark]] = {}
+    remarks: dict[str, list[Remark]] = {}
     for name, mistake in solution.mistakes.items():
         graph, about = solution.mistaken(name), [q for q in steps if q in mistake.targets]
         for quantity in about or [q for q in steps if q in solution.reached(name)]:
@@ -154,14 +155,14 @@ def _remarks(variant: Variant, values: Mapping[str, Any], text: Any) -> dict[str
             except CourseworkError:
                 continue
             if not _agrees(wrong, values[quantity], units.get(quantity, "1")):
-                told = Remark(text.section(f"mistake {name}").text, _wrong_text(variant, quantity, wrong))
-                found.setdefault(quantity, []).append(told)
+                remark = Remark(text.section(f"mistake {name}").text, _wrong_text(variant, quantity, wrong))
+                remarks.setdefault(quantity, []).append(remark)
                 break
-    return found
+    return remarks
 
 
 def _agrees(wrong: Any, right: Any, unit: str) -> bool:
-    """Whether a mistake gives the right value; directions are the same after a full turn."""
+    """Return whether a mistake gives the right value; directions are the same after a full turn."""
     if isinstance(right, (str, tuple)) or isinstance(wrong, (str, tuple)):
         return bool(wrong == right)
     gap = np.abs(np.subtract(wrong, right))
@@ -172,25 +173,25 @@ def _agrees(wrong: Any, right: Any, unit: str) -> bool:
 
 def _wrong_text(variant: Variant, name: str, wrong: Any) -> str:
     part = next((p for p in variant.parts if p.quantity == name), None)
-    said = "" if part is None else part.sort.words(wrong, partial(variant.label, part.id))
-    if said:
-        return quoted(said, variant.lang)
+    text = "" if part is None else part.sort.words(wrong, partial(variant.label, part.id))
+    if text:
+        return quoted(text, variant.lang)
     if isinstance(wrong, (str, tuple)) or np.ndim(wrong) or not np.isfinite(wrong):
         return ""
     return f"${_value_latex(variant, name, wrong)}$"
 
 
-def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
+def _words_of(variant: Variant, name: str, value: Any, reason: str) -> str:
     """The words of a step: which question it answers; of a choice, the case after its reason."""
     number = next((n for n, p in enumerate(variant.parts, start=1) if p.quantity == name), 0)
     if not number:
         return reason
-    said, part = engine_words(variant.lang), variant.parts[number - 1]
+    texts, part = engine_words(variant.lang), variant.parts[number - 1]
     words = [question_called(variant, part), reason]
-    case = part.sort.words(found, partial(variant.label, part.id))
+    case = part.sort.words(value, partial(variant.label, part.id))
     if case:
         # At the end of the reason's last sentence, or after it.
-        words += [f"{said['solution']['case']}{said['sheet']['colon']}"] if is_whole(reason) else []
+        words += [f"{texts['solution']['case']}{texts['sheet']['colon']}"] if is_whole(reason) else []
         words += [f"**{case}**."]
     return " ".join(filter(None, words))
 
@@ -209,7 +210,7 @@ def _value_latex(variant: Variant, name: str, value: Any) -> str:
         and part is not None
         and (table := part.sort.formula(value, lambda v: number_latex(v, "1", PRINTED_DIGITS)))
     ):
-        return table + r"\ \mid\ ".join(unit_latex(one) for one in part.sort.units(unit))
+        return table + r"\ \mid\ ".join(unit_latex(unit_name) for unit_name in part.sort.units(unit))
     if isinstance(value, np.ndarray) and value.ndim == 2:
         return _matrix_latex(value) + unit_latex(unit)
     if isinstance(value, np.ndarray):
@@ -233,15 +234,17 @@ def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
     if part.sort.is_open:
         return engine_words(variant.lang)["solution"]["by_hand"]
     value = values[part.quantity]
-    if said := part.sort.words(value, partial(variant.called, part)):
-        return said
+    if formula := part.sort.words(value, partial(variant.called, part)):
+        return formula
     placed = placed_points(variant)
     latex = _value_latex(variant, part.quantity, placed.get(part.quantity, value))
     if not latex:
         raise BadStatement(f"{variant.exercise.name}: the answer to {part.id} cannot be printed")
-    said = f"${latex}$"
+    formula = f"${latex}$"
     return (
-        engine_words(variant.lang)["solution"]["instance"].format(said) if part.quantity in placed else said
+        engine_words(variant.lang)["solution"]["instance"].format(formula)
+        if part.quantity in placed
+        else formula
     )
 
 

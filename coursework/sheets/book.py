@@ -1,4 +1,4 @@
-"""What a workbook is made of: chapters, in each lessons and exercises.
+"""Content of a workbook: chapters, in each lessons and exercises.
 
 As in :mod:`coursework.sheets.sheet`, texts are Markdown with ``$LaTeX$``. Links lead to ``exercise:NAME`` and
 ``lesson:NAME#SECTION``, and terms of the index to ``#index``: each back end puts its own places in their stead.
@@ -43,7 +43,7 @@ class Code:
 
 @dataclass(frozen=True)
 class Printed:
-    """What code has printed, letter by letter."""
+    """Output that code has printed, letter by letter."""
 
     text: str
 
@@ -61,7 +61,7 @@ class Drawn:
 
 @dataclass(frozen=True)
 class Later:
-    """Where an answer is asked that stands further on, by its number."""
+    """Reference to a later question, by its number."""
 
     number: int
 
@@ -109,7 +109,7 @@ class BookChapter:
 
     @property
     def exercises(self) -> tuple[Practised, ...]:
-        return tuple(one for section in self.sections for one in section.exercises)
+        return tuple(exercise for section in self.sections for exercise in section.exercises)
 
     @property
     def lessons(self) -> tuple[LessonText, ...]:
@@ -138,20 +138,20 @@ class Book:
 
     @property
     def exercises(self) -> tuple[Practised, ...]:
-        return tuple(one for chapter in self.chapters for one in chapter.exercises)
+        return tuple(exercise for chapter in self.chapters for exercise in chapter.exercises)
 
     @property
     def lessons(self) -> tuple[LessonText, ...]:
-        return tuple(one for chapter in self.chapters for one in chapter.lessons)
+        return tuple(lesson for chapter in self.chapters for lesson in chapter.lessons)
 
     @property
     def terms(self) -> Mapping[str, tuple[str, ...]]:
         """The names of the lessons that have each entry of the index."""
-        found: dict[str, tuple[str, ...]] = {}
+        terms: dict[str, tuple[str, ...]] = {}
         for lesson in self.lessons:
             for entry in lesson.terms:
-                found[entry] = (*found.get(entry, ()), lesson.name)
-        return found
+                terms[entry] = (*terms.get(entry, ()), lesson.name)
+        return terms
 
     @property
     def symbols(self) -> tuple[SymbolRow, ...]:
@@ -161,15 +161,15 @@ class Book:
         points and other expressions are none.
         """
         articles = words(self.lang)["book"]["articles"]
-        found: dict[tuple[str, str, str], list[Practised]] = {}
-        for one in self.exercises:
-            for question in one.handout.questions:
+        symbols: dict[tuple[str, str, str], list[Practised]] = {}
+        for exercise in self.exercises:
+            for question in exercise.handout.questions:
                 if question.kind not in _MEASURED or _EXPRESSION.search(question.symbol):
                     continue
                 if meaning := _meaning(question.prompt, question.symbol, articles):
-                    found.setdefault((question.symbol, question.unit, meaning), []).append(one)
-        ordered = sorted(found, key=lambda row: (_letters(row[0]).casefold(), row))
-        return tuple(SymbolRow(*row, tuple(found[row])) for row in ordered)
+                    symbols.setdefault((question.symbol, question.unit, meaning), []).append(exercise)
+        ordered = sorted(symbols, key=lambda row: (_letters(row[0]).casefold(), row))
+        return tuple(SymbolRow(*row, tuple(symbols[row])) for row in ordered)
 
 
 _MEASURED = ("number", "integer", "angle")  #: the kinds of a quantity
@@ -188,7 +188,10 @@ def _meaning(prompt: str, symbol: str, articles: Sequence[str]) -> str:
     clause = _CLAUSE.match(" ".join(prompt.split()))
     for formula in _FORMULA.finditer(clause[1] if clause else ""):
         if clause and _letters(formula[1]) == _letters(symbol):
-            told = (clause[1][: formula.start()] + clause[1][formula.end() :]).strip()
-            told = next((told.removeprefix(one) for one in articles if told.startswith(one)), told)
-            return told[:1].upper() + told[1:]
+            meaning = (clause[1][: formula.start()] + clause[1][formula.end() :]).strip()
+            meaning = next(
+                (meaning.removeprefix(article) for article in articles if meaning.startswith(article)),
+                meaning,
+            )
+            return meaning[:1].upper() + meaning[1:]
     return ""

@@ -1,4 +1,4 @@
-"""What a solution draws: its own figure, and the polygons that it states."""
+"""Drawings of a solution: its own figure, and the polygons that it states."""
 
 from __future__ import annotations
 

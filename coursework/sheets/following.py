@@ -1,4 +1,4 @@
-"""What a quantity follows from, as the solution's formula has it: names, and no value."""
+"""Quantities from which another follows, by the solution's formula: names, and no value."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def needs(variant: Variant, quantity: str) -> tuple[str, ...]:
     """The quantities that a quantity's textbook formula takes, hidden ones seen through."""
     graph = variant.exercise.solution.graph
-    found: dict[str, None] = {}
+    names: dict[str, None] = {}
 
     def visit(name: str) -> None:
         node = graph.node(name)
@@ -24,52 +24,55 @@ def needs(variant: Variant, quantity: str) -> tuple[str, ...]:
             if argument.startswith("_"):
                 visit(argument)
             else:
-                found.setdefault(argument)
+                names.setdefault(argument)
 
     visit(quantity)
-    return tuple(found)
+    return tuple(names)
 
 
-def _on_the_sheet(variant: Variant, quantity: str, asked: Collection[str]) -> list[str]:
-    """What a quantity is computed from, of what is given or asked: what the solution finds on the way stands on no sheet."""
-    found: dict[str, None] = {}
+def _on_the_sheet(variant: Variant, quantity: str, asked_quantities: Collection[str]) -> list[str]:
+    """Return the given or asked quantities from which a quantity is computed; intermediate ones of the
+    solution stand on no sheet."""
+    names: dict[str, None] = {}
     met: set[str] = set()
 
     def visit(name: str) -> None:
         for needed in needs(variant, name):
-            if needed in variant.given or (needed in asked and needed != quantity):
-                found.setdefault(needed)
+            if needed in variant.given or (needed in asked_quantities and needed != quantity):
+                names.setdefault(needed)
             elif needed not in met and needed in variant.exercise.solution.graph.names:
                 met.add(needed)
                 visit(needed)
 
     visit(quantity)
-    return list(found)
+    return list(names)
 
 
 _MOST = 7  #: names that a sentence lists
 
 
 def follows_from(variant: Variant, quantity: str) -> str:
-    """What a quantity follows from, as Markdown: by symbol what is given, by question what is asked before.
+    """Return the quantities from which a quantity follows, as Markdown: given ones by symbol, asked ones by
+    question.
 
     Nothing where it takes none of these, or so many that a list of them says nothing.
     """
-    asked = {part.quantity: number for number, part in enumerate(variant.parts, start=1)}
-    needed = _on_the_sheet(variant, quantity, asked)
+    numbers = {part.quantity: number for number, part in enumerate(variant.parts, start=1)}
+    needed = _on_the_sheet(variant, quantity, numbers)
     given = [_symbol(variant, name) for name in needed if name in variant.given]
-    before = [(name, asked[name]) for name in needed if name in asked and name not in variant.given]
+    before = [(name, numbers[name]) for name in needed if name in numbers and name not in variant.given]
     if not 0 < len(given) + len(before) <= _MOST:
         return ""
-    said, lang = words(variant.lang)["feedback"]["follows"], variant.lang
+    texts, lang = words(variant.lang)["feedback"]["follows"], variant.lang
     noun = words(lang)["sheet"]["question"]["one"]
-    pieces = [said["many_given" if len(given) > 1 else "given"].format(listed(given, lang))] if given else []
+    pieces = [texts["many_given" if len(given) > 1 else "given"].format(listed(given, lang))] if given else []
     pieces += [_asked(variant, name, f"{noun} {number}") for name, number in before]
-    return str(said["from"]).format(f"{words(lang)['sheet']['separator']} ".join(pieces))
+    return str(texts["from"]).format(f"{words(lang)['sheet']['separator']} ".join(pieces))
 
 
 def _asked(variant: Variant, name: str, question: str) -> str:
-    """What an earlier question asks: its symbol and its number, or its number alone where no symbol says anything."""
+    """Return the symbol and the number of an earlier question, or its number alone where no symbol says
+    anything."""
     part = next(p for p in variant.parts if p.quantity == name)
     return f"{_symbol(variant, name)} ({question})" if part.sort.is_called_by_symbol else question
 

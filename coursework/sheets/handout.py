@@ -1,4 +1,4 @@
-"""What a student's sheet shows: the statement, the data, the questions with their margins."""
+"""Content of a student's sheet: the statement, the data, the questions with their margins."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def handout(variant: Variant, student: str = "") -> Handout:
-    """What a student's sheet shows; nobody's unless told.
+    """Return the content of a student's sheet; without a name by default.
 
     Raises
     ------
@@ -49,8 +49,8 @@ def _unnamed(variant: Variant) -> Handout:
         figure=variant.figure,
         figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
         more_figures=tuple(
-            (one, " ".join(text.section(f"figure {k}").text.split()))
-            for k, one in enumerate(variant.figures[1:], start=2)
+            (figure, " ".join(text.section(f"figure {k}").text.split()))
+            for k, figure in enumerate(variant.figures[1:], start=2)
         ),
         questions=tuple(
             _question(variant, n, p, ways)
@@ -72,19 +72,19 @@ def _given(variant: Variant, name: str) -> Given:
 def _ways_to_write(variant: Variant) -> list[tuple[str, ...]]:
     """For each part, what its sheet has not said yet of how equations of loops are written."""
     met: list[tuple[str, ...]] = []
-    found = []
+    texts = []
     for part in variant.parts:
         new: tuple[str, ...] = ()
         if part.loop and part.id not in variant.text.sections and part.variables not in met:
             new = ("symbols",) if met else ("symbols", "how")
             met.append(part.variables)
-        found.append(new)
-    return found
+        texts.append(new)
+    return texts
 
 
 def prompt(variant: Variant, part: Part, ways: Iterable[str] = ()) -> str:
-    """What a part asks: its section of the statement; for an equation of a loop that has none, the engine's
-    words after the section of its loop, and the ``ways`` to write it: ``symbols``, ``how``.
+    """Return the text of a question: its section of the statement. An equation of a loop without one gets the
+    engine's words after the section of its loop, and the ``ways`` to write it: ``symbols``, ``how``.
 
     Raises
     ------
@@ -95,9 +95,9 @@ def prompt(variant: Variant, part: Part, ways: Iterable[str] = ()) -> str:
         return variant.text.section(part.id).text
     table = engine_words(variant.lang)["loop"]
     loop = variant.text.section(part.loop).text
-    asked = part.quantity.removeprefix(f"{part.loop}_")
+    form = part.quantity.removeprefix(f"{part.loop}_")
     symbols = ", ".join(f"`{name}`" for name in part.variables)
-    return " ".join([loop, *(table[key].format(symbols=symbols) for key in (asked, *ways))])
+    return " ".join([loop, *(table[key].format(symbols=symbols) for key in (form, *ways))])
 
 
 def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) -> Question:

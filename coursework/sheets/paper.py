@@ -19,7 +19,7 @@ class Logo:
 
 @dataclass(frozen=True)
 class Heading:
-    """What stands at the head of a paper, in its language."""
+    """Heading of a paper, in its language."""
 
     lang: str
     title: str
@@ -46,7 +46,7 @@ class Paper:
 
     @property
     def answer_pages(self) -> tuple[AnswerPage, ...]:
-        """Where the paper is answered, if not between its lines."""
+        """Return the answer pages, if the paper is not answered between its lines."""
         return self.handouts[0].answer_pages if self.handouts else ()
 
     @property

@@ -23,7 +23,7 @@ def placed_points(variant: Variant) -> dict[str, np.ndarray]:
     whole millimetres. The judge of the parts says whether that is as right: else nothing is moved.
     """
     box = variant.exercise.spec.drawing_mm
-    found: dict[str, np.ndarray] = {}
+    points: dict[str, np.ndarray] = {}
     for name, ids in judges_of(variant) if box else ():
         parts = [part for part in variant.parts if part.id in ids]
         values = {part.id: variant.key.reference[part.quantity] for part in parts}
@@ -35,19 +35,19 @@ def placed_points(variant: Variant) -> dict[str, np.ndarray]:
                 drawings[-1].append(part.id)
         moved = _moved(values, drawings, *(box or (0, 0)))
         if all(verdict.share == 1 for verdict in judged(variant, name, {**values, **moved}).values()):
-            found |= {part.quantity: moved[part.id] for part in parts if part.id in moved}
-    return found
+            points |= {part.quantity: moved[part.id] for part in parts if part.id in moved}
+    return points
 
 
 def _moved(
     values: dict[str, np.ndarray], drawings: list[list[str]], width: float, height: float
 ) -> dict[str, np.ndarray]:
     """The points of drawings, one below the other in a box."""
-    found: dict[str, np.ndarray] = {}
+    moved: dict[str, np.ndarray] = {}
     share = height / max(len(drawings), 1)
-    for place, points in enumerate(reversed(drawings)):
+    for index, points in enumerate(reversed(drawings)):
         corners = np.array([values[i] for i in points])
-        middle = np.array([width / 2, (place + 0.5) * share])
+        middle = np.array([width / 2, (index + 0.5) * share])
         shift = np.rint(middle - (corners.min(axis=0) + corners.max(axis=0)) / 2)
-        found |= {i: values[i] + shift for i in points}
-    return found
+        moved |= {i: values[i] + shift for i in points}
+    return moved

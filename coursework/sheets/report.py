@@ -1,4 +1,4 @@
-"""What a report shows: sections of text, charts and tables. Texts are Markdown with formulas."""
+"""Content of a report: sections of text, charts and tables. Texts are Markdown with formulas."""
 
 from __future__ import annotations
 

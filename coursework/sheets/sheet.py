@@ -1,4 +1,4 @@
-"""What a sheet is made of: a handout for the student, an answer sheet for the staff.
+"""Classes of a sheet: a handout for the student, an answer sheet for the staff.
 
 A :class:`Handout` has no field for an answer: what a student receives is rendered from
 a type that cannot hold one. Texts are Markdown with ``$LaTeX$`` in the sheet's language;
@@ -134,7 +134,7 @@ class AnswerSheet:
 
 @dataclass(frozen=True)
 class FeedbackLine:
-    """What became of one answer."""
+    """Feedback on one answer."""
 
     question: Question
     answer: str  #: the student's text as it came
@@ -150,7 +150,7 @@ class FeedbackLine:
 
 @dataclass(frozen=True)
 class Practice:
-    """What to try after an exercise in which points were lost."""
+    """Variant to try after an exercise in which points were lost."""
 
     exercise: str
     version: int

@@ -55,17 +55,17 @@ def _blocks(joints: Sequence[Joint]) -> list[_SlideBlock]:
     slides: list[Vector] = []
     turns: tuple[Vector, ...] | None = ()
     for joint in joints:
-        own = _turns_of(joint)
-        if turns != () and (joint.kind.translations or own is None):
+        joint_turns = _turns_of(joint)
+        if turns != () and (joint.kind.translations or joint_turns is None):
             results.append(_SlideBlock(_spanned(slides), turns))
             slides, turns = [], ()
-        if own is None and joint.kind.translations:
+        if joint_turns is None and joint.kind.translations:
             # It turns its own slide, or not: that is counted on for nothing.
             results.append(_SlideBlock(_spanned(slides), None))
             slides = []
             continue
         slides += joint.slides
-        turns = None if own is None or turns is None else (*turns, *own)
+        turns = None if joint_turns is None or turns is None else (*turns, *joint_turns)
     return [*results, _SlideBlock(_spanned(slides), ())]
 
 

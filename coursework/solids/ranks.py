@@ -27,7 +27,7 @@ class Rank:
         return self.smallest_kept / self.largest_dropped if self.largest_dropped else float("inf")
 
 
-def is_zero(value: float, what: str) -> bool:
+def is_zero(value: float, subject: str) -> bool:
     """Return whether a number that is either 0 or of order 1 is 0.
 
     Raises
@@ -38,13 +38,15 @@ def is_zero(value: float, what: str) -> bool:
     size = abs(value)
     if ZERO < size < DISTINCT:
         raise CannotTell(
-            f"cannot tell whether {what}: it is off by {size:.2g} of the whole, less than {DISTINCT:g}, "
+            f"cannot tell whether {subject}: it is off by {size:.2g} of the whole, less than {DISTINCT:g}, "
             f"which would be meant, and more than {ZERO:g}, which would be rounding"
         )
     return size <= ZERO
 
 
-def decompose(rows: np.ndarray, what: str, scale: float | None = None) -> tuple[Rank, np.ndarray, np.ndarray]:
+def decompose(
+    rows: np.ndarray, subject: str, scale: float | None = None
+) -> tuple[Rank, np.ndarray, np.ndarray]:
     """Return the rank of the rows, and orthonormal bases of what they span and of what is perpendicular to
     it.
 
@@ -65,7 +67,7 @@ def decompose(rows: np.ndarray, what: str, scale: float | None = None) -> tuple[
     doubtful = relative[(relative > ZERO) & (relative < DISTINCT)]
     if len(doubtful):
         raise CannotTell(
-            f"cannot tell the rank of {what}: a singular value is {doubtful[0]:.2g} of the largest, neither a zero "
+            f"cannot tell the rank of {subject}: a singular value is {doubtful[0]:.2g} of the largest, neither a zero "
             f"(below {ZERO:g}) nor distinct from it (above {DISTINCT:g}); are two axes meant to be parallel, "
             "or two points to coincide?"
         )
@@ -75,7 +77,7 @@ def decompose(rows: np.ndarray, what: str, scale: float | None = None) -> tuple[
     return Rank(rank, stored, dropped), directions[:rank], directions[rank:]
 
 
-def rank_of(matrix: np.ndarray, what: str = "the system") -> Rank:
+def rank_of(matrix: np.ndarray, subject: str = "the system") -> Rank:
     """Return the rank of a matrix whose columns are scaled to the same length first.
 
     Raises
@@ -87,4 +89,4 @@ def rank_of(matrix: np.ndarray, what: str = "the system") -> Rank:
     if not matrix.size:
         return Rank(0, 1.0, 0.0)
     sizes = np.linalg.norm(matrix, axis=0)
-    return decompose((matrix / np.where(sizes > 0, sizes, 1.0)).T, what)[0]
+    return decompose((matrix / np.where(sizes > 0, sizes, 1.0)).T, subject)[0]

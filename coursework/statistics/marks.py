@@ -129,7 +129,7 @@ class _Columns:
     def marks(self, entries: Mapping[str, StudentSummary], rejected: int) -> Marks:
         """Return the marks, with the summaries."""
         students, marked = self.students, len(self.students)
-        unread = [name for name, own in entries.items() if own.unreadable]
+        unread = [name for name, entry in entries.items() if entry.unreadable]
         for name in entries:
             students[name]
         student, part, verdict = (
@@ -139,7 +139,7 @@ class _Columns:
         issued = np.bincount(student, out_of, minlength=len(students))
         issued = np.maximum(issued, [entries[s].out_of if s in entries else 0.0 for s in students])
         blank = np.array([family_of(v) == "missing" for v in self.verdicts], dtype=bool)
-        asked_blank = sum(own.missing for own in entries.values())
+        asked_blank = sum(entry.missing for entry in entries.values())
         without_line = max(0, asked_blank - int(np.count_nonzero(blank[verdict])))
         return Marks(
             tuple(students),

@@ -192,8 +192,10 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
 
     def place(index: int) -> tuple[int, int]:
         exercise, part = marks.parts[index]
-        known = list((sheet_order or {}).get(exercise, ()))
-        return marks.exercises.index(exercise), known.index(part) if part in known else len(known) + index
+        sheet_parts = list((sheet_order or {}).get(exercise, ()))
+        return marks.exercises.index(exercise), sheet_parts.index(part) if part in sheet_parts else len(
+            sheet_parts
+        ) + index
 
     order = sorted(range(n), key=place)
     parts = tuple(
@@ -264,9 +266,9 @@ def _discriminations(marks: Marks, share: np.ndarray, askers: Sequence[int]) -> 
     ends = np.searchsorted(marks.part[lines], np.arange(len(marks.parts) + 1))
     results: list[float | None] = []
     for (start, end), students in zip(pairwise(ends), askers, strict=True):
-        own = lines[start:end]
-        enough = students >= ENOUGH and own.size > 0
-        results.append(correlation(share[own], rest[own]) if enough else None)
+        block = lines[start:end]
+        enough = students >= ENOUGH and block.size > 0
+        results.append(correlation(share[block], rest[block]) if enough else None)
     return results
 
 
@@ -292,7 +294,7 @@ def _mistakes(
     for item, count, points in zip(code.tolist(), counts.tolist(), lost.tolist(), strict=True):
         part, verdict = divmod(item, kinds)
         kind, _, name = marks.verdicts[verdict].partition(":")
-        own = MistakeStatistics(
+        statistics = MistakeStatistics(
             marks.parts[part][0],
             marks.parts[part][1],
             kind,
@@ -302,6 +304,6 @@ def _mistakes(
             lost=points,
             share_of_lost=points / all_lost if all_lost > 0 else 0.0,
         )
-        results.append((rank[part], own))
+        results.append((rank[part], statistics))
     results.sort(key=lambda f: (-f[1].count, f[0], f[1].kind, f[1].name))
-    return tuple(own for _, own in results)
+    return tuple(statistics for _, statistics in results)

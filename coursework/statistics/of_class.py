@@ -11,12 +11,12 @@ from coursework.statistics.marks import Line, Marks, StudentSummary, marks_of
 
 def marks_of_class(graded: Iterable[Graded], results: Mapping[str, Result], rejected: int = 0) -> Marks:
     """Return the columns of a class; for a student with several sittings only those of the one that counts."""
-    text = {student: _summary_of(own) for student, own in results.items()}
+    text = {student: _summary_of(result) for student, result in results.items()}
     return marks_of(_lines(graded, results), text, rejected)
 
 
-def _summary_of(own: Result) -> StudentSummary:
-    return StudentSummary(own.out_of, own.verdicts["missing"], bool(own.verdicts["unreadable"]))
+def _summary_of(result: Result) -> StudentSummary:
+    return StudentSummary(result.out_of, result.verdicts["missing"], bool(result.verdicts["unreadable"]))
 
 
 def _lines(graded: Iterable[Graded], results: Mapping[str, Result]) -> Iterator[Line]:

@@ -221,8 +221,8 @@ class _StatisticsPage:
 
     def _discrimination(self) -> str:
         reading = self.texts["reading"]
-        known = ((p, p.discrimination) for p in self.statistics.parts)
-        measured = [(p, d) for p, d in known if d is not None]
+        pairs = ((p, p.discrimination) for p in self.statistics.parts)
+        measured = [(p, d) for p, d in pairs if d is not None]
         if not measured:
             return reading["unmeasured"].format(ENOUGH)
         active = self.statistics.students - self.statistics.silent - self.statistics.unread
@@ -284,8 +284,8 @@ class _StatisticsPage:
 
     def _name_and_id(self, part: PartStatistics) -> str:
         """Return the name of a part with its id, for the table in which authors look parts up."""
-        name, own = self._name(part), _as_it_is(part.part)
-        return name if name == own else f"{name} ({own})"
+        name, names = self._name(part), _as_it_is(part.part)
+        return name if name == names else f"{name} ({names})"
 
     def _with(self, part: PartStatistics, value: str) -> str:
         """Return a part and its value, for a sentence about the class."""

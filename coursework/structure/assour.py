@@ -54,8 +54,8 @@ class Decomposition:
 
 def roman(number: int) -> str:
     """Return a small number, 1 to 39, in Roman figures."""
-    tens, ones = divmod(number, 10)
-    return "X" * tens + ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX")[ones]
+    tens, units = divmod(number, 10)
+    return "X" * tens + ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX")[units]
 
 
 def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> Decomposition:
@@ -130,8 +130,8 @@ def _rings(graph: JointGraph, driver: int) -> list[tuple[int, ...]]:
     # The driver's own pair is taken away: it stays among the conditions only in a multiple pivot, where
     # frame and driver may both hold the pin, and one of the two holds is enough.
     conditions = [ends for ends in conditions if not placed.issuperset(ends)]
-    own = _own_hold(graph, driver)
-    conditions = [ends for ends in conditions if ends != own]
+    hold = _own_hold(graph, driver)
+    conditions = [ends for ends in conditions if ends != hold]
     settled = _given_out(conditions, placed)
     arrows: dict[Node, set[Node]] = {node: set() for ends in conditions for node in ends}
     for (first, other), (to_one, to_other) in zip(conditions, settled, strict=True):
@@ -257,9 +257,9 @@ def _pairs_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
     """Count the pairs of some bodies among themselves and with the bodies placed before."""
     total = 0
     for joint in graph.joints:
-        own = len(set(joint.bodies) & set(ring))
-        if own:
-            total += own if placed & set(joint.bodies) else own - 1
+        count = len(set(joint.bodies) & set(ring))
+        if count:
+            total += count if placed & set(joint.bodies) else count - 1
     return total
 
 
@@ -269,10 +269,10 @@ def class_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
 
     A multiple pivot is one corner of each of its bodies.
     """
-    own = set(ring)
-    used = [j for j in graph.joints if len(own & set(j.bodies)) + bool(placed & set(j.bodies)) > 1]
+    bodies = set(ring)
+    used = [j for j in graph.joints if len(bodies & set(j.bodies)) + bool(placed & set(j.bodies)) > 1]
     corners = max(sum(body in joint.bodies for joint in used) for body in ring)
-    return max(corners, longest_loop([own & set(joint.bodies) for joint in used], own))
+    return max(corners, longest_loop([bodies & set(joint.bodies) for joint in used], bodies))
 
 
 def longest_loop(joined: Sequence[set[int]], bodies: Iterable[int]) -> int:

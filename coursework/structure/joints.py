@@ -223,7 +223,7 @@ def _check_bodies(joints: Sequence[PlaneJoint]) -> None:
     bodies = {body for joint in joints for body in joint.bodies}
     missing = next((n for n, body in enumerate(sorted(bodies), start=FRAME) if n != body), None)
     if missing is not None:
-        what = "the frame, 1," if missing == FRAME else f"body {missing}"
-        raise WrongValue(f"{what} has no joint; bodies are numbered from 1 without a gap")
+        subject = "the frame, 1," if missing == FRAME else f"body {missing}"
+        raise WrongValue(f"{subject} has no joint; bodies are numbered from 1 without a gap")
     if bodies - linked:
         raise WrongValue(f"bodies {sorted(bodies - linked)} are not linked to the frame, 1")

@@ -13,17 +13,17 @@ Drawn = tuple[tuple[complex, ...], dict[int, float]]
 def drawn_in_course(graph: JointGraph) -> Drawn | None:
     """Return the drawn position of each joint and the direction of each fixed inclined rail; None if no
     figure of the course is isomorphic."""
-    for figure, known in LIBRARY.items():
-        if figure not in PLACES or len(known.joints) != len(graph.joints):
+    for figure, mechanism in LIBRARY.items():
+        if figure not in PLACES or len(mechanism.joints) != len(graph.joints):
             continue
-        bodies = likeness(graph, known)
+        bodies = likeness(graph, mechanism)
         if bodies is not None:
-            return _drawn(graph, known, bodies, figure)
+            return _drawn(graph, mechanism, bodies, figure)
     return None
 
 
-def _drawn(graph: JointGraph, known: JointGraph, bodies: Mapping[int, int], figure: str) -> Drawn:
-    letters: dict[tuple[tuple[int, ...], str], str] = {(j.bodies, j.kind): j.at for j in known.joints}
+def _drawn(graph: JointGraph, mechanism: JointGraph, bodies: Mapping[int, int], figure: str) -> Drawn:
+    letters: dict[tuple[tuple[int, ...], str], str] = {(j.bodies, j.kind): j.at for j in mechanism.joints}
     names = [letters[tuple(sorted(bodies[b] for b in j.bodies)), j.kind] for j in graph.joints]
     rails = RAILS.get(figure, {})
     slides = {
@@ -32,30 +32,30 @@ def _drawn(graph: JointGraph, known: JointGraph, bodies: Mapping[int, int], figu
     return tuple(PLACES[figure][at] for at in names), slides
 
 
-def likeness(graph: JointGraph, known: JointGraph) -> dict[int, int] | None:
-    """Return an isomorphism: for each body of a mechanism its counterpart in ``known``; None if there is
+def likeness(graph: JointGraph, mechanism: JointGraph) -> dict[int, int] | None:
+    """Return an isomorphism: for each body of a mechanism its counterpart in ``mechanism``; None if there is
     none.
 
     The identity is tried first, so a figure of the course maps to itself.
     """
-    if len(graph.bodies) != len(known.bodies) or _kinds(graph) != _kinds(known):
+    if len(graph.bodies) != len(mechanism.bodies) or _kinds(graph) != _kinds(mechanism):
         return None
-    return next(_matched(graph, known, {FRAME: FRAME}), None)
+    return next(_matched(graph, mechanism, {FRAME: FRAME}), None)
 
 
 def _kinds(graph: JointGraph) -> list[tuple[str, int]]:
     return sorted((joint.kind, len(joint.bodies)) for joint in graph.joints)
 
 
-def _matched(graph: JointGraph, known: JointGraph, results: dict[int, int]) -> Iterator[dict[int, int]]:
+def _matched(graph: JointGraph, mechanism: JointGraph, results: dict[int, int]) -> Iterator[dict[int, int]]:
     body = next((b for b in graph.bodies if b not in results), None)
     if body is None:
         yield results
         return
-    for other in sorted(set(known.bodies) - set(results.values()), key=lambda b: (b != body, b)):
+    for other in sorted(set(mechanism.bodies) - set(results.values()), key=lambda b: (b != body, b)):
         more = {**results, body: other}
-        if _seen(graph, body, more) == _seen(known, other, {b: b for b in more.values()}):
-            yield from _matched(graph, known, more)
+        if _seen(graph, body, more) == _seen(mechanism, other, {b: b for b in more.values()}):
+            yield from _matched(graph, mechanism, more)
 
 
 def _seen(graph: JointGraph, body: int, names: Mapping[int, int]) -> list[tuple[str, int, list[int]]]:

@@ -64,9 +64,9 @@ class _Scheme:
         self.graph = graph
         self.letters = letters
         self.driven = driven
-        known = drawn_in_course(graph)
-        self.at, self.rails = known if known else (places(graph), {})
-        self.slides = slides(graph, self.at if known else ())
+        drawing = drawn_in_course(graph)
+        self.at, self.rails = drawing if drawing else (places(graph), {})
+        self.slides = slides(graph, self.at if drawing else ())
         self.normals = {k: self._normal(j) for k, j in enumerate(graph.joints) if j.kind == "higher"}
 
     def figure(self) -> Figure:
@@ -230,14 +230,14 @@ class _Scheme:
     def _wheel(self, body: int) -> tuple[complex, float] | None:
         """Return the centre and radius of the disc of a body with one pivot and contacts alone; None for
         another body."""
-        own = self._joints_of(body)
-        kinds = sorted(self.graph.joints[k].kind for k in own)
+        joints = self._joints_of(body)
+        kinds = sorted(self.graph.joints[k].kind for k in joints)
         if kinds == ["revolute"]:
-            return self.at[own[0]], _ROTOR
+            return self.at[joints[0]], _ROTOR
         if kinds != ["higher", "revolute"]:
             return None
-        index = next(k for k in own if k in self.normals)
-        pivot = self.at[next(k for k in own if k != index)]
+        index = next(k for k in joints if k in self.normals)
+        pivot = self.at[next(k for k in joints if k != index)]
         arm, inward = pivot - self.at[index], self._inward(index, body)
         if abs(arm) > _LARGEST or abs(cmath.phase(arm / inward)) > _OFF_AXIS:
             return None

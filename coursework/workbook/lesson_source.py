@@ -139,12 +139,12 @@ def _check_fences(text: str, file: str) -> None:
 
 def _check_opening(text: str, position: str) -> None:
     """Refuse a malformed opening of a fence."""
-    known = _OPENED.fullmatch(text)
-    if known is None:
+    match = _OPENED.fullmatch(text)
+    if match is None:
         raise BadCourse(
             f"{position}: a fence opens with a word, and tags if wanted: python {{tags=shown}}; found {text!r}"
         )
-    word = known[1]
+    word = match[1]
     if word not in _WORDS and (near := closest(word.lower(), _WORDS)):
         raise BadCourse(f"{position}: no fence {word!r}; did you mean {near!r}?")
 

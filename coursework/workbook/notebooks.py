@@ -26,7 +26,9 @@ def notebook_name(name: str, lang: str) -> str:
     return f"{name}.{lang}.ipynb"
 
 
-def lesson_notebook(course: Course[Any], name: str, lang: str, beside: Collection[str] | None = None) -> str:
+def lesson_notebook(
+    course: Course[Any], name: str, lang: str, neighbours: Collection[str] | None = None
+) -> str:
     """Return a lesson as a notebook (JSON, nbformat 4.5).
 
     Parameters
@@ -44,7 +46,7 @@ def lesson_notebook(course: Course[Any], name: str, lang: str, beside: Collectio
         It is not written in this language, or a picture or a link leads nowhere.
     """
     folder = course.folder
-    there = {*folder.lessons, *folder.names} if beside is None else beside
+    there = {*folder.lessons, *folder.names} if neighbours is None else neighbours
     pieces: list[str] = []
     pictures: dict[str, Mapping[str, str]] = {}
     for block in opened(course, name, lang).blocks:

@@ -63,8 +63,8 @@ def _call(folder: Folder, lesson: str, name: str) -> Any:
     module = folder.lesson_module(lesson)
     make = getattr(module, name, None)
     if not callable(make):
-        known = [n for n, item in vars(module).items() if callable(item) and not n.startswith("_")]
-        raise BadCourse(f"no figure {name!r}{nearest(name, known)}")
+        names = [n for n, item in vars(module).items() if callable(item) and not n.startswith("_")]
+        raise BadCourse(f"no figure {name!r}{nearest(name, names)}")
     try:
         return make()
     except CourseworkError:

@@ -119,14 +119,14 @@ class CellSession:
         text = _UNSEEN.sub("", piece.text).rstrip()
         lines, here = 1 + text.count("\n"), self._of_here(text)
         if here:
-            what = f"shows {here!r}, which is not the same on another machine"
+            fault = f"shows {here!r}, which is not the same on another machine"
         elif lines > LINES:
-            what = f"prints {lines} lines; a book has room for {LINES}"
+            fault = f"prints {lines} lines; a book has room for {LINES}"
         else:
             yield from [Printed(text)] if text else []
             return
         raise BadCourse(
-            f"{self._file}, line {cell.line}: the cell {what}; show something else, or tag it notebook"
+            f"{self._file}, line {cell.line}: the cell {fault}; show something else, or tag it notebook"
         )
 
     def _of_here(self, text: str) -> str:

@@ -81,6 +81,6 @@ def _notebooks(course: Course[Any], book: Book) -> Iterator[File]:
         yield File(folder / wheel.name, wheel.read_bytes)
 
 
-def _study(course: Course[Any], exercise: str, seed: int, lang: str, beside: Collection[str]) -> str:
-    sheet = course[exercise].variant(seed, lang).study_sheet(beside=beside)
+def _study(course: Course[Any], exercise: str, seed: int, lang: str, neighbours: Collection[str]) -> str:
+    sheet = course[exercise].variant(seed, lang).study_sheet(beside=neighbours)
     return renderer_of(course.folder).study(sheet)

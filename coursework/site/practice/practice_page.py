@@ -238,7 +238,7 @@ def motion(request: Request) -> Response:
 def _motion(variant: Any, has_numbers: bool) -> dict[str, Any]:
     moving = DisplayedAnimation(variant)
     usual = [effect for effect in EFFECTS[:2] if effect == "position" or effect in moving.available]
-    return motion_page.context(DisplayedAnimation(variant, usual), told=has_numbers)
+    return motion_page.context(DisplayedAnimation(variant, usual), is_described=has_numbers)
 
 
 ROUTES = (

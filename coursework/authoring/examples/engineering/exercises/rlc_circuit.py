@@ -29,7 +29,7 @@ def resistance_counts(R, reactance):
 
 
 def capacitor_clearly_above_or_below(f, C, impedance):
-    """Whether its voltage exceeds that of the source is asked."""
+    """Keep the capacitor's voltage clear of the source's: the sheet asks which is greater."""
     share = 1e6 / (2 * np.pi * f * C) / impedance
     return abs(share - 1) >= 0.1
 
