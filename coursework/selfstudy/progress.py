@@ -128,10 +128,10 @@ def read_brought(data: bytes, most: int) -> tuple[type[ValueError] | None, tuple
     return (TooLong, ()) if len(result) > most else (None, tuple(result))
 
 
-def entry(at: datetime, exercise: str, seed: int, part: str, event: str, **more: Any) -> dict[str, Any]:
+def entry(at: datetime, exercise: str, seed: int, part: str, what: str, **more: Any) -> dict[str, Any]:
     """Return an entry for an event, as it is stored."""
     text = at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
-    return {"at": text, "exercise": exercise, "seed": seed, "part": part, "what": event, **more}
+    return {"at": text, "exercise": exercise, "seed": seed, "part": part, "what": what, **more}
 
 
 def date_of(item: Entry) -> datetime:
