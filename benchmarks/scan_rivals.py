@@ -31,8 +31,8 @@ import scanned_pages as simulated
 from scanned_pages import Scan
 
 from coursework.scanning.pages import read_page
-from coursework.scanning.pictures import Picture
-from coursework.sheets.answer_pages import AnswerPage, Box, Field
+from coursework.scanning.pictures import PageImage
+from coursework.sheets.answer_pages import AnswerField, AnswerPage, Box
 
 QUESTIONS, CASES = 14, "ABCDE"
 DARK = 0.15
@@ -93,7 +93,7 @@ class Ours:
         numbers = {page.code_text: number for number, page in self.pages.items()}
         said = {}
         for grey in pictures.values():
-            read = read_page(Picture("", 1, grey), papers, _no_digits)
+            read = read_page(PageImage("", 1, grey), papers, _no_digits)
             if read.found == "answers":
                 said[numbers[read.code]] = [_ours(one) for one in read.fields]
         return said
@@ -110,7 +110,7 @@ def _no_digits(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _page(page: int) -> AnswerPage:
     code = "".join("ABCDEFGHIJKLMNOPQRSTUVWXYZ234567"[(page >> 5 * k) % 32] for k in range(13))
     fields = tuple(
-        Field(
+        AnswerField(
             0, "rivals", 1, f"q{k}", 0, 1, "ticks", whole=Box(28, 46 + 14.0 * k, 90, 8), several=True,
             ticks=tuple((case, Box(42 + 12.0 * c, 47 + 14.0 * k, 5, 5)) for c, case in enumerate(CASES)),
         )

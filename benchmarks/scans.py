@@ -32,7 +32,7 @@ import scanned_pages as simulated  # noqa: E402
 
 from coursework.scanning.digits import read_digits  # noqa: E402
 from coursework.scanning.pages import read_page  # noqa: E402
-from coursework.scanning.pictures import Picture  # noqa: E402
+from coursework.scanning.pictures import PageImage  # noqa: E402
 from coursework.sheets.answer_pages import AnswerPage, answer_pages, paper_code  # noqa: E402
 
 #: Exercises whose answer pages are filled in: numbers, choices, several choices, vectors, words, drawings.
@@ -90,7 +90,7 @@ def one(index: int, page: AnswerPage, file: str) -> dict[str, Any]:
     scan = simulated.KINDS[kind](rng)
     picture = simulated.scanned(filled, scan, rng)
     start = time.perf_counter()
-    read = read_page(Picture(file, 1, picture), {page.code_text.split()[1]: (page,)}, read_digits)
+    read = read_page(PageImage(file, 1, picture), {page.code_text.split()[1]: (page,)}, read_digits)
     seconds = time.perf_counter() - start
     row: dict[str, Any] = {
         "index": index,

@@ -13,7 +13,7 @@ from coursework.course.folder import UNTOLD
 if TYPE_CHECKING:
     from datetime import datetime
 
-    from coursework.marking.mark import Marking
+    from coursework.marking.mark import SheetMarks
     from coursework.markup.shown import NotebookDisplay
     from coursework.rendering.displayed import DisplayedAnimation, DisplayedConstruction
     from coursework.selfstudy.session import StudySession
@@ -162,7 +162,7 @@ class Variant(numbers.Variant):
     What each verb needs is loaded when it is first used.
     """
 
-    def grade(self, answers: Mapping[str, Any]) -> Marking:
+    def grade(self, answers: Mapping[str, Any]) -> SheetMarks:
         """Mark a student's answers, by part id.
 
         Raises

@@ -394,24 +394,24 @@ def _typed(path: Path) -> None:
 
 
 def _page(path: Path) -> None:
-    from coursework.scanning.kept import page_as_json, page_kept, page_of, put_page
+    from coursework.scanning.kept import page_as_json, page_of, put_page, stored_page
 
     out = path.parent
     (out / ".scanned").mkdir(exist_ok=True)
     path = path.rename(out / ".scanned" / "p.json")
-    found = page_kept(out, "p")
+    found = stored_page(out, "p")
     if found is not None:
         assert page_of(page_as_json(found)) == found
         put_page(out, "p", found, {})
-        assert page_kept(out, "p") == found
+        assert stored_page(out, "p") == found
 
 
 def _files(path: Path) -> None:
-    from coursework.scanning.kept import files_kept, joined, scanned
+    from coursework.scanning.kept import joined, scanned, stored_files
 
     (path.parent / ".scanned").mkdir(exist_ok=True)
     path.rename(path.parent / ".scanned" / "files.json")
-    found = joined(files_kept(path.parent), ())
+    found = joined(stored_files(path.parent), ())
     assert sum(1 for _ in scanned(path.parent, found)) < 100_000
 
 

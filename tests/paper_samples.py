@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import coursework
 from coursework.marking.marking import mark
-from coursework.sheets.paper import FeedbackPaper, Heading, Logo, Paper, SolutionPaper
+from coursework.sheets.paper import FeedbackPaper, Logo, Paper, PaperHeading, SolutionPaper
 from coursework.sheets.sheet import FeedbackLine, FeedbackSheet
 
 COURSE = coursework.open_course()
@@ -26,33 +26,33 @@ NOTES = {
 }
 
 
-def heading(lang: str, student: str = "Zoé #1 Martin", *, cover: bool = False) -> Heading:
+def heading(lang: str, student: str = "Zoé #1 Martin", *, cover: bool = False) -> PaperHeading:
     """Title, date, instructions, logo, version, a mark, one column printed and one to fill in."""
     title, course, (number, group), date, instructions = NOTES[lang]
-    return Heading(
+    return PaperHeading(
         lang, title, course, student, ((number, "20261234"), (group, "")), date, "1 h 30", instructions, "B",
         Logo(SVG, "svg", ALT[lang]), cover, "20",
     )  # fmt: skip
 
 
-def bare(lang: str, student: str = "") -> Heading:
+def bare(lang: str, student: str = "") -> PaperHeading:
     title, course, *_ = NOTES[lang]
-    return Heading(lang, title, course, student)
+    return PaperHeading(lang, title, course, student)
 
 
 def variants(lang: str, names=NAMES, seed: int = 7):
     return [COURSE[name].variant(seed=seed + place, lang=lang) for place, name in enumerate(names)]
 
 
-def paper(top: Heading, names=NAMES, seed: int = 7) -> Paper:
+def paper(top: PaperHeading, names=NAMES, seed: int = 7) -> Paper:
     return Paper(top, tuple(one.handout(top.student) for one in variants(top.lang, names, seed)))
 
 
-def solution(top: Heading, names=NAMES, seed: int = 7) -> SolutionPaper:
+def solution(top: PaperHeading, names=NAMES, seed: int = 7) -> SolutionPaper:
     return SolutionPaper(top, tuple(one.answer_sheet(top.student) for one in variants(top.lang, names, seed)))
 
 
-def feedback(top: Heading, *, answers: bool = True, names=NAMES) -> FeedbackPaper:
+def feedback(top: PaperHeading, *, answers: bool = True, names=NAMES) -> FeedbackPaper:
     """Every second question answered wrong, the others not at all; advice at the end."""
     sheets = tuple(_marked(one, top.student) for one in variants(top.lang, names))
     points, out_of = (sum(getattr(sheet, name) for sheet in sheets) for name in ("points", "out_of"))

@@ -11,7 +11,7 @@ from coursework.sheets.sheet import (
     AnswerSheet,
     FeedbackLine,
     FeedbackSheet,
-    Given,
+    GivenValue,
     Handout,
     Question,
     Remark,
@@ -145,12 +145,12 @@ def handout(lang: str, *, student: str = "") -> Handout:
         )
     )
     given = (
-        Given("r1", "r_1", "228.6", "mm"),
-        Given("theta1", r"\theta_1", "90", "°"),
-        Given("r2", "r_2", "114.3", "mm"),
-        Given("theta2", r"\theta_2", "135", "°"),
-        Given("omega2", r"\omega_2", "-12.5", "rad/s"),
-        Given("alpha2", r"\alpha_2", "0", "rad/s²"),
+        GivenValue("r1", "r_1", "228.6", "mm"),
+        GivenValue("theta1", r"\theta_1", "90", "°"),
+        GivenValue("r2", "r_2", "114.3", "mm"),
+        GivenValue("theta2", r"\theta_2", "135", "°"),
+        GivenValue("omega2", r"\omega_2", "-12.5", "rad/s"),
+        GivenValue("alpha2", r"\alpha_2", "0", "rad/s²"),
     )
     return Handout(
         lang=lang,
@@ -228,6 +228,6 @@ def feedback_sheet(lang: str, *, student: str = "") -> FeedbackSheet:
 
 def many_given(lang: str) -> Handout:
     """A sheet with no figure and nineteen given quantities."""
-    given = tuple(Given(f"r{k}", f"r_{{{k}}}", f"{k * 12.5}", "mm") for k in range(1, 19))
-    choice = Given("mode", r"\text{mode}", "ouvert" if lang == "fr" else "open", "", is_number=False)
+    given = tuple(GivenValue(f"r{k}", f"r_{{{k}}}", f"{k * 12.5}", "mm") for k in range(1, 19))
+    choice = GivenValue("mode", r"\text{mode}", "ouvert" if lang == "fr" else "open", "", is_number=False)
     return replace(handout(lang), given=(*given, choice), figure=None, figure_alt="")

@@ -20,8 +20,8 @@ from coursework.making.issuing import issue
 from coursework.making.roster import Student
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.pages import FieldRead, PageRead
-from coursework.scanning.pictures import Picture
-from coursework.sheets.answer_pages import AnswerPage, Field
+from coursework.scanning.pictures import PageImage
+from coursework.sheets.answer_pages import AnswerField, AnswerPage
 from coursework.system.tables import as_written
 
 #: What somebody writes, by part: a number as digits (a tuple of them for coordinates), the letters of boxes, or ``~`` for a scrawl.
@@ -88,7 +88,7 @@ def as_picture(data: bytes) -> np.ndarray:
     return np.frombuffer(data.ljust(high * _WIDE, b"\0"), np.uint8).reshape(high, _WIDE)
 
 
-def read_told(picture: Picture, papers: Papers, reader: object, least: float) -> PageRead:
+def read_told(picture: PageImage, papers: Papers, reader: object, least: float) -> PageRead:
     """Stands for the reading of pages where what they say is told: ``~`` is what a person must look at."""
     try:
         said = json.loads(picture.grey.tobytes().rstrip(b"\0"))
@@ -113,7 +113,7 @@ def read_told(picture: Picture, papers: Papers, reader: object, least: float) ->
     )
 
 
-def _field_told(field: Field, told: str | list[str]) -> FieldRead:
+def _field_told(field: AnswerField, told: str | list[str]) -> FieldRead:
     text = told if isinstance(told, str) else told[field.coordinate]
     if text.startswith("~"):
         return FieldRead(field, text[1:], 0.5, "free", crop=np.full((90, 900), 200, np.uint8))
@@ -123,7 +123,7 @@ def _field_told(field: Field, told: str | list[str]) -> FieldRead:
     return FieldRead(field, text, 1.0)
 
 
-def write(hand: Hand, field: Field, told: str) -> None:
+def write(hand: Hand, field: AnswerField, told: str) -> None:
     """Write something into a field."""
     if not told:
         return
@@ -143,7 +143,7 @@ def write(hand: Hand, field: Field, told: str) -> None:
         hand.scribble(field.whole)
 
 
-def _number(hand: Hand, field: Field, told: str) -> None:
+def _number(hand: Hand, field: AnswerField, told: str) -> None:
     number, _, unit = told.partition(" ")
     if number.startswith("-"):
         hand.minus(field.sign)

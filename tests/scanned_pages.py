@@ -13,7 +13,7 @@ from itertools import pairwise
 import cv2
 import numpy as np
 
-from coursework.sheets.answer_pages import AnswerPage, Box, Field
+from coursework.sheets.answer_pages import AnswerField, AnswerPage, Box
 
 DOTS = 300 / 25.4  #: pixels a mm of a sheet before it is scanned
 
@@ -59,7 +59,7 @@ def plain_sheet(page: AnswerPage) -> np.ndarray:
     return sheet
 
 
-def boxes_of(one: Field) -> list[Box]:
+def boxes_of(one: AnswerField) -> list[Box]:
     """All the boxes of a field that are printed."""
     boxes = [one.sign, *one.digits, *one.decimals, one.power_sign, *one.power, one.unit, one.free]
     boxes += [box for _, box in one.ticks] + ([one.whole] if one.what in ("written", "drawing") else [])
@@ -314,7 +314,7 @@ def written(hand: Hand, page: AnswerPage, *, odd: float = 0.15) -> tuple[Wrote, 
     return tuple(_answered(hand, one, odd) for one in page.fields)
 
 
-def _answered(hand: Hand, one: Field, odd: float) -> Wrote:
+def _answered(hand: Hand, one: AnswerField, odd: float) -> Wrote:
     rng = hand.rng
     if one.what == "ticks":
         return _ticked(hand, one, odd)
@@ -331,7 +331,7 @@ def _answered(hand: Hand, one: Field, odd: float) -> Wrote:
     return Wrote(waits=True, how=one.what)
 
 
-def _ticked(hand: Hand, one: Field, odd: float) -> Wrote:
+def _ticked(hand: Hand, one: AnswerField, odd: float) -> Wrote:
     rng = hand.rng
     cases, boxes = zip(*one.ticks, strict=True)
     draw = rng.random()
@@ -359,7 +359,7 @@ def _ticked(hand: Hand, one: Field, odd: float) -> Wrote:
     return Wrote(", ".join(said), cases=said)
 
 
-def _numbered(hand: Hand, one: Field, odd: float) -> Wrote:
+def _numbered(hand: Hand, one: AnswerField, odd: float) -> Wrote:
     rng = hand.rng
     draw = rng.random()
     if draw < 0.08:
@@ -378,7 +378,7 @@ def _numbered(hand: Hand, one: Field, odd: float) -> Wrote:
     return _plainly(hand, one, sign, whole, behind)
 
 
-def _plainly(hand: Hand, one: Field, sign: str, whole: str, behind: str) -> Wrote:
+def _plainly(hand: Hand, one: AnswerField, sign: str, whole: str, behind: str) -> Wrote:
     rng = hand.rng
     if sign and one.sign is not None:
         hand.minus(one.sign)
@@ -398,7 +398,7 @@ def _plainly(hand: Hand, one: Field, sign: str, whole: str, behind: str) -> Wrot
     return Wrote(text)
 
 
-def _broken(hand: Hand, one: Field, whole: str, behind: str) -> Wrote:
+def _broken(hand: Hand, one: AnswerField, whole: str, behind: str) -> Wrote:
     """A row that breaks a rule."""
     ways = [w for w in ("struck", "gap", "two signs", "comma", "scratched") if w != "comma" or one.decimals]
     how = str(hand.rng.choice(ways))
@@ -645,7 +645,7 @@ def filled_in(
 
 def example_page(code: str = "ABCDEFGHIJKLM", *, rows: int = 4) -> AnswerPage:
     """Half a page with fields of every sort, of no exercise."""
-    blank = Field(0, "example", 1, "x", 0, 1, "number", Box(0, 0, 0, 0))
+    blank = AnswerField(0, "example", 1, "x", 0, 1, "number", Box(0, 0, 0, 0))
     wide, high = 210.0, 172.0
     y, fields = 44.0, []
     for k in range(rows):
@@ -664,7 +664,7 @@ def example_page(code: str = "ABCDEFGHIJKLM", *, rows: int = 4) -> AnswerPage:
     )  # fmt: skip
 
 
-def _row(blank: Field, y: float) -> Field:
+def _row(blank: AnswerField, y: float) -> AnswerField:
     def cells(x: float, count: int) -> tuple[Box, ...]:
         return tuple(Box(12 + x + 7 * k, y + 1.25, 7, 9) for k in range(count))
 
@@ -675,7 +675,7 @@ def _row(blank: Field, y: float) -> Field:
     )  # fmt: skip
 
 
-def _cases(blank: Field, y: float, count: int) -> Field:
+def _cases(blank: AnswerField, y: float, count: int) -> AnswerField:
     cases = [f"case{k}" for k in range(count - 1)] + ["none" if blank.several else "last"]
     boxes = tuple((case, Box(41.5 + 12 * k, y + 3.25, 5, 5)) for k, case in enumerate(cases))
     printed = tuple("" if case == "none" else "abcdef"[k] for k, case in enumerate(cases))

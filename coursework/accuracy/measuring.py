@@ -24,7 +24,7 @@ from coursework.accuracy.subject import (
     together,
 )
 from coursework.accuracy.timing import Times, interleaved
-from coursework.accuracy.ways import Values, Way, ways
+from coursework.accuracy.ways import ComputingMethod, Values, ways
 from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, BadInput, CourseworkError
 from coursework.system.extras import libraries
@@ -171,7 +171,7 @@ class _Trial:
     def _few(self) -> int:
         return 20 if self.quick else 200
 
-    def _times(self, methods: Sequence[Way]) -> list[Times]:
+    def _times(self, methods: Sequence[ComputingMethod]) -> list[Times]:
         """Return the times of every way at generic places, measured in rounds."""
         counts = [10 if method.one_by_one else _TIMED for method in methods]
         calls = [
@@ -183,7 +183,7 @@ class _Trial:
         return [spent.per(count) for spent, count in zip(result, counts, strict=True)]
 
     def _hard_rows(
-        self, methods: Sequence[Way], times: Sequence[Times], scales: Mapping[str, float]
+        self, methods: Sequence[ComputingMethod], times: Sequence[Times], scales: Mapping[str, float]
     ) -> Iterator[Measurement]:
         """Yield the rows at the places with the largest loss.
 
@@ -218,7 +218,7 @@ class _Trial:
         return (driven or list(self.subject.hard))[:_PLACES_OF_A_SORT]
 
     def _row(
-        self, method: Way, point: str, spent: Times, error: float | None, count: int, failed: int
+        self, method: ComputingMethod, point: str, spent: Times, error: float | None, count: int, failed: int
     ) -> Measurement:
         return Measurement(
             self.subject.exercise.name, self.what, method.name, point, 1e9 * spent.median, error, count, failed, method.family,
@@ -239,7 +239,7 @@ def _first(places: Places, count: int) -> Places:
     return {n: v if np.ndim(v) == 0 else v[:count] for n, v in places.items()}
 
 
-def _computed(method: Way, places: Places) -> Values:
+def _computed(method: ComputingMethod, places: Places) -> Values:
     """Return the values of a way; nothing where it stops with an error."""
     try:
         return method.compute(places)

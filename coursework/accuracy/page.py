@@ -17,14 +17,14 @@ from coursework.course.exercise import CourseExercise
 from coursework.figures.charts import lacking, scatter
 from coursework.language.numbers import significant, unit_text
 from coursework.language.words import words
-from coursework.sheets.report import Chart, Report, Section, Table
+from coursework.sheets.report import Chart, ReportContent, ReportSection, ReportTable
 
 _LEAST = 1e-20  #: what a chart shows of an error below
 _MANY_TIMES = 10
 _MOTION_LIMITS = (1e-3, 1e-6)
 
 
-def report(course: Course, rows: Sequence[Measurement], lang: str) -> Report:
+def report(course: Course, rows: Sequence[Measurement], lang: str) -> ReportContent:
     """Return the report, a section for each exercise and kind of quantity, in the order of the rows."""
     texts = words(lang)["accuracy"]
     sections = []
@@ -38,7 +38,7 @@ def report(course: Course, rows: Sequence[Measurement], lang: str) -> Report:
                 data = ""
         if chosen := [row for row in exercise_rows if row.what == MOTION]:
             sections.append(_motion(f"{title} – {texts['motion']}", chosen, texts))
-    return Report(
+    return ReportContent(
         lang,
         course.folder.title(lang),
         texts["title"],
@@ -56,13 +56,13 @@ def no_charts(texts: Words) -> str:
 # ------------------------------------------------------------------------ sections
 
 
-def _quantities(title: str, rows: Sequence[Measurement], data: str, texts: Words, sort: str) -> Section:
+def _quantities(title: str, rows: Sequence[Measurement], data: str, texts: Words, sort: str) -> ReportSection:
     table = Rows(rows)
     charts: list[Chart] = []
     for point in table.places if sort in (POSITION, RATE) else ():
         charts += (_position_charts if sort == POSITION else _rate_charts)(table, point, texts)
     read = _read_rates(table, texts) if sort == RATE else _read_positions(table, texts)
-    return Section(title, _paragraphs([data, *read]), tuple(charts), (_table(table, texts),))
+    return ReportSection(title, _paragraphs([data, *read]), tuple(charts), (_table(table, texts),))
 
 
 def _position_charts(rows: Rows, point: str, texts: Words) -> tuple[Chart, ...]:
@@ -92,7 +92,7 @@ def _rate_charts(rows: Rows, point: str, texts: Words) -> tuple[Chart, ...]:
     return charts_of({**_series(differences, texts, _set), **levels}, heading, texts["step"], texts)
 
 
-def _motion(title: str, rows: Sequence[Measurement], texts: Words) -> Section:
+def _motion(title: str, rows: Sequence[Measurement], texts: Words) -> ReportSection:
     charts: list[Chart] = []
     text: list[str] = []
     tables = []
@@ -104,10 +104,10 @@ def _motion(title: str, rows: Sequence[Measurement], texts: Words) -> Section:
             charts += charts_of(points, texts["chart_motion"].format(where), texts["duration"], texts)
             text += _read_motion(selected, where, texts)
             tables.append(_motion_table(selected, where, texts))
-    return Section(title, _paragraphs(text), tuple(charts), tuple(tables))
+    return ReportSection(title, _paragraphs(text), tuple(charts), tuple(tables))
 
 
-def _motion_table(rows: Sequence[Measurement], where: str, texts: Words) -> Table:
+def _motion_table(rows: Sequence[Measurement], where: str, texts: Words) -> ReportTable:
     lines = [
         (
             _method(r, texts),
@@ -118,7 +118,7 @@ def _motion_table(rows: Sequence[Measurement], where: str, texts: Words) -> Tabl
         for r in rows
     ]
     heads = texts["method"], texts["duration_head"], texts["spread_head"], texts["error_head"].format(where)
-    return Table(heads, tuple(lines), (False, True, True, True), where)
+    return ReportTable(heads, tuple(lines), (False, True, True, True), where)
 
 
 def _read_motion(rows: Sequence[Measurement], where: str, texts: Words) -> list[str]:
@@ -291,7 +291,7 @@ def charts_of(
     return (Chart(svg, texts["alt"].format(heading)),)
 
 
-def _table(rows: Rows, texts: Words) -> Table:
+def _table(rows: Rows, texts: Words) -> ReportTable:
     """Return the table of the methods, with both kinds of places side by side."""
     by_method: dict[str, dict[str, Measurement]] = {}
     for row in rows.rows:
@@ -312,7 +312,7 @@ def _table(rows: Rows, texts: Words) -> Table:
         *([texts["paid_head"]] if has_tables else []),
         *(texts["error_head"].format(texts["places"][p]) for p in rows.places),
     )
-    return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))
+    return ReportTable(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))
 
 
 def _spread(row: Measurement) -> str:

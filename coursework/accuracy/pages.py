@@ -15,7 +15,7 @@ from coursework.accuracy.timing import Times, is_busy
 from coursework.accuracy.verdicts import Words
 from coursework.course.course import Course
 from coursework.language.words import words
-from coursework.sheets.report import Chart, Report, Section, Table
+from coursework.sheets.report import Chart, ReportContent, ReportSection, ReportTable
 
 _MOST_DIGITS = 16
 _HALF = 8
@@ -23,20 +23,22 @@ _HALF = 8
 
 def overview_report(
     course: Course, lines: Sequence[OverviewLine], without: Sequence[str], lang: str
-) -> Report:
+) -> ReportContent:
     """Return the overview, a row for each exercise: digits, times, the hardest place, the check of the
     reference."""
     texts = words(lang)["accuracy"]
     text = texts["overview"]
     right = [line for line in lines if not line.wrong and line.quantities]
     sections = (
-        Section(text["short"], _short(course, lines, without, text, lang)),
-        Section(text["table"], "", (), (_digits_table(course, right, text, lang),)),
-        Section(text["where"], text["where_text"], (), (_places_table(course, right, texts, lang),)),
-        Section(text["vouched"], text["vouched_text"], (), (_vouched_table(course, right, text, lang),)),
+        ReportSection(text["short"], _short(course, lines, without, text, lang)),
+        ReportSection(text["table"], "", (), (_digits_table(course, right, text, lang),)),
+        ReportSection(text["where"], text["where_text"], (), (_places_table(course, right, texts, lang),)),
+        ReportSection(
+            text["vouched"], text["vouched_text"], (), (_vouched_table(course, right, text, lang),)
+        ),
     )
     opening = texts["overview_opening"]
-    return Report(
+    return ReportContent(
         lang, course.folder.title(lang), texts["overview_title"], "coursework accuracy", opening, sections
     )
 
@@ -68,7 +70,7 @@ def _titled(course: Course, line: OverviewLine, lang: str) -> str:
     return course[line.exercise].title(lang)
 
 
-def _digits_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> Table:
+def _digits_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> ReportTable:
     heads = [
         texts[key] for key in ("exercise", "generic", "generic_textbook", "hard", "hard_textbook", "allowed")
     ]
@@ -86,7 +88,7 @@ def _digits_table(course: Course, lines: Sequence[OverviewLine], texts: Words, l
         )
         for line in lines
     ]
-    return Table(tuple(heads), tuple(rows), (False, *[True] * 7), texts["caption"])
+    return ReportTable(tuple(heads), tuple(rows), (False, *[True] * 7), texts["caption"])
 
 
 def _digits(error: float | None) -> int:
@@ -117,7 +119,7 @@ def _nanoseconds(times: Times | None) -> str:
     return "–" if times is None else number(1e9 * times.median)
 
 
-def _places_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> Table:
+def _places_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> ReportTable:
     text = texts["overview"]
     rows = []
     for line in lines:
@@ -125,10 +127,10 @@ def _places_table(course: Course, lines: Sequence[OverviewLine], texts: Words, l
             subject = Subject(course[line.exercise])
             point = HardPlace(scale=1.0, **line.place)
             rows.append((_titled(course, line, lang), told_place(subject, point, texts, lang)))
-    return Table((text["exercise"], text["place"]), tuple(rows), (False, False))
+    return ReportTable((text["exercise"], text["place"]), tuple(rows), (False, False))
 
 
-def _vouched_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> Table:
+def _vouched_table(course: Course, lines: Sequence[OverviewLine], texts: Words, lang: str) -> ReportTable:
     rows = [
         (
             _titled(course, line, lang),
@@ -139,22 +141,22 @@ def _vouched_table(course: Course, lines: Sequence[OverviewLine], texts: Words, 
         for line in lines
     ]
     heads = tuple(texts[key] for key in ("exercise", "lack", "digits", "held"))
-    return Table(heads, tuple(rows), (False, True, False, True))
+    return ReportTable(heads, tuple(rows), (False, True, False, True))
 
 
 # --------------------------------------------------------------------------- paper
 
 
-def paper_report(course: Course, rows: Sequence[PaperRow], variants: int, lang: str) -> Report:
+def paper_report(course: Course, rows: Sequence[PaperRow], variants: int, lang: str) -> ReportContent:
     """Return the one-page report that justifies the number of digits and the margin."""
     texts = words(lang)["accuracy"]
     text = texts["paper"]
     digits = course.folder.rules.digits
     full = total(rows)
     sections = (
-        Section(text["short"], _paper_words(full, digits, text), _paper_charts(full, texts)),
-        Section(text["table"], "", (), (_paper_table(full, text),)),
-        Section(
+        ReportSection(text["short"], _paper_words(full, digits, text), _paper_charts(full, texts)),
+        ReportSection(text["table"], "", (), (_paper_table(full, text),)),
+        ReportSection(
             text["by_exercise"],
             text["by_exercise_text"].format(digits=digits),
             (),
@@ -162,7 +164,7 @@ def paper_report(course: Course, rows: Sequence[PaperRow], variants: int, lang: 
         ),
     )
     opening = text["opening"].format(variants=variants) + no_charts(texts)
-    return Report(
+    return ReportContent(
         lang,
         course.folder.title(lang),
         texts["paper_title"],
@@ -210,9 +212,9 @@ def _paper_charts(rows: Sequence[PaperRow], texts: Words) -> tuple[Chart, ...]:
     )
 
 
-def _paper_table(rows: Sequence[PaperRow], texts: Words) -> Table:
+def _paper_table(rows: Sequence[PaperRow], texts: Words) -> ReportTable:
     heads = tuple(texts[key] for key in ("digits", "wronged", "wronged_ours", "mistakes", "neighbours"))
-    return Table(
+    return ReportTable(
         heads, tuple(_paper_line(_digits_kept(row, texts), row, texts) for row in rows), (False, *[True] * 4)
     )
 
@@ -228,7 +230,9 @@ def _paper_line(first: str, row: PaperRow, texts: Words) -> tuple[str, ...]:
     return (first, *wronged, _percent(row.mistakes, texts), _percent(row.neighbours, texts))
 
 
-def _by_exercise(course: Course, rows: Sequence[PaperRow], digits: int, texts: Words, lang: str) -> Table:
+def _by_exercise(
+    course: Course, rows: Sequence[PaperRow], digits: int, texts: Words, lang: str
+) -> ReportTable:
     """Return a row for each exercise: errors of a plain margin at each number of digits, then of the course's
     margin."""
     retained = [d for d in dict.fromkeys(row.digits for row in rows) if d != PLAIN]
@@ -248,4 +252,4 @@ def _by_exercise(course: Course, rows: Sequence[PaperRow], digits: int, texts: W
         )
         cells = (_percent(share, texts) if share.found else "–" for share in shares)
         lines.append((course[name].title(lang), *cells))
-    return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))
+    return ReportTable(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))

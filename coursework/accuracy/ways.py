@@ -20,7 +20,7 @@ from coursework.accuracy.reference import Reference, twinned
 from coursework.accuracy.subject import MOTION, POSITION, RATE, Places, Subject, one_by_one
 from coursework.accuracy.timing import clock
 
-__all__ = ["MOTION", "POSITION", "RATE", "Values", "Way", "ways"]
+__all__ = ["MOTION", "POSITION", "RATE", "ComputingMethod", "Values", "ways"]
 
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
 STEPS = tuple(10.0**-k for k in range(1, 10))  #: of differences, in radians
@@ -31,7 +31,7 @@ Values = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Way:
+class ComputingMethod:
     """Way to compute: ``family`` and ``setting`` name it. ``build`` is the preparation time in seconds."""
 
     what: str
@@ -46,7 +46,7 @@ class Way:
         return self.family if self.setting is None else f"{self.family}-{self.setting:g}"
 
 
-def ways(subject: Subject, sort: str, fixed: Mapping[str, Any] | None) -> Iterator[Way]:
+def ways(subject: Subject, sort: str, fixed: Mapping[str, Any] | None) -> Iterator[ComputingMethod]:
     """Yield every way to the quantities of one kind; some only with a ``fixed`` mechanism, without its
     driver's angle."""
     bench = _Bench(subject, sort)
@@ -54,13 +54,13 @@ def ways(subject: Subject, sort: str, fixed: Mapping[str, Any] | None) -> Iterat
         yield bench.in_precision("single", np.float32)
     if fixed is not None:
         yield from _tables(subject, sort, fixed)
-    yield Way(sort, "stable", bench.stable)
-    yield Way(sort, "textbook", bench.textbook)
+    yield ComputingMethod(sort, "stable", bench.stable)
+    yield ComputingMethod(sort, "textbook", bench.textbook)
     if np.finfo(np.longdouble).eps < np.finfo(float).eps:
         yield bench.in_precision("extended", np.longdouble)
     if fixed is not None:
         yield from _moved(subject, sort, fixed)
-    yield Way(sort, "mpmath", bench.many_digits, one_by_one=True)
+    yield ComputingMethod(sort, "mpmath", bench.many_digits, one_by_one=True)
 
 
 class _Bench:
@@ -77,12 +77,12 @@ class _Bench:
     def textbook(self, places: Places) -> Values:
         return self._textbook.evaluate(self.wanted, places, self.subject.effects)
 
-    def in_precision(self, family: str, kind: type) -> Way:
+    def in_precision(self, family: str, kind: type) -> ComputingMethod:
         def compute(places: Places) -> Values:
             given = {n: _cast(v, kind) for n, v in places.items()}
             return self._textbook.evaluate(self.wanted, given, self.subject.effects)
 
-        return Way(self.what, family, compute)
+        return ComputingMethod(self.what, family, compute)
 
     @cached_property
     def _fifty(self) -> Reference:
@@ -102,23 +102,23 @@ def _cast(value: Any, kind: type) -> Any:
 # ----------------------------------------------------------- with a fixed mechanism
 
 
-def _tables(subject: Subject, sort: str, fixed: Mapping[str, Any]) -> Iterator[Way]:
+def _tables(subject: Subject, sort: str, fixed: Mapping[str, Any]) -> Iterator[ComputingMethod]:
     if sort == POSITION and subject.rate_of and subject.speed:
         _Turning(subject, fixed).table(8)  # what is loaded for the first one is no cost of a table
         for nodes in (64, 512, 4096):
             start = clock()
             table = _Turning(subject, fixed).table(nodes)
-            yield Way(POSITION, "table", table, nodes, build=clock() - start)
+            yield ComputingMethod(POSITION, "table", table, nodes, build=clock() - start)
 
 
-def _moved(subject: Subject, sort: str, fixed: Mapping[str, Any]) -> Iterator[Way]:
+def _moved(subject: Subject, sort: str, fixed: Mapping[str, Any]) -> Iterator[ComputingMethod]:
     turning = _Turning(subject, fixed)
     if sort == POSITION and subject.closure is not None:
         yield from turning.solvers()
     if sort == RATE and subject.rate_of and subject.speed:
-        yield Way(RATE, "complex_step", turning.complex_step())
+        yield ComputingMethod(RATE, "complex_step", turning.complex_step())
         for step in STEPS:
-            yield Way(RATE, "differences", turning.differences(step), step)
+            yield ComputingMethod(RATE, "differences", turning.differences(step), step)
 
 
 class _Turning:
@@ -166,13 +166,13 @@ class _Turning:
 
     # ------------------------------------------------------------------ solvers
 
-    def solvers(self) -> Iterator[Way]:
+    def solvers(self) -> Iterator[ComputingMethod]:
         for steps in (1, 2, 3, 4):
-            yield Way(POSITION, "newton", self._newton(steps), steps)
+            yield ComputingMethod(POSITION, "newton", self._newton(steps), steps)
         for tolerance in TOLERANCES:
-            yield Way(POSITION, "fsolve", self._fsolve(tolerance), tolerance, one_by_one=True)
+            yield ComputingMethod(POSITION, "fsolve", self._fsolve(tolerance), tolerance, one_by_one=True)
         for tolerance in TOLERANCES:
-            yield Way(POSITION, "lm", self._root(tolerance), tolerance, one_by_one=True)
+            yield ComputingMethod(POSITION, "lm", self._root(tolerance), tolerance, one_by_one=True)
 
     @property
     def _loops(self) -> Closure:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 
 from coursework.authoring.check_answers import spellings
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.answer_keys import answer_keys
 from coursework.course.exercise import CourseExercise
 from coursework.course.variant import Variant
@@ -29,7 +29,7 @@ def asked_alone(exercise: CourseExercise) -> tuple[tuple[Part, ...], ...]:
     return tuple(dict.fromkeys(exercise.chosen_parts([part.id]) or () for part in exercise.spec.parts))
 
 
-def check_alone(drawn: Sequence[Variant], report: Report) -> None:
+def check_alone(drawn: Sequence[Variant], report: CheckReport) -> None:
     """Each question alone has its sheets in every language, its blanks, and its right answer is right.
 
     ``drawn`` ask every part; each language is tried on another of those that ask the question.

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.authoring.check_report import KEPT_DIGITS, Report
+from coursework.authoring.check_report import KEPT_DIGITS, CheckReport
 from coursework.course.answer_key import Key, envelopes
 from coursework.course.exercise import CourseExercise
 from coursework.course.variant import Variant
@@ -28,7 +28,7 @@ EXTREMES = ("0", "1e308", "-1e308", "1e-320")  #: coordinates too
 # ---------------------------------------------------------------------- marking
 
 
-def check_right_answers(variant: Variant, key: Key, report: Report) -> None:
+def check_right_answers(variant: Variant, key: Key, report: CheckReport) -> None:
     """Right answers mark right however they are written, and on the tolerance's edge."""
     for spelling in spellings(variant, key):
         marking = grade(variant, spelling)
@@ -60,7 +60,10 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
 
 
 def check_rounding_students(
-    exercise: CourseExercise, drawn: Sequence[Variant], report: Report, digits: Sequence[int] = KEPT_DIGITS
+    exercise: CourseExercise,
+    drawn: Sequence[Variant],
+    report: CheckReport,
+    digits: Sequence[int] = KEPT_DIGITS,
 ) -> None:
     """Check that a student who does everything right, and rounds to the expected digits at every step, is
     marked right."""
@@ -97,7 +100,7 @@ def check_rounding_students(
                     )
 
 
-def _check_rounded_together(variant: Variant, own_answers: Mapping[str, Any], report: Report) -> None:
+def _check_rounded_together(variant: Variant, own_answers: Mapping[str, Any], report: CheckReport) -> None:
     """The same for parts that are judged together, whose margin does not follow the rounding."""
     parts = {part.id: part for part in variant.parts}
     for name, ids in judges_of(variant):
@@ -115,7 +118,7 @@ def _at(column: Any, index: int, count: int, rank: int = 0) -> Any:
     return column[index] if varies else column
 
 
-def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
+def check_mistakes(variant: Variant, key: Key, report: CheckReport) -> None:
     """Each named mistake that shows is marked as that mistake, and never as right.
 
     Mistakes that show on different parts stand on one sheet, unless parts may be exchanged.
@@ -140,7 +143,7 @@ def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
         _check_recognised(variant, sheet, report)
 
 
-def check_slips(variant: Variant, key: Key, report: Report) -> None:
+def check_slips(variant: Variant, key: Key, report: CheckReport) -> None:
     """A slip that shows is recognised, and earns nothing that a right answer does.
 
     The first slip of every part on one sheet, then the second of every part, and so on.
@@ -167,7 +170,7 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
                 )
 
 
-def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
+def check_follow_through(variant: Variant, key: Key, report: CheckReport) -> None:
     """Check that a student who errs once, much or little, and goes on rightly, is marked wrong once."""
     parts = [p for p in variant.parts if p.sort.is_followed and not p.judge]
     half = parts[variant.seed % 2 :: 2] or parts  # the other half on the next variant
@@ -192,7 +195,7 @@ def _little_and_much(part: Part, key: Key) -> tuple[Any, ...]:
     return part.sort.others(part, key.reference[part.quantity], key.half_width(part))
 
 
-def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any, report: Report) -> None:
+def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any, report: CheckReport) -> None:
     """The same for parts that are judged together."""
     parts = {part.id: part for part in variant.parts}
     own_answers = {first.quantity: wrong}
@@ -218,7 +221,7 @@ def _written(value: Any) -> Any:
     return "; ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else value
 
 
-def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], report: Report) -> None:
+def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], report: CheckReport) -> None:
     """A sheet of mistakes by part: the name of each, if any, and the answer that it gives."""
     marking = grade(variant, {part_id: answer for part_id, (_, answer) in sheet.items()})
     for part_id, (name, answer) in sheet.items():
@@ -237,7 +240,7 @@ def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], re
             )
 
 
-def check_nonsense(variant: Variant, report: Report) -> None:
+def check_nonsense(variant: Variant, report: CheckReport) -> None:
     """Nonsense is unreadable or wrong, never right, and never stops the marking."""
     for nonsense in NONSENSE:
         marking = grade(variant, dict.fromkeys((p.id for p in variant.parts), nonsense))
@@ -251,7 +254,7 @@ def check_nonsense(variant: Variant, report: Report) -> None:
         _check_extreme(variant, number, report)
 
 
-def _check_extreme(variant: Variant, number: str, report: Report) -> None:
+def _check_extreme(variant: Variant, number: str, report: CheckReport) -> None:
     """The same for a sheet of one absurd number, and for one such answer beside right ones to the same judge.
 
     Where each answer stands for itself, nought may be right.

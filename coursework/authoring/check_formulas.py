@@ -14,10 +14,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.variant import Variant
 from coursework.quantities.formula_latex import why_unprinted
-from coursework.reading.printed_formulas import DEGREE, NotEvaluable, Reading, read
+from coursework.reading.printed_formulas import DEGREE, FormulaValue, NotEvaluable, read
 from coursework.sheets.answer_sheet import PRINTED_DIGITS, answer_sheet
 from coursework.sheets.sheet import AnswerSheet, Step
 
@@ -38,7 +38,7 @@ class Proof:
     why_not: str = ""
 
 
-def check_formulas(drawn: Sequence[Variant], report: Report) -> None:
+def check_formulas(drawn: Sequence[Variant], report: CheckReport) -> None:
     """The printed formula of each step gives its printed value; a step that fails is told once."""
     failed = set()
     for variant in drawn[:TRIED]:
@@ -98,8 +98,8 @@ def _number_of(value: str) -> str:
     return value.partition(r"\ \mathrm")[0]
 
 
-def _compared(value: Reading, formula_value: Reading, is_angle: bool) -> Proof:
-    gives = _told(formula_value, is_angle)
+def _compared(value: FormulaValue, formula_value: FormulaValue, is_angle: bool) -> Proof:
+    gives = _values_text(formula_value, is_angle)
     if len(value.values) != len(formula_value.values):
         return Proof(gives=gives)
     is_told = True
@@ -121,6 +121,6 @@ def _turn_less(angle: float) -> float:
     return math.remainder(angle, 2 * math.pi) if math.isfinite(angle) else angle
 
 
-def _told(value: Reading, is_angle: bool) -> str:
+def _values_text(value: FormulaValue, is_angle: bool) -> str:
     scale, unit = (1 / DEGREE, " deg") if is_angle else (1.0, "")
     return "; ".join(f"{complex(v * scale):.7g}".replace("+0j", "") for v in value.values) + unit

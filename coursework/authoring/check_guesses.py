@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.variant import Variant
 from coursework.model import Part
 
@@ -51,7 +51,7 @@ def _right(variant: Variant, part: Part) -> str | None:
     return variant.letters(part).get(value, value)
 
 
-def check_guesses(drawn: Sequence[Variant], report: Report) -> None:
+def check_guesses(drawn: Sequence[Variant], report: CheckReport) -> None:
     """No constant answer earns more than half, chance allowed for."""
     if len(drawn) < FEWEST:
         return

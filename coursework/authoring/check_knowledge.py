@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.variant import Variant
 from coursework.marking.marking import mark as grade
 
@@ -33,7 +33,7 @@ def without_work(variant: Variant) -> Iterator[tuple[str, Mapping[str, str]]]:
     yield "the questions' numbers", {i: str(n) for n, i in enumerate(variant.part_ids, start=1)}
 
 
-def check_knowledge(drawn: Sequence[Variant], report: Report) -> None:
+def check_knowledge(drawn: Sequence[Variant], report: CheckReport) -> None:
     """No number of such a sheet is paid for because it follows from another one."""
     for variant in drawn[:TRIED]:
         # Where parts are judged together many answers are right, and one number everywhere may be.

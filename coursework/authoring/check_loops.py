@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from coursework.authoring.check_report import RESIDUAL, Report
+from coursework.authoring.check_report import RESIDUAL, CheckReport
 from coursework.course.variant import Variant
 from coursework.marking.loop_judge import fault_answers, judge_of
 from coursework.marking.marking import mark as grade
@@ -14,7 +14,7 @@ from coursework.reading.equations import parse_equation
 from coursework.reading.vocabulary import MAX_LENGTH
 
 
-def check_loops(variant: Variant, report: Report) -> None:
+def check_loops(variant: Variant, report: CheckReport) -> None:
     """The equations of the loops hold for the answers, are right in other forms, and wrong links are told.
 
     An equation does not depend on the variant: one is enough.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.mechanics.linkage import MM
@@ -22,7 +22,7 @@ _AGREES = 1e-7  #: of the largest rate
 _STEP = 1e-4  #: radians, of differences
 
 
-def check_mechanism(drawn: Sequence[Variant], report: Report) -> None:
+def check_mechanism(drawn: Sequence[Variant], report: CheckReport) -> None:
     """Joints hold together what they should in every variant, and their rates are the solution's own."""
     exercise = drawn[0].exercise
     mechanism = exercise.solution.mechanism

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.error_values import TAKEN, ErrorValues
 from coursework.course.exercise import CourseExercise
 from coursework.course.key_batch import given_columns
@@ -19,7 +19,7 @@ from coursework.quantities.error_kinds import PRICES
 _SAME = 1e-6  #: of a value, by which two ways to compute it may differ
 
 
-def check_prices(drawn: Sequence[Variant], report: Report) -> None:
+def check_prices(drawn: Sequence[Variant], report: CheckReport) -> None:
     """A named mistake is of the kind of the usual error that it is, unless it says a price of its own."""
     exercise = drawn[0].exercise
     for name, mistake in exercise.solution.mistakes.items():

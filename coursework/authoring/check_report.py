@@ -18,7 +18,7 @@ KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 
 
 @dataclass
-class Report:
+class CheckReport:
     """Results of the check of one exercise."""
 
     name: str
@@ -77,7 +77,7 @@ class Report:
         }
 
 
-def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
+def table(reports: Sequence[CheckReport]) -> list[Mapping[str, Any]]:
     """A line an exercise, for printing: narrow enough for 80 columns."""
     return [
         {
@@ -92,7 +92,7 @@ def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
     ]
 
 
-def _tried(report: Report) -> dict[str, int]:
+def _tried(report: CheckReport) -> dict[str, int]:
     """Return the number of marked answers by sort; sorts that the exercise does not have are left out."""
     counts = report.counts
     kinds = {
@@ -109,7 +109,7 @@ def _tried(report: Report) -> dict[str, int]:
     return {kind: count for kind, count in kinds.items() if count}
 
 
-def notes(reports: Sequence[Report]) -> list[str]:
+def notes(reports: Sequence[CheckReport]) -> list[str]:
     """Return the counts of trials, and the properties of the variants: conditioning, branches met,
     constraints that refuse most draws."""
     lines = []
@@ -163,6 +163,6 @@ def _by_reason(unproved: Mapping[str, str]) -> str:
     return ", ".join(f"{', '.join(those)} ({why})" for why, those in names.items())
 
 
-def _share_worthy(report: Report) -> str:
+def _share_worthy(report: CheckReport) -> str:
     tried = report.variants + sum(report.refused.values())
     return f"{100 * report.variants / tried:.0f} %" if tried else ""

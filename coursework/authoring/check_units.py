@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.exercise import CourseExercise
 from coursework.course.variant import Variant
 from coursework.quantities.unit_proof import Findings, prove
@@ -12,7 +12,7 @@ from coursework.quantities.unit_proof import Findings, prove
 TRIED = 5  #: variants whose quantities are followed: enough to meet the branches
 
 
-def check_units(drawn: Sequence[Variant], report: Report) -> None:
+def check_units(drawn: Sequence[Variant], report: CheckReport) -> None:
     """Each quantity's formula gives its declared unit; what cannot be told is listed with its reason."""
     findings = Findings()
     for variant in drawn[:TRIED]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.answer_key import Key
 from coursework.course.error_values import TAKEN, UsualError
 from coursework.course.variant import Variant
@@ -26,10 +26,10 @@ TRIED = 40  #: variants whose usual errors are handed in
 DIGITS = 5  #: significant digits of an answer
 
 
-def check_usual_errors(drawn: Sequence[Variant], report: Report) -> None:
+def check_usual_errors(drawn: Sequence[Variant], report: CheckReport) -> None:
     """Each error that shows is told by its kind, or as one of several; some on each variant, all over many."""
     for number, variant in enumerate(drawn[:TRIED]):
-        spellings = {part.id: list(_shown(part, variant.key)) for part in variant.parts}
+        spellings = {part.id: list(_own_errors(part, variant.key)) for part in variant.parts}
         parts = {part.id: part for part in variant.parts}
         most = max(map(len, spellings.values()), default=0)
         for index in range(number % 7, most, 7):
@@ -37,11 +37,11 @@ def check_usual_errors(drawn: Sequence[Variant], report: Report) -> None:
             answers = {i: significant(value, DIGITS) for i, (_, value) in sheet.items()}
             marking = grade(variant, answers)
             for i, (error, _) in sheet.items():
-                _tell(variant, parts[i], error, marking[i], report)
+                _count_verdict(variant, parts[i], error, marking[i], report)
     _list_unprotected(drawn[0], report)
 
 
-def _shown(part: Part, key: Key) -> Iterator[tuple[UsualError, float]]:
+def _own_errors(part: Part, key: Key) -> Iterator[tuple[UsualError, float]]:
     """The errors in a part's own formula that move its answer."""
     if not part.sort.is_scalar or part.judge:
         return
@@ -55,7 +55,7 @@ def _shown(part: Part, key: Key) -> Iterator[tuple[UsualError, float]]:
                 yield error, written
 
 
-def _tell(variant: Variant, part: Part, error: UsualError, mark: Any, report: Report) -> None:
+def _count_verdict(variant: Variant, part: Part, error: UsualError, mark: Any, report: CheckReport) -> None:
     if mark.verdict == "correct" and not mark.in_other_order:
         report.fail(f"seed {variant.seed}: {part.id} with an error of the kind {error.kind!r} marks correct")
     elif f"slip:{error.kind}" == mark.verdict:
@@ -70,7 +70,7 @@ def _tell(variant: Variant, part: Part, error: UsualError, mark: Any, report: Re
         )
 
 
-def _list_unprotected(variant: Variant, report: Report) -> None:
+def _list_unprotected(variant: Variant, report: CheckReport) -> None:
     """The asked numbers that a weighty error may leave right on some variants, and those of which none is made."""
     exercise = variant.exercise
     for demand, share in protection(exercise, None).unprotected.items():

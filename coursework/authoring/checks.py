@@ -27,7 +27,7 @@ from coursework.authoring.check_knowledge import check_knowledge
 from coursework.authoring.check_loops import check_loops
 from coursework.authoring.check_mechanism import check_mechanism
 from coursework.authoring.check_prices import check_prices
-from coursework.authoring.check_report import RESIDUAL, Report
+from coursework.authoring.check_report import RESIDUAL, CheckReport
 from coursework.authoring.check_units import check_units
 from coursework.authoring.check_usual import check_usual_errors
 from coursework.course import draws
@@ -54,12 +54,12 @@ _SOME = 3  #: variants that show whether a quantity is complex
 NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
 
 
-def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) -> Report:
+def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) -> CheckReport:
     """Try every promise on the variants of seeds 0, 1, …
 
     Whatever breaks is reported, and the rest is tried all the same, unless no variant has an answer.
     """
-    report = Report(exercise.name)
+    report = CheckReport(exercise.name)
     if not (check_needs(exercise, report) and check_reals(exercise, report)):
         return report
     steps: Sequence[Callable[[], None]] = (
@@ -81,11 +81,11 @@ def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) 
 
 def check_all(
     course: Course, names: Sequence[str], variants: int, progress: Callable[[], None] = lambda: None
-) -> list[Report]:
+) -> list[CheckReport]:
     """A report an exercise, in this order, made by as many processes as there are processors."""
     count = min(workers(len(names)), workers(variants, _WORTH_PROCESSES))
     if count < 2:
-        return [_told(_check_one(course, name, variants), progress) for name in names]
+        return [_with_progress(_check_one(course, name, variants), progress) for name in names]
     with processes(count) as submit:
         # The longest first, so that no process waits for another at the end.
         longest = sorted(names, key=lambda name: -_length(course, name))
@@ -110,31 +110,31 @@ def _length(course: Course, name: str) -> int:
         return 0  # it says what is wrong when it is checked
 
 
-def _told(report: Report, progress: Callable[[], None]) -> Report:
+def _with_progress(report: CheckReport, progress: Callable[[], None]) -> CheckReport:
     progress()
     return report
 
 
-def _check_elsewhere(root: str, name: str, variants: int) -> Report:
+def _check_elsewhere(root: str, name: str, variants: int) -> CheckReport:
     try:
         course = opened(root, Variant)
     except CourseworkError as fault:
-        report = Report(name)
+        report = CheckReport(name)
         report.fail(str(fault))
         return report
     return _check_one(course, name, variants)
 
 
-def _check_one(course: Course[Any], name: str, variants: int) -> Report:
+def _check_one(course: Course[Any], name: str, variants: int) -> CheckReport:
     try:
         return check(course[name], variants)
     except CourseworkError as fault:
-        report = Report(name)
+        report = CheckReport(name)
         report.fail(str(fault))
         return report
 
 
-def _check_variants(exercise: CourseExercise, count: int, report: Report) -> None:
+def _check_variants(exercise: CourseExercise, count: int, report: CheckReport) -> None:
     if not exercise.folder.has_solutions:
         return  # told
     report.acceptance = draws.acceptance(exercise.name, exercise.drawing)[0]
@@ -175,7 +175,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
             report.fail(f"mistake {name} shows in none of {len(drawn)} variants")
 
 
-def _describe(drawn: Sequence[Variant], report: Report) -> None:
+def _describe(drawn: Sequence[Variant], report: CheckReport) -> None:
     """Record the spread of the variants' difficulty: conditioning, and the branches to choose."""
     shares = [conditioning(variant.key) for variant in drawn]
     report.conditioning = float(np.median(shares)), max(shares)
@@ -192,7 +192,7 @@ def _describe(drawn: Sequence[Variant], report: Report) -> None:
 # ------------------------------------------------------------------------ texts
 
 
-def check_texts(exercise: CourseExercise, report: Report) -> None:
+def check_texts(exercise: CourseExercise, report: CheckReport) -> None:
     """Every language says every part, every case and every mistake, and nothing is written in vain."""
     for lang, path in exercise.texts.unspoken.items():
         report.fail(
@@ -236,7 +236,7 @@ def _every_name(exercise: CourseExercise, variant: Variant) -> dict[str, object]
     return {**dict.fromkeys(exercise.solution.graph.quantities, "0"), **variant.printed}
 
 
-def check_needs(exercise: CourseExercise, report: Report) -> bool:
+def check_needs(exercise: CourseExercise, report: CheckReport) -> bool:
     """Check that the asked quantities follow from the given ones; return False where a function needs what
     nothing gives."""
     try:
@@ -250,7 +250,7 @@ def check_needs(exercise: CourseExercise, report: Report) -> bool:
     return True
 
 
-def check_reals(exercise: CourseExercise, report: Report) -> bool:
+def check_reals(exercise: CourseExercise, report: CheckReport) -> bool:
     """Numbers that are asked are real; False where one is complex, which nothing can mark."""
     for seed in range(_SOME):
         try:
@@ -266,7 +266,7 @@ def check_reals(exercise: CourseExercise, report: Report) -> bool:
     return True
 
 
-def check_symbols(exercise: CourseExercise, report: Report) -> None:
+def check_symbols(exercise: CourseExercise, report: CheckReport) -> None:
     """Check that each given or asked quantity has its symbol on the sheet too, not in the solution alone."""
     on_the_sheet = {*exercise.spec.given, *(part.quantity for part in exercise.spec.parts)}
     for name, symbol in exercise.solution.symbols.items():
@@ -282,7 +282,7 @@ def check_symbols(exercise: CourseExercise, report: Report) -> None:
 # ------------------------------------------------------------------------ known
 
 
-def check_known(exercise: CourseExercise, report: Report) -> None:
+def check_known(exercise: CourseExercise, report: CheckReport) -> None:
     """The solution gives the values known without it."""
     if not exercise.solution.known:
         report.fail("the solution states no KNOWN case; closure alone cannot tell the branch")
@@ -324,7 +324,7 @@ def _numbers(value: Any) -> np.ndarray:
 # --------------------------------------------------------------------- solution
 
 
-def check_solves(variant: Variant, key: Key, report: Report) -> None:
+def check_solves(variant: Variant, key: Key, report: CheckReport) -> None:
     """Every asked quantity is finite, and the governing equations hold."""
     for name, value in key.reference.items():
         if not exists(value):
@@ -346,7 +346,7 @@ def check_solves(variant: Variant, key: Key, report: Report) -> None:
             report.fail(f"seed {variant.seed}: residual {number} is {worst:.3g}")
 
 
-def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Report) -> None:
+def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: CheckReport) -> None:
     """One request on arrays gives what each variant gives alone."""
     given = {n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given}
     wanted = tuple(dict.fromkeys(p.quantity for p in exercise.judged_parts))
@@ -382,7 +382,7 @@ def _same(first: Any, other: Any, part: Part) -> bool:
 # -------------------------------------------------------------------- rendering
 
 
-def check_rendering(exercise: CourseExercise, count: int, report: Report) -> None:
+def check_rendering(exercise: CourseExercise, count: int, report: CheckReport) -> None:
     """Sheets, worked solutions and notebooks render in every language."""
     renderer = renderer_of(exercise.folder)
     for lang in exercise.languages:

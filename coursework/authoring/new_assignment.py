@@ -38,7 +38,7 @@ def new_assignment(
         raise BadInput(f"an assignment asks exercises: coursework new assignment {path} {some}")
     if path.exists():
         raise BadInput(f"{path} exists already; choose another name")
-    exercises = "".join(_asked(course, name) for name in names)
+    exercises = "".join(_exercise_entry(course, name) for name in names)
     for lang in langs or ():
         if silent := [name for name in names if lang not in course[name].languages]:
             speaks = ", ".join(course[silent[0]].languages)
@@ -83,6 +83,6 @@ def _texts(texts: dict[str, str]) -> str:
     )
 
 
-def _asked(course: Course[Any], name: str) -> str:
+def _exercise_entry(course: Course[Any], name: str) -> str:
     parts = ", ".join(f'"{p.id}"' for p in course[name].spec.parts if not p.by_request)
     return f'\n[[exercises]]\nname = "{name}"\n# parts = [{parts}]\n# points = 6\n'

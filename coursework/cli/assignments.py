@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coursework.cli.database import keeping
-from coursework.cli.options import opened, shared_by_cluster, tell, writes
+from coursework.cli.options import opened, print_notes, shared_by_cluster, writes
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted, nearest
 from coursework.system.extras import libraries
@@ -121,7 +121,7 @@ def build_assignment(
     if dealt.is_new:
         notes.append(secret_made(path, out / "issued.json", langs[0]))
     names = {issue.student for issue in dealt.issues}
-    only = None if not again else {_known(name, names) for name in again}
+    only = None if not again else {_student_column(name, names) for name in again}
     wanted = list(
         papers.files(
             course,
@@ -144,7 +144,7 @@ def build_assignment(
         wanted[:0] = nbgrader.files(course, dealt.issues, assignment, out)
     if not again and not make_up:
         notes += dealt.notes
-    tell(notes)
+    print_notes(notes)
     content = issued_content(dealt.issues, assignment, dealt.secret)
     keeping(context, settings.of("db"), settings.of("name"), course.folder.root.name)(content)
     same = json_text(content).encode("utf-8")
@@ -154,7 +154,7 @@ def build_assignment(
         notes = list(write_tree(out, wanted, advance, anew=overwrite))
     if settings.of("booklet") or "pdf" in settings.of("formats"):
         notes += unprinted_names(renderer_of(course.folder), names if only is None else only)
-    tell(notes)
+    print_notes(notes)
     count = len({(i.stem, i.sitting) for i in dealt.issues if only is None or i.student in only})
     description = (
         "as it was issued" if is_unchanged or again else "to give away, issued.json and answers.csv to keep"
@@ -196,7 +196,7 @@ def _issued_before(path: Path, *, anew: bool) -> Mapping[str, Any] | None:
         raise
 
 
-def _known(name: str, names: set[str]) -> str:
+def _student_column(name: str, names: set[str]) -> str:
     from coursework.making.students import student_named
 
     column = student_named(name, names)

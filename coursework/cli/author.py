@@ -14,7 +14,7 @@ from coursework.cli.options import (
     FOUND,
     FilePath,
     Lists,
-    Whole,
+    WholeNumber,
     cluster_option,
     exercise_names,
     exercises_argument,
@@ -34,7 +34,7 @@ from coursework.system.limits import MOST_VARIANTS
 
 @click.command()
 @exercises_argument
-@click.option("--variants", "count", type=Whole(1, MOST_VARIANTS), default=200, show_default=True)
+@click.option("--variants", "count", type=WholeNumber(1, MOST_VARIANTS), default=200, show_default=True)
 @cluster_option
 @json_option
 @click.pass_context

@@ -18,7 +18,7 @@ from coursework.cli.options import (
     database_ready,
     json_option,
     opened,
-    tell,
+    print_notes,
     writes,
 )
 from coursework.cli.printing import print_json, print_table, progress_bar
@@ -46,11 +46,11 @@ def store_at(context: click.Context, url: str, *, new: bool = False) -> Store:
 
     file = file_of(url)
     if not new and file is not None and not file.exists():
-        raise BadInput(f"no database {file}{_beside(file)}; 'coursework build … --db {url}' makes one")
+        raise BadInput(f"no database {file}{_suggestion(file)}; 'coursework build … --db {url}' makes one")
     return context.with_resource(closing(Store(url)))
 
 
-def _beside(file: Path) -> str:
+def _suggestion(file: Path) -> str:
     names = [p.name for p in file.parent.iterdir()] if file.parent.is_dir() else []
     near = closest(file.name, names)
     return f" (did you mean {file.with_name(near)}?)" if near else ""
@@ -160,7 +160,7 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     if len(now.marked.changes) > _TOLD:
         click.echo(f"and {len(now.marked.changes) - _TOLD} more; coursework database history tells them all")
     sheets = now.work.sheets
-    tell(sheets.warnings)
+    print_notes(sheets.warnings)
     rejected = sheets.rejected
     for row in rejected[:_TOLD]:
         click.echo(f"coursework: {row.source}: {row.reason}", err=True)
@@ -200,7 +200,7 @@ def written_marks(context: click.Context, url: str, name: str, folder: Path, dec
     if not work.last:
         raise BadInput("nothing of it is marked yet: coursework grade SUBMISSIONS… --db URL")
     if work.changed:
-        tell(
+        print_notes(
             [
                 f"{counted(len(work.changed), 'sheet')} came or changed since: coursework grade --db … marks them"
             ]

@@ -88,7 +88,7 @@ def gradebook(
     click.echo(
         f"{counted(filled.written, 'mark')} in the column {filled.column!r} of {out}{_of(filled, scored)}"
     )
-    return _told(filled, out)
+    return _print_filled(filled, out)
 
 
 def _check_out(out: Path, template: Path) -> None:
@@ -107,7 +107,7 @@ def _of(filled: Filled, scored: Sequence[Scored]) -> str:
     )
 
 
-def _told(filled: Filled, out: Path) -> int:
+def _print_filled(filled: Filled, out: Path) -> int:
     """Say who is left as they were, and why; whether somebody must look."""
     for description, names in (
         ("marks, but no line in the export, and not written", filled.strangers),

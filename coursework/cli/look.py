@@ -10,7 +10,7 @@ import click
 from coursework.cli.options import (
     DONE,
     FOUND,
-    Whole,
+    WholeNumber,
     complain,
     exercise_argument,
     json_option,
@@ -38,7 +38,7 @@ def list_exercises(context: click.Context, as_json: bool) -> int:
 
     folder = course_folder(context.obj)
     rows, faults = listing(folder, lambda name: _listed(opened(context)[name]))
-    rows = [{**row, **_place(folder, row["exercise"])} for row in rows]
+    rows = [{**row, **_chapter_of(folder, row["exercise"])} for row in rows]
     if as_json:
         print_json(rows)
     else:
@@ -66,7 +66,7 @@ def _listed(exercise: Any) -> dict[str, Any]:
     }
 
 
-def _place(folder: Any, exercise: str) -> dict[str, Any]:
+def _chapter_of(folder: Any, exercise: str) -> dict[str, Any]:
     """Return the chapter and lesson of an exercise; empty for one that no chapter lists."""
     chapter = next((c for c in folder.chapters if exercise in c.exercises), None)
     section = folder.section_of(exercise)
@@ -117,7 +117,11 @@ def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[A
 @exercise_argument
 @seed_option
 @click.option(
-    "--count", type=Whole(1, MOST_VARIANTS), default=1, show_default=True, help="How many, seed after seed."
+    "--count",
+    type=WholeNumber(1, MOST_VARIANTS),
+    default=1,
+    show_default=True,
+    help="How many, seed after seed.",
 )
 @click.option("--solution", is_flag=True, help="With the reference answers.")
 @lang_option

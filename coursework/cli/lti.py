@@ -14,10 +14,10 @@ from coursework.cli.options import (
     FOUND,
     FilePath,
     NeedingExtra,
-    Whole,
+    WholeNumber,
     json_option,
     opened,
-    tell,
+    print_notes,
 )
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import BadInput, counted, nearest
@@ -179,7 +179,7 @@ def _tell_registration(settings: Settings, kind: str) -> None:
         f"It then shows a client ID and a deployment ID: coursework lti platform {kind} … --client-id ID --deployment ID"
     )
     if not settings.url:
-        tell(["say where browsers find this service: --url https://exercises.example.org"])
+        print_notes(["say where browsers find this service: --url https://exercises.example.org"])
 
 
 def _list(settings: Settings, check: bool, as_json: bool) -> int:
@@ -287,7 +287,7 @@ def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
 @lti.command(cls=NeedingExtra, ready=_ready)
 @folder_option
 @click.option("--host", default="127.0.0.1", show_default=True, help="Where to listen.")
-@click.option("--port", type=Whole(1, MOST_PORT), default=8700, show_default=True)
+@click.option("--port", type=WholeNumber(1, MOST_PORT), default=8700, show_default=True)
 @click.option("--url", help="Where browsers find it, where platforms.toml does not say it.")
 @click.option(
     "--behind-proxy",
@@ -357,10 +357,10 @@ def _application(
         )
     settings = replace(settings, url=checked_url(public_url, "the service's url"))
     if not settings.platforms:
-        tell([f"no platform in {folder}: 'coursework lti platform moodle https://…' adds one"])
+        print_notes([f"no platform in {folder}: 'coursework lti platform moodle https://…' adds one"])
     key_folder = KeyFolder(folder / "keys")
     if not key_folder.keys:
-        tell([f"a key was made: {key_folder.new().kid}"])
+        print_notes([f"a key was made: {key_folder.new().kid}"])
     course, storage = opened(context), Storage(folder)
     crowd = CourseHost(course, storage, settings.assignments)
     return service(settings, crowd, LTIPages(course.folder), storage=storage), settings.url

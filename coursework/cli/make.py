@@ -15,7 +15,7 @@ from coursework.cli.options import (
     UNLESS_TOLD,
     FilePath,
     Lists,
-    Whole,
+    WholeNumber,
     cluster_option,
     columns_option,
     db_option,
@@ -27,11 +27,11 @@ from coursework.cli.options import (
     needing_extra,
     opened,
     parts_option,
+    print_notes,
     seed_option,
     shared_by_cluster,
     split_list,
     spoken,
-    tell,
     unknown_language,
     writes,
 )
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 @click.option(
     "--variants",
     "count",
-    type=Whole(1, MOST_VARIANTS),
+    type=WholeNumber(1, MOST_VARIANTS),
     help="How many variants; with a roster, one a student.",
 )
 @seed_option
@@ -185,7 +185,7 @@ def build(
             f"the roster says the language of {with_language} of its {counted(len(students), 'student')}, which counts; "
             f"--lang {','.join(langs)} is for those of whom it says none"
         )
-    tell(notes)
+    print_notes(notes)
     shared_by_cluster(context, cluster)
     written = build_files(
         course,
@@ -209,7 +209,7 @@ def build(
         store=keeping(context, db, name or out.resolve().name, course.folder.root.name),
     )
     if roster:
-        tell([for_practice(langs[0])])
+        print_notes([for_practice(langs[0])])
     away = "handouts/ to give away, " if set(formats) - {"nbgrader"} else ""
     click.echo(f"{counted(written, 'file')} in {out}: {away}issued.json and answers.csv to keep")
     if course.folder.has_solutions:
@@ -295,7 +295,7 @@ def build_files(
         notes = write_tree(out, wanted, advance, anew=overwrite)
     if booklet or "pdf" in formats:
         notes += unprinted_names(renderer_of(course.folder), (pair.student for pair in issues))
-    tell(notes)
+    print_notes(notes)
     return len(wanted)
 
 

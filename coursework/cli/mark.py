@@ -21,8 +21,8 @@ from coursework.cli.options import (
     json_option,
     lang_option,
     opened,
+    print_notes,
     shared_by_cluster,
-    tell,
     tell_lack_of_charts,
     writes,
 )
@@ -157,7 +157,7 @@ def grade(
             decimal=decimal,
             form=form,
             replaces=replace,
-            writer=_told,
+            writer=_print_gradebook,
         )
     assert issued is not None
     if marks is not None:
@@ -178,10 +178,10 @@ def grade(
         decimal=decimal,
         form=form,
     )
-    return _told(book, out)
+    return _print_gradebook(book, out)
 
 
-def _told(book: Gradebook, out: Path) -> int:
+def _print_gradebook(book: Gradebook, out: Path) -> int:
     """Say what a folder of marks holds."""
     for line in book.seen:
         click.echo(one_line(line))
@@ -366,7 +366,7 @@ def _report(
     marks = read(folder)
     if unlike := unlike_summary(folder, marks):
         path = folder / "marks.csv"
-        tell(
+        print_notes(
             [
                 f"{counted(len(unlike), 'student')} with other points in {path} than in summary.csv ({unlike[0]}"
                 f"{', …' if len(unlike) > 1 else ''}): the report is of {path}; 'coursework grade --issued … --from {path}' "
@@ -400,7 +400,7 @@ def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
         path.unlink(missing_ok=True)
         return
     write_whole(path, csv_file((pair.row() for pair in copied), COLUMNS, SPREADSHEETS[decimal]))
-    tell(
+    print_notes(
         [
             f"{counted(len(copied), 'sheet')} of answers that are right on another student's variant, see {path}"
         ]

@@ -21,7 +21,7 @@ from coursework.cli.options import (
 from coursework.cli.printing import print_json
 
 if TYPE_CHECKING:
-    from coursework.sheets.report import Report
+    from coursework.sheets.report import ReportContent
 
 # --------------------------------------------------------------------- accuracy
 
@@ -161,7 +161,7 @@ def _on_paper(course: Any, names: Sequence[str], quick: bool, lang: str, silent:
     return [row.as_json() for row in rows], lambda: paper_report(course, rows, variants, lang)
 
 
-def _write(course: Any, rows: list, page: Report, out: Path) -> None:
+def _write(course: Any, rows: list, page: ReportContent, out: Path) -> None:
     from coursework.rendering.renderer import renderer_of
     from coursework.system.writing import write_whole
 

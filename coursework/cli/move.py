@@ -12,7 +12,7 @@ import click
 from coursework.cli import completion
 from coursework.cli.options import (
     FilePath,
-    Whole,
+    WholeNumber,
     decimal_option,
     exercise_argument,
     is_typed,
@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="One turn of the driver, or the travel of its jack.",
 )
-@click.option("--steps", type=Whole(1, MOST_STEPS), help="Steps of a cycle; 360 unless told.")
+@click.option("--steps", type=WholeNumber(1, MOST_STEPS), help="Steps of a cycle; 360 unless told.")
 @click.option(
     "--drive", metavar="torque=VALUE", help="Integrate the motion under this constant torque instead."
 )

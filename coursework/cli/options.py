@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
 
 
-def tell(notes: Sequence[str]) -> None:
+def print_notes(notes: Sequence[str]) -> None:
     """Say what is to be known and is no error."""
     for note in notes[:10]:
         click.echo(f"coursework: note: {one_line(localised(note))}", err=True)
@@ -38,7 +38,7 @@ def tell_lack_of_charts() -> bool:
     from coursework.figures.charts import lacking
 
     why = lacking()
-    tell([f"all is written but the charts: {why}"] if why else [])
+    print_notes([f"all is written but the charts: {why}"] if why else [])
     return bool(why)
 
 
@@ -83,7 +83,7 @@ def _cluster_ready() -> None:
     libraries(("distributed",), "--cluster needs", "cluster")
 
 
-class Whole(click.ParamType):
+class WholeNumber(click.ParamType):
     """A whole number that is not less than the least, nor more than the most."""
 
     name = "whole number"
@@ -267,7 +267,11 @@ replace_option = click.option(
     "--overwrite", is_flag=True, help="Replace notebooks that are there, and what was written in them."
 )
 seed_option = click.option(
-    "--seed", type=Whole(0, MOST_SEED), default=0, show_default=True, help="Which variant (the first one)."
+    "--seed",
+    type=WholeNumber(0, MOST_SEED),
+    default=0,
+    show_default=True,
+    help="Which variant (the first one).",
 )
 
 

@@ -13,7 +13,7 @@ from coursework.cli.options import (
     UNLESS_TOLD,
     FilePath,
     Lists,
-    Whole,
+    WholeNumber,
     columns_option,
     decimal_option,
     exercise_names,
@@ -21,10 +21,10 @@ from coursework.cli.options import (
     known_languages,
     opened,
     parts_option,
+    print_notes,
     seed_option,
     split_list,
     spoken,
-    tell,
     unknown_language,
     writes,
 )
@@ -76,7 +76,7 @@ class _PlatformName(click.ParamType):
 @click.option(
     "--variants",
     "count",
-    type=Whole(1, MOST_VARIANTS),
+    type=WholeNumber(1, MOST_VARIANTS),
     help=f"How many variants of each exercise; unless told, as many as the roster has students, else {_VARIANTS}.",
 )
 @click.option(
@@ -145,7 +145,7 @@ def export(
         )
     wanted = _Wanted(context, exercises, count or 0, seed, langs, split_list(parts) or None)
     if not chosen.draws_variants:
-        tell(notes)
+        print_notes(notes)
         _export_autograder(course, wanted, issued, students, out)
         return
     drawn = _drawn(course, wanted, students, out)
@@ -161,7 +161,7 @@ def export(
         notes += write_tree(out, exported_files.files, advance, anew=overwrite)
     if not is_assignment(wanted.exercises):
         notes.append(for_practice(langs[0]))
-    tell(notes)
+    print_notes(notes)
     for line in lines:
         click.echo(line)
     click.echo(
@@ -192,7 +192,7 @@ def _export_autograder(
         files = list(PLATFORM.autograder(course.folder, data, "what was issued"))
         files.append(File(Path("issued.json"), lambda: data))
     with progress_bar("exporting", len(files)) as advance:
-        tell(write_tree(out, files, advance))
+        print_notes(write_tree(out, files, advance))
     click.echo(f"{out / 'autograder.zip'}, for the staff alone; how to put it up is in {files[1].path}")
     if issued is None:
         click.echo("the sheets are those of 'coursework build' with the same exercises, roster and options")
@@ -226,7 +226,7 @@ def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student])
             "--issued DIR/issued.json"
         )
     dealt = assign_variants(course, assignment, students or [Student("") for _ in range(count)], langs)
-    tell(dealt.notes)
+    print_notes(dealt.notes)
     return json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
 
 
@@ -254,7 +254,7 @@ def _secret_beside(wanted: _Wanted, out: Path, lang: str) -> Secret:
     path = out / "issued.json"
     secret = secret_of(Issued.read_previous(path), str(path)) if path.is_file() else None
     if secret is None:
-        tell([secret_made(Path(wanted.exercises[0]), path, lang)])
+        print_notes([secret_made(Path(wanted.exercises[0]), path, lang)])
     return secret or Secret.new()
 
 
@@ -293,13 +293,13 @@ def _check_folder(out: Path, drawn: DrawnPool) -> None:
     path = out / "issued.json"
     if not path.is_file():
         return
-    before = {_place(item["record"]) for item in Issued.read_previous(path)["issued"]}
-    if not before <= {_place(issue.variant.record) for issue in drawn.issues}:
+    before = {_variant_key(item["record"]) for item in Issued.read_previous(path)["issued"]}
+    if not before <= {_variant_key(issue.variant.record) for issue in drawn.issues}:
         raise BadInput(
             f"{path} holds other variants, exported before; choose another --out, or --overwrite to replace them "
             "(answers to them could no longer be marked from there)"
         )
 
 
-def _place(record: Any) -> tuple[str, int]:
+def _variant_key(record: Any) -> tuple[str, int]:
     return record["exercise"], record["seed"]

@@ -86,10 +86,10 @@ def scan(
             spreadsheet=SPREADSHEETS[decimal],
             progress=advance,
         )
-    return _told(book, out)
+    return _print_scan_book(book, out)
 
 
-def _told(book: ScanBook, out: Path) -> int:
+def _print_scan_book(book: ScanBook, out: Path) -> int:
     """Say what a folder of scans holds."""
     counts = [(book.statements, "of statements"), (book.blank, "blank"), (book.copies, "copied")]
     more = "".join(f", {number} {waiting}" for number, waiting in counts if number)

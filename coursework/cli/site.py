@@ -16,11 +16,11 @@ import click
 from coursework.cli.options import (
     FilePath,
     NeedingExtra,
-    Whole,
+    WholeNumber,
     exercise_argument,
     lang_option,
     needing_extra,
-    tell,
+    print_notes,
 )
 from coursework.errors import BadInput, unknown
 from coursework.system.extras import libraries
@@ -61,11 +61,19 @@ def _lti_ready() -> None:
     "--host", default="127.0.0.1", show_default=True, help="Where to listen; 0.0.0.0 is every address."
 )
 @click.option(
-    "--port", type=Whole(0, MOST_PORT), default=8000, show_default=True, help="0 takes any that is free."
+    "--port",
+    type=WholeNumber(0, MOST_PORT),
+    default=8000,
+    show_default=True,
+    help="0 takes any that is free.",
 )
 @click.option("--url", help="Where browsers find it, behind a proxy: https://mechanics.example.org.")
 @click.option(
-    "--workers", type=Whole(1, MOST_WORKERS), default=1, show_default=True, help="Processes that answer."
+    "--workers",
+    type=WholeNumber(1, MOST_WORKERS),
+    default=1,
+    show_default=True,
+    help="Processes that answer.",
 )
 @click.option(
     "--demo",
@@ -109,10 +117,10 @@ def serve(
         raise BadInput("--demo brings its own database: leave --db out, or name a folder, --demo FOLDER")
     for role, login in (("administrator", administrator), ("instructor", instructor)):
         if login is not None:
-            _invite(context.obj, db, login, role, _told(url) if url else f"http://{host}:{port}")
+            _invite(context.obj, db, login, role, _checked_url(url) if url else f"http://{host}:{port}")
             return
-    with _kept(context.obj, db, demo) as database, server.listening(host, port) as at:
-        public_url = _told(url) if url else _address(host, at)
+    with _database_of(context.obj, db, demo) as database, server.listening(host, port) as at:
+        public_url = _checked_url(url) if url else _address(host, at)
         if lti is not None:
             _check_lti(lti, public_url)
         entrance = _entrance(host, public_url, demo, is_stated=url is not None)
@@ -132,7 +140,7 @@ def _check_private(db: str) -> None:
 
     file = file_of(db)
     if is_shared(file):
-        tell(
+        print_notes(
             [
                 f"other users of this machine can read {file}, with all answers and the signing key: chmod 600 {file}"
             ]
@@ -151,9 +159,11 @@ def _check_lti(folder: Path, url: str) -> None:
     from coursework.site.lti.mount import settings_of
 
     if not settings_of(folder, url).platforms:
-        tell([f"no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one"])
+        print_notes(
+            [f"no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one"]
+        )
     if not (key_folder := KeyFolder(folder / "keys")).keys:
-        tell([f"a key was made: {key_folder.new().kid}"])
+        print_notes([f"a key was made: {key_folder.new().kid}"])
 
 
 def _invite(course: str | None, db: str | None, login: str, role: str, url: str) -> None:
@@ -172,7 +182,7 @@ def _usual() -> str:
 
 
 @contextmanager
-def _kept(course: str | None, db: str | None, demo: str | None) -> Iterator[str]:
+def _database_of(course: str | None, db: str | None, demo: str | None) -> Iterator[str]:
     """The database's address."""
     if demo is None:
         yield db or _usual()
@@ -199,7 +209,7 @@ def _address(host: str, at: socket.socket) -> str:
     return f"http://{f'[{host}]' if ':' in host else host}:{at.getsockname()[1]}"
 
 
-def _told(url: str) -> str:
+def _checked_url(url: str) -> str:
     """The address that somebody tells.
 
     Raises
@@ -238,7 +248,7 @@ def _entrance(host: str, url: str, demo: str | None, *, is_stated: bool) -> Entr
             "--demo lets anybody be anybody: it is for this machine alone, without --host and --url"
         )
     if url.startswith("http:") and not is_own:
-        tell(
+        print_notes(
             [
                 f"{url} is plain http: whoever shares the network can read passwords and answers; a proxy with https helps"
             ]
@@ -257,7 +267,7 @@ def _say(url: str, where: str, opens: bool) -> None:
     if opens and has_screen:
         webbrowser.open(url)
     elif opens:
-        tell([f"no screen here: open {url} in a browser"])
+        print_notes([f"no screen here: open {url} in a browser"])
 
 
 # ---------------------------------------------------------------------- preview
@@ -265,9 +275,13 @@ def _say(url: str, where: str, opens: bool) -> None:
 
 @click.command(cls=NeedingExtra, ready=_ready)
 @exercise_argument
-@click.option("--port", type=Whole(0, MOST_PORT), default=0, help="Any that is free unless told.")
+@click.option("--port", type=WholeNumber(0, MOST_PORT), default=0, help="Any that is free unless told.")
 @click.option(
-    "--variants", type=Whole(1, MOST_VARIANTS), default=50, show_default=True, help="That each check tries."
+    "--variants",
+    type=WholeNumber(1, MOST_VARIANTS),
+    default=50,
+    show_default=True,
+    help="That each check tries.",
 )
 @lang_option
 @open_option

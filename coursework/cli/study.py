@@ -12,7 +12,7 @@ from coursework.cli.options import (
     json_option,
     lang_option,
     opened,
-    tell,
+    print_notes,
 )
 from coursework.cli.printing import print_json
 from coursework.errors import BadInput
@@ -50,7 +50,7 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
     mark_what_came_unmarked(course, file)
     study_words = words(lang)["study"]
     if file.trouble:
-        tell([study_words["trouble"][file.trouble].format(file=file.troubled)])
+        print_notes([study_words["trouble"][file.trouble].format(file=file.troubled)])
     step = advice.next_step(course, file.progress, on.date())
     if as_json:
         print_json(

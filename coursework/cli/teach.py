@@ -14,17 +14,17 @@ from coursework.cli.options import (
     UNLESS_TOLD,
     FilePath,
     Lists,
-    Whole,
+    WholeNumber,
     exercise_names,
     exercises_argument,
     is_typed,
     known_languages,
     lang_option,
     opened,
+    print_notes,
     replace_option,
     seed_option,
     spoken,
-    tell,
     unknown_language,
     writes,
 )
@@ -180,7 +180,7 @@ def notebook(
                 write_whole(path, lesson_notebook(course, name, lang, lessons | {*names}).encode("utf-8"))
                 click.echo(str(path))
     if is_typed(context, "seed"):
-        tell(
+        print_notes(
             [
                 f"{name}: seed {seed} is not worth issuing; the notebook has seed {missing}, the next that is"
                 for name, missing in other.items()
@@ -204,7 +204,7 @@ def _formats() -> tuple[str, ...]:
 @lang_option
 @click.option(
     "--seed",
-    type=Whole(0, MOST_SEED),
+    type=WholeNumber(0, MOST_SEED),
     default=0,
     show_default=True,
     help="Which book: each has its own variants.",
@@ -249,7 +249,7 @@ def workbook(
     writes(context, out)
     if not course.folder.has_solutions:
         solutions = "none"
-        tell(
+        print_notes(
             [
                 f"{course.folder.label} has no solutions/: the book has no solutions, no self-study notebooks, and other "
                 "variants than that of the full course"
@@ -260,7 +260,7 @@ def workbook(
     written = list(files(course, book, formats, paper=paper, apart=solutions == "apart"))
     with progress_bar("writing", len(written)) as advance:
         notes = write_tree(out, written, advance, anew=overwrite)
-    tell(notes)
+    print_notes(notes)
     click.echo(
         f"{counted(len(written), 'file')} in {out}: {', '.join(_first([str(file.path) for file in written]))}"
     )

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.course.asked import Asked
+from coursework.course.asked import KeySource
 from coursework.course.error_values import ErrorValues, UsualError
 from coursework.course.exercise import CourseExercise
 from coursework.course.marking_rules import ILL_DEGREES, ILL_SHARE, Rules
@@ -61,7 +61,7 @@ class KeyNumbers(NamedTuple):
 class Key:
     """The reference values of one variant, and the values each known wrong way would give."""
 
-    def __init__(self, variant: Asked, rules: Rules | None = None, numbers: KeyNumbers | None = None):
+    def __init__(self, variant: KeySource, rules: Rules | None = None, numbers: KeyNumbers | None = None):
         self.variant = variant
         self.solution = variant.exercise.solution
         self.rules = variant.exercise.folder.rules if rules is None else rules

@@ -9,7 +9,7 @@ from coursework.course.exercise import CourseExercise
 from coursework.model import Part
 
 
-class Asked(Protocol):
+class KeySource(Protocol):
     """Some parts of an exercise, asked with given values."""
 
     @property

@@ -25,7 +25,7 @@ _FORM = '[[chapters]] with title = { en = "…", fr = "…" }, then [[chapters.s
 
 
 @dataclass(frozen=True)
-class Section:
+class ChapterSection:
     """A lesson and the exercises that belong to it, in order; ``needs`` are lessons and exercises, by the name of who needs
     them first: the lesson's own name, or an exercise's."""
 
@@ -50,7 +50,7 @@ class Chapter:
 
     number: int
     titles: Mapping[str, str]
-    sections: tuple[Section, ...]
+    sections: tuple[ChapterSection, ...]
 
     def title(self, lang: str) -> str:
         """Its title, in another language where it has none in this."""
@@ -107,7 +107,7 @@ def _chapter(number: int, stated: Mapping[str, Any], where: str) -> Chapter:
     )
 
 
-def _section(stated: Mapping[str, Any], where: str) -> Section:
+def _section(stated: Mapping[str, Any], where: str) -> ChapterSection:
     _only(stated, {"lesson", "title", "needs", "exercises"}, where)
     lesson = stated.get("lesson", "")
     if lesson and "title" in stated:
@@ -116,7 +116,7 @@ def _section(stated: Mapping[str, Any], where: str) -> Section:
     needs = {name: exercise_needs for name, exercise_needs in placed if exercise_needs}
     if own_needs := _names(stated.get("needs", []), f"{where}: needs"):
         needs[str(lesson)] = own_needs
-    return Section(
+    return ChapterSection(
         str(lesson), _titles(stated.get("title", {}), where), tuple(name for name, _ in placed), needs
     )
 
@@ -198,7 +198,7 @@ def _check_order(course_chapters: Sequence[Chapter], source: str) -> None:
             seen.add(name)
 
 
-def sections(course_chapters: Sequence[Chapter]) -> Iterator[Section]:
+def sections(course_chapters: Sequence[Chapter]) -> Iterator[ChapterSection]:
     """The sections of chapters, one after another."""
     for chapter in course_chapters:
         yield from chapter.sections

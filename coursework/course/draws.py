@@ -116,7 +116,7 @@ def conditions(exercise: Exercise) -> tuple[Graph, tuple[str, ...]]:
     return Graph(functions), tuple(f.__name__ for f in exercise.keep)
 
 
-def kept(exercise: Exercise, drawn: Mapping[str, np.ndarray]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def accepted(exercise: Exercise, drawn: Mapping[str, np.ndarray]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Return which candidates are variants, and for each constraint which candidates it refuses.
 
     Shapes ``(n,)``. A candidate with an empty range is refused as ``range of NAME is empty``, of the first such.
@@ -159,7 +159,7 @@ def draw(
                 [_words(name, exercise.version, seeds[i], block, width, secret) for i in chunk]
             )
             drawn = candidates(exercise, words)
-            good, _ = kept(exercise, drawn)
+            good, _ = accepted(exercise, drawn)
             good = good.reshape(len(chunk), BLOCK)
             first = good.argmax(axis=1)
             hit = good.any(axis=1)
@@ -192,7 +192,7 @@ def places(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[int]:
     for seed in seeds:
         for block in range(MAX_BLOCKS):
             words = _words(name, exercise.version, seed, block, len(exercise.given))
-            good, _ = kept(exercise, candidates(exercise, words))
+            good, _ = accepted(exercise, candidates(exercise, words))
             if good.any():
                 indices.append(block * BLOCK + int(good.argmax()))
                 break
@@ -208,7 +208,7 @@ def _starved(name: str, exercise: Exercise, seed: int, secret: Secret | None = N
     words = np.concatenate(
         [_words(name, exercise.version, seed, b, width, secret) for b in range(MAX_BLOCKS)]
     )
-    _, refused = kept(exercise, candidates(exercise, words))
+    _, refused = accepted(exercise, candidates(exercise, words))
     refusals = Counter({condition: int(mask.sum()) for condition, mask in refused.items()})
     worst = ", ".join(f"{condition} ({count} times)" for condition, count in refusals.most_common(3) if count)
     return Starved(
@@ -224,7 +224,7 @@ def _chunks(indices: np.ndarray, size: int) -> Iterator[np.ndarray]:
 
 def acceptance(name: str, exercise: Exercise, count: int = 4096) -> tuple[float, dict[str, float]]:
     """Share of candidates that are variants, and the share that each condition refuses."""
-    good, refused = kept(exercise, first_candidates(name, exercise, count))
+    good, refused = accepted(exercise, first_candidates(name, exercise, count))
     return float(good.mean()), {condition: float(mask.mean()) for condition, mask in refused.items()}
 
 
@@ -249,7 +249,7 @@ def population(exercise: Exercise, limit: int = 200_000) -> int | None:
     if not combinations:
         return 0
     drawn = {n: np.array([c[n] for c in combinations]) for n in exercise.given}
-    return int(kept(exercise, drawn)[0].sum())
+    return int(accepted(exercise, drawn)[0].sum())
 
 
 def _all_values(spec: GivenSpec, partial: Mapping[str, Any]) -> list[float | str]:

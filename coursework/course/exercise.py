@@ -17,7 +17,7 @@ from coursework.course.lettering import printed_order
 from coursework.course.records import Records
 from coursework.course.requests import Intake
 from coursework.course.secrecy import Secret
-from coursework.course.texts import ExerciseTexts, Text
+from coursework.course.texts import ExerciseTexts, RenderedText
 from coursework.errors import BadCourse, NoSolution, Undefined, WrongValue, unknown
 from coursework.model import Driver, Exercise, Part
 from coursework.quantities.graph import Graph, plain_scalar
@@ -32,7 +32,7 @@ class _Worded(Protocol):
     """A variant, as far as an exercise asks it something."""
 
     @property
-    def text(self) -> Text: ...
+    def text(self) -> RenderedText: ...
 
 
 V = TypeVar("V", bound=_Worded)

@@ -22,7 +22,7 @@ from coursework.language.words import languages, no_language
 from coursework.system.distribution import pip_install
 
 if TYPE_CHECKING:
-    from coursework.course.chapters import Chapter, Section
+    from coursework.course.chapters import Chapter, ChapterSection
     from coursework.course.marking_rules import Rules
 
 UNTOLD = "fr"  #: the language of a course that states none, where nobody says another
@@ -276,7 +276,7 @@ class Folder:
         """The exercises in the order of the chapters, then the others in that of the alphabet."""
         return tuple(dict.fromkeys([*(n for c in self.chapters for n in c.exercises), *self.names]))
 
-    def section_of(self, exercise: str) -> Section | None:
+    def section_of(self, exercise: str) -> ChapterSection | None:
         """The section of the chapters that an exercise belongs to."""
         return next((s for c in self.chapters for s in c.sections if exercise in s.exercises), None)
 
@@ -398,7 +398,7 @@ class Folder:
         try:
             return importlib.import_module(dotted)
         except CourseworkError as fault:
-            raise BadCourse(f"{source}: {_place(fault, self.root)}{fault}") from fault
+            raise BadCourse(f"{source}: {_line_of(fault, self.root)}{fault}") from fault
         except Exception as fault:
             raise BadCourse(f"{source} cannot be used: {_where(fault, self.root)}") from fault
 
@@ -407,10 +407,10 @@ def _where(fault: Exception, root: Path) -> str:
     """The fault in one line, with the last line of the course's own code on its way."""
     if isinstance(fault, SyntaxError):
         return f"line {fault.lineno}: {fault.msg}"
-    return f"{_place(fault, root)}{type(fault).__name__}: {fault}"
+    return f"{_line_of(fault, root)}{type(fault).__name__}: {fault}"
 
 
-def _place(fault: Exception, root: Path) -> str:
+def _line_of(fault: Exception, root: Path) -> str:
     """Return the last line of the course's own code on a fault's way, as ``line 3: ``; nothing where there is none."""
     import traceback
 

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from coursework.course.answer_key import Key, envelopes, exists, is_real, with_other_cases
-from coursework.course.asked import Asked
+from coursework.course.asked import KeySource
 from coursework.course.error_values import ErrorValues, UsualError
 from coursework.course.exercise import CourseExercise
 from coursework.course.marking_rules import Rules
@@ -21,7 +21,7 @@ from coursework.quantities.graph import plain_scalar
 NO_RANKS: Mapping[str, int] = MappingProxyType({})
 
 
-class Keyed(Asked, Protocol):
+class Keyed(KeySource, Protocol):
     """A variant that takes a key."""
 
     key: Key
@@ -41,7 +41,7 @@ def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed], rules: Rul
     return batch
 
 
-def given_columns(exercise: CourseExercise[Any], variants: Sequence[Asked]) -> dict[str, np.ndarray]:
+def given_columns(exercise: CourseExercise[Any], variants: Sequence[KeySource]) -> dict[str, np.ndarray]:
     """The given quantities that the solution knows, each of shape ``(n,)``: a value a variant."""
     names = (n for n in exercise.spec.given if n in exercise.quantity_names)
     return {n: np.array([v.given[n] for v in variants]) for n in names}
@@ -151,7 +151,7 @@ class Batch:
 class _KeyOfBatch(Key):
     """The key of one variant among many."""
 
-    def __init__(self, variant: Asked, batch: Batch, index: int) -> None:
+    def __init__(self, variant: KeySource, batch: Batch, index: int) -> None:
         super().__init__(variant, batch.rules)
         self._batch, self._index = batch, index
 

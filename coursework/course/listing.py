@@ -29,7 +29,7 @@ class Listing(NamedTuple):
     faults: dict[str, str]
 
 
-class _Kept(NamedTuple):
+class _CachedListing(NamedTuple):
     """Cached listing: the Python that made it, the states of its source files, and the descriptions by
     name."""
 
@@ -43,7 +43,7 @@ def listing(folder: Folder, describe: Callable[[str], dict[str, Any]]) -> Listin
     """Return the description of each exercise by its name, in the order in which they are learnt; call
     ``describe`` where the cache has none."""
     begun = time.time_ns()
-    cached = _known(folder)
+    cached = _cached(folder)
     descriptions, faults = {}, {}
     for name in folder.in_order:
         try:
@@ -59,19 +59,19 @@ def listing(folder: Folder, describe: Callable[[str], dict[str, Any]]) -> Listin
     return Listing(list(descriptions.values()), faults)
 
 
-def _known(folder: Folder) -> _Kept:
+def _cached(folder: Folder) -> _CachedListing:
     """Return the cached listing where every file is unchanged; else the present states of the files, and no
     description."""
     # Which Python loads the exercises, and where it looks for what they import.
     python = [sys.version, *sys.path]
     files = states(folder.root / "exercises", folder.root / "templates", _ENGINE)
     with suppress(TypeError, AttributeError):
-        cached = _Kept(**load(_name(folder)))
+        cached = _CachedListing(**load(_name(folder)))
         if (cached.python, cached.files) == (python, files) and all(
             state(path) == was for path, was in cached.loaded.items()
         ):
             return cached
-    return _Kept(python, files, {}, {})
+    return _CachedListing(python, files, {}, {})
 
 
 def _loaded(files: Mapping[str, State]) -> dict[str, State]:
@@ -84,7 +84,7 @@ def _loaded(files: Mapping[str, State]) -> dict[str, State]:
     }
 
 
-def _remember(folder: Folder, content: _Kept, begun: int) -> None:
+def _remember(folder: Folder, content: _CachedListing, begun: int) -> None:
     """Keep it, unless a file was changed just now: it may change again within the grain of its dates."""
     if is_settled((*content.files.values(), *content.loaded.values()), begun):
         store(_name(folder), content._asdict())

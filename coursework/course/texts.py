@@ -47,7 +47,7 @@ _LABEL = re.compile(r"^- ([A-Za-z][\w-]*): (.+)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
-class Section:
+class TextSection:
     """A piece of text and the labels of cases listed in it."""
 
     text: str = ""
@@ -55,15 +55,15 @@ class Section:
 
 
 @dataclass(frozen=True)
-class Text:
+class RenderedText:
     """The sections of one file, rendered."""
 
     title: str
     opening: str
-    sections: Mapping[str, Section]
+    sections: Mapping[str, TextSection]
     source: str  #: the file, for messages
 
-    def section(self, name: str) -> Section:
+    def section(self, name: str) -> TextSection:
         """The section of this name; a clear error if the file has none."""
         if name not in self.sections:
             is_there = f"{self.source} has no" if self.title else f"{self.source} is missing, and with it the"
@@ -78,7 +78,7 @@ class Text:
         return labels[case]
 
 
-def parse(markdown: str, source: str) -> Text:
+def parse(markdown: str, source: str) -> RenderedText:
     """Split a rendered text into its sections.
 
     Raises
@@ -101,13 +101,15 @@ def parse(markdown: str, source: str) -> Text:
     title = marks[0].group(2)
     opening = pieces.pop(title)
     sections = {
-        name: Section(_LABEL.sub("", body).strip(), dict(_LABEL.findall(body)))
+        name: TextSection(_LABEL.sub("", body).strip(), dict(_LABEL.findall(body)))
         for name, body in pieces.items()
     }
-    return Text(title, opening, sections, source)
+    return RenderedText(title, opening, sections, source)
 
 
-def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object], source: str) -> Text:
+def render(
+    path: Path, folders: tuple[Path, ...], variables: Mapping[str, object], source: str
+) -> RenderedText:
     """Render a text file with the variables of a variant; ``source`` is what messages call the file.
 
     Raises
@@ -117,7 +119,7 @@ def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object
         file and, where it is known, the line.
     """
     template = _template(path, path.stat().st_mtime_ns, folders, source)
-    if isinstance(template, Text):
+    if isinstance(template, RenderedText):
         return template
     if isinstance(template, _Filled) and template.names <= variables.keys():
         markdown = template.render(variables)
@@ -143,7 +145,7 @@ def _rendered(path: Path, folders: tuple[Path, ...], variables: Mapping[str, obj
         raise BadStatement(f"{source}: an expression fails: {fault}") from fault
 
 
-def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> Text:
+def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> RenderedText:
     """The sections of a rendered text, once it is proofread; its formulas only where told."""
     from coursework.markup.proofreading import pair_dollars, read_formulas
 
@@ -275,7 +277,7 @@ def _jinja(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> 
 def _names(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> frozenset[str]:
     """The variables of a text and of those that it includes by name; what cannot be read is told where it is rendered."""
     template = _template(path, changed, folders, source)
-    if isinstance(template, Text):
+    if isinstance(template, RenderedText):
         return frozenset()
     if isinstance(template, _Filled):
         return template.names
@@ -332,7 +334,7 @@ class ExerciseTexts:
         first = next(iter(path.read_text(_ENCODING).splitlines()), "") if path.exists() else ""
         return first[2:].strip() if first.startswith("# ") and not _TAG.search(first) else ""
 
-    def text(self, kind: str, lang: str, variables: Mapping[str, object]) -> Text:
+    def text(self, kind: str, lang: str, variables: Mapping[str, object]) -> RenderedText:
         """A text, rendered. A solution need not have one: then every section is absent.
 
         Raises
@@ -346,7 +348,7 @@ class ExerciseTexts:
         path = self.file(kind, lang)
         source = self.folder.relative(path)
         if not path.exists() and kind == "solutions":
-            return Text("", "", {}, source)
+            return RenderedText("", "", {}, source)
         if not path.exists():
             raise BadCourse(f"{self.name} has no text in {lang!r}: {source} is missing")
         shared = (self.folder.root / kind, *self.folder.template_folders)

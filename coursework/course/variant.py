@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from coursework.course.exercise import CourseExercise, refuse_complex
 from coursework.course.lettering import letters_of, printed_order
-from coursework.course.texts import Text
+from coursework.course.texts import RenderedText
 from coursework.errors import BadCourse, CourseworkError
 from coursework.language.numbers import localise, plain, significant, with_unit
 from coursework.language.words import languages, no_language, words
@@ -158,7 +158,7 @@ class Variant:
         return tuple(dict.fromkeys([*(p.quantity for p in judged), *along]))
 
     @cached_property
-    def text(self) -> Text:
+    def text(self) -> RenderedText:
         """The statement's sections in this variant's language."""
         return self.exercise.texts.text("exercises", self.lang, self.printed)
 
@@ -190,7 +190,7 @@ class Variant:
         return {**self.used, **{n: plain_scalar(v) for n, v in self.quantities(met).items()}}
 
     @cached_property
-    def solution_text(self) -> Text:
+    def solution_text(self) -> RenderedText:
         """The sections of the solution's words; any quantity may stand in them, rounded.
 
         One that is not on the walk, of a question that is not asked, is computed for the words that it stands in.

@@ -16,7 +16,7 @@ from coursework.gradebook.accepted import accepted_mark, check_points
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.to_mark import given_mark, same_answer
 from coursework.making.students import folded
-from coursework.marking.feedback import Told
+from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 
 ACCEPTED, GIVEN, KEPT, WITHDRAWN = KINDS = ("accepted", "given", "kept", "withdrawn")
@@ -189,7 +189,9 @@ def _decided(line: Mark, decided: Decision, lang: str) -> Mark:
         return given_mark(line, decided.points or 0.0, decided.reason, lang, decided.by)
     if decided.kind == KEPT:
         return (
-            line._replace(told=(*line.told, Told(decided.reason, decided.reason))) if decided.reason else line
+            line._replace(told=(*line.told, RecordedSentence(decided.reason, decided.reason)))
+            if decided.reason
+            else line
         )
     return accepted_mark(line, decided.points, decided.reason, lang, decided.by)
 

@@ -17,7 +17,7 @@ from coursework.gradebook.rows import AnswerRow
 from coursework.language.words import words
 from coursework.making.issued import Issued
 from coursework.making.students import folded
-from coursework.marking.feedback import Told
+from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 from coursework.messages import Message, as_message
 from coursework.system.limits import MOST_TABLE_BYTES
@@ -244,7 +244,7 @@ def accepted_mark(line: Mark, points: float | None, reason: str, lang: str, loca
     points = line.out_of if points is None else points
     check_points(points, line.part, line.out_of, location)
     message = f"{words(lang)['marking']['accepted']} {reason}".strip()
-    return line._replace(verdict=ACCEPTED, points=points, told=(Told(message, message),))
+    return line._replace(verdict=ACCEPTED, points=points, told=(RecordedSentence(message, message),))
 
 
 def check_points(points: float, part: str, out_of: float, location: str) -> None:

@@ -17,7 +17,7 @@ from coursework.gradebook.placing import SheetKey, Sheets, as_texts
 from coursework.gradebook.rows import Rejected
 from coursework.language.words import words
 from coursework.making.issued import Issued
-from coursework.marking.feedback import Said, right_feedback, right_says
+from coursework.marking.feedback import Sentence, right_feedback, right_says
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.marking.plain_answers import plainly_right
@@ -232,4 +232,4 @@ def _waiting(mark: Mark) -> Mark:
     unchanged."""
     if mark.verdict != "unreadable":
         return mark
-    return mark._replace(told=(*mark.told, Said(words(mark.lang)["marking"]["waits"], {})))
+    return mark._replace(told=(*mark.told, Sentence(words(mark.lang)["marking"]["waits"], {})))

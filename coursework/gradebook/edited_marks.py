@@ -24,7 +24,7 @@ from coursework.gradebook.rows import AnswerRow, Rejected, RowOrigin
 from coursework.making.identity import identifies
 from coursework.making.issued import Issued
 from coursework.making.students import folded
-from coursework.marking.feedback import Told
+from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
@@ -218,7 +218,7 @@ def _edited_mark(mark: Mark, line: _MarksLine) -> Mark:
             )
     messages = mark.told
     if line.feedback is not None and line.feedback != " ".join(mark.feedback.split()):
-        messages = (Told(_verbatim(line.feedback), line.feedback),)
+        messages = (RecordedSentence(_verbatim(line.feedback), line.feedback),)
     return mark._replace(verdict=line.verdict, points=points, told=messages)
 
 

@@ -35,7 +35,7 @@ from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.answer_sheet import answer_sheet, answer_text
 from coursework.sheets.following import follows_from
 from coursework.sheets.handout import handout as handout_of
-from coursework.sheets.paper import FeedbackPaper, Heading
+from coursework.sheets.paper import FeedbackPaper, PaperHeading
 from coursework.sheets.sheet import FeedbackLine, FeedbackSheet, Question
 from coursework.system.build_folder import renew
 from coursework.system.writing import File, Progress, write, writing
@@ -165,7 +165,7 @@ def feedback_collection(
         feedback_sheet(course, sheet._replace(record={**sheet.record, "lang": lang}), telling=telling)
         for sheet in graded
     )
-    heading = Heading(lang=lang, title=course.folder.title(lang), course="", student=student)
+    heading = PaperHeading(lang=lang, title=course.folder.title(lang), course="", student=student)
     points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets)
     return FeedbackPaper(heading, sheets, points, out_of, answers=telling.solutions, numbered=False)
 
@@ -193,14 +193,14 @@ def _worth(issued: Issued, exercise: str) -> float:
     return float(sum(part["points"] for part in record["parts"]))
 
 
-def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang: str) -> Heading:
+def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang: str) -> PaperHeading:
     """Return the heading of a student's paper, from the issued records."""
     stated = issued.assignment or {}
     roster_cells = own_columns(issued, student)
     versions = (issued.versions.get(key) for key in issued.issued_to(student, sitting).items())
     scale = stated.get("mark")
     date = str(stated.get("date") or "")
-    return Heading(
+    return PaperHeading(
         lang=lang,
         title=text_in(stated.get("title") or {}, lang) or str(stated.get("name", "")),
         course=text_in(stated.get("course") or {}, lang) or course.folder.title(lang),

@@ -13,7 +13,7 @@ from coursework.gradebook.changes import rows_of
 from coursework.gradebook.graded_sheet import Graded
 from coursework.language.words import words
 from coursework.making.students import folded
-from coursework.marking.feedback import Told
+from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 
 TO_MARK = "to_mark"  #: the verdict of an answer that waits
@@ -131,7 +131,7 @@ def given_mark(line: Mark, points: float, reason: str, lang: str, location: str)
     check_points(points, line.part, line.out_of, location)
     verdict = ACCEPTED if points >= line.out_of else "partial" if points > 0 else "wrong"
     message = f"{words(lang)['marking']['by_hand']} {reason}".strip()
-    return line._replace(verdict=verdict, points=points, told=(Told(message, message),))
+    return line._replace(verdict=verdict, points=points, told=(RecordedSentence(message, message),))
 
 
 def same_answer(text: str, other: str) -> bool:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated, Tick
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated, Tick
 from coursework.kinds.ticks import by_letters, lettered_ticks
 from coursework.quantities.graph import plain_scalar
 
@@ -57,6 +57,6 @@ class Choice(Kind):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return label(str(value))
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
-        yield Spelling("exact", str(value))
-        yield Spelling("printed", label(str(value)))
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
+        yield AnswerSpelling("exact", str(value))
+        yield AnswerSpelling("printed", label(str(value)))

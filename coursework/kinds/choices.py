@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated, Tick
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated, Tick
 from coursework.kinds.ticks import by_letters, lettered_ticks, share_of_named
 from coursework.reading.reading import Reading
 from coursework.reading.several import read_choices
@@ -66,10 +66,10 @@ class Choices(Kind):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return ", ".join(sorted(cases_of(value))) or "none"
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         cases = [case for case in part.choices if case in cases_of(value)]
-        yield Spelling("exact", ", ".join(cases) or "none")
-        yield Spelling("printed", " ; ".join(label(case) for case in reversed(cases)) or "none")
-        yield Spelling(
+        yield AnswerSpelling("exact", ", ".join(cases) or "none")
+        yield AnswerSpelling("printed", " ; ".join(label(case) for case in reversed(cases)) or "none")
+        yield AnswerSpelling(
             "ticked", "\n".join(f"[{'x' if case in cases else ' '}] {case}" for case in part.choices)
         )

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.kinds.nearness import in_half_widths
 from coursework.language.numbers import significant
 from coursework.reading.complexes import read_complex
@@ -64,10 +64,10 @@ class Complex(Kind):
         sign = "-" if imaginary.startswith("-") else "+"
         return f"{significant(value.real, digits)} {sign} {imaginary.removeprefix('-')}i"
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         unit = "" if part.unit == "1" else f" {part.unit}"
         yield from super().spellings(part, complex(value), label)
         modulus, angle = cmath.polar(complex(value))
         degrees = significant(math.degrees(angle), 7)
-        yield Spelling("polar", f"{significant(modulus, 7)}{unit} ∠ {degrees}°")
-        yield Spelling("exponential", f"{modulus!r} e^(i*({angle!r})){unit}")
+        yield AnswerSpelling("polar", f"{significant(modulus, 7)}{unit} ∠ {degrees}°")
+        yield AnswerSpelling("exponential", f"{modulus!r} e^(i*({angle!r})){unit}")

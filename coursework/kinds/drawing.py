@@ -7,13 +7,13 @@ from typing import Any
 
 from coursework.errors import WrongValue
 from coursework.kinds.kind import Asking, Stated
-from coursework.kinds.open import Open
+from coursework.kinds.open import OpenKind
 from coursework.reading.reading import Reading
 
 _WIDEST, _HIGHEST = 160, 240  #: mm, of what a page holds
 
 
-class Drawing(Open):
+class Drawing(OpenKind):
     """Drawn on paper, so that nothing of it comes with the other answers: it waits for a person all the same."""
 
     name = "drawing"

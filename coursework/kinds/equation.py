@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 
 if TYPE_CHECKING:
-    from coursework.reading.equations import Equation as Read
+    from coursework.reading.equations import EquationKind as Read
     from coursework.reading.reading import Reading
 
 
-class Equation(Kind):
+class EquationKind(Kind):
     name = "equation"
     goes_with = ("variables",)
     is_exact = is_text = True
@@ -66,10 +66,10 @@ class Equation(Kind):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return str(value)
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         left, _, right = str(value).partition("=")
-        yield Spelling("exact", str(value))
-        yield Spelling("printed", f"2*({right}) - 2*({left}) = 0")
+        yield AnswerSpelling("exact", str(value))
+        yield AnswerSpelling("printed", f"2*({right}) - 2*({left}) = 0")
 
 
 @lru_cache(maxsize=4096)

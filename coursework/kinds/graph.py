@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from coursework.errors import WrongValue
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.language.words import words
 from coursework.reading.graph_likeness import Compared, compare, names_that_fit
 from coursework.reading.graphs import Edge, Graph, graph_of, read_graph, spelled
@@ -24,7 +24,7 @@ def _graph(value: Any) -> Graph:
     return graph_of(value) if isinstance(value, str) else value
 
 
-class JointGraph(Kind):
+class JointGraphKind(Kind):
     """The solution returns it as text, ``1-2 revolute, 3-4-5 revolute, 1-6 prismatic``: of bodies that one pivot holds
     together, all in one joint. The frame is the body of the lowest number."""
 
@@ -95,23 +95,23 @@ class JointGraph(Kind):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return self.words(value, label)
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         graph = _graph(value)
         back = tuple(joint._replace(bodies=joint.bodies[::-1]) for joint in reversed(graph))
-        yield Spelling("exact", str(value))
-        yield Spelling("printed", self.written(value, 6, label))
-        yield Spelling("letters", spelled(graph))
-        yield Spelling("slashes", "; ".join(f"{'/'.join(j.bodies)} : {label(j.kind)}" for j in back))
-        yield Spelling("lines", "\n".join(f"- {label(j.kind)} {' '.join(j.bodies)}" for j in back))
-        yield Spelling(
+        yield AnswerSpelling("exact", str(value))
+        yield AnswerSpelling("printed", self.written(value, 6, label))
+        yield AnswerSpelling("letters", spelled(graph))
+        yield AnswerSpelling("slashes", "; ".join(f"{'/'.join(j.bodies)} : {label(j.kind)}" for j in back))
+        yield AnswerSpelling("lines", "\n".join(f"- {label(j.kind)} {' '.join(j.bodies)}" for j in back))
+        yield AnswerSpelling(
             "with S", ", ".join(f"{'-'.join('S' + b for b in j.bodies)} {label(j.kind)}" for j in graph)
         )
-        yield Spelling("by kind", "\n".join(_by_kind(graph, label)))
-        yield Spelling(
+        yield AnswerSpelling("by kind", "\n".join(_by_kind(graph, label)))
+        yield AnswerSpelling(
             "as pairs", ", ".join(f"{a}-{b} {label(j.kind)}" for j in back for a, b in _chained(j))
         )
-        yield Spelling("records", [{"between": list(j.bodies), "kind": j.kind} for j in graph])
-        yield Spelling("tuples", [(*j.bodies, label(j.kind)) for j in back])
+        yield AnswerSpelling("records", [{"between": list(j.bodies), "kind": j.kind} for j in graph])
+        yield AnswerSpelling("tuples", [(*j.bodies, label(j.kind)) for j in back])
 
 
 @lru_cache(maxsize=4096)

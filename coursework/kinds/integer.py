@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.language.numbers import significant
 from coursework.quantities.graph import plain_scalar
 
@@ -41,7 +41,7 @@ class Integer(Kind):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return significant(value, _DIGITS)
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         unit = "" if part.unit == "1" else f" {part.unit}"
-        yield Spelling("exact", value)
-        yield Spelling("printed", self.written(value, _DIGITS, label) + unit)
+        yield AnswerSpelling("exact", value)
+        yield AnswerSpelling("printed", self.written(value, _DIGITS, label) + unit)

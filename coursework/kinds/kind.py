@@ -66,7 +66,7 @@ class Tick(NamedTuple):
     printed: str  #: beside the box, Markdown: a letter, a symbol; nothing where the engine has a word for it
 
 
-class Spelling(NamedTuple):
+class AnswerSpelling(NamedTuple):
     """A right answer in one of the ways that people write it; ways of one name stand on one sheet."""
 
     way: str  #: exact, printed, comma or edge
@@ -272,13 +272,13 @@ class Kind(ABC):
         """The same with decimal commas."""
         return written if self.is_text else written.replace(".", ",")
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         """A right answer in the ways people write it."""
         printed = self.written(value, 6, label)
-        yield Spelling("exact", value)
-        yield Spelling("printed", printed)
+        yield AnswerSpelling("exact", value)
+        yield AnswerSpelling("printed", printed)
         if self.comma(printed) != printed:
-            yield Spelling("comma", self.comma(printed))
+            yield AnswerSpelling("comma", self.comma(printed))
 
 
 _known: dict[str, Kind] = {}

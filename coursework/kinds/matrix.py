@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from coursework.kinds.entries import Entries
-from coursework.kinds.kind import Asking, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Stated
 from coursework.language.numbers import significant
 from coursework.reading.matrices import read_matrix
 from coursework.reading.reading import Reading
@@ -37,8 +37,8 @@ class Matrix(Entries):
         rows = (" ".join(significant(v, digits) for v in row) for row in np.asarray(value).tolist())
         return "[" + "; ".join(rows) + "]"
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         yield from super().spellings(part, value, label)
-        yield Spelling("lists", np.asarray(value).tolist())
+        yield AnswerSpelling("lists", np.asarray(value).tolist())
         inner = r" \\ ".join(" & ".join(map(repr, row)) for row in np.asarray(value).tolist())
-        yield Spelling("latex", rf"\begin{{pmatrix}} {inner} \end{{pmatrix}}")
+        yield AnswerSpelling("latex", rf"\begin{{pmatrix}} {inner} \end{{pmatrix}}")

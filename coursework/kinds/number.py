@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.kinds.nearness import SLACK, in_half_widths
 from coursework.language.numbers import plain, significant
 
@@ -43,15 +43,15 @@ class Number(Kind):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return significant(value, digits)
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         unit = "" if part.unit == "1" else f" {part.unit}"
         printed = self.written(value, 4, label) + unit
-        yield Spelling("exact", value)
-        yield Spelling("printed", printed)
+        yield AnswerSpelling("exact", value)
+        yield AnswerSpelling("printed", printed)
         if self.comma(printed) != printed:
-            yield Spelling("comma", self.comma(printed))
+            yield AnswerSpelling("comma", self.comma(printed))
         if part.has_margin:
-            yield Spelling("edge", plain(self.on_edge(part, value)))
+            yield AnswerSpelling("edge", plain(self.on_edge(part, value)))
 
     def on_edge(self, part: Stated, value: Any) -> float:
         """The last value that is right."""

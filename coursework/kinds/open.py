@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.reading.reading import Reading, text_of
 
 
-class Open(Kind):
+class OpenKind(Kind):
     """An answer that is kept as it came. No reference is needed, and none is looked at."""
 
     is_exact = is_text = is_open = True
@@ -34,5 +34,5 @@ class Open(Kind):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return str(value)
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         yield from ()

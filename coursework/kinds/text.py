@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from coursework.errors import WrongValue
-from coursework.kinds.open import Open
+from coursework.kinds.open import OpenKind
 
 _MOST_LINES = 40  #: of a page
 
 
-class Text(Open):
+class TextKind(OpenKind):
     name = "text"
     box = "lines"
     room = 4

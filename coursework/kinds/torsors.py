@@ -12,12 +12,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated, Tick
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated, Tick
 from coursework.kinds.nearness import in_half_widths, offset
 from coursework.kinds.ticks import share_of_named
 from coursework.language.numbers import significant
 from coursework.reading.reading import Reading
-from coursework.reading.torsors import Form, component_place, read_pattern, read_torsor
+from coursework.reading.torsors import TorsorForm, component_place, read_pattern, read_torsor
 
 _UNITS = (1e-3, 1e3)  #: metres for millimetres
 _PARALLEL = 1e-9  #: of what is square to the resultant but for rounding
@@ -38,7 +38,7 @@ class Torsor(Kind):
         ("unknown_symbol", "two_values", "not_a_number", "wrong_count", "wrong_shape", "wrong_torsor"),
         "not_torsor",
     )
-    form: ClassVar[Form]
+    form: ClassVar[TorsorForm]
 
     def of_resultant(self, unit: str) -> str:
         """The unit of the resultant where ``unit`` is that of the moments."""
@@ -177,19 +177,23 @@ class Torsor(Kind):
             return "(" + " ; ".join(numbers) + ")"
         return "{" + "; ".join(f"{a} {b}" for a, b in zip(numbers[:3], numbers[3:], strict=True)) + "}"
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         yield from super().spellings(part, value, label)
         plain = np.asarray(value).tolist()
         if len(plain) == 6:
             first, second = plain[:3], plain[3:]
-            yield Spelling("lists", [first, second])
-            yield Spelling("rows", [list(row) for row in zip(first, second, strict=True)])
-            yield Spelling("columns", f"{{{' '.join(map(repr, first))} | {' '.join(map(repr, second))}}}")
+            yield AnswerSpelling("lists", [first, second])
+            yield AnswerSpelling("rows", [list(row) for row in zip(first, second, strict=True)])
+            yield AnswerSpelling(
+                "columns", f"{{{' '.join(map(repr, first))} | {' '.join(map(repr, second))}}}"
+            )
             inner = r" \\ ".join(f"{a!r} & {b!r}" for a, b in zip(first, second, strict=True))
-            yield Spelling("latex", rf"\begin{{Bmatrix}} {inner} \end{{Bmatrix}}")
+            yield AnswerSpelling("latex", rf"\begin{{Bmatrix}} {inner} \end{{Bmatrix}}")
         else:
             names = self._names(3)
-            yield Spelling("named", "; ".join(f"{n} = {v!r}" for n, v in zip(names, plain, strict=True)))
+            yield AnswerSpelling(
+                "named", "; ".join(f"{n} = {v!r}" for n, v in zip(names, plain, strict=True))
+            )
 
 
 class Pattern(Kind):
@@ -206,7 +210,7 @@ class Pattern(Kind):
     has_several_ticks = True
     wrong = "wrong_case"
     faults: ClassVar[Mapping[str, str]] = {"wrong_torsor": "not_pattern", "unknown_symbol": "not_pattern"}
-    form: ClassVar[Form]
+    form: ClassVar[TorsorForm]
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         return read_pattern(answer, self.form)
@@ -256,12 +260,12 @@ class Pattern(Kind):
         cells = [name if name in components else "0" for name in self.form.names]
         return "{" + "; ".join(f"{a} {b}" for a, b in zip(cells[:3], cells[3:], strict=True)) + "}"
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
         components = self.components(value)
         marks = [int(name in components) for name in self.form.names]
-        yield Spelling("exact", ", ".join(sorted(components)) or "0")
-        yield Spelling("printed", self.written(value, 4, label))
-        yield Spelling("marks", [marks[:3], marks[3:]])
+        yield AnswerSpelling("exact", ", ".join(sorted(components)) or "0")
+        yield AnswerSpelling("printed", self.written(value, 4, label))
+        yield AnswerSpelling("marks", [marks[:3], marks[3:]])
 
 
 def _table(cells: list[str]) -> str:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
-from coursework.kinds.graph import JointGraph, _graph
+from coursework.kinds.graph import JointGraphKind, _graph
 from coursework.reading.graph_likeness import Compared, compare, held_names, names_that_fit, nearest_names
 from coursework.reading.graphs import Graph, renamed
 
 
-class UnnamedGraph(JointGraph):
-    """As :class:`~coursework.kinds.graph.JointGraph`; any numbers, letters or words may stand for the bodies. Who says which is
+class UnnamedGraph(JointGraphKind):
+    """As :class:`~coursework.kinds.graph.JointGraphKind`; any numbers, letters or words may stand for the bodies. Who says which is
     the frame (``frame``, ``bâti``, 0) must be right in that."""
 
     name = "unnamed_graph"

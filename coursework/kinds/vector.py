@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from coursework.kinds.entries import Entries
-from coursework.kinds.kind import Asking, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Stated
 from coursework.language.numbers import significant
 from coursework.reading.matrices import read_vector
 from coursework.reading.reading import Reading
 
 
-class Vector(Entries):
+class VectorKind(Entries):
     name = "vector"
     family = "vector"
     rank = 1
@@ -26,7 +26,7 @@ class Vector(Entries):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return "(" + " ; ".join(significant(v, digits) for v in value.tolist()) + ")"
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
-        yield Spelling("exact", value)
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
+        yield AnswerSpelling("exact", value)
         yield from (spelled for spelled in super().spellings(part, value, label) if spelled.way != "exact")
-        yield Spelling("column", [[v] for v in value.tolist()])
+        yield AnswerSpelling("column", [[v] for v in value.tolist()])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.language.numbers import significant
 
 if TYPE_CHECKING:
@@ -45,6 +45,6 @@ class Coordinates(Kind):
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return "(" + " ; ".join(significant(v, digits) for v in value.tolist()) + ")"
 
-    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
-        yield Spelling("exact", "; ".join(repr(v) for v in value.tolist()))
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
+        yield AnswerSpelling("exact", "; ".join(repr(v) for v in value.tolist()))
         yield from (spelled for spelled in super().spellings(part, value, label) if spelled.way != "exact")

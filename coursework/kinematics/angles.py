@@ -2,7 +2,7 @@
 
 A linkage is turned by the cosine and sine of its crank angle and of half of it. A number of radians
 cannot say half a turn exactly; a number of degrees can. So every function of the core that takes a
-crank angle takes radians or a :class:`Heading` made here.
+crank angle takes radians or a :class:`HalfAngle` made here.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from coursework import degrees
 from coursework.kinematics.elementary import tangent
 
 
-class Heading(NamedTuple):
+class HalfAngle(NamedTuple):
     """Direction as four numbers: cosine and sine of its angle and of half its angle (scalars or arrays of one
     shape).
 
@@ -112,7 +112,7 @@ def heading_in_degrees(angle: Any) -> Degrees:
 
 def taken_apart(angle: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
     """Return a constructor and the arrays from which it builds these radians or this heading again."""
-    make, parts = (type(angle), angle) if isinstance(angle, (Heading, Degrees)) else (_radians, (angle,))
+    make, parts = (type(angle), angle) if isinstance(angle, (HalfAngle, Degrees)) else (_radians, (angle,))
     return make, tuple(np.asarray(part, dtype=float)[()] for part in parts)
 
 
@@ -120,32 +120,32 @@ def _radians(angle: Any) -> Any:
     return angle
 
 
-def heading_after_turns(turns: Any, angle: Any) -> Heading:
+def heading_after_turns(turns: Any, angle: Any) -> HalfAngle:
     """Return the heading after whole turns and a further angle in radians; the turns cost no digit of the
     angle."""
     sign = np.where(np.mod(turns, 2) == 0, 1.0, -1.0)[()]
     half = np.multiply(angle, 0.5)
-    return Heading(np.cos(angle), np.sin(angle), sign * np.cos(half), sign * np.sin(half))
+    return HalfAngle(np.cos(angle), np.sin(angle), sign * np.cos(half), sign * np.sin(half))
 
 
-def heading_of(cos: Any, sin: Any) -> Heading:
+def heading_of(cos: Any, sin: Any) -> HalfAngle:
     """Return the heading of a unit vector, its angle in (-pi, pi]."""
     larger, smaller = halves(np.abs(cos), sin)
     ahead = np.greater_equal(cos, 0)
     half_cos, half_sin = np.sqrt(np.where(ahead, larger, smaller)), np.sqrt(np.where(ahead, smaller, larger))
-    return Heading(cos, sin, half_cos[()], np.copysign(half_sin, sin)[()])
+    return HalfAngle(cos, sin, half_cos[()], np.copysign(half_sin, sin)[()])
 
 
 def full_angle(angle: Any) -> tuple[Any, Any]:
     """Return the cosine and sine of radians or of a heading."""
-    if isinstance(angle, (Heading, Degrees)):
+    if isinstance(angle, (HalfAngle, Degrees)):
         return angle.cos, angle.sin
     return np.cos(angle), np.sin(angle)
 
 
 def half_angle(angle: Any) -> tuple[Any, Any]:
     """Return the signed cosine and sine of half the angle, each accurate to the last digits near its zero."""
-    if isinstance(angle, (Heading, Degrees)):
+    if isinstance(angle, (HalfAngle, Degrees)):
         return angle.half_cos, angle.half_sin
     half = np.multiply(angle, 0.5)
     return np.cos(half), np.sin(half)

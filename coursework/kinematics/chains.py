@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
-from coursework.kinematics.angles import Degrees, Heading, full_angle
+from coursework.kinematics.angles import Degrees, HalfAngle, full_angle
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import derivative
 from coursework.system.blocks import in_blocks
@@ -84,7 +84,7 @@ class ClosedChain:
         Parameters
         ----------
         known
-            Values by name, scalars or arrays that broadcast; angles in radians or as :class:`Heading`.
+            Values by name, scalars or arrays that broadcast; angles in radians or as :class:`HalfAngle`.
         start
             A first guess of each unknown, scalars or arrays that broadcast with the known values.
 
@@ -101,8 +101,8 @@ class ClosedChain:
         directions = {name: known[name] for name in self.known if name in self._angles}
         directions = {
             name: value
-            if isinstance(value, (Heading, Degrees))
-            else Heading(*full_angle(np.asarray(value, float)), 0.0, 0.0)
+            if isinstance(value, (HalfAngle, Degrees))
+            else HalfAngle(*full_angle(np.asarray(value, float)), 0.0, 0.0)
             for name, value in directions.items()
         }
         lengths = {name: np.asarray(known[name], float) for name in self.known if name in self._lengths}

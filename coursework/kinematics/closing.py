@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.kinematics.angles import Degrees, Heading, half_angle
+from coursework.kinematics.angles import Degrees, HalfAngle, half_angle
 
 
 class Sweep(NamedTuple):
@@ -38,7 +38,7 @@ def sweep(angle: Any, w: Any) -> Sweep:
     """Return the sweep of an angle in radians or of a heading; radians and degrees cost one tangent."""
     if isinstance(angle, Degrees):
         return Sweep(*angle.half_squares(w))
-    if isinstance(angle, Heading):
+    if isinstance(angle, HalfAngle):
         return Sweep(w * angle.half_cos**2, w * angle.half_sin**2, (0.5 * w) * angle.sin)
     tangent = np.tan(angle * 0.5)
     squared = tangent * tangent

@@ -94,7 +94,7 @@ def _compare(texts: Mapping[str, object], english: Mapping[str, object], file: P
             if type(texts[name]) is not type(text)
         ),
         *(
-            f"{name} has {_told(places)} where the English text has {_told(wanted)}"
+            f"{name} has {_braces_text(places)} where the English text has {_braces_text(wanted)}"
             for name, text in english.items()
             if (places := _places(texts[name])) != (wanted := _places(text))
         ),
@@ -112,7 +112,7 @@ def _places(text: object) -> frozenset[str]:
     return frozenset(_PLACE.findall(text)) if isinstance(text, str) else frozenset()
 
 
-def _told(places: Iterable[str]) -> str:
+def _braces_text(places: Iterable[str]) -> str:
     return ", ".join(sorted(places)) or "no braces"
 
 

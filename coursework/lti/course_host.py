@@ -38,7 +38,7 @@ from coursework.marking.marking import mark
 from coursework.messages import localised
 from coursework.rendering.feedback import verdict_word
 from coursework.sheets.handout import handout
-from coursework.sheets.paper import FeedbackPaper, Heading, Paper
+from coursework.sheets.paper import FeedbackPaper, Paper, PaperHeading
 
 _LONGEST = 4000  #: characters of one answer
 _COMMENT = 900  #: characters of a comment in the gradebook
@@ -426,9 +426,9 @@ class CourseHost:
         exercise = self.course[wanted.exercise]
         return exercise.title(lang if lang in exercise.languages else exercise.languages[0])
 
-    def _heading(self, visit: LTIRequest, wanted: LinkSettings) -> Heading:
+    def _heading(self, visit: LTIRequest, wanted: LinkSettings) -> PaperHeading:
         assignment, lang = self._assignment(wanted), visit.lang
-        return Heading(
+        return PaperHeading(
             lang=lang,
             title=self._title(wanted, lang),
             course=text_in(assignment.course, lang)

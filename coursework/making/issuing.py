@@ -11,7 +11,7 @@ from typing import Any, Protocol, Self, TypeVar
 
 from coursework.course import draws
 from coursework.course.answer_key import Key
-from coursework.course.asked import Asked
+from coursework.course.asked import KeySource
 from coursework.course.course import Course
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.secrecy import Secret
@@ -213,7 +213,7 @@ def drawn_by(
     return variants, shared
 
 
-class Issuable(Asked, Asking, Protocol):
+class Issuable(KeySource, Asking, Protocol):
     """Variant that provides the content of its sheets."""
 
     @property

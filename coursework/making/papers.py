@@ -23,7 +23,7 @@ from coursework.making.identity import printed_columns
 from coursework.making.issuing import Issue
 from coursework.making.students import folded
 from coursework.rendering.renderer import Renderer, renderer_of
-from coursework.sheets.paper import Heading, Paper, SolutionPaper
+from coursework.sheets.paper import Paper, PaperHeading, SolutionPaper
 from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import File
@@ -58,10 +58,10 @@ class IssuedPaper:
             (0, int(p), "") if p.isdecimal() and len(p) <= _DIGITS else (1, 0, folded(p)) for p in pieces
         )
 
-    def heading(self, lang: str) -> Heading:
+    def heading(self, lang: str) -> PaperHeading:
         assignment, first, columns = self.assignment, self.first, self._columns
         mark = assignment.mark
-        return Heading(
+        return PaperHeading(
             lang=lang,
             title=text_in(assignment.title, lang) or assignment.name,
             course=text_in(assignment.course, lang) or first.variant.exercise.folder.title(lang),

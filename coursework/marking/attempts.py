@@ -26,7 +26,7 @@ GUESSED = 3  #: counts and cases at least that are wrong, and more than are righ
 
 
 @dataclass(frozen=True)
-class Sheet:
+class SheetEvidence:
     """Evidence that the answers of a student give when they are compared with one another."""
 
     everywhere: frozenset[float] = frozenset()  #: numbers that are written for several different things
@@ -36,7 +36,7 @@ class Sheet:
 
 def sheet_of(
     parts: Mapping[str, Part], readings: Mapping[str, Reading], right_answers: Mapping[str, str], key: Key
-) -> Sheet:
+) -> SheetEvidence:
     """Return the evidence in the answers of a sheet; ``known`` maps the ids of right parts to their texts."""
     return replace(
         _numbers_of(parts, readings, right_answers, key),
@@ -74,7 +74,7 @@ def _is_wrong(part: Part, reading: Reading, key: Key) -> bool:
 
 def _numbers_of(
     parts: Mapping[str, Part], readings: Mapping[str, Reading], right_answers: Mapping[str, str], key: Key
-) -> Sheet:
+) -> SheetEvidence:
     """Return the evidence in the numbers of a sheet."""
     answers: list[tuple[int, Part, float]] = []
     for number, (i, part) in enumerate(parts.items(), start=1):
@@ -86,18 +86,23 @@ def _numbers_of(
             answers.append((number, part, float(readings[i].values[0])))
     quantities: dict[float, set[str]] = {}
     for _, part, value in (answer for answer in answers if not answer[1].sort.is_exact):
-        quantities.setdefault(value, set()).add(_thing(key, part))
+        quantities.setdefault(value, set()).add(_quantity_key(key, part))
     everywhere = frozenset(value for value, parts_asked in quantities.items() if len(parts_asked) >= THINGS)
-    if len({value for *_, value in answers}) == 1 and len({_thing(key, part) for _, part, _ in answers}) > 1:
-        return Sheet(everywhere, has_work=len(answers) < DIFFERENT)
+    if (
+        len({value for *_, value in answers}) == 1
+        and len({_quantity_key(key, part) for _, part, _ in answers}) > 1
+    ):
+        return SheetEvidence(everywhere, has_work=len(answers) < DIFFERENT)
     if len(answers) < FEW:
-        return Sheet(everywhere)
+        return SheetEvidence(everywhere)
     wrong = [(n, p, v) for n, p, v in answers if p.sort.distance(p, v, key.reference[p.quantity]) > 1]
     if len(wrong) < FEW:
-        return Sheet(everywhere)
+        return SheetEvidence(everywhere)
     given = {float(v) for v in key.variant.given.values() if isinstance(v, (int, float))}
     values = [value for *_, value in wrong]
-    parts_by_value = {value: {_thing(key, part) for _, part, v in wrong if v == value} for value in values}
+    parts_by_value = {
+        value: {_quantity_key(key, part) for _, part, v in wrong if v == value} for value in values
+    }
     copies = (
         max(
             (
@@ -110,10 +115,10 @@ def _numbers_of(
         sum(value == number for number, _, value in wrong),
         sum(value in given for value in values),
     )
-    return Sheet(everywhere, has_work=max(copies) < max(FEW, MOST * len(wrong)))
+    return SheetEvidence(everywhere, has_work=max(copies) < max(FEW, MOST * len(wrong)))
 
 
-def _thing(key: Key, part: Part) -> str:
+def _quantity_key(key: Key, part: Part) -> str:
     """Return a key for the quantity that a part asks for, by its value: two parts may ask for the same."""
     return f"{key.reference[part.quantity]:.6g}"
 

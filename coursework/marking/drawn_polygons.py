@@ -66,7 +66,7 @@ class Read(NamedTuple):
     sense: str = "value_sense"  #: the mistake of its sign
 
 
-class Asked(NamedTuple):
+class DrawingParts(NamedTuple):
     """Quantities that a drawing is asked for, each by part id."""
 
     scale: str
@@ -77,7 +77,7 @@ class Asked(NamedTuple):
     hung: frozenset[str] = frozenset()  #: names of mistakes that tell on what a vector hangs
 
 
-def verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
+def verdicts(answers: Answers, polygon: Polygon, asked: DrawingParts) -> dict[str, Judged]:
     """A :class:`Judged` for each answer that can be judged."""
     judgements = _verdicts(answers, polygon, asked)
     ends = {**asked.lengths, **{part: (read.start, read.end) for part, read in asked.reads.items()}}
@@ -106,7 +106,7 @@ def read_off(
     }
 
 
-def _verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
+def _verdicts(answers: Answers, polygon: Polygon, asked: DrawingParts) -> dict[str, Judged]:
     scale = _stated(answers, polygon, asked)
     readings = drawn(answers, polygon, asked)
     if readings is None:
@@ -127,7 +127,7 @@ def _verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Jud
     return judgements | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
 
 
-def drawn(answers: Answers, polygon: Polygon, asked: Asked) -> tuple[JudgedDrawing, bool] | None:
+def drawn(answers: Answers, polygon: Polygon, asked: DrawingParts) -> tuple[JudgedDrawing, bool] | None:
     """The judged drawing of these answers, and whether its scale is stated upside down; None unless the pole and
     another point are drawn."""
     points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
@@ -142,7 +142,7 @@ def drawn(answers: Answers, polygon: Polygon, asked: Asked) -> tuple[JudgedDrawi
     return drawing, False
 
 
-def _stated(answers: Answers, polygon: Polygon, asked: Asked) -> float | None:
+def _stated(answers: Answers, polygon: Polygon, asked: DrawingParts) -> float | None:
     """The scale that the answers state, if it is one."""
     scale = float(answers[asked.scale]) if asked.scale in answers else None
     return scale if scale is not None and is_scale(polygon, scale) else None
@@ -162,7 +162,7 @@ def _of_scale(scale: float | None, upside_down: bool, drawing: JudgedDrawing) ->
     return Judged() if drawing.fits_stated_scale else Judged(0.0, "scale_not_drawn")
 
 
-def _of_point(point: str, drawing: JudgedDrawing, asked: Asked) -> Judged:
+def _of_point(point: str, drawing: JudgedDrawing, asked: DrawingParts) -> Judged:
     if point == drawing.polygon.pole:
         # Any pole is right from which something was drawn; what is wrong about that is another point's.
         others = [q for q in drawing.points if q != point]
@@ -189,14 +189,14 @@ def _is_drawn_from(pole: str, point: str, drawing: JudgedDrawing) -> bool:
     return drawing.is_right(point) or right / _ATTEMPT <= length <= _ATTEMPT * right
 
 
-def _of_fault(point: str, drawing: JudgedDrawing, asked: Asked) -> Judged:
+def _of_fault(point: str, drawing: JudgedDrawing, asked: DrawingParts) -> Judged:
     fault = drawing.faults[point]
     names = [_named(point, f, asked) for f in fault.explanations]
     printed = [name for name in names if name]
     return Judged(0.0, printed[0], also=tuple(printed[1:]))
 
 
-def _named(point: str, fault: DrawingFault, asked: Asked) -> str:
+def _named(point: str, fault: DrawingFault, asked: DrawingParts) -> str:
     """The mistake that a fault is; none where a vector hangs on a point of which no mistake tells."""
     parts = {image: i for i, image in asked.points.items()}
     if fault.side is None:
@@ -208,7 +208,7 @@ def _named(point: str, fault: DrawingFault, asked: Asked) -> str:
     return name if name in asked.hung else ""
 
 
-def _lengths(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str, Judged]:
+def _lengths(answers: Answers, drawing: JudgedDrawing, asked: DrawingParts) -> dict[str, Judged]:
     judgements: dict[str, Judged] = {}
     for part, (start, end) in asked.lengths.items():
         if part not in answers:
@@ -224,7 +224,7 @@ def _lengths(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str
     return judgements
 
 
-def _reads(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str, Judged]:
+def _reads(answers: Answers, drawing: JudgedDrawing, asked: DrawingParts) -> dict[str, Judged]:
     """Right to the millimetres that the drawing may be off, a tenth at most; or as read off the student's own
     drawing, or from the student's own length."""
     judgements = {}
@@ -234,14 +234,16 @@ def _reads(answers: Answers, drawing: JudgedDrawing, asked: Asked) -> dict[str, 
     return judgements
 
 
-def _right_reads(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
+def _right_reads(answers: Answers, polygon: Polygon, asked: DrawingParts) -> dict[str, Judged]:
     """Without scale and drawing, the values that are right all the same; nothing can be said of the others."""
     usual = float(scale_for(*(np.asarray(image, dtype=complex) for image in polygon.points.values())))
     judgements = _reads(answers, judge_drawing(polygon, {polygon.pole: 0j}, usual), asked)
     return {part: verdict for part, verdict in judgements.items() if verdict.share == 1.0}
 
 
-def _of_value(number: float, read: Read, drawing: JudgedDrawing, answers: Answers, asked: Asked) -> Judged:
+def _of_value(
+    number: float, read: Read, drawing: JudgedDrawing, answers: Answers, asked: DrawingParts
+) -> Judged:
     ends, scale, images = (read.start, read.end), drawing.scale, drawing.polygon.points
     right = read.value(images[read.end] - images[read.start])
     millimetre = scale * read.gain

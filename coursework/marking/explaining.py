@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from coursework.course.answer_key import Key, Slip
-from coursework.course.asked import Asked
+from coursework.course.asked import KeySource
 from coursework.course.error_values import TAKEN, UsualError
-from coursework.marking.attempts import Sheet, is_attempt
+from coursework.marking.attempts import SheetEvidence, is_attempt
 from coursework.marking.calculator import fitting as fitting_in_radians
 from coursework.marking.calculator import values_in_radians
 from coursework.marking.usual import (
@@ -45,13 +45,13 @@ def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> 
 
 
 @dataclass
-class Before:
+class EarlierAnswers:
     """Earlier answers of a student: numbers and cases by quantity, and which of them are wrong."""
 
     own: dict[str, Any] = field(default_factory=dict)
     wrong: set[str] = field(default_factory=set)  #: those from which one may go on
     mistaken: set[str] = field(default_factory=set)  #: all that are not right
-    sheet: Sheet = field(default_factory=Sheet)
+    sheet: SheetEvidence = field(default_factory=SheetEvidence)
     right: set[str] = field(default_factory=set)  #: quantities, of any kind of answer
     shown: set[str] = field(default_factory=set)  #: verdicts that explain earlier answers
     read: list[tuple[Part, Reading]] = field(default_factory=list)  #: numbers, whole ones too, and choices
@@ -137,7 +137,7 @@ def mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
     return [name for name, value in ways if _fits(part, reading, value, None, 0.0)]
 
 
-def _is_likely(name: str, key: Key, part: Part, before: Before) -> bool:
+def _is_likely(name: str, key: Key, part: Part, before: EarlierAnswers) -> bool:
     """Return whether a mistake that explains an answer may be reported to the student.
 
     Not one made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
@@ -170,7 +170,9 @@ def _shows(key: Key, mistake: str, quantity: str) -> bool:
     )
 
 
-def explained(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> list[Explanation]:
+def explained(
+    key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
+) -> list[Explanation]:
     """Every explanation of a wrong answer, the one to name first."""
     close = [nearness(part, key, judged_by, value, CLOSE) for value in reading.values]
     explanations = [
@@ -203,7 +205,7 @@ def alternatives(explanations: Sequence[Explanation]) -> list[Explanation]:
 
 
 def _explanations(
-    key: Key, part: Part, reading: Reading, judged_by: Part, before: Before
+    key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
 ) -> Iterator[Explanation]:
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
@@ -287,7 +289,7 @@ _FEW_WRONG = 2  #: earlier answers that are wrong, from which one more error is 
 
 
 def _from_own(
-    key: Key, part: Part, reading: Reading, judged_by: Part, before: Before
+    key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
 ) -> Iterator[Explanation]:
     """The usual errors in a quantity's formula that give an answer from what the student had wrong before."""
     if len(before.wrong) > _FEW_WRONG and ALL_DEGREES not in before.paid:
@@ -298,7 +300,9 @@ def _from_own(
         yield from map(_of_usual, own_errors_that_fit(key, part, reading, judged_by, own_wrong))
 
 
-def _usual(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> Iterator[Explanation]:
+def _usual(
+    key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
+) -> Iterator[Explanation]:
     fits = usual_errors_that_fit(key, part, reading, judged_by, before.right, before.answered)
     yield from map(_of_usual, fits)
 
@@ -328,7 +332,7 @@ def _of_unit(slip: Slip, unit: str) -> tuple[str, ...]:
     return (f"{slip.kind}/{slip.factor:.6g}/{length_unit}",)
 
 
-def _is_constant(key: Key, part: Part, value: Any, before: Before) -> bool:
+def _is_constant(key: Key, part: Part, value: Any, before: EarlierAnswers) -> bool:
     """Return whether an answer only repeats a number that is written everywhere, as do those that it would
     follow from."""
     if not before.is_copied(part, value):
@@ -337,7 +341,7 @@ def _is_constant(key: Key, part: Part, value: Any, before: Before) -> bool:
     return all(before.own[q] == value for q in above)
 
 
-def _lengths(variant: Asked) -> dict[str, float]:
+def _lengths(variant: KeySource) -> dict[str, float]:
     """The given numbers that are no angles."""
     units = variant.exercise.units
     return {n: v for n, v in variant.used.items() if not isinstance(v, str) and units.get(n) != "deg"}

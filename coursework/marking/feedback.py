@@ -29,7 +29,7 @@ ECHO = 60  #: characters of an answer quoted back
 QUOTED = 40  #: characters of one that could not be read
 
 
-class Said(NamedTuple):
+class Sentence(NamedTuple):
     """A sentence of the engine, and the Markdown that fills it: ``{name}: {read} is right.``"""
 
     sentence: str
@@ -45,7 +45,7 @@ class Said(NamedTuple):
         return " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
 
 
-class Told(NamedTuple):
+class RecordedSentence(NamedTuple):
     """Message in both forms: Markdown, where it was wanted, and one line of plain text."""
 
     says: str
@@ -97,9 +97,9 @@ def localised(read_as: str, lang: str) -> str:
     return number.replace(" °", "°")
 
 
-def say(variant: Variant, part: Part, sentence: str, **pieces: str) -> Said:
+def say(variant: Variant, part: Part, sentence: str, **pieces: str) -> Sentence:
     """A sentence of the engine about a part."""
-    return Said(words(variant.lang)["marking"][sentence], {"name": _opening(variant, part), **pieces})
+    return Sentence(words(variant.lang)["marking"][sentence], {"name": _opening(variant, part), **pieces})
 
 
 def _opening(variant: Variant, part: Part) -> str:
@@ -108,7 +108,7 @@ def _opening(variant: Variant, part: Part) -> str:
     return name[:1].upper() + name[1:]
 
 
-def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
+def say_not_read(variant: Variant, part: Part, reading: Reading) -> Sentence:
     """Why an answer could not be read, or that there is none."""
     table = words(variant.lang)["marking"]
     unit = unit_text(part.unit, variant.lang)
@@ -132,7 +132,7 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
         sentence = table["wrong_unit" if unit else unitless]
     else:
         sentence = table["missing"]
-    return Said(sentence, pieces)
+    return Sentence(sentence, pieces)
 
 
 def _to_eliminate(variant: Variant, part: Part, run: str) -> str:
@@ -243,9 +243,9 @@ def right_says(variant: Variant, part: Part, read_as: str) -> str:
     return _right(variant.exercise, part, variant.lang, echo(read_as, variant.lang)).markdown()
 
 
-def _right(exercise: CourseExercise, part: Part, lang: str, read: str) -> Said:
+def _right(exercise: CourseExercise, part: Part, lang: str, read: str) -> Sentence:
     name = f"${exercise.symbol(part.quantity)}$"
-    return Said(words(lang)["marking"]["correct"], {"name": name[:1].upper() + name[1:], "read": read})
+    return Sentence(words(lang)["marking"]["correct"], {"name": name[:1].upper() + name[1:], "read": read})
 
 
 _READ = "\N{OBJECT REPLACEMENT CHARACTER}"

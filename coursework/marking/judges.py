@@ -18,13 +18,13 @@ from coursework.reading.reading import Reading
 from coursework.solution import Judged
 
 if TYPE_CHECKING:
-    from coursework.course.asked import Asked
+    from coursework.course.asked import KeySource
 
 
 SHEETS = 64  #: ways at most to read one student's answers to the parts of one judge
 
 
-def judges_of(variant: Asked) -> Iterator[tuple[str, tuple[str, ...]]]:
+def judges_of(variant: KeySource) -> Iterator[tuple[str, tuple[str, ...]]]:
     """The judges of a variant, each with the ids of its parts."""
     names = dict.fromkeys(part.judge for part in variant.parts if part.judge)
     for name in names:
@@ -32,7 +32,7 @@ def judges_of(variant: Asked) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def judged(
-    variant: Asked, name: str, answers: Mapping[str, Any], own_answers: Mapping[str, float] | None = None
+    variant: KeySource, name: str, answers: Mapping[str, Any], own_answers: Mapping[str, float] | None = None
 ) -> dict[str, Judged]:
     """Return the judgement of a judge on answers by part id, each a number or coordinates in the part's unit.
 
@@ -64,7 +64,7 @@ def judged(
     return {part: judgements[part] for part in answers if part in judgements}
 
 
-def _needs(variant: Asked, name: str) -> list[str]:
+def _needs(variant: KeySource, name: str) -> list[str]:
     """The quantities that a judge takes."""
     first, *needs = _parameters(variant.exercise.solution.judge(name))
     if first != "answers":
@@ -92,7 +92,7 @@ class Verdict(NamedTuple):
 
 
 def best_judged(
-    variant: Asked,
+    variant: KeySource,
     name: str,
     readings: Mapping[str, Reading],
     own_answers: Mapping[str, float],
@@ -127,6 +127,6 @@ def best_judged(
     return best
 
 
-def _bears_on(variant: Asked, name: str, wrong: Collection[str]) -> bool:
+def _bears_on(variant: KeySource, name: str, wrong: Collection[str]) -> bool:
     solution, needs = variant.exercise.solution, set(_needs(variant, name))
     return any(q in needs or needs & solution.depending_on(q) for q in wrong)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coursework.errors import unknown
-from coursework.marking.feedback import Said, Told
+from coursework.marking.feedback import RecordedSentence, Sentence
 from coursework.model import Part
 from coursework.reading.reading import Reading
 
@@ -26,7 +26,7 @@ class Mark(NamedTuple):
     lang: str
     matches: tuple[str, ...] = ()  #: every verdict that explains this answer, the one given first
     in_other_order: bool = False  #: right because the student exchanged two assemblies
-    told: tuple[Said | Told, ...] = ()  #: what is said of it, sentence by sentence
+    told: tuple[Sentence | RecordedSentence, ...] = ()  #: what is said of it, sentence by sentence
 
     @property
     def says(self) -> str:
@@ -51,10 +51,10 @@ class Mark(NamedTuple):
     @classmethod
     def received(cls, sent: tuple[Any, ...]) -> Mark:
         """The mark of what was :meth:`sent`."""
-        return cls._make((*sent[:-2], (Told(*sent[-2:]),)))
+        return cls._make((*sent[:-2], (RecordedSentence(*sent[-2:]),)))
 
 
-class Marking(Mapping[str, Mark]):
+class SheetMarks(Mapping[str, Mark]):
     """The marks of one student on one variant, by part id."""
 
     def __init__(self, marks: Mapping[str, Mark]):
@@ -88,7 +88,7 @@ class Marking(Mapping[str, Mark]):
 
 def made_mark(
     variant: Variant, part: Part, reading: Reading, verdict: str, share: float, read_as: str,
-    message: Said, matches: tuple[str, ...] = (),
+    message: Sentence, matches: tuple[str, ...] = (),
 ) -> Mark:  # fmt: skip
     """The mark of an answer that earns a share of its part's points."""
     points = float(part.points)

@@ -21,11 +21,11 @@ from coursework.marking.attempts import sheet_of
 from coursework.marking.calculator import is_in_radians
 from coursework.marking.doubtful import settled
 from coursework.marking.exchanged import Exchange, exchanged
-from coursework.marking.explaining import Before, fits_followed, nearest_reading
-from coursework.marking.feedback import Said, echo, part_name, questions, say, say_not_read
+from coursework.marking.explaining import EarlierAnswers, fits_followed, nearest_reading
+from coursework.marking.feedback import Sentence, echo, part_name, questions, say, say_not_read
 from coursework.marking.judges import best_judged
 from coursework.marking.loop_judge import loop_verdicts
-from coursework.marking.mark import Mark, Marking, made_mark
+from coursework.marking.mark import Mark, SheetMarks, made_mark
 from coursework.marking.mending import mark_wrong, shown_as
 from coursework.marking.once import signs_counted_once
 from coursework.marking.together import is_scale, is_told_with, mark_judged, waits_for
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 
-def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] | None = None) -> Marking:
+def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] | None = None) -> SheetMarks:
     """Mark the answers to a variant; a part left out is missing.
 
     Parts that are ``known`` to be right, with their numbers as read, are not marked again, and are not in
@@ -66,7 +66,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = settled(variant, readings, answers)
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
-    before = Before(sheet=sheet_of(parts, readings, known, key))
+    before = EarlierAnswers(sheet=sheet_of(parts, readings, known, key))
     alone = [i for i, p in parts.items() if i not in known and not p.judge and i not in together]
     nearest_of = {i: nearest_reading(parts[i], readings[i], key, parts[target[i]]) for i in alone}
     wrong = {i: readings[i] for i, (_, gap) in nearest_of.items() if gap > 1 and target[i] == i}
@@ -110,9 +110,9 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     marks = signs_counted_once(variant, marks, key.rules.follow_through)
     for i in marks:
         if target[i] != i and marks[i].verdict == "correct":
-            note = Said(words(variant.lang)["marking"]["either_order"], {})
+            note = Sentence(words(variant.lang)["marking"]["either_order"], {})
             marks[i] = marks[i]._replace(in_other_order=True, told=(*marks[i].told, note))
-    return Marking(marks)
+    return SheetMarks(marks)
 
 
 def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dict[str, str]:
@@ -144,7 +144,7 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
     return best
 
 
-def _follows(key: Key, part: Part, reading: Reading, before: Before) -> bool:
+def _follows(key: Key, part: Part, reading: Reading, before: EarlierAnswers) -> bool:
     """Return whether an answer follows from earlier ones in its own box."""
     return (
         reading.status == "read"
@@ -180,7 +180,7 @@ def _mark_part(
     reading: Reading,
     judged_by: Part,
     nearest: tuple[int, float],
-    before: Before,
+    before: EarlierAnswers,
 ) -> Mark:
     mark_of = partial(made_mark, variant, part, reading)
     if reading.status != "read":

@@ -8,10 +8,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from coursework.course.answer_key import Key
-from coursework.course.asked import Asked
+from coursework.course.asked import KeySource
 from coursework.language.words import listed, quoted, words
-from coursework.marking.explaining import Before, Explanation, alternatives, explained, fits_followed
-from coursework.marking.feedback import Said, echo, questions, say, symbol
+from coursework.marking.explaining import EarlierAnswers, Explanation, alternatives, explained, fits_followed
+from coursework.marking.feedback import Sentence, echo, questions, say, symbol
 from coursework.marking.mark import Mark, made_mark
 from coursework.marking.usual import NAMED, whys
 from coursework.markup.markdown import plain_line
@@ -39,7 +39,7 @@ def shown_as(variant: Variant, part: Part, reading: Reading, index: int) -> tupl
 
 
 def mark_wrong(
-    variant: Variant, key: Key, part: Part, reading: Reading, judged_by: Part, before: Before
+    variant: Variant, key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
 ) -> Mark:
     """The mark of an answer that was read and is not right."""
     explanations = explained(key, part, reading, judged_by, before)
@@ -60,15 +60,15 @@ def mark_wrong(
         shares = {e.verdict: max(least, _share(key, e, matches)) for e in named}
         verdict = max(shares, key=shares.__getitem__)  # where nothing tells which, the one that costs least
         earlier = _followed_from(key, part, reading, judged_by, before) if _follows(named) else ()
-        message = _told(variant, part, judged_by, named, read, earlier)
+        message = _explained_message(variant, part, judged_by, named, read, earlier)
         return mark_of(verdict, shares[verdict], read_as, message, matches)
     value, reference = reading.values[index], key.reference[judged_by.quantity]
     share = _right_share(key, part, value, judged_by)
-    more = [Said(*remark) for remark in _remarks(variant, part, value, reference)]
+    more = [Sentence(*remark) for remark in _remarks(variant, part, value, reference)]
     if share > 0:
         mark = mark_of("partial", share, read_as, say(variant, part, "partial", read=read), matches)
     else:
-        mark = mark_of("wrong", 0.0, read_as, _told_wrong(variant, part, read, before), matches)
+        mark = mark_of("wrong", 0.0, read_as, _unexplained_message(variant, part, read, before), matches)
         more += _size_remarks(variant, part, value, reference)
     return mark._replace(told=(*mark.told, *more))
 
@@ -81,17 +81,17 @@ def _remarks(
         yield sentence, {"list": remark}
 
 
-def _size_remarks(variant: Variant, part: Part, value: Any, reference: Any) -> Iterator[Said]:
+def _size_remarks(variant: Variant, part: Part, value: Any, reference: Any) -> Iterator[Sentence]:
     """Yield what the sign and the order of magnitude of a wrong number tell, of one that is no direction."""
     sort = part.sort
     if not sort.is_number or sort.is_exact or sort.turn or not value or not reference:
         return
     table = words(variant.lang)["marking"]["size"]
     if value * reference < 0:
-        yield Said(table["sign"], {})
+        yield Sentence(table["sign"], {})
     ratio = abs(value / reference)
     if ratio >= _FAR or ratio <= 1 / _FAR:
-        yield Said(table["large" if ratio > 1 else "small"], {})
+        yield Sentence(table["large" if ratio > 1 else "small"], {})
 
 
 def _right_share(key: Key, part: Part, value: Any, judged_by: Part) -> float:
@@ -99,7 +99,7 @@ def _right_share(key: Key, part: Part, value: Any, judged_by: Part) -> float:
     return part.sort.share(part, value, key.reference[judged_by.quantity])
 
 
-def _named(explanations: Sequence[Explanation], before: Before) -> list[Explanation]:
+def _named(explanations: Sequence[Explanation], before: EarlierAnswers) -> list[Explanation]:
     """Return the explanations to report: one, or several that cannot be distinguished; none if they are too
     many.
 
@@ -125,14 +125,14 @@ def _share(key: Key, explanation: Explanation, matches: Collection[str]) -> floa
     return key.rules.share(name) if kind == "slip" else key.price(name)
 
 
-def _told(
+def _explained_message(
     variant: Variant,
     part: Part,
     judged_by: Part,
     named: Sequence[Explanation],
     read: str,
     earlier: Sequence[str],
-) -> Said:
+) -> Sentence:
     kind, _, name = named[0].verdict.partition(":")
     message_of = partial(say, variant, part, read=read)
     if kind == "follow_through":
@@ -156,7 +156,7 @@ def _follows(named: Sequence[Explanation]) -> bool:
     return named[0].verdict == "follow_through"
 
 
-def _followed_from(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> list[str]:
+def _followed_from(key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers) -> list[str]:
     """Return the fewest parts whose wrong answers an answer follows from, the others being right."""
     parts = _asked_above(key.variant, judged_by.quantity, before.wrong)
     nearest = [p.quantity for p in reversed(parts)]
@@ -171,7 +171,7 @@ def _followed_from(key: Key, part: Part, reading: Reading, judged_by: Part, befo
     return [p.id for p in parts]
 
 
-def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said:
+def _unexplained_message(variant: Variant, part: Part, read: str, before: EarlierAnswers) -> Sentence:
     """Return the message for an unexplained answer: the asked quantities that it depends on, and which of
     them are right."""
     table = words(variant.lang)["marking"]
@@ -203,7 +203,7 @@ def _given_above(variant: Variant, quantity: str) -> list[str]:
     return [f"${symbol(variant, name)}$" for name in given] if len(given) <= _LISTED else []
 
 
-def _asked_above(variant: Asked, quantity: str, among: set[str]) -> list[Part]:
+def _asked_above(variant: KeySource, quantity: str, among: set[str]) -> list[Part]:
     """The nearest parts that a quantity is computed from, of some quantities, in the order of the sheet."""
     graph = variant.exercise.solution.graph.textbook
     met: set[str] = set()

@@ -7,7 +7,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from coursework.language.words import words
-from coursework.marking.feedback import Said, questions
+from coursework.marking.feedback import Sentence, questions
 from coursework.marking.mark import Mark
 from coursework.model import Part
 from coursework.quantities.graph import Graph
@@ -31,7 +31,7 @@ def signs_counted_once(variant: Variant, marks: Mapping[str, Mark], share: float
         if turned.issuperset(group):
             for i in others:
                 note = words(variant.lang)["marking"]["sign_with"]
-                message = Said(note, {"first": questions(variant, [first], "and")})
+                message = Sentence(note, {"first": questions(variant, [first], "and")})
                 mark = marks[i]
                 first_by_group[i] = mark._replace(
                     verdict="follow_through", points=share * mark.out_of, told=(*mark.told, message)

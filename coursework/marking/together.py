@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from coursework.course.answer_key import Key
 from coursework.errors import CourseworkError
 from coursework.language.words import words
-from coursework.marking.explaining import Before, mistakes_that_fit
-from coursework.marking.feedback import Said, amount, echo, either_symbol, part_name, questions, say
+from coursework.marking.explaining import EarlierAnswers, mistakes_that_fit
+from coursework.marking.feedback import Sentence, amount, echo, either_symbol, part_name, questions, say
 from coursework.marking.judges import Verdict, judged
 from coursework.marking.mark import Mark, made_mark
 from coursework.model import Part
@@ -35,7 +35,7 @@ def mark_judged(
     judgement: Verdict,
     told_with: Part | None,
     missed: Callable[[], str],
-    before: Before,
+    before: EarlierAnswers,
 ) -> Mark:
     """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
     read_as, verdict = reading.read_as[judgement.reading], judgement.said
@@ -45,7 +45,7 @@ def mark_judged(
         return mark_of("wrong", 0.0, read_as, say(variant, part, "incomplete", read=read, missing=missed()))
     share = min(1.0, max(0.0, float(verdict.share)))
 
-    def told(sentence: str, **pieces: str) -> Said:
+    def told(sentence: str, **pieces: str) -> Sentence:
         """A sentence, then what follows from the student's own answers."""
         message = say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
         amounts = {} if told_with else verdict.found
@@ -54,7 +54,7 @@ def mark_judged(
             return message
         listed = ", ".join("{" + name + "}" for name in amount_words)
         follows = words(variant.lang)["marking"]["found"].format(listed)
-        return Said(f"{message.sentence} {follows}", {**message.pieces, **amount_words})
+        return Sentence(f"{message.sentence} {follows}", {**message.pieces, **amount_words})
 
     if verdict.slip:
         slip = f"slip:{verdict.slip}"
@@ -99,7 +99,7 @@ def mark_judged(
     return mark_of("wrong", share, read_as, told(part.sort.wrong))
 
 
-def _has_work(part: Part, key: Key, value: Any, before: Before) -> bool:
+def _has_work(part: Part, key: Key, value: Any, before: EarlierAnswers) -> bool:
     """Return whether a number that follows from others is more than one that is written everywhere."""
     reference = key.reference.get(part.quantity)
     is_right = reference is not None and part.sort.distance(part, value, reference) <= 1

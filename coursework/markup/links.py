@@ -19,7 +19,7 @@ TERM = "term"
 
 
 @dataclass(frozen=True)
-class Link:
+class TextLink:
     """Link to an exercise or a lesson, or a term with its entry in the index."""
 
     said: str
@@ -28,20 +28,20 @@ class Link:
     section: int = 0
 
 
-def relinked(text: str, write: Callable[[Link], str]) -> str:
+def relinked(text: str, write: Callable[[TextLink], str]) -> str:
     """Replace each link of a text by the result of ``write``; leave code unchanged."""
     pieces = _VERBATIM.split(text)
     pieces[::2] = [_LINK.sub(lambda result: write(_link(result)), piece) for piece in pieces[::2]]
     return "".join(pieces)
 
 
-def links(text: str) -> tuple[Link, ...]:
+def links(text: str) -> tuple[TextLink, ...]:
     """Return the links of a text, in order."""
     return tuple(_link(result) for piece in _VERBATIM.split(text)[::2] for result in _LINK.finditer(piece))
 
 
-def _link(match: re.Match[str]) -> Link:
+def _link(match: re.Match[str]) -> TextLink:
     text = " ".join(match["said"].split())
     if match["kind"] is None:
-        return Link(text, TERM, " ".join((match["entry"] or text).split()))
-    return Link(text, match["kind"], match["name"], int(match["section"] or 0))
+        return TextLink(text, TERM, " ".join((match["entry"] or text).split()))
+    return TextLink(text, match["kind"], match["name"], int(match["section"] or 0))

@@ -41,7 +41,7 @@ def _of_mechanism(scene: Scene) -> Iterator[tuple[str, str]]:
     linkage, wanted = scene.linkage, ", ".join(scene.extra)
     angles = [n for n in linkage.mechanism.angles if n != scene.driver.angle]
     yield ", ".join(angles) or "the driver's angle", f"how the bodies stand: {wanted}"
-    kinds = {shown.what(name)[0] for name in scene.extra}
+    kinds = {shown.split_request(name)[0] for name in scene.extra}
     forces = bool(kinds & {"", shown.REACTION})
     bends = forces and INERTIA in scene.effects and bool(linkage.masses)
     if forces or kinds - {"position"}:
@@ -68,7 +68,7 @@ def _of_forces(scene: Scene, requested: bool) -> Iterator[tuple[str, str]]:
 
 def _left_out(scene: Scene) -> Iterator[tuple[str, str]]:
     """Yield what no effect of the scene and no shown quantity requires."""
-    kinds = {shown.what(name)[0] for name in scene.extra}
+    kinds = {shown.split_request(name)[0] for name in scene.extra}
     bent = {"acceleration", "coriolis", INERTIA} & {*scene.called, *kinds}
     values = scene.evaluated(scene.quantities)
     if not bent and not set(values) & set(scene.accelerations):

@@ -130,7 +130,7 @@ class Showing(Staged):
         return points
 
     def _check_shown(self, name: str) -> None:
-        if "," in name and shown.what(name)[1] not in self.exercise.quantity_names:
+        if "," in name and shown.split_request(name)[1] not in self.exercise.quantity_names:
             raise WrongValue(f"{name!r} names several things to show; name one at a time: --show A --show B")
         if name in self.exercise.quantity_names:
             if self.has_own_data and name in self._of_own_forces:
@@ -140,7 +140,7 @@ class Showing(Staged):
                 )
             return
         if self.exercise.solution.mechanism is None:
-            kind, of = shown.what(name)
+            kind, of = shown.split_request(name)
             if kind not in ("position", "velocity", "acceleration") or of not in self._moved_by_solution:
                 self.mechanism  # noqa: B018  # is refused here
             return
@@ -182,7 +182,7 @@ class Showing(Staged):
             return {}
         if self.exercise.solution.mechanism is None:
             return self._points_of_solution(np.degrees(angles))
-        kinds = [(name, *shown.what(name)) for name in self.extra]
+        kinds = [(name, *shown.split_request(name)) for name in self.extra]
         needs_joints = any(kind == shown.REACTION for _, kind, _ in kinds)
         needs_forces = needs_joints or any(not kind for _, kind, _ in kinds)
         points = [(kind, of) for _, kind, of in kinds if kind in shown.OF_POINTS]
@@ -224,7 +224,7 @@ class Showing(Staged):
         """Return the points that the solution itself moves, for a spatial mechanism without plane bodies."""
         points = self._motion_of_solution(angle)
         results: shown.Columns = {}
-        for kind, of in map(shown.what, self.extra):
+        for kind, of in map(shown.split_request, self.extra):
             results |= shown.of_moving(kind, of, points[of])
         return results
 

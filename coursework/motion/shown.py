@@ -25,7 +25,7 @@ REACTION = "reaction"
 Columns = dict[str, tuple[Any, str]]  #: values and unit, by name
 
 
-def what(name: str) -> tuple[str, str]:
+def split_request(name: str) -> tuple[str, str]:
     """Split ``"velocity B"`` into the kind and the point or joint; the kind of a plain quantity is empty."""
     kind, _, of = name.strip().partition(" ")
     return (kind, of.strip()) if of and kind in (*OF_POINTS, REACTION) else ("", name.strip())
@@ -39,7 +39,7 @@ def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
     UnknownName
         No such quantity, point or joint.
     """
-    kind, of = what(name)
+    kind, of = split_request(name)
     if kind == REACTION:
         joints = [*joint_points(linkage)]
         if of not in joints:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from coursework import degrees
-from coursework.quantities.formula_code import called
+from coursework.quantities.formula_code import called_name
 
 
 class Unprintable(Exception):
@@ -102,9 +102,9 @@ def printed(tree: ast.expr, name: Callable[[str], str], space: Mapping[str, Any]
         try:
             pattern = _FUNCTIONS[meaning]
         except (KeyError, TypeError):
-            raise Unprintable(called(node)) from None
+            raise Unprintable(called_name(node)) from None
         if pattern.count("{1}") != (len(node.args) == 2) or len(node.args) > 2:
-            raise Unprintable(called(node))
+            raise Unprintable(called_name(node))
         return pattern
 
     return of(tree)

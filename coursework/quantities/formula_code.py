@@ -69,7 +69,7 @@ def _is_guard(statement: ast.stmt) -> bool:
     )
 
 
-def called(node: ast.expr) -> str:
+def called_name(node: ast.expr) -> str:
     """Return the name of the called function, without its module; empty where the node is no call."""
     if not isinstance(node, ast.Call):
         return ""
@@ -164,7 +164,7 @@ class _Inlined(ast.NodeTransformer):
     def visit_Call(self, node: ast.Call) -> ast.expr:
         self.generic_visit(node)
         helper = self.space.get(node.func.id) if isinstance(node.func, ast.Name) else None
-        if not called(node).startswith("_") or node.keywords or helper is None:
+        if not called_name(node).startswith("_") or node.keywords or helper is None:
             return node
         try:
             tree = put_in(helper, node.args)
@@ -276,7 +276,7 @@ class _Coding(Evaluation):
                 return self.of(base)
         return super().of(node)
 
-    def called(self, name: str, arguments: Sequence[Any]) -> Any:
+    def called_name(self, name: str, arguments: Sequence[Any]) -> Any:
         return _Code(call(_CALLED.get(name, name), *map(_code, arguments)))
 
     def power(self, value: Any, exponent: Node) -> Any:

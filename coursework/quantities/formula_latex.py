@@ -21,7 +21,7 @@ import numpy as np
 
 from coursework import degrees
 from coursework.language.numbers import significant
-from coursework.quantities.formula_code import NoExpression, call, called, expression, put_in, returning
+from coursework.quantities.formula_code import NoExpression, call, called_name, expression, put_in, returning
 from coursework.system import python_code
 
 _FUNCTIONS = {
@@ -88,7 +88,11 @@ def why_unprinted(function: Callable[..., Any]) -> str:
     for node in (node for statement in statements for node in ast.walk(statement)):
         if isinstance(node, (ast.If, ast.IfExp)):
             return f"its code has an if, at line {_line_of(function, node)}"
-        if isinstance(node, ast.Call) and (name := _of_numbers(node.func)) and called(node) not in _PRINTED:
+        if (
+            isinstance(node, ast.Call)
+            and (name := _of_numbers(node.func))
+            and called_name(node) not in _PRINTED
+        ):
             return f"{name} is not printed, at line {_line_of(function, node)}"
     return ""
 
@@ -167,7 +171,7 @@ class _Printer:
             case ast.Call(func=ast.Name(id=name), args=[theta], keywords=[]) if self._is_of_degrees(name):
                 return self._call(name, [self._of_a_turn(theta)])
             case ast.Call(args=arguments, keywords=[]):
-                return self._call(called(node), arguments)
+                return self._call(called_name(node), arguments)
         raise UnprintableFormula
 
     def _second(self, node: ast.expr, within: int) -> str:
@@ -230,7 +234,7 @@ class _Printer:
             case ast.BinOp(left=left, op=ast.Add() | ast.Sub() | ast.Mult(), right=right):
                 return self._is_angle(left) or self._is_angle(right)
             case ast.Call(args=arguments):
-                name = called(node)
+                name = called_name(node)
                 return name in _DIRECTIONS or (name in ("abs", "wrap") and self._is_angle(arguments[0]))
         return False
 
@@ -356,7 +360,7 @@ class _Printer:
                 return first and other and (first[0] + other[0], first[1] + other[1])
             case ast.BinOp(left=ast.Constant(value=1j), op=ast.Mult(), right=along):
                 return [], [(False, along)]
-            case ast.Call(args=[length, theta]) if called(node) == "polar":
+            case ast.Call(args=[length, theta]) if called_name(node) == "polar":
                 along, across = _times(length, call("cos", theta)), _times(length, call("sin", theta))
                 return [(False, along)], [(False, across)]
             case ast.Name(id=name) if self._kind(name) != "complex":

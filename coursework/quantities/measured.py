@@ -19,7 +19,7 @@ from coursework.quantities.sizes import (
     Unprovable,
     distinct,
     meanings,
-    told,
+    size_text,
 )
 
 
@@ -33,7 +33,7 @@ class UnitValue:
         self.sizes = sizes
 
     def __repr__(self) -> str:
-        return f"{self.value} {told(self.sizes[0])}"
+        return f"{self.value} {size_text(self.sizes[0])}"
 
     def __format__(self, how: str) -> str:
         return format(self.value, how)
@@ -151,12 +151,12 @@ def alike(*values: Any) -> Sizes:
     for other in others:
         shared = tuple(s for s in stored if any(s.is_like(o) for o in other.sizes))
         if not shared:
-            raise UnitFault(f"adds or compares {told(stored[0])} and {told(other.sizes[0])}")
+            raise UnitFault(f"adds or compares {size_text(stored[0])} and {size_text(other.sizes[0])}")
         stored = _softest(shared, other.sizes)
     if any(not isinstance(v, UnitValue) and not _is_free(v) for v in values):
         sums = tuple(s for s in stored if any(s.hard) or _takes_numbers(s))
         if not sums:
-            raise UnitFault(f"adds or compares {told(stored[0])} and a plain number")
+            raise UnitFault(f"adds or compares {size_text(stored[0])} and a plain number")
         stored = sums
     return stored
 
@@ -178,7 +178,7 @@ def _takes_numbers(ratio: Size) -> bool:
 def needs(value: Any, wanted: Size, subject: str) -> None:
     """Refuse a value that cannot have a unit; a plain number fits any."""
     if isinstance(value, UnitValue) and not any(s.is_like(wanted) for s in value.sizes):
-        raise UnitFault(f"{subject} {told(wanted)}, and gets {told(value.sizes[0])}")
+        raise UnitFault(f"{subject} {size_text(wanted)}, and gets {size_text(value.sizes[0])}")
 
 
 def product(first: Any, other: Any, power: float = 1) -> Sizes:

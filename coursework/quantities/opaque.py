@@ -16,7 +16,7 @@ import numpy as np
 
 from coursework.errors import CourseworkError
 from coursework.quantities.measured import UnitValue, needs
-from coursework.quantities.sizes import BASES, DEGREE, ONE, Sizes, UnitFault, Unprovable, of_hard, told
+from coursework.quantities.sizes import BASES, DEGREE, ONE, Sizes, UnitFault, Unprovable, of_hard, size_text
 
 _Factors = tuple[float, ...]
 _SAME: _Factors = (1.0,) * BASES
@@ -51,10 +51,10 @@ class Opaque:
         if name.startswith("__"):
             raise AttributeError(name)
         origin = self._origin._replace(name=f"{self._origin.name}.{name}")
-        return shown(lambda f: getattr(self._in_bases(f), name), origin)
+        return numbers_with_units(lambda f: getattr(self._in_bases(f), name), origin)
 
     def __getitem__(self, position: Any) -> Any:
-        return shown(lambda f: self._in_bases(f)[position], self._origin)
+        return numbers_with_units(lambda f: self._in_bases(f)[position], self._origin)
 
     def __len__(self) -> int:
         return len(self._in_bases(_SAME))
@@ -69,7 +69,7 @@ class Opaque:
                 needs(value, DEGREE, "Degrees takes")
         else:
             origin = origin._replace(handed=(*origin.handed, *_handed((args, options))))
-        return shown(lambda f: self._in_bases(f)(*_plain(args, f), **_plain(options, f)), origin)
+        return numbers_with_units(lambda f: self._in_bases(f)(*_plain(args, f), **_plain(options, f)), origin)
 
 
 def opaque(item: Any) -> Opaque:
@@ -121,7 +121,7 @@ def unmeasured(value: Any) -> Any:
     return _plain(value, _SAME)
 
 
-def shown(make: Callable[[_Factors], Any], origin: Origin) -> Any:
+def numbers_with_units(make: Callable[[_Factors], Any], origin: Origin) -> Any:
     """Return a result of plain numbers: numbers with their units, texts unchanged, records entry by entry."""
     created = Opaque(make, origin)
     value = created._in_bases(_SAME)
@@ -156,7 +156,7 @@ def _power(created: Opaque, position: int, origin: Origin) -> float:
     powers = {_power_of(created, position, other, origin) for other in _OTHERS}
     if len(powers) == 1 and None not in powers:
         return powers.pop() or 0.0
-    if origin.is_core and len(units := sorted({told(s) for s in origin.handed if any(s.hard)})) > 1:
+    if origin.is_core and len(units := sorted({size_text(s) for s in origin.handed if any(s.hard)})) > 1:
         raise UnitFault(f"hands {' and '.join(units)} to {origin.name}, which is to take lengths of one unit")
     raise Unprovable(f"what {origin.name} gives does not follow the units of what it takes")
 
@@ -191,11 +191,13 @@ def _system(origin: Origin) -> list[float]:
     for first in sizes:
         for other in sizes:
             if first.hard == other.hard and not first.is_like(other):
-                raise UnitFault(f"hands {told(first)} and {told(other)} to {origin.name}")
+                raise UnitFault(f"hands {size_text(first)} and {size_text(other)} to {origin.name}")
         if not any(first.hard) and not origin.is_core:
-            raise Unprovable(f"{origin.name} takes {told(first)}, of which it may make what it likes")
+            raise Unprovable(f"{origin.name} takes {size_text(first)}, of which it may make what it likes")
         if not any(first.hard):
-            raise UnitFault(f"hands {told(first)} to {origin.name}, which takes radians or plain numbers")
+            raise UnitFault(
+                f"hands {size_text(first)} to {origin.name}, which takes radians or plain numbers"
+            )
     if not sizes:
         return [1.0] * BASES
     powers = np.array([s.hard for s in sizes])
@@ -203,6 +205,6 @@ def _system(origin: Origin) -> list[float]:
     result = np.linalg.lstsq(powers, logs, rcond=None)[0]
     if not np.allclose(powers @ result, logs, atol=1e-9):
         raise Unprovable(
-            f"{origin.name} takes units of several systems: {', '.join(sorted({told(s) for s in sizes}))}"
+            f"{origin.name} takes units of several systems: {', '.join(sorted({size_text(s) for s in sizes}))}"
         )
     return [float(v) for v in np.exp(result)]

@@ -190,7 +190,7 @@ _NAMES = (
 ).split()
 
 
-def told(item: Size) -> str:
+def size_text(item: Size) -> str:
     """Return a size by a unit's name, else by powers of base units."""
     for name in _NAMES:
         unit_size = sizes_of(name)[0]

@@ -15,7 +15,7 @@ from coursework.quantities.graph import Graph, QuantityNode
 from coursework.quantities.lens import Lens
 from coursework.quantities.measured import UnitValue, gathered, leaves, stripped
 from coursework.quantities.opaque import Opaque, unmeasured
-from coursework.quantities.sizes import Size, UnitFault, Unprovable, fits, sizes_of, told
+from coursework.quantities.sizes import Size, UnitFault, Unprovable, fits, size_text, sizes_of
 
 _NUMBERS = (int, float, complex, np.number)
 
@@ -147,7 +147,7 @@ class _Walk:
 
     def _refuse_misfit(self, name: str, node: QuantityNode, result: UnitValue) -> None:
         if not any(fits(size, declared) for size in result.sizes for declared in self.sizes[name]):
-            given = "a plain number" if _is_bare(result.sizes[0]) else told(result.sizes[0])
+            given = "a plain number" if _is_bare(result.sizes[0]) else size_text(result.sizes[0])
             raise UnitFault(f"is declared in {self.units[name]}, and its formula gives {given}")
 
     def _plainly(self, name: str, node: QuantityNode, arguments: Sequence[Any]) -> Any:

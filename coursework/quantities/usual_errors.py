@@ -15,7 +15,7 @@ from functools import lru_cache
 from typing import Any
 
 from coursework import degrees
-from coursework.quantities.formula_code import Formula, call, called, formula_of
+from coursework.quantities.formula_code import Formula, call, called_name, formula_of
 
 TERM, SIGN, FACTOR, SQUARE, ROOT, INVERSE = "term", "term_sign", "factor", "square", "root", "inverse"
 FUNCTION, DEGREES, ALL_DEGREES, QUADRANT, BRANCH = "function", "degrees", "all_degrees", "quadrant", "branch"
@@ -154,7 +154,7 @@ class _Changes:
     # ----------------------------------------------------------------- functions
 
     def _of_call(self, node: ast.Call) -> Iterator[_Change]:
-        name, arguments = called(node), node.args
+        name, arguments = called_name(node), node.args
         takes_degrees = self._is_of_degrees(node)
         match name, arguments:
             case ("sin" | "cos", [angle]):
@@ -193,7 +193,7 @@ _TAKE_ANGLES = ("sin", "cos", "tan", "polar")
 
 def _is_of_degrees(formula: Formula, node: ast.Call) -> bool:
     """Return whether the called function takes, or gives, degrees."""
-    name = called(node)
+    name = called_name(node)
     if not isinstance(node.func, ast.Name) or not hasattr(degrees, name):
         return False
     return formula.space.get(name) is getattr(degrees, name)
@@ -213,7 +213,7 @@ class _AllInRadians(ast.NodeTransformer):
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
         self.generic_visit(node)
-        if called(node) in _TAKE_ANGLES and _is_of_degrees(self.formula, node):
+        if called_name(node) in _TAKE_ANGLES and _is_of_degrees(self.formula, node):
             self.angles += 1
             node.args[-1] = _in_radians(node.args[-1])
         return node

@@ -98,7 +98,7 @@ def _said_with_letters(text: str, choices: Choices, letters: Letters) -> list[st
     if (match := _BEFORE.fullmatch(text)) and (keys := _of_letter(match["letter"], letters)):
         if match["mark"] == "=" and _ALONE.fullmatch(match["said"]):
             return []  # a = a says nothing of b
-        if named := _said(match["said"], choices, letters):
+        if named := _named_by(match["said"], choices, letters):
             return _together(keys, named)
         if (remark := _IN_BRACKETS.fullmatch(match["said"])) and not names_any(remark[1], choices):
             return [] if _CALL.fullmatch(text) else keys  # b (r2 < r1)
@@ -106,7 +106,7 @@ def _said_with_letters(text: str, choices: Choices, letters: Letters) -> list[st
             return []
     if match := _BEHIND.fullmatch(text):
         keys = _of_letter(match["inner"] or match["bare"], letters)
-        named = _said(match["said"], choices, letters) if keys else []
+        named = _named_by(match["said"], choices, letters) if keys else []
         if named:
             return _together(keys, named)
     return in_words(text, choices) or _by_place(text, choices, letters)
@@ -120,7 +120,7 @@ def _of_letter(letter: str, letters: Letters) -> list[str]:
     return [key for key, printed in letters.items() if printed == letter.lower()]
 
 
-def _said(text: str, choices: Choices, letters: Letters) -> list[str]:
+def _named_by(text: str, choices: Choices, letters: Letters) -> list[str]:
     """Return the texts that stand beside a letter, in brackets or not: the words of a choice, or one more
     letter."""
     inner = _IN_BRACKETS.fullmatch(text)

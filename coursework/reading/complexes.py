@@ -97,8 +97,8 @@ def _polar(plain: str, target: Unit) -> tuple[complex, str, bool] | None:
     else:
         return None
     angle, unit = _angle_and_unit(angle.strip(), unit.strip(" *"))
-    size = _one(read_amounts(f"{modulus.strip()} {unit}".strip(), target))
-    turned = _one(read_amounts(angle, target_unit("deg"), thousands=False))
+    size = _first(read_amounts(f"{modulus.strip()} {unit}".strip(), target))
+    turned = _first(read_amounts(angle, target_unit("deg"), thousands=False))
     if abs(turned.value) > MOST_TURNS * 360.0:
         raise Stop("too_many_turns", plain)
     value = cmath.rect(size.value, math.radians(turned.value))
@@ -116,7 +116,7 @@ def _angle_and_unit(angle: str, unit: str) -> tuple[str, str]:
     return match[1], match[2]
 
 
-def _one(amounts: list[Amount]) -> Amount:
+def _first(amounts: list[Amount]) -> Amount:
     return amounts[0]
 
 

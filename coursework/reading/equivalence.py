@@ -51,7 +51,7 @@ def same_equation(a: Equation, b: Equation, *, parameters: Iterable[str] = (), r
     divided = [(d, power) for d, power in zip(divisors, powers, strict=True) if power]
     if not all(_proportional(a, b, values, rng_points, divided) for values in points):
         return False
-    lines = _Lines(names, held)
+    lines = _SampleLines(names, held)
     with np.errstate(all="ignore"):
         return _apart([divisor for divisor, _ in divided], (a, b), lines)
 
@@ -169,7 +169,7 @@ def _powers(
     return powers
 
 
-class _Lines:
+class _SampleLines:
     """Fixed scattered lines through the space of the variables, along which a function's zeros are found.
 
     Parameters keep their value on a line; the other variables run through both signs and some turns.
@@ -210,7 +210,7 @@ def _both_signs(name: str) -> np.ndarray:
     return (_points(name, _LINES) - 1.65) * 2.2
 
 
-def _apart(divisors: Sequence[Expression], equations: Sequence[Equation], lines: _Lines) -> bool:
+def _apart(divisors: Sequence[Expression], equations: Sequence[Equation], lines: _SampleLines) -> bool:
     """Return whether divisors and equations have no common root: neither vanishes at the solutions of the
     other.
 

@@ -94,14 +94,14 @@ def compare(answer: Graph, reference: Graph) -> Compared:
         if joint.pairs == 1:
             pairs.setdefault(joint.bodies, []).append(joint.kind)
     pivots = [_Pivot(joint) for joint in reference if joint.pairs > 1]
-    rest = _told_of_all(answer, pivots, bodies, result)
+    rest = _record_of_all(answer, pivots, bodies, result)
     rest = [joint for joint in rest if not _is_told_right(joint, pairs, pivots, result)]
     for joint in rest:
-        _tell(joint, pairs, pivots, reference, result)
+        _record_fault(joint, pairs, pivots, reference, result)
     return result
 
 
-def _told_of_all(answer: Graph, pivots: Sequence[_Pivot], bodies: set[str], result: Compared) -> list[Edge]:
+def _record_of_all(answer: Graph, pivots: Sequence[_Pivot], bodies: set[str], result: Compared) -> list[Edge]:
     """Record unknown bodies, and pivots written with all their bodies; return the joints that are left to
     compare."""
     rest = []
@@ -137,7 +137,7 @@ def _is_told_right(
     return True
 
 
-def _tell(
+def _record_fault(
     joint: Edge,
     pairs: Mapping[tuple[str, ...], list[str]],
     pivots: Sequence[_Pivot],

@@ -33,7 +33,7 @@ def _kinds() -> Mapping[str, str]:
 
 
 @lru_cache(maxsize=4)
-def _said(category: str) -> frozenset[str]:
+def _words_of(category: str) -> frozenset[str]:
     return frozenset(folded(word) for lang in languages() for word in words(lang)["graph"][category])
 
 
@@ -96,12 +96,12 @@ def tokens_of(text: str, bodies: Collection[str], named: bool) -> Iterator[Token
         raise Stop("no_joint", stray)
     index = 0
     while index < len(pieces):
-        token, used = _taken(pieces, index, bodies, named)
+        token, used = _next_tokens(pieces, index, bodies, named)
         yield from token
         index += used
 
 
-def _taken(
+def _next_tokens(
     pieces: Sequence[re.Match[str]], index: int, bodies: Collection[str], named: bool
 ) -> tuple[list[Token], int]:
     """The tokens of the next piece or pieces, and of how many."""
@@ -127,7 +127,7 @@ def _is_linked(pieces: Sequence[re.Match[str]], index: int) -> bool:
     return any(p.lastgroup == "link" for p in around)
 
 
-def _beside(pieces: Sequence[re.Match[str]], index: int) -> bool:
+def _is_beside_number(pieces: Sequence[re.Match[str]], index: int) -> bool:
     """Return whether a hyphen joins a piece to a number: ``0-a``."""
     return any(
         0 <= index + 2 * step < len(pieces)
@@ -145,7 +145,7 @@ def _is_label(pieces: Sequence[re.Match[str]], index: int) -> bool:
     if before.lastgroup != "word":
         return False
     word = before[0]
-    return folded(word) in _said("at") or (len(word) > 1 and kind_named(word) is not None)
+    return folded(word) in _words_of("at") or (len(word) > 1 and kind_named(word) is not None)
 
 
 def _numbered(text: str, is_linked: bool, names: Collection[str]) -> list[Token]:
@@ -166,15 +166,15 @@ def _numbered(text: str, is_linked: bool, names: Collection[str]) -> list[Token]
 def _worded(pieces: Sequence[re.Match[str]], index: int, named: bool) -> list[Token]:
     text = pieces[index][0]
     plain = folded(text)
-    if plain in _said("frame"):
+    if plain in _words_of("frame"):
         return [Token("body", FRAME, text)]
     if (not named and _is_linked(pieces, index)) or (
-        text.isascii() and len(text) == 1 and _beside(pieces, index)
+        text.isascii() and len(text) == 1 and _is_beside_number(pieces, index)
     ):
         return [Token("body", text.casefold(), text)]
-    if plain in _said("and"):
+    if plain in _words_of("and"):
         return [Token("comma", "", text)]
-    if plain in _said("filling") | _said("at"):
+    if plain in _words_of("filling") | _words_of("at"):
         return []
     if _is_linked(pieces, index):
         return [Token("body", text.casefold(), text)]

@@ -170,8 +170,8 @@ def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     match = _REMARK.fullmatch(text)
     if match is None:
         return []
-    keys = _called(match["said"], choices)
-    if len(keys) != 1 or any(key not in keys for key in _called(match["remark"], choices)):
+    keys = _meant(match["said"], choices)
+    if len(keys) != 1 or any(key not in keys for key in _meant(match["remark"], choices)):
         return []
     remark = f" {folded(match['remark'])} "
     own_remarks, foreign = (
@@ -241,12 +241,12 @@ def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     if marked and (
         marked["mark"].isdigit() or len(marked["label"].strip(" .")) > 1
     ):  # b) crossed, and not n.a.
-        label = _called(marked["label"], choices)
+        label = _meant(marked["label"], choices)
         keys = list(dict.fromkeys((*label, *_by_number(marked["mark"], choices)))) if label else []
-    return keys or _called(text, choices)
+    return keys or _meant(text, choices)
 
 
-def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+def _meant(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that a text may mean, its article left out if need be; the surest way to call one first."""
     stripped = _BEFORE.sub("", text)
     for words_said in dict.fromkeys((text, stripped)):

@@ -495,7 +495,7 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
     is_idle = pieces[0] == pieces[1] and (pieces[0][0] in "([" or _NOUGHT.fullmatch(pieces[0]))
     if is_idle or any(map(_PAIR.fullmatch, pieces)):  # holds whatever is asked: 0 = 0, (1,2) = (1,2)
         raise Stop("not_a_number", text)
-    other, end = (_way(piece, target, thousands) for piece in pieces)
+    other, end = (_reading_of(piece, target, thousands) for piece in pieces)
     if not (amounts := _agreeing(end, other, target)):
         raise Stop("two_values", text)
     return amounts
@@ -508,7 +508,7 @@ def _checked(number: str, inside: str, unit: str, target: Unit, thousands: bool)
         return None
     says_more = bool(WORD.search(inside)) and not match_plain(inside)  # a unit, or what only a formula has
     try:
-        other = _way(inside + unit, target, thousands)
+        other = _reading_of(inside + unit, target, thousands)
     except (Stop, Unreadable):
         other = [], inside
     amounts = _agreeing((meant, number), other, target)
@@ -519,15 +519,15 @@ def _checked(number: str, inside: str, unit: str, target: Unit, thousands: bool)
     return amounts
 
 
-_Way = tuple[list[Amount], str]  #: what was read, and in which text
+_ReadingWay = tuple[list[Amount], str]  #: what was read, and in which text
 
 
-def _way(text: str, target: Unit, thousands: bool) -> _Way:
+def _reading_of(text: str, target: Unit, thousands: bool) -> _ReadingWay:
     amounts = in_digits(text, target, thousands)
     return (_calculated(text, target) if amounts is None else amounts), text
 
 
-def _agreeing(first: _Way, other: _Way, target: Unit) -> list[Amount]:
+def _agreeing(first: _ReadingWay, other: _ReadingWay, target: Unit) -> list[Amount]:
     """The readings of one way to write a number that the other confirms to the last digit of the shorter.
 
     An angle that does not say its unit may be in radians, where the other says what it is in degrees: then that is meant.

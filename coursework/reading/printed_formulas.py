@@ -39,7 +39,7 @@ class NotEvaluable(CourseworkError, ValueError):
 
 
 @dataclass(frozen=True)
-class Reading:
+class FormulaValue:
     """Value of a printed formula, and the amount by which the rounding of its numbers may move it.
 
     ``values`` holds a number, or a number a coordinate of a vector; complex where the formula is, NaN where it does
@@ -51,7 +51,7 @@ class Reading:
     widths: tuple[float, ...]
 
 
-def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> Reading:
+def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> FormulaValue:
     """Evaluate a formula.
 
     A number that is printed with fewer than ``rounded_to`` significant digits is exact but for its last bits, any other
@@ -72,7 +72,7 @@ def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> Reading:
     if any(np.isnan(column[0]) for column in columns):
         # Many numbers moved together may bring it into being: each is moved as far as all of them.
         columns = _columns(tree, numbers, [len(halves) * half for half in halves])
-    return Reading(
+    return FormulaValue(
         tuple(column[0].item() for column in columns), tuple(_width(column, is_angle) for column in columns)
     )
 
@@ -184,7 +184,7 @@ class Evaluation:
             case Symbol(text=text) if text in _LETTERS:
                 return _LETTERS[text]
             case FormulaRow(items=items):
-                return _Line(self, [item for item in items if not isinstance(item, Space)]).value()
+                return _FormulaLine(self, [item for item in items if not isinstance(item, Space)]).value()
             case Fraction(above=above, below=below):
                 return np.true_divide(self.of(above), self.of(below))
             case Root(body=body, index=None):
@@ -195,7 +195,7 @@ class Evaluation:
                 return np.abs(self.of(body))
             case Script(base=base, below=None, above=above, primes=0) if above is not None:
                 return self._raised(base, above)
-        raise NotEvaluable(f"{_told(node)} has no value")
+        raise NotEvaluable(f"{_piece_text(node)} has no value")
 
     def _number(self, number: Num) -> Any:
         column = np.full(1 + 2 * len(self.halves), float(f"{number.digits}e{number.exponent or 0}"))
@@ -225,7 +225,7 @@ class Evaluation:
         return value ** (times[0] if times[0] == np.rint(times[0]) else times)
 
 
-class _Line:
+class _FormulaLine:
     """Items side by side: sums of products, and what functions are of."""
 
     def __init__(self, evaluation: Evaluation, items: Sequence[Node]):
@@ -239,7 +239,7 @@ class _Line:
         while self._taken(_SEMICOLON):
             values.append(self._sum())
         if self.at < len(self.items):
-            raise NotEvaluable(f"{_told(self.items[self.at])} has no value")
+            raise NotEvaluable(f"{_piece_text(self.items[self.at])} has no value")
         return values[0] if len(values) == 1 else tuple(values)
 
     def _next(self) -> Node | None:
@@ -264,7 +264,7 @@ class _Line:
             before = self.items[self.at - 1]
             if not self._taken(*_TIMES):
                 if _is_digits(item) and _is_digits(before):
-                    raise NotEvaluable(f"{_told(item)} follows a number without a sign between them")
+                    raise NotEvaluable(f"{_piece_text(item)} follows a number without a sign between them")
                 if not _is_factor(item):
                     break
             value = _single(value) * _single(self._factor())
@@ -327,7 +327,7 @@ def _is_factor(item: Node) -> bool:
     return _is_digits(item) or isinstance(item, (Name, Fraction, Root, Fence))
 
 
-def _told(node: Node) -> str:
+def _piece_text(node: Node) -> str:
     """A piece of a formula as a reader names it."""
     match node:
         case Symbol(text=text) | Name(text=text) | FormulaText(text=text):
@@ -335,7 +335,7 @@ def _told(node: Node) -> str:
         case Num(negative=negative, digits=digits):
             return "-" * negative + digits
         case Script(base=base):
-            return _told(base)
+            return _piece_text(base)
         case FormulaRow(items=items):
-            return "".join(map(_told, items))
+            return "".join(map(_piece_text, items))
     return type(node).__name__.lower()

@@ -15,7 +15,7 @@ _A_PHRASE = 2  #: words of what says so wherever it stands: ``sorry, I do not kn
 
 
 @lru_cache(maxsize=8)
-def _said(category: str) -> tuple[str, ...]:
+def _phrases(category: str) -> tuple[str, ...]:
     """Words of every language, folded, the longest first."""
     phrases = {folded(word) for lang in languages() for word in words(lang)["answers"][category]}
     return tuple(sorted(phrases, key=len, reverse=True))
@@ -28,9 +28,9 @@ def says_nothing(text: str) -> bool:
     if _MARKS.fullmatch(text):
         return True
     text_folded = folded(text)
-    if text_folded in _said("nothing"):
+    if text_folded in _phrases("nothing"):
         return True
-    phrases = (s for s in _said("nothing") if len(s.split()) >= _A_PHRASE)
+    phrases = (s for s in _phrases("nothing") if len(s.split()) >= _A_PHRASE)
     return not re.search(r"[0-9]", text_folded) and any(
         f" {phrase} " in f" {text_folded} " for phrase in phrases
     )
@@ -39,7 +39,9 @@ def says_nothing(text: str) -> bool:
 def refers_elsewhere(text: str) -> bool:
     """Return whether a text says that the answer stands elsewhere: ``voir feuille``, ``see sheet``."""
     text_folded = folded(text.replace(".", " "))
-    return len(text) <= _LONGEST and f"{text_folded} ".startswith(tuple(f"{s} " for s in _said("elsewhere")))
+    return len(text) <= _LONGEST and f"{text_folded} ".startswith(
+        tuple(f"{s} " for s in _phrases("elsewhere"))
+    )
 
 
 # ------------------------------------------------------------------- beside a number

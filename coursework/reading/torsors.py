@@ -23,7 +23,7 @@ _MOST = 10 * MAX_LENGTH  #: characters of a torsor
 _MOST_NESTED = 8  #: brackets about all of it
 
 
-class Form(NamedTuple):
+class TorsorForm(NamedTuple):
     """Layout of a sort of torsor: the names of its cells, the cells of a plane one in the order in which they
     are asked, and the words for its two columns."""
 
@@ -34,14 +34,14 @@ class Form(NamedTuple):
     component: re.Pattern[str]
 
 
-TWIST = Form(
+TWIST = TorsorForm(
     ("wx", "wy", "wz", "vx", "vy", "vz"),
     (3, 4, 2),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*(?:o?mega|w|rot)", re.I),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*v", re.I),
     re.compile(r"(?P<half>w|omega|v)_?\{?(?P<axis>[xyz])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?", re.I),
 )
-WRENCH = Form(
+WRENCH = TorsorForm(
     ("X", "Y", "Z", "L", "M", "N"),
     (0, 1, 5),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*[rf]", re.I),
@@ -59,7 +59,7 @@ class _Cells(NamedTuple):
     behind: str
 
 
-def read_torsor(answer: Any, form: Form, units: tuple[str, str], count: int) -> Reading:
+def read_torsor(answer: Any, form: TorsorForm, units: tuple[str, str], count: int) -> Reading:
     """The components of a torsor in ``units``, those of its resultant and of its moment, as arrays of shape ``(count,)``.
 
     ``count`` is 6, resultant before moment, or 3 for a plane one in the order of ``form.plane``. A unit stands in a
@@ -79,10 +79,10 @@ def read_torsor(answer: Any, form: Form, units: tuple[str, str], count: int) -> 
                 )
         return _both(text, columns, form.plane if count == 3 else tuple(range(6)), bool(cells.behind))
 
-    return _once(answer, read)
+    return _read_cells(answer, read)
 
 
-def read_pattern(answer: Any, form: Form) -> Reading:
+def read_pattern(answer: Any, form: TorsorForm) -> Reading:
     """The components that an answer says may differ from zero: a ``frozenset`` of names of ``form``.
 
     A table as that of :func:`read_torsor`, with 0 where nothing can be and a symbol, ``*``, a number or ``free`` where something
@@ -97,10 +97,10 @@ def read_pattern(answer: Any, form: Form) -> Reading:
         order = [name for name in form.names if name in components]
         return Reading(text, "read", (frozenset(components),), (", ".join(order) or "0",))
 
-    return _once(answer, read)
+    return _read_cells(answer, read)
 
 
-def _once(answer: Any, read: Callable[[str], Reading]) -> Reading:
+def _read_cells(answer: Any, read: Callable[[str], Reading]) -> Reading:
     """Read any torsor with ``read``; treat a missing answer, one that is too long, and one that breaks
     off."""
     text = _as_text(answer)
@@ -155,14 +155,14 @@ _INDEX = re.compile(
 _COMMA_OF_ROWS = re.compile(r",\s+|\s+,|,(?=[^\W\d_])")
 
 
-def _cells(text: str, form: Form, *, plane: bool, symbols: bool) -> _Cells:
+def _cells(text: str, form: TorsorForm, *, plane: bool, symbols: bool) -> _Cells:
     """The cells of a text, whichever way it is laid out."""
     inside, behind = _opened(_laid_out(text))
     groups = _groups(inside, form) or _columns(inside)
     if groups is not None and len(groups) == 2:
         halves = [_entries(group, (3,), symbols=symbols) for group in groups]
         if None not in halves:
-            return _Cells(_kept((*(halves[0] or ()), *(halves[1] or ())), form, plane=plane), behind)
+            return _Cells(_counted_cells((*(halves[0] or ()), *(halves[1] or ())), form, plane=plane), behind)
     rows = groups or [row for row in re.split(r"[;\n]", inside) if row.strip(" ,")]
     if len(rows) == 1 and [len(row.split()) for row in re.split(_COMMA_OF_ROWS, inside)] == [2, 2, 2]:
         rows = re.split(_COMMA_OF_ROWS, inside)  # {0 vx, wy 0, 0 vz}
@@ -172,10 +172,10 @@ def _cells(text: str, form: Form, *, plane: bool, symbols: bool) -> _Cells:
     if len(cells) == 3:
         places = dict(zip(form.plane, cells, strict=True))
         return _Cells(tuple(_by_name([places.get(index) for index in range(6)], form)), behind)
-    return _Cells(_kept(_by_name(cells, form), form, plane=plane), behind)
+    return _Cells(_counted_cells(_by_name(cells, form), form, plane=plane), behind)
 
 
-def _kept(cells: Sequence[str | None], form: Form, *, plane: bool) -> tuple[str | None, ...]:
+def _counted_cells(cells: Sequence[str | None], form: TorsorForm, *, plane: bool) -> tuple[str | None, ...]:
     """The cells that count: in the plane, those that a plane torsor has."""
     return tuple(cell if index in form.plane or not plane else None for index, cell in enumerate(cells))
 
@@ -220,7 +220,7 @@ def _end_of_first(text: str) -> int:
     return next((index for index, open_ in enumerate(depth) if open_ == 0), -1)
 
 
-def _groups(text: str, form: Form) -> list[str] | None:
+def _groups(text: str, form: TorsorForm) -> list[str] | None:
     """Cells that stand in brackets, a column or a row each; the resultant first where they are named."""
     inner = [match[1] for match in _GROUP.finditer(text)]
     between = [piece.strip(" ,;|\n=:") for piece in _GROUP.split(text)[::2]]
@@ -302,7 +302,7 @@ def _merged(tokens: Sequence[str], *, signs: bool) -> list[str]:
     return merged
 
 
-def _by_name(cells: Sequence[str | None], form: Form) -> list[str | None]:
+def _by_name(cells: Sequence[str | None], form: TorsorForm) -> list[str | None]:
     """The cells at the places that they name, where each of them names one: ``wz = 5``."""
     named = [cell.partition("=")[0] if cell and "=" in cell else "" for cell in cells]
     places = [component_place(name, form) if name else None for name in named]
@@ -316,7 +316,7 @@ def _by_name(cells: Sequence[str | None], form: Form) -> list[str | None]:
     return by_index
 
 
-def component_place(text: str, form: Form) -> int | None:
+def component_place(text: str, form: TorsorForm) -> int | None:
     """The place of the component that a text names, ``ω_z``, ``\\omega_z``, ``M``, ``Mz``; nothing where it names none."""
     spelled = spelled_out(plain_spelling(text))
     if not re.fullmatch(r"[^{}]*(?:\{[^{}]*\}[^{}]*)*", spelled):
@@ -420,7 +420,7 @@ _TABLE = re.compile(r"[\[({;|\n&]|\\\\")  #: what makes a table of cells
 _DASHES = ("", "-", "--", ".", "/")
 
 
-def _named_components(text: str, form: Form) -> set[str] | None:
+def _named_components(text: str, form: TorsorForm) -> set[str] | None:
     """The components of a list of names alone; nothing where it is something else."""
     plain = tidy(unwrapped(text)).strip().strip("{}[]()$.").strip()
     if _NONE.fullmatch(plain) or (not plain and re.fullmatch(r"\\?\{\s*\\?\}", text.strip())):
@@ -433,7 +433,7 @@ def _named_components(text: str, form: Form) -> set[str] | None:
     return {form.names[index] for index in named} if named and len(named) == len(pieces) else None
 
 
-def _marked(text: str, form: Form) -> set[str]:
+def _marked(text: str, form: TorsorForm) -> set[str]:
     """The components of a table that hold something else than 0."""
     try:
         (cells, behind), plane = _cells(text, form, plane=False, symbols=True), False
@@ -474,7 +474,7 @@ def _plain_symbols(cell: str) -> str:
     return re.sub(r"_\{[^{}]*\}|_\w+", " ", spelled_out(cell))
 
 
-def _dashed_as_plane(cells: Sequence[str | None], form: Form) -> bool:
+def _dashed_as_plane(cells: Sequence[str | None], form: TorsorForm) -> bool:
     """Return whether dashes stand exactly in the cells that a plane torsor leaves empty."""
     dashed = {index for index, cell in enumerate(cells) if cell is not None and cell.strip() in _DASHES}
     return dashed.isdisjoint(form.plane)

@@ -88,7 +88,7 @@ _PREFIX_WORDS = {
 }  # fmt: skip
 
 
-def _known(ratio: str | int | Fraction, pi: int = 0, **powers: int) -> Unit:
+def _unit(ratio: str | int | Fraction, pi: int = 0, **powers: int) -> Unit:
     return Unit("", Fraction(ratio), pi, _dimension(**powers))
 
 
@@ -102,61 +102,61 @@ _INCH, _POUND, _GRAVITY = Fraction("0.0254"), Fraction("0.45359237"), Fraction("
 
 #: Symbols that take a prefix.
 _PREFIXED = {
-    "m": _known(1, length=1),
-    "g": _known("1/1000", mass=1),
-    "s": _known(1, time=1),
-    "rad": _known(1, angle=1),
-    "N": _known(1, length=1, mass=1, time=-2),
-    "J": _known(1, length=2, mass=1, time=-2),
-    "W": _known(1, length=2, mass=1, time=-3),
-    "Pa": _known(1, length=-1, mass=1, time=-2),
-    "Hz": _known(1, time=-1, cycle=1),
-    "A": _known(1, current=1),
-    "C": _known(1, current=1, time=1),
-    "V": _known(1, length=2, mass=1, time=-3, current=-1),
-    "Ω": _known(1, length=2, mass=1, time=-3, current=-2),
-    "ohm": _known(1, length=2, mass=1, time=-3, current=-2),
-    "F": _known(1, length=-2, mass=-1, time=4, current=2),
-    "H": _known(1, length=2, mass=1, time=-2, current=-2),
-    "S": _known(1, length=-2, mass=-1, time=3, current=2),
-    "T": _known(1, mass=1, time=-2, current=-1),
-    "Wb": _known(1, length=2, mass=1, time=-2, current=-1),
-    "VA": _known(1, length=2, mass=1, time=-3),
-    "var": _known(1, length=2, mass=1, time=-3),
-    "Wh": _known(3600, length=2, mass=1, time=-2),
-    "Ah": _known(3600, current=1, time=1),
-    "eV": _known("1.602176634e-19", length=2, mass=1, time=-2),
-    "bar": _known(100_000, length=-1, mass=1, time=-2),
-    "L": _known("1/1000", length=3),
-    "l": _known("1/1000", length=3),
+    "m": _unit(1, length=1),
+    "g": _unit("1/1000", mass=1),
+    "s": _unit(1, time=1),
+    "rad": _unit(1, angle=1),
+    "N": _unit(1, length=1, mass=1, time=-2),
+    "J": _unit(1, length=2, mass=1, time=-2),
+    "W": _unit(1, length=2, mass=1, time=-3),
+    "Pa": _unit(1, length=-1, mass=1, time=-2),
+    "Hz": _unit(1, time=-1, cycle=1),
+    "A": _unit(1, current=1),
+    "C": _unit(1, current=1, time=1),
+    "V": _unit(1, length=2, mass=1, time=-3, current=-1),
+    "Ω": _unit(1, length=2, mass=1, time=-3, current=-2),
+    "ohm": _unit(1, length=2, mass=1, time=-3, current=-2),
+    "F": _unit(1, length=-2, mass=-1, time=4, current=2),
+    "H": _unit(1, length=2, mass=1, time=-2, current=-2),
+    "S": _unit(1, length=-2, mass=-1, time=3, current=2),
+    "T": _unit(1, mass=1, time=-2, current=-1),
+    "Wb": _unit(1, length=2, mass=1, time=-2, current=-1),
+    "VA": _unit(1, length=2, mass=1, time=-3),
+    "var": _unit(1, length=2, mass=1, time=-3),
+    "Wh": _unit(3600, length=2, mass=1, time=-2),
+    "Ah": _unit(3600, current=1, time=1),
+    "eV": _unit("1.602176634e-19", length=2, mass=1, time=-2),
+    "bar": _unit(100_000, length=-1, mass=1, time=-2),
+    "L": _unit("1/1000", length=3),
+    "l": _unit("1/1000", length=3),
     "K": _scale_of("0"),
-    "mol": _known(1, amount=1),
-    "cd": _known(1, light=1),
+    "mol": _unit(1, amount=1),
+    "cd": _unit(1, light=1),
 }
-_DEGREE, _GON, _TURN = _known("1/180", 1, angle=1), _known("1/200", 1, angle=1), _known(2, 1, angle=1)
-_TURN_A_MINUTE = _known("2/60", 1, angle=1, time=-1)
+_DEGREE, _GON, _TURN = _unit("1/180", 1, angle=1), _unit("1/200", 1, angle=1), _unit(2, 1, angle=1)
+_TURN_A_MINUTE = _unit("2/60", 1, angle=1, time=-1)
 #: Symbols that take none.
 _PLAIN = {
-    "1": _known(1),
-    "%": _known("1/100"),
-    "min": _known(60, time=1),
-    "h": _known(3600, time=1),
-    "t": _known(1000, mass=1),
+    "1": _unit(1),
+    "%": _unit("1/100"),
+    "min": _unit(60, time=1),
+    "h": _unit(3600, time=1),
+    "t": _unit(1000, mass=1),
     "deg": _DEGREE, "°": _DEGREE,
     "grad": _GON, "gon": _GON, "gr": _GON,
     "tr": _TURN, "rev": _TURN, "r": _TURN,
     "rpm": _TURN_A_MINUTE,
-    "sec": _known(1, time=1), "rd": _known(1, angle=1),
+    "sec": _unit(1, time=1), "rd": _unit(1, angle=1),
     "°C": _scale_of("273.15"), "degC": _scale_of("273.15"),
     "°F": _scale_of("45967/180", "5/9"), "degF": _scale_of("45967/180", "5/9"),
-    "dB": _known(1, level=1),
-    "in": _known(_INCH, length=1), "ft": _known(12 * _INCH, length=1),
-    "lb": _known(_POUND, mass=1), "lbf": _known(_POUND * _GRAVITY, length=1, mass=1, time=-2),
-    "psi": _known(_POUND * _GRAVITY / _INCH**2, length=-1, mass=1, time=-2),
+    "dB": _unit(1, level=1),
+    "in": _unit(_INCH, length=1), "ft": _unit(12 * _INCH, length=1),
+    "lb": _unit(_POUND, mass=1), "lbf": _unit(_POUND * _GRAVITY, length=1, mass=1, time=-2),
+    "psi": _unit(_POUND * _GRAVITY / _INCH**2, length=-1, mass=1, time=-2),
 }  # fmt: skip
 #: What a difference of temperatures is stated in.
 _DIFFERENCES = {
-    f"delta_{name}": _known(_PLAIN[name].ratio if name in _PLAIN else 1, temperature=1)
+    f"delta_{name}": _unit(_PLAIN[name].ratio if name in _PLAIN else 1, temperature=1)
     for name in ("K", "degC", "°C", "degF", "°F")
 }
 #: Words, without accents, any capitals, with or without a plural s; the first group takes prefix words.

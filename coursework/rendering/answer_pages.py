@@ -10,7 +10,7 @@ from markupsafe import Markup
 from coursework.language.words import words
 from coursework.markup import markdown as markup
 from coursework.rendering.codes import qr_svg
-from coursework.sheets.answer_pages import LEFT, AnswerPage, Box, Field, code_text
+from coursework.sheets.answer_pages import LEFT, AnswerField, AnswerPage, Box, code_text
 from coursework.sheets.sheet import Handout
 
 Writes = Callable[[str, dict[str, Any]], str]  #: renders a template with these names
@@ -78,13 +78,13 @@ def _span(boxes: Sequence[Box]) -> Box:
     return Box(first.x, first.y, boxes[-1].right - first.x, first.height)
 
 
-def _cells(field: Field) -> tuple[Box, ...]:
+def _cells(field: AnswerField) -> tuple[Box, ...]:
     """The boxes of a row that are filled in one by one."""
     signs = (field.sign, *field.digits, *field.decimals, field.power_sign, *field.power)
     return (*(box for box in signs if box), *(box for _, box in field.ticks))
 
 
-def _ticked(field: Field) -> Iterator[tuple[str, Box]]:
+def _ticked(field: AnswerField) -> Iterator[tuple[str, Box]]:
     """Yield each box to tick, after the text that is printed beside it."""
     return zip(field.printed, (box for _, box in field.ticks), strict=True)
 

@@ -13,12 +13,12 @@ from markupsafe import Markup
 
 from coursework.language.typography import typeset
 from coursework.language.words import words
-from coursework.markup.links import TERM, Link, relinked
+from coursework.markup.links import TERM, TextLink, relinked
 from coursework.markup.markdown import INDEX, anchor, sort_key
 from coursework.rendering import html, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
-from coursework.sheets.book import Book, LessonText, Piece, Practised
+from coursework.sheets.book import Book, BookExercise, LessonText, Piece
 
 _TALL = 78  #: mm that a drawing of a lesson takes at most
 
@@ -49,7 +49,7 @@ def _of_book(book: Book) -> dict[str, Any]:
     return {"book": book, "lang": book.lang, "words": book_words, "title": book.title, "lesson_names": names}
 
 
-def _exercise(env: Environment, exercise: Practised, end: str) -> dict[str, Any]:
+def _exercise(env: Environment, exercise: BookExercise, end: str) -> dict[str, Any]:
     """Return the variables for the template of an exercise: its body, and that of its solution."""
     names = views.context(exercise.handout, 1, numbered=False)
     names["body"] = Markup(render(env, f"_sheet_body.{end}", names))
@@ -65,7 +65,7 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
         {exercise.name for exercise in book.lessons},
     )
 
-    def write(link: Link) -> str:
+    def write(link: TextLink) -> str:
         if link.kind == TERM:
             return f'[{link.said}]({INDEX} "{typeset(link.name, book.lang)}")'
         if link.name not in here[link.kind == "lesson"]:
@@ -75,14 +75,14 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
 
     names = _of_book(book) | {
         "lesson": lesson,
-        "pieces": [_told(exercise) for exercise in pieces],
+        "pieces": [_with_kind(exercise) for exercise in pieces],
         "tall": _TALL,
     }
     names["relinked"] = lambda text: relinked(text, write)
     return Markup(render(env, "_book_pieces.typ.j2", names))
 
 
-def _told(piece: Piece) -> dict[str, Any]:
+def _with_kind(piece: Piece) -> dict[str, Any]:
     """A piece with the word by which the templates tell it."""
     return {"kind": type(piece).__name__.lower(), "piece": piece}
 
@@ -91,12 +91,12 @@ def _told(piece: Piece) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Page:
+class BookPage:
     """A page of a book: its file, what it is called, and what stands on it."""
 
     file: str
     title: str
-    of: LessonText | Practised | None = None
+    of: LessonText | BookExercise | None = None
 
 
 def pages(
@@ -139,21 +139,21 @@ def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
     return render(env, "book_terms.html.j2", {**names, **more})
 
 
-def _solution(env: Environment, exercise: Practised, names: Mapping[str, Any]) -> str:
+def _solution(env: Environment, exercise: BookExercise, names: Mapping[str, Any]) -> str:
     assert exercise.solution is not None  # only those that have one are asked for
     variables = views.context(exercise.solution) | {"one": exercise, "title": views.title(exercise.solution)}
     return render(env, "book_solution.html.j2", {**names, **variables})
 
 
-def _pages(book: Book) -> Iterator[Page]:
+def _pages(book: Book) -> Iterator[BookPage]:
     book_words = words(book.lang)["book"]
-    yield Page("index.html", book_words["contents"])
+    yield BookPage("index.html", book_words["contents"])
     for chapter in book.chapters:
         for section in chapter.sections:
             if section.lesson:
-                yield Page(f"{section.lesson.name}.html", section.lesson.title, section.lesson)
+                yield BookPage(f"{section.lesson.name}.html", section.lesson.title, section.lesson)
             for exercise in section.exercises:
-                yield Page(
+                yield BookPage(
                     f"{exercise.handout.exercise}.html",
                     f"{exercise.number} {exercise.handout.title}",
                     exercise,
@@ -164,20 +164,20 @@ def _title_of(book: Book, lesson: str) -> str:
     return next(lesson_page.title for lesson_page in book.lessons if lesson_page.name == lesson)
 
 
-def _page(env: Environment, book: Book, page: Page, names: Mapping[str, Any]) -> str:
+def _page(env: Environment, book: Book, page: BookPage, names: Mapping[str, Any]) -> str:
     names = {**names, "page": page, "title": page.title}
     if isinstance(page.of, LessonText):
         pieces = _html_pieces(env, book, page.of, names)
         more = {"lesson": page.of, "shown": pieces, "own": _own_exercises(book, page.of)}
         return render(env, "book_lesson.html.j2", {**names, **more})
-    if isinstance(page.of, Practised):
+    if isinstance(page.of, BookExercise):
         sheet = page.of.handout
         more = views.context(sheet) | {"one": page.of, "keeping": keeping([sheet], sheet.student, sheet.lang)}
         return render(env, "book_exercise.html.j2", {**names, **more})
     return render(env, "book_contents.html.j2", names)
 
 
-def _own_exercises(book: Book, lesson: LessonText) -> tuple[Practised, ...]:
+def _own_exercises(book: Book, lesson: LessonText) -> tuple[BookExercise, ...]:
     return tuple(
         exercise for exercise in book.exercises if lesson.name in {name for name, _ in exercise.lessons}
     )
@@ -186,7 +186,7 @@ def _own_exercises(book: Book, lesson: LessonText) -> tuple[Practised, ...]:
 def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mapping[str, Any]) -> Markup:
     met: set[str] = set()
 
-    def write(link: Link) -> str:
+    def write(link: TextLink) -> str:
         if link.kind == TERM:
             first = link.name not in met
             met.add(link.name)
@@ -195,7 +195,11 @@ def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mappin
         section = f"#section-{link.section}" if link.section else ""
         return f"[{link.said}]({file}{section})" if file in names["files"] else link.said
 
-    answers = {number: [_told(piece) for piece in pieces] for number, pieces in lesson.answers}
-    variables = {"lesson": lesson, "pieces": [_told(piece) for piece in lesson.pieces], "answers": answers}
+    answers = {number: [_with_kind(piece) for piece in pieces] for number, pieces in lesson.answers}
+    variables = {
+        "lesson": lesson,
+        "pieces": [_with_kind(piece) for piece in lesson.pieces],
+        "answers": answers,
+    }
     variables["relinked"] = lambda text: relinked(text, write)
     return Markup(render(env, "_book_pieces.html.j2", {**names, **variables}))

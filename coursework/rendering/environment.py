@@ -64,7 +64,7 @@ def environment(
         sign=feedback.sign,
         sign_mark=lambda one: words(lang)["feedback"]["sign_marks"][one],
         tally=feedback.tally,
-        called=feedback.called,
+        called=feedback.question_heading,
         right=feedback.right_answer,
         read_otherwise=feedback.read_otherwise,
         is_brief=lambda line, prefix="": feedback.is_brief(line, lang, prefix),

@@ -185,7 +185,7 @@ def is_long(line: FeedbackLine) -> bool:
 _PIECE = re.compile(r"\$\$?[^$]*\$\$?|`[^`]*`|(?P<end>[.?!…](?=\s|\Z)|\n\s*\n)|.", re.DOTALL)
 
 
-def called(line: FeedbackLine) -> str:
+def question_heading(line: FeedbackLine) -> str:
     """The first sentence of a question, Markdown; with its symbol where that is not in it."""
     prompt, symbol, end = line.question.prompt.strip(), line.question.symbol, 0
     for piece in _PIECE.finditer(prompt):

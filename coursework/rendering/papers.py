@@ -110,7 +110,7 @@ def exercises_of(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] 
             names = views.context(sheet, number)
         names |= dict(files[number - 1] if files else {})
         handout = views.handout_of(sheet)
-        names["called"] = _called(paper, number, handout.title)
+        names["called"] = _heading_of(paper, number, handout.title)
         names["start_mm"] = _start_mm(sheet)
         names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
         if isinstance(paper, SolutionPaper):
@@ -123,7 +123,7 @@ def _numbered(paper: AnyPaper) -> bool:
     return not isinstance(paper, FeedbackPaper) or paper.numbered
 
 
-def _called(paper: AnyPaper, number: int, title: str) -> str:
+def _heading_of(paper: AnyPaper, number: int, title: str) -> str:
     """Return the heading of an exercise of a paper; its title alone where no paper was handed out."""
     return words(paper.heading.lang)["paper"]["numbered"].format(number, title) if _numbered(paper) else title
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from coursework.rendering.papers import AnyPaper
     from coursework.sheets.book import Book
     from coursework.sheets.paper import FeedbackPaper, Paper, SolutionPaper
-    from coursework.sheets.report import Report
+    from coursework.sheets.report import ReportContent
     from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout, StudySheet
 
 
@@ -203,13 +203,13 @@ class Renderer:
 
         return notebook.lesson(self.template_folders, name, text, lang, install, pictures)
 
-    def report_html(self, report: Report) -> str:
+    def report_html(self, report: ReportContent) -> str:
         """A report as one web page that fetches nothing and runs no script."""
         from coursework.rendering import reports
 
         return reports.page(self.template_folders, report, self.paper)
 
-    def report_pdf(self, report: Report) -> bytes:
+    def report_pdf(self, report: ReportContent) -> bytes:
         """A report as a tagged PDF."""
         from coursework.rendering import pdf, reports
 

@@ -13,23 +13,23 @@ from coursework.language.words import words
 from coursework.markup import markdown as markup
 from coursework.rendering import html, pdf
 from coursework.rendering.environment import render
-from coursework.sheets.report import Chart, Report
+from coursework.sheets.report import Chart, ReportContent
 
 
-def page(folders: Sequence[Path], report: Report, paper: str = "a4") -> str:
+def page(folders: Sequence[Path], report: ReportContent, paper: str = "a4") -> str:
     """A web page that fetches nothing and runs no script."""
     env = html.environment_of(tuple(folders), report.lang)
     return render(env, "report.html.j2", _names(report) | {"chart": _image, "paper": paper})
 
 
-def source(folders: Sequence[Path], report: Report, paper: str = "a4") -> str:
+def source(folders: Sequence[Path], report: ReportContent, paper: str = "a4") -> str:
     """The Typst source; it stands alone."""
     env = pdf.environment_of(tuple(folders), report.lang)
     body = Markup(render(env, "report.typ.j2", _names(report) | {"chart": _drawn}))
     return render(env, "_page.typ.j2", _names(report) | {"bodies": [body], "paper": paper})
 
 
-def _names(report: Report) -> dict[str, object]:
+def _names(report: ReportContent) -> dict[str, object]:
     return {
         "sheet": report,
         "report": report,

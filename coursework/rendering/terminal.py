@@ -8,7 +8,7 @@ from coursework.language.words import words
 from coursework.markup.line import to_line
 from coursework.markup.markdown import to_text
 from coursework.rendering import views
-from coursework.sheets.sheet import Given, Handout, Question
+from coursework.sheets.sheet import GivenValue, Handout, Question
 
 WIDTH = 88
 
@@ -40,7 +40,7 @@ def statement(handout: Handout) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _given(given: Given, lang: str) -> str:
+def _given(given: GivenValue, lang: str) -> str:
     if given.is_number:
         return to_line(views.given_formula(given), lang)
     return to_text(views.given_words(given, lang), lang)

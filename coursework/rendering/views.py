@@ -21,7 +21,7 @@ from coursework.sheets.sheet import (
     Answer,
     AnswerSheet,
     FeedbackSheet,
-    Given,
+    GivenValue,
     Handout,
     Question,
     Step,
@@ -97,7 +97,7 @@ def variant_code(handout: Handout) -> str:
 
 def figure_of(sheet: Sheet) -> Figure | Picture | None:
     """The figure a sheet shows, laid out for its room: a solution's own, else the handout's."""
-    figure = _shown(sheet)
+    figure = _figure_of(sheet)
     return figure and figure.fitted(*room(sheet))
 
 
@@ -129,14 +129,14 @@ def _left(questions: int, is_beside: bool) -> float:
     return _LEFT + _EACH * (_FEW - questions) if is_beside and questions <= _FEW else 0.0
 
 
-def _shown(sheet: Sheet) -> Figure | Picture | None:
+def _figure_of(sheet: Sheet) -> Figure | Picture | None:
     figure = sheet.figure if isinstance(sheet, AnswerSheet) else None
     return figure or handout_of(sheet).figure
 
 
 def _data_beside(sheet: Sheet) -> bool:
     """Return whether the data stand beside the figure; a longer list stands below it."""
-    return _shown(sheet) is not None and 0 < len(handout_of(sheet).given) <= _BESIDE
+    return _figure_of(sheet) is not None and 0 < len(handout_of(sheet).given) <= _BESIDE
 
 
 def _data_width(handout: Handout) -> str:
@@ -182,18 +182,18 @@ def renumbered(text: str, lang: str, prefix: str) -> str:
     return re.sub(named, lambda match: re.sub(r"\d+", rf"{prefix}\g<0>", match[0]), text, flags=re.IGNORECASE)
 
 
-def given_formula(given: Given) -> str:
+def given_formula(given: GivenValue) -> str:
     return quantity_formula(given.symbol, given.value, given.unit, is_number=given.is_number)
 
 
-def given_words(given: Given, lang: str) -> str:
+def given_words(given: GivenValue, lang: str) -> str:
     """A given case as Markdown: ``Mode : ouvert`` where its symbol is a word, ``$B$ : à gauche`` else."""
     word = re.fullmatch(r"\\(?:text|mathrm)\{([^{}]+)\}", given.symbol)
     name = word[1].capitalize() if word else f"${given.symbol}$"
     return f"{name}{words(lang)['sheet']['colon']} {given.value}"
 
 
-def value_formula(given: Given) -> str:
+def value_formula(given: GivenValue) -> str:
     return quantity_formula("", given.value, given.unit, is_number=given.is_number)
 
 

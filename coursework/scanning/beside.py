@@ -10,7 +10,7 @@ import numpy as np
 
 from coursework.scanning.straightening import SCALE, Straight
 from coursework.scanning.strokes import STRONG, part_of, pieces, row_ink
-from coursework.sheets.answer_pages import AnswerPage, Box, Field
+from coursework.sheets.answer_pages import AnswerField, AnswerPage, Box
 
 _LEAST = 0.6  #: mm2 of one piece of ink where nothing is printed
 _ROW = 1.2  #: mm from a row's upper and lower end, as far as ink of its neighbours may reach
@@ -29,7 +29,7 @@ _MARK = 6.0  #: mm from the middle of a black square to where paper is white
 _WRITING = 1.5  #: mm2 of it, less than a digit has
 
 
-def written_beside(page: Straight, field: Field) -> bool:
+def written_beside(page: Straight, field: AnswerField) -> bool:
     """Return True if ink lies beside the boxes of a row and is not part of the writing in them."""
     boxes = boxes_of(field)
     ink, span = row_ink(page, boxes, within=field.whole)
@@ -57,13 +57,13 @@ def written_below(page: Straight, sheet: AnswerPage) -> bool:
     return float(connected.areas[1:][is_writing].sum()) >= _WRITING * SCALE**2
 
 
-def boxes_of(field: Field) -> list[Box]:
+def boxes_of(field: AnswerField) -> list[Box]:
     """Return the boxes of a row that are filled in, without the one for words."""
     row = (field.sign, *field.digits, *field.decimals, field.power_sign, *field.power, field.unit)
     return [box for box in (*row, *(box for _, box in field.ticks)) if box is not None]
 
 
-def _bare(field: Field) -> Iterator[Box]:
+def _bare(field: AnswerField) -> Iterator[Box]:
     """Yield the areas of a row in which nothing is printed."""
     if field.ticks:
         yield from _about_ticks(field, [box for _, box in field.ticks])
@@ -73,7 +73,7 @@ def _bare(field: Field) -> Iterator[Box]:
             yield Box(left, field.free.y + 0.5, field.free.x - _BOX - left, field.free.height - 1.0)
 
 
-def _printed_to(field: Field) -> float:
+def _printed_to(field: AnswerField) -> float:
     """Return the right end of the print in a row's first line at most, mm from the left of the page."""
     if field.ticks:
         lines = {box.y: box.right for _, box in field.ticks}
@@ -86,7 +86,7 @@ def _printed_to(field: Field) -> float:
     return max(box.right for box in boxes_of(field)) + 2.0
 
 
-def _about_ticks(field: Field, boxes: Sequence[Box]) -> Iterator[Box]:
+def _about_ticks(field: AnswerField, boxes: Sequence[Box]) -> Iterator[Box]:
     """Above and below each line of boxes to tick, and of the letters behind them."""
     for line in sorted({box.y for box in boxes}):
         row = [box for box in boxes if box.y == line]

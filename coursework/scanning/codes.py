@@ -15,7 +15,7 @@ _LONG = 2400  #: pixels of the longer side, enough for a symbol of 15 mm on A4
 
 
 @dataclass(frozen=True)
-class Code:
+class PageCode:
     """A symbol that was read: its text and, in pixels of the picture, its corners as printed: top left, top right,
     bottom right, bottom left, shape ``(4, 2)``."""
 
@@ -23,7 +23,7 @@ class Code:
     corners: np.ndarray
 
 
-def codes_in(grey: np.ndarray) -> tuple[Code, ...]:
+def codes_in(grey: np.ndarray) -> tuple[PageCode, ...]:
     """Return the codes in a picture, each text once; a picture that is hard to read is also tried sharpened,
     softened and evenly lit."""
     for scale, tried in _tries(grey):
@@ -53,9 +53,9 @@ def _tries(grey: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
     yield scale * 1.6, cv2.addWeighted(twice, 2.5, soft, -1.5, 0)
 
 
-def _read(grey: np.ndarray, scale: float) -> Iterator[Code]:
+def _read(grey: np.ndarray, scale: float) -> Iterator[PageCode]:
     zxing: Any = library("zxingcpp", "reading scans needs", "scan")
     for barcodes in zxing.read_barcodes(np.ascontiguousarray(grey), formats=zxing.BarcodeFormat.QRCode):
         at = barcodes.position
         corners = [(p.x, p.y) for p in (at.top_left, at.top_right, at.bottom_right, at.bottom_left)]
-        yield Code(barcodes.text, (np.array(corners, float) + 0.5) / scale - 0.5)
+        yield PageCode(barcodes.text, (np.array(corners, float) + 0.5) / scale - 0.5)

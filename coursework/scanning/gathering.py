@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
-from coursework.scanning.kept import ANSWERS, LOST, OTHER_NAME, FieldKept, PageKept, Scanned
+from coursework.scanning.kept import ANSWERS, LOST, OTHER_NAME, Scanned, ScannedField, PageScan
 from coursework.scanning.typed import NAME, PAGE, Typed
 
 DIFFERS = "differs"  #: scans of one page say different things
@@ -19,7 +19,7 @@ NOBODY = "nobody"  #: why a paper without a name waits
 CODE = "code"  #: why a page waits of which the code cannot be read
 
 
-class Place(NamedTuple):
+class FieldPosition(NamedTuple):
     """Place of an answer, or of one of its coordinates."""
 
     exercise: str
@@ -28,31 +28,31 @@ class Place(NamedTuple):
     coordinate: int
 
 
-class Asked(NamedTuple):
+class PrintedField(NamedTuple):
     """A place of a page, and what goes there."""
 
-    place: Place
+    place: FieldPosition
     coordinates: int
     what: str
     page: int
 
 
 @dataclass(frozen=True)
-class PaperAsked:
+class PrintedPaper:
     """One paper as it was printed: whose it is, and what its answer pages ask."""
 
     code: str
     student: str  #: empty where it was made for nobody by name
     pages: int
-    asked: tuple[Asked, ...]
+    asked: tuple[PrintedField, ...]
 
 
 @dataclass(frozen=True)
-class Said:
+class FieldReading:
     """Reading of one place on one scan of a page."""
 
     page: str  #: its id
-    field: FieldKept
+    field: ScannedField
     index: int  #: of the field on its page
 
     @property
@@ -61,7 +61,7 @@ class Said:
 
 
 @dataclass(frozen=True)
-class Card:
+class AnswerCard:
     """Card on which a person types or confirms a text."""
 
     student: str
@@ -75,7 +75,7 @@ class Card:
     waits: str
     candidate: str
     confidence: float
-    said: tuple[Said, ...] = ()
+    said: tuple[FieldReading, ...] = ()
     pages: tuple[str, ...] = ()  #: ids, of the scans to look at
 
     @property
@@ -85,7 +85,7 @@ class Card:
 
 
 @dataclass(frozen=True)
-class Answer:
+class ScannedAnswer:
     """An answer of which nothing waits."""
 
     student: str
@@ -95,7 +95,7 @@ class Answer:
     answer: str
     pages: tuple[str, ...]  #: ids, of the scans that say it
     by_hand: bool = False
-    pictures: tuple[Said, ...] = ()  #: of an answer that a person marks from its picture
+    pictures: tuple[FieldReading, ...] = ()  #: of an answer that a person marks from its picture
 
 
 @dataclass(frozen=True)
@@ -104,21 +104,21 @@ class Pending:
 
     student: str
     part: Part
-    pieces: tuple[Card | str, ...]
+    pieces: tuple[AnswerCard | str, ...]
 
 
 @dataclass
 class Gathered:
     """Combined content of all pages."""
 
-    answers: list[Answer] = field(default_factory=list)
-    cards: list[Card] = field(default_factory=list)
-    missing: list[tuple[PaperAsked, tuple[int, ...]]] = field(default_factory=list)
+    answers: list[ScannedAnswer] = field(default_factory=list)
+    cards: list[AnswerCard] = field(default_factory=list)
+    missing: list[tuple[PrintedPaper, tuple[int, ...]]] = field(default_factory=list)
     whose: dict[str, str] = field(default_factory=dict)  #: student by code of a paper
     waits: dict[str, int] = field(default_factory=dict)  #: cards by id of a page
     unused: list[Typed] = field(default_factory=list)  #: what was typed and fits nothing that was scanned
     pending: list[Pending] = field(default_factory=list)
-    drawn: dict[tuple[str, str, int], Said] = field(
+    drawn: dict[tuple[str, str, int], FieldReading] = field(
         default_factory=dict
     )  #: what was drawn on, by paper, exercise and seed
 
@@ -141,13 +141,13 @@ class Parts(Protocol):
 
 def gather(
     pages: Iterable[Scanned],
-    papers: Mapping[str, PaperAsked],
+    papers: Mapping[str, PrintedPaper],
     typed: Iterable[Typed],
     parts: Parts,
 ) -> Gathered:
     """Combine pages and typed texts."""
     combined = Gathered()
-    by_paper: dict[str, dict[int, dict[str, PageKept]]] = {}
+    by_paper: dict[str, dict[int, dict[str, PageScan]]] = {}
     lost: dict[str, str] = {}
     for page in pages:
         if page.page.what == ANSWERS and page.page.code in papers:
@@ -158,13 +158,13 @@ def gather(
     used: set[Any] = set()
     for code, paper in papers.items():
         scans = by_paper.get(code, {})
-        combined.whose[code] = student = _whose(paper, scans, decided, used, combined)
+        combined.whose[code] = student = _student_of(paper, scans, decided, used, combined)
         missing = tuple(n for n in range(1, paper.pages + 1) if n not in scans)
         if missing:
             combined.missing.append((paper, missing))
         _gather_paper(combined, paper, student, scans, decided, used, parts)
     for name in sorted(lost):
-        combined.cards.append(Card("", "", PAGE, 0, name, 1, 1, PAGE, lost[name], "", 0.0, (), (name,)))
+        combined.cards.append(AnswerCard("", "", PAGE, 0, name, 1, 1, PAGE, lost[name], "", 0.0, (), (name,)))
     for card in combined.cards:
         for name in card.pages:
             combined.waits[name] = combined.waits.get(name, 0) + 1
@@ -172,9 +172,9 @@ def gather(
     return combined
 
 
-def _whose(
-    paper: PaperAsked,
-    scans: Mapping[int, Mapping[str, PageKept]],
+def _student_of(
+    paper: PrintedPaper,
+    scans: Mapping[int, Mapping[str, PageScan]],
     decided: Mapping[Any, Typed],
     used: set[Any],
     combined: Gathered,
@@ -189,22 +189,22 @@ def _whose(
         return typed.answer.strip()
     first = tuple(sorted(scans[min(scans)]))
     combined.cards.append(
-        Card(paper.code, paper.code, NAME, 0, "", 1, 1, NAME, NOBODY, "", 0.0, (), first[:1])
+        AnswerCard(paper.code, paper.code, NAME, 0, "", 1, 1, NAME, NOBODY, "", 0.0, (), first[:1])
     )
     return paper.code
 
 
 def _gather_paper(
     combined: Gathered,
-    paper: PaperAsked,
+    paper: PrintedPaper,
     student: str,
-    scans: Mapping[int, Mapping[str, PageKept]],
+    scans: Mapping[int, Mapping[str, PageScan]],
     decided: Mapping[Any, Typed],
     used: set[Any],
     parts: Parts,
 ) -> None:
-    readings = _said(scans)
-    by_part: dict[Part, list[Asked]] = {}
+    readings = _readings_of(scans)
+    by_part: dict[Part, list[PrintedField]] = {}
     for printed in paper.asked:
         by_part.setdefault(printed.place[:3], []).append(printed)
     for part, fields in by_part.items():
@@ -222,22 +222,22 @@ def _gather_paper(
                 _to_click(s, printed, paper, student, readings)
                 for s, printed in zip(settled, fields, strict=True)
             ]
-        _put(combined, student, part, settled, parts)
+        _add_answer(combined, student, part, settled, parts)
 
 
-def _note_drawing(combined: Gathered, paper: PaperAsked, readings: Sequence[Said]) -> None:
+def _note_drawing(combined: Gathered, paper: PrintedPaper, readings: Sequence[FieldReading]) -> None:
     drawn = next((s for s in readings if s.field.waits), None)
     if drawn is not None:
         combined.drawn[paper.code, drawn.field.exercise, drawn.field.seed] = drawn
 
 
 def _to_click(
-    settled: _Settled | Card | None,
-    printed: Asked,
-    paper: PaperAsked,
+    settled: _Settled | AnswerCard | None,
+    printed: PrintedField,
+    paper: PrintedPaper,
     student: str,
-    readings: Mapping[Place, Sequence[Said]],
-) -> _Settled | Card | None:
+    readings: Mapping[FieldPosition, Sequence[FieldReading]],
+) -> _Settled | AnswerCard | None:
     """Return a card for a blank coordinate beside a drawing, since a person may click it there; any other
     state unchanged."""
     if not isinstance(settled, _Settled) or settled.text or settled.by_hand:
@@ -246,40 +246,48 @@ def _to_click(
     return _card(printed, paper, student, field_readings, DRAWN, "", 0.0)
 
 
-def _put(
-    combined: Gathered, student: str, part: Part, settled: Sequence[_Settled | Card | None], parts: Parts
+def _add_answer(
+    combined: Gathered,
+    student: str,
+    part: Part,
+    settled: Sequence[_Settled | AnswerCard | None],
+    parts: Parts,
 ) -> None:
     """Add the answer to a question if all its coordinates are known; otherwise add their cards, and list the
     answer as pending if all its pages were scanned."""
-    cards = [item for item in settled if isinstance(item, Card)]
+    cards = [item for item in settled if isinstance(item, AnswerCard)]
     values = [item for item in settled if isinstance(item, _Settled)]
     combined.cards += cards
     if len(cards) + len(values) < len(settled):
         return  # of its pages not all were scanned
     if cards:
-        pieces = tuple(item if isinstance(item, Card) else item.text for item in settled if item is not None)
+        pieces = tuple(
+            item if isinstance(item, AnswerCard) else item.text for item in settled if item is not None
+        )
         combined.pending.append(Pending(student, part, pieces))
         return
     texts = [item.text for item in values]
     ids = tuple(sorted({name for item in values for name in item.pages}))
     combined.answers.append(
-        Answer(
+        ScannedAnswer(
             student, *part, texts[0] if len(texts) == 1 else parts.joined(part, texts), ids, any(item.by_hand for item in values),
             tuple(s for item in values for s in item.pictures),
         )
     )  # fmt: skip
 
 
-def _said(scans: Mapping[int, Mapping[str, PageKept]]) -> dict[Place, tuple[Said, ...]]:
+def _readings_of(
+    scans: Mapping[int, Mapping[str, PageScan]],
+) -> dict[FieldPosition, tuple[FieldReading, ...]]:
     """Return the readings of a paper's scans by place, ordered by the ids of the scans."""
-    by_position: dict[Place, list[Said]] = {}
+    by_position: dict[FieldPosition, list[FieldReading]] = {}
     for number in sorted(scans):
         for name in sorted(scans[number]):
             for index, scanned_field in enumerate(scans[number][name].fields):
-                position = Place(
+                position = FieldPosition(
                     scanned_field.exercise, scanned_field.seed, scanned_field.part, scanned_field.coordinate
                 )
-                by_position.setdefault(position, []).append(Said(name, scanned_field, index))
+                by_position.setdefault(position, []).append(FieldReading(name, scanned_field, index))
     return {position: tuple(readings) for position, readings in by_position.items()}
 
 
@@ -288,18 +296,18 @@ class _Settled:
     text: str
     pages: tuple[str, ...]
     by_hand: bool = False
-    pictures: tuple[Said, ...] = ()
+    pictures: tuple[FieldReading, ...] = ()
 
 
 def _settle(
-    printed: Asked,
-    paper: PaperAsked,
+    printed: PrintedField,
+    paper: PrintedPaper,
     student: str,
-    readings: Sequence[Said],
+    readings: Sequence[FieldReading],
     decided: Mapping[Any, Typed],
     used: set[Any],
     is_open: bool,
-) -> _Settled | Card | None:
+) -> _Settled | AnswerCard | None:
     """Return the settled text of a place: the typed one, or else the reading on which all scans agree without
     doubt; otherwise a card for a person.
 
@@ -331,22 +339,22 @@ def _settle(
 
 
 def _card(
-    printed: Asked,
-    paper: PaperAsked,
+    printed: PrintedField,
+    paper: PrintedPaper,
     student: str,
-    readings: Sequence[Said],
+    readings: Sequence[FieldReading],
     waits: str,
     candidate: str,
     confidence: float,
-) -> Card:
+) -> AnswerCard:
     position = printed.place
-    return Card(
+    return AnswerCard(
         student, paper.code, position.exercise, position.seed, position.part, position.coordinate, printed.coordinates, printed.what, waits, candidate,
         confidence, tuple(readings), tuple(s.page for s in readings),
     )  # fmt: skip
 
 
-def _why(readings: Sequence[Said], texts: set[str]) -> str:
+def _why(readings: Sequence[FieldReading], texts: set[str]) -> str:
     """Why a place waits: its scans differ, or the first reason that one of them has."""
     if len(texts) > 1:
         return DIFFERS
@@ -354,7 +362,7 @@ def _why(readings: Sequence[Said], texts: set[str]) -> str:
 
 
 def _typed_at(
-    position: Place, paper: PaperAsked, student: str, decided: Mapping[Any, Typed], used: set[Any]
+    position: FieldPosition, paper: PrintedPaper, student: str, decided: Mapping[Any, Typed], used: set[Any]
 ) -> Typed | None:
     for name in (student, paper.code):
         key = (name, position.exercise, str(position.seed), position.part, str(position.coordinate + 1))
@@ -364,7 +372,7 @@ def _typed_at(
     return None
 
 
-def _holds(typed: Typed, readings: Sequence[Said]) -> bool:
+def _holds(typed: Typed, readings: Sequence[FieldReading]) -> bool:
     """Return True if a typed text still applies: its author saw these scans, or later ones agree with it."""
     if not typed.pages:
         return True

@@ -21,7 +21,7 @@ from coursework.system.limits import MOST_PAGES
 from coursework.system.tables import json_text
 from coursework.system.writing import write_whole
 
-_Kept = TypeVar("_Kept", "FieldKept", "PageKept", "FileKept")
+_Stored = TypeVar("_Stored", "ScannedField", "PageScan", "ScannedFile")
 
 FORMAT = 1  #: of what is kept; another one is read anew
 FOLDER, PICTURES, CROPS, FILES = ".scanned", "pictures", "crops", "files.json"
@@ -35,7 +35,7 @@ OTHER_NAME = "other name"  #: why a page is lost whose code is of one student, a
 
 
 @dataclass(frozen=True)
-class FieldKept:
+class ScannedField:
     """Reading of one answer, or of one of its coordinates."""
 
     exercise: str
@@ -52,7 +52,7 @@ class FieldKept:
 
 
 @dataclass(frozen=True)
-class PageKept:
+class PageScan:
     """Result of one scanned page: answers, a page of a statement, blank, lost (unknown which page it is), or
     refused."""
 
@@ -60,7 +60,7 @@ class PageKept:
     reason: str = ""  #: why nothing was read of it
     code: str = ""  #: of its paper
     number: int = 0  #: of the page among the answer pages of its paper
-    fields: tuple[FieldKept, ...] = ()
+    fields: tuple[ScannedField, ...] = ()
     is_straight: bool = False  #: its picture is the page laid flat, at :data:`SCALE`
     has_picture: bool = True
     least: float = 0.0  #: the confidence below which it was left to a person
@@ -68,7 +68,7 @@ class PageKept:
 
 
 @dataclass(frozen=True)
-class FileKept:
+class ScannedFile:
     """A file that was scanned."""
 
     name: str
@@ -82,7 +82,7 @@ def page_id(digest: str, number: int) -> str:
     return f"{digest}-{number:04d}"
 
 
-def put_page(out: Path, name: str, page: PageKept, pictures: Mapping[str, bytes]) -> None:
+def put_page(out: Path, name: str, page: PageScan, pictures: Mapping[str, bytes]) -> None:
     """Store a page: its pictures first, so that a stored page always has them."""
     for file, data in pictures.items():
         write_whole(out / file, data)
@@ -99,16 +99,17 @@ def crop_of(name: str, index: int) -> str:
     return f"{CROPS}/{name}-{index:02d}.png"
 
 
-def page_of(content: Mapping[str, Any]) -> PageKept | None:
+def page_of(content: Mapping[str, Any]) -> PageScan | None:
     """Return the page in JSON; None if it is of another format."""
     fields_left = dict(content)
     try:
         if fields_left.pop("format") != FORMAT:
             return None
         fields = tuple(
-            _checked(FieldKept(**{**entry, "box": _box(entry["box"])})) for entry in fields_left.pop("fields")
+            _checked(ScannedField(**{**entry, "box": _box(entry["box"])}))
+            for entry in fields_left.pop("fields")
         )
-        return _checked(PageKept(**fields_left, fields=fields))
+        return _checked(PageScan(**fields_left, fields=fields))
     except (ValueError, KeyError, TypeError):
         return None
 
@@ -130,7 +131,7 @@ def _box(numbers: Any) -> tuple[float, float, float, float]:
 _TYPES = {str: (str,), int: (int,), float: (int, float), bool: (bool,)}
 
 
-def _checked(stored: _Kept) -> _Kept:
+def _checked(stored: _Stored) -> _Stored:
     """Check that the fields of a stored object have their declared types; return the object.
 
     Raises
@@ -144,12 +145,12 @@ def _checked(stored: _Kept) -> _Kept:
     return stored
 
 
-def page_as_json(page: PageKept) -> dict[str, Any]:
+def page_as_json(page: PageScan) -> dict[str, Any]:
     """Return a page as JSON."""
     return {"format": FORMAT, **asdict(page)}
 
 
-def page_kept(out: Path, name: str) -> PageKept | None:
+def stored_page(out: Path, name: str) -> PageScan | None:
     """Return the stored result of a page; None if there is none, or if it is of another format."""
     try:
         content = read_json(out / FOLDER / f"{name}.json")
@@ -161,7 +162,7 @@ def page_kept(out: Path, name: str) -> PageKept | None:
     return page if not page.has_picture or (out / picture_of(name)).is_file() else None
 
 
-def files_kept(out: Path) -> list[FileKept]:
+def stored_files(out: Path) -> list[ScannedFile]:
     """Return the files that were scanned before.
 
     Raises
@@ -173,7 +174,7 @@ def files_kept(out: Path) -> list[FileKept]:
     if not path.exists():
         return []
     try:
-        return [_checked_file(FileKept(**entry)) for entry in read_json(path)]
+        return [_checked_file(ScannedFile(**entry)) for entry in read_json(path)]
     except (ValueError, TypeError) as fault:
         raise BadInput(
             f"{path} is not as 'coursework scan' leaves it ({str(fault)[:80]}): remove it and name all scans again, or choose "
@@ -181,18 +182,18 @@ def files_kept(out: Path) -> list[FileKept]:
         ) from fault
 
 
-def _checked_file(file: FileKept) -> FileKept:
+def _checked_file(file: ScannedFile) -> ScannedFile:
     if not 0 <= _checked(file).pages <= MOST_PAGES:
         raise ValueError(f"{file.name} of {str(file.pages)[:20]} pages")
     return file
 
 
-def put_files(out: Path, files: Iterable[FileKept]) -> None:
+def put_files(out: Path, files: Iterable[ScannedFile]) -> None:
     """Keep the list of files."""
     write_whole(out / FOLDER / FILES, json_text([asdict(file) for file in files]).encode())
 
 
-def joined(before: Iterable[FileKept], now: Iterable[FileKept]) -> list[FileKept]:
+def joined(before: Iterable[ScannedFile], now: Iterable[ScannedFile]) -> list[ScannedFile]:
     """Return the earlier and the current files, each once, in the order of their names."""
     by_key = {(file.name, file.digest): file for file in (*before, *now)}
     return [by_key[key] for key in sorted(by_key)]
@@ -214,7 +215,7 @@ def look_of(paper: np.ndarray) -> str:
 
 def with_copies(pages: Iterable[Scanned]) -> list[Scanned]:
     """Return the pages, with those marked as copies that look like an earlier page of the same sheet."""
-    met: dict[tuple[str, int], list[tuple[np.ndarray, PageKept]]] = {}
+    met: dict[tuple[str, int], list[tuple[np.ndarray, PageScan]]] = {}
     result = []
     for scan in pages:
         cells = _cells(scan.page.look)
@@ -232,7 +233,7 @@ def _is_alike(cells: np.ndarray, others: np.ndarray) -> bool:
     return cells.shape == others.shape and bool(np.abs(cells - others).max() <= _SAME)
 
 
-def _says_the_same(page: PageKept, other: PageKept) -> bool:
+def _says_the_same(page: PageScan, other: PageScan) -> bool:
     """Return True if two pages agree in every field of which both are certain."""
     sure = ((a, b) for a, b in zip(page.fields, other.fields, strict=False) if not (a.waits or b.waits))
     return all(a.text == b.text for a, b in sure)
@@ -249,23 +250,23 @@ def _cells(look: str) -> np.ndarray | None:
 class Scanned:
     """One page of one file, as it stands in the list of pages."""
 
-    file: FileKept
+    file: ScannedFile
     number: int  #: in the file; 0 for a file of which no page can be read
     id: str
-    page: PageKept
+    page: PageScan
     is_copy: bool = False  #: a file of the same content, or a page of the same look, was met before
 
 
-def scanned(out: Path, files: Iterable[FileKept]) -> Iterator[Scanned]:
+def scanned(out: Path, files: Iterable[ScannedFile]) -> Iterator[Scanned]:
     """Every page of the files, in order; a file that cannot be read is one."""
     met: set[str] = set()
     for file in files:
         if file.fault:
-            yield Scanned(file, 0, "", PageKept(REFUSED, file.fault, has_picture=False))
+            yield Scanned(file, 0, "", PageScan(REFUSED, file.fault, has_picture=False))
             continue
         for number in range(1, file.pages + 1):
             name = page_id(file.digest, number)
-            page = page_kept(out, name) or PageKept(
+            page = stored_page(out, name) or PageScan(
                 REFUSED, "what was read of it is gone: name its scan again", has_picture=False
             )
             yield Scanned(file, number, name, page, file.digest in met)

@@ -31,7 +31,7 @@ from coursework.scanning.strokes import (
     runs_through,
 )
 from coursework.scanning.ticks import EMPTY, TICKED, UNSURE, tick
-from coursework.sheets.answer_pages import Box, Field
+from coursework.sheets.answer_pages import AnswerField, Box
 
 #: Pictures of boxes ``(n, h, w)``, dark ink on light, to digits, -1 for an empty one, and the confidence in each.
 Reader = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -44,7 +44,7 @@ _CELL = (90, 70)  #: pixels of a box that is handed to the reader
 
 
 @dataclass(frozen=True)
-class Reading:
+class FieldText:
     """Reading of a field: its ``text``, the least ``confidence`` of its boxes, the reason for which it waits
     for a person, if any, and the ticked ``cases``.
 
@@ -69,17 +69,17 @@ class _Row:
     unit: str
 
 
-def number(page: Straight, field: Field, reader: Reader, least: float = LEAST) -> Reading:
+def number(page: Straight, field: AnswerField, reader: Reader, least: float = LEAST) -> FieldText:
     """Return the reading of a field for a number."""
     if field.free is not None and not is_bare(page, field.free, 0.7):
-        return Reading("", 0.0, "free")
+        return FieldText("", 0.0, "free")
     boxes = [*field.digits, *field.decimals]
     everywhere = [b for b in (field.sign, *boxes, field.power_sign, *field.power) if b is not None]
     unit = tick(page, field.unit) if field.unit is not None else EMPTY
     signs = (field.sign, field.power_sign)
     bare = {box: _is_bare(page, box, _DASH if box in signs else _UPRIGHT) for box in everywhere}
     if all(bare.values()):
-        read = Reading("", 1.0, "" if unit in (EMPTY, TICKED) else "unit")
+        read = FieldText("", 1.0, "" if unit in (EMPTY, TICKED) else "unit")
     else:
         read = _written(page, field, reader, least, bare, unit)
     return read if read.waits or not written_beside(page, field) else replace(read, waits="free")
@@ -91,8 +91,8 @@ def _is_bare(page: Straight, box: Box, stroke: float) -> bool:
 
 
 def _written(
-    page: Straight, field: Field, reader: Reader, least: float, bare: dict[Box, bool], unit: str
-) -> Reading:
+    page: Straight, field: AnswerField, reader: Reader, least: float, bare: dict[Box, bool], unit: str
+) -> FieldText:
     """Return the reading of a row that is not empty."""
     rows = [[*field.digits, *field.decimals], list(field.power)]
     texts: dict[Box, tuple[int, float]] = {}
@@ -120,7 +120,7 @@ def _written(
     )
     confidence = min((c for _, c in texts.values()), default=1.0)
     reason = reason or ("digit" if confidence < least else "") or _against_rules(row_read)
-    return Reading(_text(row_read, field.unit_text), confidence, reason)
+    return FieldText(_text(row_read, field.unit_text), confidence, reason)
 
 
 def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader) -> list[tuple[int, float]]:
@@ -218,4 +218,4 @@ def _text(row: _Row, unit: str) -> str:
     return f"{row.sign}{joined(row.digits)}{decimals}{power}{suffix}".replace("?", "")
 
 
-__all__ = ["LEAST", "UNSURE", "Reader", "Reading", "number"]
+__all__ = ["LEAST", "UNSURE", "FieldText", "Reader", "number"]

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from coursework.scanning.pictures import opencv
-from coursework.sheets.answer_pages import AnswerPage, Box, Field
+from coursework.sheets.answer_pages import AnswerField, AnswerPage, Box
 
 _REACH = (
     3.2,
@@ -88,9 +88,9 @@ def outline_shifts(ink: np.ndarray, page: AnswerPage, scale: int) -> Shifts:
         return Shifts(np.empty((0, 2)), np.empty((0, 2)), 0.0)
     lines = _lines(ink)
     centres = np.array([_centre(group) for group in groups])
-    offs, shares = _each(_found(lines, group, scale, (0.0, 0.0), _REACH) for group in groups)
+    offs, shares = _each(_displacement(lines, group, scale, (0.0, 0.0), _REACH) for group in groups)
     surface, smooth = _smooth(centres, offs, shares > _SEEN)
-    again = [_found(lines, groups[k], scale, surface[k], _NEAR) for k in np.flatnonzero(~smooth)]
+    again = [_displacement(lines, groups[k], scale, surface[k], _NEAR) for k in np.flatnonzero(~smooth)]
     if again:
         offs[~smooth], shares[~smooth] = _each(again)
         surface, smooth = _smooth(centres, offs, shares > _SEEN)
@@ -102,7 +102,7 @@ def _each(measurements: Iterable[tuple[np.ndarray, float]]) -> tuple[np.ndarray,
     return np.array(offs), np.array(shares)
 
 
-def _groups(field: Field) -> Iterator[Group]:
+def _groups(field: AnswerField) -> Iterator[Group]:
     """Yield the groups of outlines of a field that move together: adjacent boxes, and the corners of large
     boxes."""
     row = [box for box in (field.sign, *field.digits, *field.decimals, field.power_sign, *field.power) if box]
@@ -163,7 +163,7 @@ def _lines(ink: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.minimum(upright, _MOST), np.minimum(level, _MOST)
 
 
-def _found(
+def _displacement(
     lines: tuple[np.ndarray, np.ndarray],
     group: Group,
     scale: int,

@@ -22,15 +22,15 @@ from coursework.scanning.kept import (
     REFUSED,
     SCALE,
     STATEMENT,
-    FieldKept,
-    PageKept,
+    ScannedField,
+    PageScan,
     crop_of,
     look_of,
     page_id,
     picture_of,
     put_page,
 )
-from coursework.sheets.answer_pages import AnswerPage, Field
+from coursework.sheets.answer_pages import AnswerField, AnswerPage
 
 _BARE = 0.0002  #: share of dark pixels below which a page is blank: less than a code and four marks have
 _PAPER = 90  #: of 255: paper of a blank page is lighter
@@ -58,7 +58,7 @@ class Desk(NamedTuple):
     least: float
 
 
-class Pages(NamedTuple):
+class PageRange(NamedTuple):
     """Some pages of one file."""
 
     path: str
@@ -114,7 +114,7 @@ def count_pages(path: str) -> tuple[int, str]:
         return 0, str(fault)
 
 
-def read_pages(desk: Desk, pages: Pages) -> int:
+def read_pages(desk: Desk, pages: PageRange) -> int:
     """Read pages of a file and keep what they say; gives how many."""
     papers = _papers(desk.root, desk.issued, desk.stamp)
     for number in range(pages.first, pages.last + 1):
@@ -126,7 +126,7 @@ def read_pages(desk: Desk, pages: Pages) -> int:
 
 def _read(
     path: Path, number: int, name: str, papers: Papers, least: float
-) -> tuple[PageKept, dict[str, bytes]]:
+) -> tuple[PageScan, dict[str, bytes]]:
     """Return the result of a page, and its pictures by their files."""
     from coursework.scanning.digits import read_digits
     from coursework.scanning.pages import read_page
@@ -135,17 +135,17 @@ def _read(
     try:
         picture = picture_at(path, number)
     except CourseworkError as fault:
-        return PageKept(REFUSED, str(fault), has_picture=False, least=least), {}
+        return PageScan(REFUSED, str(fault), has_picture=False, least=least), {}
     try:
         page_read = read_page(picture, papers, read_digits, least)
     except opencv().error as fault:  # one picture does not stop a pile: a person looks at it
         reason = f"reading it failed: {str(fault.err or fault)[:100]}"
-        return PageKept(LOST, reason, least=least), {picture_of(name): _jpeg(picture.grey, _HIGHEST)}
+        return PageScan(LOST, reason, least=least), {picture_of(name): _jpeg(picture.grey, _HIGHEST)}
     if page_read.found == "no code" and _is_bare(picture.grey):
-        return PageKept(BLANK, least=least), {picture_of(name): _jpeg(picture.grey, 600)}
+        return PageScan(BLANK, least=least), {picture_of(name): _jpeg(picture.grey, 600)}
     if page_read.page is None or page_read.found == "statement":
         state, reason = _FOUND.get(page_read.found, (LOST, page_read.found))
-        return PageKept(state, reason, _code(page_read.code), least=least), {
+        return PageScan(state, reason, _code(page_read.code), least=least), {
             picture_of(name): _jpeg(page_read.grey, _HIGHEST)
         }
     code = _code(page_read.code)
@@ -155,7 +155,7 @@ def _read(
         }
     pictures = {picture_of(name): _jpeg(page_read.grey, round(page_read.page.height * SCALE))}
     if _is_of_another(page_read.grey, page_read.page, papers, code):
-        return PageKept(LOST, OTHER_NAME, least=least), pictures
+        return PageScan(LOST, OTHER_NAME, least=least), pictures
     fields = []
     for index, field in enumerate(page_read.fields):
         crop = ""
@@ -163,9 +163,9 @@ def _read(
             crop = crop_of(name, index)
             pictures[crop] = _png(field.crop)
         text = _text(field.field, field.text, field.cases, papers, code)
-        fields.append(_kept(field.field, text, float(field.confidence), field.waits, crop))
+        fields.append(_scanned_field(field.field, text, float(field.confidence), field.waits, crop))
     look = look_of(page_read.grey)
-    return PageKept(
+    return PageScan(
         ANSWERS, "", code, page_read.page.number, tuple(fields), True, least=least, look=look
     ), pictures
 
@@ -186,7 +186,7 @@ def _code(text: str) -> str:
     return pieces[1] if len(pieces) == 3 else ""
 
 
-def _text(field: Field, text: str, cases: Sequence[str], papers: Papers, code: str) -> str:
+def _text(field: AnswerField, text: str, cases: Sequence[str], papers: Papers, code: str) -> str:
     """Return a reading in the form in which students write it."""
     if field.what != "ticks" or not cases:
         return text
@@ -195,19 +195,19 @@ def _text(field: Field, text: str, cases: Sequence[str], papers: Papers, code: s
     return part.sort.from_paper(cases, part, variant)
 
 
-def _kept(field: Field, text: str, confidence: float, waits: str, crop: str) -> FieldKept:
+def _scanned_field(field: AnswerField, text: str, confidence: float, waits: str, crop: str) -> ScannedField:
     box = field.whole
-    return FieldKept(
+    return ScannedField(
         field.exercise, field.seed, field.part, field.coordinate, field.coordinates, field.what, text, round(confidence, 4), waits,
         crop, (box.x, box.y, box.width, box.height),
     )  # fmt: skip
 
 
-def typed_page(papers: Papers, code: str, number: int, least: float) -> PageKept:
+def typed_page(papers: Papers, code: str, number: int, least: float) -> PageScan:
     """Return a page that a person types as a whole: it is identified, and nothing of it could be read."""
     page = papers[code][number - 1]
-    fields = tuple(_kept(field, "", 0.0, "page", "") for field in page.fields if field.part)
-    return PageKept(ANSWERS, "not straight", code, number, fields, least=least)
+    fields = tuple(_scanned_field(field, "", 0.0, "page", "") for field in page.fields if field.part)
+    return PageScan(ANSWERS, "not straight", code, number, fields, least=least)
 
 
 # --------------------------------------------------------------------- pictures
@@ -243,7 +243,7 @@ def _png(grey: np.ndarray) -> bytes:
     return bytes(cv2.imencode(".png", levels, [cv2.IMWRITE_PNG_COMPRESSION, 9])[1])
 
 
-def cut(picture: bytes, field: FieldKept) -> bytes:
+def cut(picture: bytes, field: ScannedField) -> bytes:
     """Return a field cut from the stored picture of its page, which is flattened, with a margin."""
     from coursework.scanning.pictures import opencv
 

@@ -9,14 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coursework.scanning.beside import written_below, written_beside
-from coursework.scanning.codes import Code, codes_in
-from coursework.scanning.numbers import LEAST, Reader, Reading, number
+from coursework.scanning.codes import PageCode, codes_in
+from coursework.scanning.numbers import LEAST, FieldText, Reader, number
 from coursework.scanning.outlines import span_of
-from coursework.scanning.pictures import Picture, is_two_toned, opencv, without_streaks
+from coursework.scanning.pictures import PageImage, is_two_toned, opencv, without_streaks
 from coursework.scanning.straightening import NotStraight, Straight, straightened
 from coursework.scanning.strokes import is_bare
 from coursework.scanning.ticks import TAKEN_BACK, TICKED, UNSURE, tick
-from coursework.sheets.answer_pages import AnswerPage, Field
+from coursework.sheets.answer_pages import AnswerField, AnswerPage
 
 _CODE = re.compile(r"CW1 ([A-Z2-7]+) (\d+)/(\d+)")
 _SURER = (
@@ -39,7 +39,7 @@ class FieldRead:
     picture, grey, 10 pixels per mm, and the text is only the likeliest reading. ``cases`` are the ticked
     choices."""
 
-    field: Field
+    field: AnswerField
     text: str
     confidence: float
     waits: str = ""
@@ -62,7 +62,7 @@ class PageRead:
 
 
 def read_page(
-    picture: Picture, papers: Mapping[str, Sequence[AnswerPage]], reader: Reader, least: float = LEAST
+    picture: PageImage, papers: Mapping[str, Sequence[AnswerPage]], reader: Reader, least: float = LEAST
 ) -> PageRead:
     """Return the reading of a picture, compared with the answer pages of each paper by its code.
 
@@ -78,8 +78,8 @@ def read_page(
 
 
 def _of_ours(
-    picture: Picture,
-    code: Code,
+    picture: PageImage,
+    code: PageCode,
     papers: Mapping[str, Sequence[AnswerPage]],
     reader: Reader,
     least: float,
@@ -118,19 +118,19 @@ def _gone_astray(page: Straight, field: FieldRead) -> FieldRead:
     return replace(field, confidence=0.0, waits="elsewhere", crop=cropped(page, field.field))
 
 
-def read_field(page: Straight, field: Field, reader: Reader, least: float = LEAST) -> FieldRead:
+def read_field(page: Straight, field: AnswerField, reader: Reader, least: float = LEAST) -> FieldRead:
     """Return the reading of a field on a flattened page."""
     if field.what == "ticks":
         ticks = _ticks(page, field)
     elif field.what == "number":
         ticks = number(page, field, reader, least)
     else:
-        ticks = Reading("", waits="" if is_bare(page, field.whole, 1.2) else field.what)
+        ticks = FieldText("", waits="" if is_bare(page, field.whole, 1.2) else field.what)
     crop = cropped(page, field) if ticks.waits else None
     return FieldRead(field, ticks.text, ticks.confidence, ticks.waits, ticks.cases, crop)
 
 
-def _ticks(page: Straight, field: Field) -> Reading:
+def _ticks(page: Straight, field: AnswerField) -> FieldText:
     """Return the reading of tick boxes: one choice, or several if allowed, but none together with others."""
     states = {case: tick(page, box) for case, box in field.ticks}
     cases = tuple(case for case, word in states.items() if word == TICKED)
@@ -142,10 +142,10 @@ def _ticks(page: Straight, field: Field) -> Reading:
         ("taken back", not cases and TAKEN_BACK in states.values()),
     )
     word = next((word for word, is_so in waits if is_so), "")
-    return Reading(", ".join(cases), 0.0 if word in ("free", "tick") else 1.0, word, cases)
+    return FieldText(", ".join(cases), 0.0 if word in ("free", "tick") else 1.0, word, cases)
 
 
-def cropped(page: Straight, field: Field) -> np.ndarray:
+def cropped(page: Straight, field: AnswerField) -> np.ndarray:
     """Return the picture of a field for a person: its place, to scale, with a margin."""
     return page.cut(span_of([field.whole], 2.0), of=page.paper).copy()
 

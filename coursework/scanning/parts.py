@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from coursework.scanning.gathering import PaperAsked
+from coursework.scanning.gathering import PrintedPaper
 from coursework.scanning.page_reading import Papers
 
 
 class Joins:
     """Composition of answers from several coordinates, by the kinds of their questions."""
 
-    def __init__(self, papers: Papers, papers_asked: Mapping[str, PaperAsked]):
+    def __init__(self, papers: Papers, papers_asked: Mapping[str, PrintedPaper]):
         self._papers = papers
         self._places: dict[tuple[str, int], tuple[str, int]] = {}
         for code in papers_asked:

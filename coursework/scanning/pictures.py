@@ -43,7 +43,7 @@ class BadPicture(BadInput):
 
 
 @dataclass(frozen=True)
-class Picture:
+class PageImage:
     """Page of a file: ``grey`` is ``(height, width)``, 0 black to 255 white; ``page`` counts from 1."""
 
     file: str
@@ -65,7 +65,7 @@ def opencv() -> Any:
     return library("cv2", *_NEEDS)
 
 
-def pictures(path: Path) -> Iterator[Picture]:
+def pictures(path: Path) -> Iterator[PageImage]:
     """Yield the pages of a file, in order, one in memory at a time.
 
     Raises
@@ -79,7 +79,7 @@ def pictures(path: Path) -> Iterator[Picture]:
     yield from _of_pdf(path) if suffix == ".pdf" else _of_image(path)
 
 
-def _of_pdf(path: Path) -> Iterator[Picture]:
+def _of_pdf(path: Path) -> Iterator[PageImage]:
     pdfium: Any = library("pypdfium2", *_NEEDS)
     try:
         document = pdfium.PdfDocument(path)
@@ -87,7 +87,7 @@ def _of_pdf(path: Path) -> Iterator[Picture]:
         raise BadPicture(f"{path.name} is no PDF that can be read: {fault}") from fault
     with document:
         for number in range(len(document)):
-            yield Picture(path.name, number + 1, _drawn(pdfium, document, number, path))
+            yield PageImage(path.name, number + 1, _drawn(pdfium, document, number, path))
 
 
 def _drawn(pdfium: Any, document: Any, number: int, path: Path) -> np.ndarray:
@@ -137,11 +137,11 @@ def _is_scanned(pdfium: Any, page: Any) -> bool:
     return pictures <= _MOST_PICTURES and dots <= 2 * LARGEST
 
 
-def _of_image(path: Path) -> Iterator[Picture]:
+def _of_image(path: Path) -> Iterator[PageImage]:
     cv2 = opencv()
     count = _pages_of_image(cv2, path)
     for number in range(count):
-        yield Picture(path.name, number + 1, _decoded(cv2, path, number))
+        yield PageImage(path.name, number + 1, _decoded(cv2, path, number))
 
 
 def _pages_of_image(cv2: Any, path: Path) -> int:
@@ -231,7 +231,7 @@ def _pages(path: Path) -> int:
         return len(document)
 
 
-def picture_at(path: Path, number: int) -> Picture:
+def picture_at(path: Path, number: int) -> PageImage:
     """Return one page of a file, counted from 1.
 
     Raises
@@ -240,9 +240,9 @@ def picture_at(path: Path, number: int) -> Picture:
         It cannot be read.
     """
     if path.suffix.lower() != ".pdf":
-        return Picture(path.name, number, _decoded(opencv(), path, number - 1))
+        return PageImage(path.name, number, _decoded(opencv(), path, number - 1))
     with _opened(path) as document:
-        return Picture(path.name, number, _drawn(library("pypdfium2", *_NEEDS), document, number - 1, path))
+        return PageImage(path.name, number, _drawn(library("pypdfium2", *_NEEDS), document, number - 1, path))
 
 
 def _opened(path: Path) -> Any:

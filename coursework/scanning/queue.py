@@ -18,8 +18,8 @@ from coursework.making.issued import COLUMNS as ANSWER_COLUMNS
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.rendering.keeping import in_script
-from coursework.scanning.gathering import Card, Gathered, PaperAsked
-from coursework.scanning.kept import FieldKept, picture_of
+from coursework.scanning.gathering import AnswerCard, Gathered, PrintedPaper
+from coursework.scanning.kept import ScannedField, picture_of
 from coursework.scanning.typed import COLUMNS as TYPED_COLUMNS
 from coursework.scanning.typed import NAME, PAGE
 from coursework.system.tables import json_text
@@ -36,15 +36,15 @@ _PLACES = "".join(
 )  #: of coordinates in a pattern: letters that nobody types
 
 #: Gives the file of a field's picture, below the folder of the job.
-Cut = Callable[[Path, str, FieldKept, int], str]
+Cut = Callable[[Path, str, ScannedField, int], str]
 
 
 @dataclass(frozen=True)
-class Queue:
+class ScanQueue:
     """Cards that wait for a person, with the data to show them."""
 
     papers: Papers
-    asked: Mapping[str, PaperAsked]
+    asked: Mapping[str, PrintedPaper]
     found: Gathered
     joins: Joins
     out: Path
@@ -64,13 +64,13 @@ class Queue:
         return {key: number for number, key in enumerate(dict.fromkeys(places))}
 
     @cached_property
-    def cards(self) -> list[Card]:
+    def cards(self) -> list[AnswerCard]:
         """Pages and papers that nobody knows, then question after question, all students together."""
         return sorted(
             self.found.cards, key=lambda c: (self._rank(c), c.student, c.seed, c.coordinate, c.part)
         )
 
-    def _rank(self, card: Card) -> int:
+    def _rank(self, card: AnswerCard) -> int:
         return (
             -2
             if card.exercise == PAGE
@@ -79,7 +79,7 @@ class Queue:
             else self._order[card.exercise, card.part]
         )
 
-    def group(self, card: Card) -> dict[str, Any]:
+    def group(self, card: AnswerCard) -> dict[str, Any]:
         """Return the question of a card, in every language."""
         if card.exercise in (PAGE, NAME):
             sort = "pages" if card.exercise == PAGE else "names"
@@ -124,9 +124,9 @@ def _titles(exercise: Any) -> dict[str, str]:
     return {lang: exercise.title(lang) for lang in exercise.languages}
 
 
-def write_queue(queue: Queue, cut: Cut) -> None:
+def write_queue(queue: ScanQueue, cut: Cut) -> None:
     """Write the folder of the queue: its page and its data, each whole."""
-    cards = [_shown(queue, card, cut) for card in queue.cards]
+    cards = [_card_content(queue, card, cut) for card in queue.cards]
     groups: dict[str, dict[str, Any]] = {}
     for card, entry in zip(queue.cards, cards, strict=True):
         if entry["group"] not in groups:
@@ -136,7 +136,7 @@ def write_queue(queue: Queue, cut: Cut) -> None:
     write_whole(queue.out / FOLDER / "index.html", page(queue, content).encode())
 
 
-def _shown(queue: Queue, card: Card, cut: Cut) -> dict[str, Any]:
+def _card_content(queue: ScanQueue, card: AnswerCard, cut: Cut) -> dict[str, Any]:
     """Return a card for the page, with files relative to the folder of the page."""
     sort = {PAGE: "pages", NAME: "names"}.get(card.exercise, "question")
     crops = [cut(queue.out, reading.page, reading.field, reading.index) for reading in card.said]
@@ -161,7 +161,7 @@ def _shown(queue: Queue, card: Card, cut: Cut) -> dict[str, Any]:
     }
 
 
-def place_of_card(card: Card) -> list[str]:
+def place_of_card(card: AnswerCard) -> list[str]:
     """Return the first columns of a line of ``typed.csv``."""
     if card.exercise == PAGE:
         return ["", PAGE, "", card.part, ""]
@@ -176,7 +176,7 @@ def place_of_card(card: Card) -> list[str]:
     ]
 
 
-def _drawing(queue: Queue, card: Card, cut: Cut) -> dict[str, Any] | None:
+def _drawing(queue: ScanQueue, card: AnswerCard, cut: Cut) -> dict[str, Any] | None:
     """Return the paper of a drawing, for a point in millimetres that a person can click; None for other
     cards."""
     reading = queue.found.drawn.get((card.paper, card.exercise, card.seed))
@@ -193,7 +193,7 @@ def _drawing(queue: Queue, card: Card, cut: Cut) -> dict[str, Any] | None:
 # ---------------------------------------------------------------------------- page
 
 
-def page(queue: Queue, content: Mapping[str, Any]) -> str:
+def page(queue: ScanQueue, content: Mapping[str, Any]) -> str:
     """Return the page on which people type: it embeds its pictures, unless they are too many, and needs no
     server."""
     folder = queue.papers.course.folder
@@ -240,7 +240,7 @@ def _with_pictures(card: Mapping[str, Any], embedded: Mapping[str, str]) -> dict
     return {**card, "crops": [embedded.get(file, file) for file in card["crops"]], "drawing": source}
 
 
-def _papers(queue: Queue) -> Iterator[dict[str, Any]]:
+def _papers(queue: ScanQueue) -> Iterator[dict[str, Any]]:
     """Yield the papers to which a page may belong."""
     sizes = {queue.papers.papers[code].size for code in queue.asked} or {"a4"}
     several = len({paper.records[0]["exercise"] for paper in queue.papers.papers.values()}) > 1
@@ -254,7 +254,7 @@ def _papers(queue: Queue) -> Iterator[dict[str, Any]]:
             yield {"code": code, "student": paper.student, "pages": len(queue.papers[code]), "title": title}
 
 
-def _joins(queue: Queue) -> Iterator[dict[str, Any]]:
+def _joins(queue: ScanQueue) -> Iterator[dict[str, Any]]:
     """Yield the rules by which the page composes pending answers: a pattern with a letter for each
     coordinate, and another in which the printed unit applies to all."""
     for pending in queue.found.pending:
@@ -268,7 +268,7 @@ def _joins(queue: Queue) -> Iterator[dict[str, Any]]:
             ]
         yield {
             "row": [pending.student, exercise, str(seed), part],
-            "cards": [piece.id if isinstance(piece, Card) else None for piece in pending.pieces],
+            "cards": [piece.id if isinstance(piece, AnswerCard) else None for piece in pending.pieces],
             "texts": [piece if isinstance(piece, str) else "" for piece in pending.pieces],
             "patterns": patterns,
             "unit": unit if len(places) > 1 else "",

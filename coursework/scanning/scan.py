@@ -22,29 +22,36 @@ from coursework.errors import BadInput
 from coursework.making.answer_papers import AnswerPaper
 from coursework.making.issued import COLUMNS, Issued
 from coursework.scanning.digits import CONFIDENT
-from coursework.scanning.gathering import Answer, Asked, Card, Gathered, PaperAsked, Place, gather
+from coursework.scanning.gathering import (
+    FieldPosition,
+    Gathered,
+    PrintedField,
+    PrintedPaper,
+    ScannedAnswer,
+    gather,
+)
 from coursework.scanning.kept import (
     ANSWERS,
     LOST,
     REFUSED,
-    FieldKept,
-    FileKept,
-    PageKept,
     Scanned,
+    ScannedField,
+    ScannedFile,
+    PageScan,
     crop_of,
-    files_kept,
     joined,
     page_id,
-    page_kept,
     picture_of,
     put_files,
     put_page,
     scanned,
+    stored_files,
+    stored_page,
     with_copies,
 )
-from coursework.scanning.page_reading import Desk, Pages, Papers, count_pages, cut, read_pages, typed_page
+from coursework.scanning.page_reading import Desk, PageRange, Papers, count_pages, cut, read_pages, typed_page
 from coursework.scanning.parts import Joins
-from coursework.scanning.queue import Queue, write_queue
+from coursework.scanning.queue import ScanQueue, write_queue
 from coursework.scanning.sources import Scan, scans
 from coursework.scanning.typed import PAGE, Typed, merged, read_typed, typed_file
 from coursework.system.processes import processes, workers
@@ -129,7 +136,7 @@ def scan(
     typed_path = out / TYPED
     typed_texts = merged(read_typed(typed_path) if typed_path.exists() else (), wanted)
     files, read_now = read_files(papers, sources, issued, out, least, progress)
-    everything = joined(files_kept(out), files)
+    everything = joined(stored_files(out), files)
     if not everything:
         raise BadInput(f"nothing to read: name scans; {out} holds none of before")
     put_files(out, everything)
@@ -147,7 +154,7 @@ def read_files(
     out: Path,
     least: float = LEAST,
     progress: Progress = lambda done, of: None,
-) -> tuple[list[FileKept], int]:
+) -> tuple[list[ScannedFile], int]:
     """Read the pages of what is named that were not read before, and keep each; gives the files, and how many pages were read.
 
     Raises
@@ -181,7 +188,7 @@ def _read_issued(path: Path) -> Mapping[str, Any]:
 
 def _read(
     desk: Desk, papers: Papers, sources: Sequence[Scan], progress: Progress
-) -> tuple[list[FileKept], int]:
+) -> tuple[list[ScannedFile], int]:
     """Read the pages of files that were not read before; gives the files and how many pages were read now."""
     count = workers(len(sources)) if len(sources) >= _WORTH_COUNTING else 1
     readable = [scan for scan in sources if not scan.fault]
@@ -189,7 +196,9 @@ def _read(
     with _shared(count) as share:
         counted = dict(zip(paths, share(count_pages, [(str(path),) for path in paths.values()]), strict=True))
     files = [
-        FileKept(source.name, source.digest, *((0, source.fault) if source.fault else counted[source.digest]))
+        ScannedFile(
+            source.name, source.digest, *((0, source.fault) if source.fault else counted[source.digest])
+        )
         for source in sources
     ]
     wanted = [
@@ -206,20 +215,20 @@ def _read(
     return files, pages
 
 
-def _chunks(desk: Desk, papers: Papers, path: str, digest: str, count: int) -> Iterator[Pages]:
+def _chunks(desk: Desk, papers: Papers, path: str, digest: str, count: int) -> Iterator[PageRange]:
     """Yield the pages of a file that are to be read, a few at a time."""
     first = 0
     for number in range(1, count + 2):
         is_wanted = number <= count and _is_to_be_read(desk, papers, page_id(digest, number))
         if first and (not is_wanted or number - first == _CHUNK):
-            yield Pages(path, digest, first, number - 1)
+            yield PageRange(path, digest, first, number - 1)
             first = 0
         first = first or (number if is_wanted else 0)
 
 
 def _is_to_be_read(desk: Desk, papers: Papers, name: str) -> bool:
     """Return True if there is no stored result of a page, or if it may be different now."""
-    page = page_kept(Path(desk.out), name)
+    page = stored_page(Path(desk.out), name)
     if page is None or page.least != desk.least:
         return True
     return page.what == REFUSED and page.code in papers
@@ -278,7 +287,7 @@ def write_read(
         _write_answers(tables.open("answers.csv", ANSWER_COLUMNS), combined, pages)
         _write_pages(tables, book, combined, printed, pages)
         _write_missing(tables.open("missing.csv", MISSING_COLUMNS), book, combined, papers, printed)
-        queue = Queue(papers, printed, combined, Joins(papers, printed), out)
+        queue = ScanQueue(papers, printed, combined, Joins(papers, printed), out)
         write_queue(queue, _cut)
         tables.commit()
     return book
@@ -289,7 +298,7 @@ def as_told(scanned_page: Scanned, papers: Papers, typed: Sequence[Typed], least
     statement."""
     page = scanned_page.page
     if page.what == ANSWERS and page.code not in papers:
-        return replace(scanned_page, page=PageKept(REFUSED, _OTHER, page.code))
+        return replace(scanned_page, page=PageScan(REFUSED, _OTHER, page.code))
     if page.what != LOST:
         return scanned_page
     answer = next((t.answer for t in typed if (t.exercise, t.part) == (PAGE, scanned_page.id)), None)
@@ -297,30 +306,32 @@ def as_told(scanned_page: Scanned, papers: Papers, typed: Sequence[Typed], least
         return scanned_page
     code, _, number = answer.strip().partition(" ")
     if not answer.strip():
-        return replace(scanned_page, page=PageKept(REFUSED, "set aside by hand: no answer page", ""))
+        return replace(scanned_page, page=PageScan(REFUSED, "set aside by hand: no answer page", ""))
     if code in papers and number.isdecimal() and len(number) < 7 and 1 <= int(number) <= len(papers[code]):
         return replace(scanned_page, page=typed_page(papers, code, int(number), least))
     return scanned_page
 
 
-def papers_asked(papers: Papers, pages: Sequence[Scanned]) -> dict[str, PaperAsked]:
+def papers_asked(papers: Papers, pages: Sequence[Scanned]) -> dict[str, PrintedPaper]:
     """Return the papers of which some page was scanned, in the order of issue."""
     met = {scanned_page.page.code for scanned_page in pages if scanned_page.page.what == ANSWERS}
-    return {code: _asked(papers, code) for code in papers if code in met}
+    return {code: _printed_paper(papers, code) for code in papers if code in met}
 
 
-def _asked(papers: Papers, code: str) -> PaperAsked:
+def _printed_paper(papers: Papers, code: str) -> PrintedPaper:
     laid_out = papers[code]
     fields = tuple(
-        Asked(Place(f.exercise, f.seed, f.part, f.coordinate), f.coordinates, f.what, page.number)
+        PrintedField(
+            FieldPosition(f.exercise, f.seed, f.part, f.coordinate), f.coordinates, f.what, page.number
+        )
         for page in laid_out
         for f in page.fields
     )
-    return PaperAsked(code, papers.papers[code].student, len(laid_out), fields)
+    return PrintedPaper(code, papers.papers[code].student, len(laid_out), fields)
 
 
 def together(
-    papers: Papers, printed: Mapping[str, PaperAsked], pages: Sequence[Scanned], typed: Sequence[Typed]
+    papers: Papers, printed: Mapping[str, PrintedPaper], pages: Sequence[Scanned], typed: Sequence[Typed]
 ) -> Gathered:
     """Combine the content of pages and typed texts."""
     return gather(pages, printed, typed, Joins(papers, printed))
@@ -343,7 +354,7 @@ def _write_answers(table: TableFile, combined: Gathered, pages: Sequence[Scanned
         table.write({**row, "source": f"{source} (by hand)" if answer.by_hand else source})
 
 
-def answer_text(answer: Answer) -> str:
+def answer_text(answer: ScannedAnswer) -> str:
     """Return an answer as it is marked: for one marked from its picture, the place of the picture."""
     return "; ".join(s.field.crop or picture_of(s.page) for s in answer.pictures) or answer.answer
 
@@ -360,7 +371,7 @@ def _write_pages(
     tables: Tables,
     book: ScanBook,
     combined: Gathered,
-    printed: Mapping[str, PaperAsked],
+    printed: Mapping[str, PrintedPaper],
     pages: Sequence[Scanned],
 ) -> None:
     table, rejected = tables.open("pages.csv", PAGE_COLUMNS), tables.open("rejected.csv", REJECTED_COLUMNS)
@@ -398,7 +409,7 @@ def _write_pages(
 
 
 def _write_missing(
-    table: TableFile, book: ScanBook, combined: Gathered, papers: Papers, printed: Mapping[str, PaperAsked]
+    table: TableFile, book: ScanBook, combined: Gathered, papers: Papers, printed: Mapping[str, PrintedPaper]
 ) -> None:
     for paper, missing in combined.missing:
         owner, numbers = combined.whose[paper.code], ", ".join(map(str, missing))
@@ -426,12 +437,12 @@ def _sheet(paper: AnswerPaper) -> tuple[str, int, tuple[tuple[str, int], ...]]:
     return paper.student, paper.sitting, tuple((str(r["exercise"]), int(r["seed"])) for r in paper.records)
 
 
-def _cut(out: Path, name: str, field_: FieldKept, index: int) -> str:
+def _cut(out: Path, name: str, field_: ScannedField, index: int) -> str:
     """Return the file of a field's picture; cut it now if it does not exist. For a page that is not flat, the
     picture of the whole page."""
     if field_.crop:
         return field_.crop
-    page = page_kept(out, name)
+    page = stored_page(out, name)
     if page is None or not page.is_straight:
         return picture_of(name)
     file = crop_of(name, index)
@@ -440,4 +451,4 @@ def _cut(out: Path, name: str, field_: FieldKept, index: int) -> str:
     return file
 
 
-__all__ = ["ANSWER_COLUMNS", "Card", "ScanBook", "put_page", "scan", "write_read"]
+__all__ = ["ANSWER_COLUMNS", "ScanBook", "put_page", "scan", "write_read"]

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.scanning.codes import Code
+from coursework.scanning.codes import PageCode
 from coursework.scanning.outlines import Shifts, outline_shifts
 from coursework.scanning.pictures import opencv
 from coursework.sheets.answer_pages import AnswerPage, Box
@@ -65,7 +65,7 @@ def _pixel(mm: float, most: int) -> int:
     return int(np.clip(round(mm * SCALE), 0, most))
 
 
-def straightened(grey: np.ndarray, code: Code, page: AnswerPage) -> Straight:
+def straightened(grey: np.ndarray, code: PageCode, page: AnswerPage) -> Straight:
     """Return the flattened page.
 
     Raises
@@ -86,7 +86,7 @@ def straightened(grey: np.ndarray, code: Code, page: AnswerPage) -> Straight:
     return Straight(paper, ink, shifts, marks, noise)
 
 
-def _homography(grey: np.ndarray, code: Code, page: AnswerPage) -> tuple[np.ndarray, int]:
+def _homography(grey: np.ndarray, code: PageCode, page: AnswerPage) -> tuple[np.ndarray, int]:
     """From pixels of the picture to millimetres of the page, and how many marks it stands on."""
     cv2 = opencv()
     printed = _corners(page.code)
@@ -167,7 +167,9 @@ def _candidates(spots: np.ndarray, across: tuple[complex, complex], page: Answer
     return candidates
 
 
-def _four_marks(cv2: Any, candidates: list[np.ndarray], code: Code, page: AnswerPage) -> np.ndarray | None:
+def _four_marks(
+    cv2: Any, candidates: list[np.ndarray], code: PageCode, page: AnswerPage
+) -> np.ndarray | None:
     """Return the perspective of the four candidates that places the code best; None if none places it well."""
     best, least = None, _CODE_OFF
     for four in product(*candidates):
@@ -188,7 +190,7 @@ def _turns_right(spots: np.ndarray) -> bool:
     return bool((along[:, 0] * after[:, 1] - along[:, 1] * after[:, 0] > 0).all())
 
 
-def _code_off(matrix: np.ndarray, code: Code, page: AnswerPage) -> float:
+def _code_off(matrix: np.ndarray, code: PageCode, page: AnswerPage) -> float:
     """Return the greatest distance, mm, between the corners of the code under a perspective and their printed
     places."""
     return float(np.abs(_mapped(matrix, code.corners) - _corners(page.code)).max())
@@ -200,7 +202,9 @@ def _mapped(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
         return np.nan_to_num(h[:, :2] / h[:, 2:], nan=1e9, posinf=1e9, neginf=-1e9)
 
 
-def _three_marks(cv2: Any, candidates: list[np.ndarray], code: Code, page: AnswerPage) -> np.ndarray | None:
+def _three_marks(
+    cv2: Any, candidates: list[np.ndarray], code: PageCode, page: AnswerPage
+) -> np.ndarray | None:
     """Return the perspective of three marks and the corners of the code with the least error; None if it is
     large."""
     best, least = None, _CODE_OFF_OF_THREE

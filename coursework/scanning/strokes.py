@@ -29,7 +29,7 @@ _RIM = 1.3  #: mm from a box's outline within which ink of a neighbour ends
 
 
 @dataclass(frozen=True)
-class Pieces:
+class InkPieces:
     """Ink that hangs together: ``labels`` numbers it pixel by pixel, 0 where there is none; for each piece its
     ``boxes``: left, top, width, height in pixels, and ``areas`` in pixels (row 0 is the paper)."""
 
@@ -42,10 +42,10 @@ class Pieces:
         return np.bincount(part.ravel(), minlength=len(self.areas))
 
 
-def pieces(mask: np.ndarray) -> Pieces:
+def pieces(mask: np.ndarray) -> InkPieces:
     cv2 = opencv()
     _, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
-    return Pieces(labels, stats[:, :4], stats[:, 4])
+    return InkPieces(labels, stats[:, :4], stats[:, 4])
 
 
 def darkness(page: Straight, box: Box, inset: float = 0.0) -> np.ndarray:
@@ -173,7 +173,7 @@ def cells(page: Straight, boxes: Sequence[Box]) -> tuple[list[np.ndarray], str]:
     return views, assigned
 
 
-def _across(connected: Pieces, shares: np.ndarray, boxes: Sequence[Box]) -> str:
+def _across(connected: InkPieces, shares: np.ndarray, boxes: Sequence[Box]) -> str:
     """Return the fault of ink in several boxes: more than a millimetre of a stroke in a second one."""
     unit = SCALE**2
     pitch = min((b.x - a.x for a, b in pairwise(boxes)), default=boxes[0].width)

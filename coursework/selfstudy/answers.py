@@ -10,7 +10,7 @@ import numpy as np
 from coursework.course.variant import Variant
 from coursework.language.words import words
 from coursework.marking.feedback import part_name
-from coursework.marking.mark import Mark, Marking
+from coursework.marking.mark import Mark, SheetMarks
 from coursework.selfstudy import predictions
 from coursework.selfstudy.store import ExerciseStore, is_blank
 
@@ -52,7 +52,7 @@ def sentence_of(variant: Variant, mark: Mark, reveal: str) -> str:
 
 
 def same_as_another(
-    variant: Variant, stored: ExerciseStore, given: Mapping[str, Any], marking: Marking
+    variant: Variant, stored: ExerciseStore, given: Mapping[str, Any], marking: SheetMarks
 ) -> tuple[int | None, list[str]]:
     """Return the seed of another variant for which these answers are right, and the parts that are wrong
     here.
@@ -85,7 +85,7 @@ def is_open(variant: Variant, mark: Mark) -> bool:
     return next(p for p in variant.parts if p.id == mark.part).sort.is_open
 
 
-def judged_out_of(variant: Variant, marking: Marking) -> float:
+def judged_out_of(variant: Variant, marking: SheetMarks) -> float:
     """Return the total points of the parts that are marked here."""
     return sum(m.out_of for m in marking.values() if not is_open(variant, m))
 

@@ -19,14 +19,14 @@ from coursework.selfstudy.store import ExerciseStore, is_blank
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
-    from coursework.marking.mark import Marking
+    from coursework.marking.mark import SheetMarks
     from coursework.model import Part
 
 
 class CheckedAnswers(NamedTuple):
     """Marked answers."""
 
-    marking: Marking
+    marking: SheetMarks
     answers: Mapping[
         str, Any
     ]  #: that were marked: those that were given, and the kept ones where these are blank

@@ -238,7 +238,7 @@ def _is_bounded(exercise: CourseExercise, quantity: str) -> bool:
 # ------------------------------------------------------------------------ asked
 
 
-def asked(variant: Variant, prediction: Prediction) -> str:
+def question_of(variant: Variant, prediction: Prediction) -> str:
     """Return the question of a prediction, in one line of Markdown."""
     texts = words(variant.lang)["study"]["predict"]
     exercise = variant.exercise

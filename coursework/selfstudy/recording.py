@@ -15,12 +15,12 @@ from coursework.selfstudy.store import ProgressStore, is_blank
 if TYPE_CHECKING:
     from coursework.course.course import Course
     from coursework.course.variant import Variant
-    from coursework.marking.mark import Marking
+    from coursework.marking.mark import SheetMarks
     from coursework.model import Part
 
 
 def marked_answers(
-    variant: Variant, answers: Mapping[str, Any], marking: Marking, before: Sequence[Entry]
+    variant: Variant, answers: Mapping[str, Any], marking: SheetMarks, before: Sequence[Entry]
 ) -> list[dict[str, Any]]:
     """Return the records of a marking, for answers that are new or marked differently from ``before``."""
     last = {e["part"]: (e.get("answer"), e.get("verdict")) for e in before if e["what"] == ANSWER}

@@ -303,7 +303,7 @@ class StudySession:
         lines = []
         for result in self._attempt.compared([self._asked[name] for name in names], own_answers):
             mark = {True: "✓", False: "✗", None: "?"}[result.right]
-            question = predictions.asked(self.variant, result.prediction)
+            question = predictions.question_of(self.variant, result.prediction)
             line = self._texts["compared"].format(
                 said=f"`{result.said.replace('`', '')}`", found=result.found
             )

@@ -69,6 +69,6 @@ def _fresh_questions(variant: Variant) -> tuple[Question, ...]:
 def _ask(variant: Variant, prediction: Prediction) -> Ask:
     return Ask(
         predictions.prediction_keys(variant)[prediction.id],
-        predictions.asked(variant, prediction),
+        predictions.question_of(variant, prediction),
         predictions.options(variant, prediction),
     )

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
-from coursework.course.asked import Asked
+from coursework.course.asked import KeySource
 from coursework.errors import BadCourse, unknown
 from coursework.kinds.kind import Asking
 from coursework.sheets.units import units_text
@@ -52,7 +52,7 @@ _HEAD = 9.0  #: of an exercise
 _CAPTIONS = 3.4  #: above the first row of numbers on a page
 
 
-class Answerable(Asked, Asking, Protocol):
+class Answerable(KeySource, Asking, Protocol):
     """A variant, as far as its answer pages hang on it."""
 
     @property
@@ -81,7 +81,7 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Field:
+class AnswerField:
     """The place of one answer, or of one coordinate of it."""
 
     place: int  #: of the exercise on the paper, from 0 on
@@ -118,7 +118,7 @@ class Field:
 
 
 @dataclass(frozen=True)
-class Head:
+class PageHead:
     """The heading of an exercise, where a paper has several."""
 
     place: int  #: of the exercise, from 0 on
@@ -138,12 +138,12 @@ class AnswerPage:
         tuple[float, float], ...
     ]  #: centres of the black squares: upper left, upper right, lower right, lower left
     code: Box  #: of the QR code, without its rim
-    fields: tuple[Field, ...]
+    fields: tuple[AnswerField, ...]
     title: Box
     name: Box  #: where the student's name is printed, or written
     rules: Box | None  #: none on a page that is one large drawing
     guide: tuple[Box, ...] = ()  #: boxes with the digits 0 to 9 as they are to be written
-    heads: tuple[Head, ...] = ()
+    heads: tuple[PageHead, ...] = ()
     captions: Box | None = (
         None  #: a strip for what the columns of boxes are called, above the first row of numbers
     )
@@ -185,7 +185,7 @@ def answer_pages(
     """
     if paper not in SIZES:
         raise unknown("paper", paper, tuple(SIZES))
-    sheets = _Pages(*SIZES[paper])
+    sheets = _PageLayout(*SIZES[paper])
     for index, variant in enumerate(variants):
         if len(variants) > 1:
             sheets.head(index)
@@ -201,7 +201,7 @@ def answer_pages(
 class _Block:
     """Rows that stay on one page, from y = 0 down; where a page ends inside, it ends between two rows."""
 
-    rows: tuple[tuple[Field, float], ...]  #: each with its height
+    rows: tuple[tuple[AnswerField, float], ...]  #: each with its height
 
     @property
     def height(self) -> float:
@@ -218,7 +218,7 @@ def _blocks(variant: Answerable, index: int, lang: str, width: float, *, alone: 
 
 def _block(variant: Answerable, index: int, part: Part, number: str, lang: str, width: float) -> _Block:
     symbol = variant.exercise.symbol(part.quantity) if part.sort.has_symbol else ""
-    blank = Field(
+    blank = AnswerField(
         index, variant.exercise.name, variant.seed, part.id, 0, 1, part.sort.field, Box(0, 0, 0, 0),
         number=number, symbol=symbol,
     )  # fmt: skip
@@ -237,7 +237,7 @@ def _block(variant: Answerable, index: int, part: Part, number: str, lang: str, 
     )
 
 
-def _numbers(blank: Field, names: Sequence[str], unit: str, width: float, has_decimals: bool) -> _Block:
+def _numbers(blank: AnswerField, names: Sequence[str], unit: str, width: float, has_decimals: bool) -> _Block:
     rows = []
     for coordinate, name in enumerate(names):
         first = coordinate == 0
@@ -256,10 +256,10 @@ def _numbers(blank: Field, names: Sequence[str], unit: str, width: float, has_de
     return _Block(tuple(rows))
 
 
-def _row_of_boxes(blank: Field, width: float, has_decimals: bool) -> Field:
+def _row_of_boxes(blank: AnswerField, width: float, has_decimals: bool) -> AnswerField:
     row = replace(
         blank,
-        whole=_whole(width, _ROW),
+        whole=_row_box(width, _ROW),
         sign=_cell(_BOXES),
         digits=_cells(_DIGITS, WHOLE_DIGITS),
         free=_free(width, _PAD),
@@ -274,7 +274,7 @@ def _row_of_boxes(blank: Field, width: float, has_decimals: bool) -> Field:
     )
 
 
-def _whole(width: float, height: float) -> Box:
+def _row_box(width: float, height: float) -> Box:
     """A row as wide as the page's content, a little less high than its room: neighbours do not touch."""
     return Box(LEFT, 0.25, width - 2 * LEFT, height - 0.5)
 
@@ -291,7 +291,7 @@ def _free(width: float, y: float) -> Box:
     return Box(LEFT + _FREE, y, width - 2 * LEFT - _FREE, CELL[1])
 
 
-def _ticks(blank: Field, ticks: Sequence[Tick], width: float, *, several: bool) -> _Block:
+def _ticks(blank: AnswerField, ticks: Sequence[Tick], width: float, *, several: bool) -> _Block:
     boxes = []
     for index, tick in enumerate(ticks):
         row, column = divmod(index, _PER_ROW)
@@ -300,7 +300,7 @@ def _ticks(blank: Field, ticks: Sequence[Tick], width: float, *, several: bool) 
     height = _ROW + (len(ticks) - 1) // _PER_ROW * _TICKS_ROW
     ticked_field = replace(
         blank,
-        whole=_whole(width, height),
+        whole=_row_box(width, height),
         ticks=tuple(boxes),
         printed=tuple(tick.printed for tick in ticks),
         several=several,
@@ -309,20 +309,20 @@ def _ticks(blank: Field, ticks: Sequence[Tick], width: float, *, several: bool) 
     return _Block(((ticked_field, height),))
 
 
-def _written(blank: Field, lines: int, width: float) -> _Block:
+def _written(blank: AnswerField, lines: int, width: float) -> _Block:
     x, height = LEFT + _SYMBOL + 4.0, lines * _LINE + _WRITTEN
     box = Box(x, _PAD, width - LEFT - x, height)
     return _Block(((replace(blank, whole=box, free=box, lines=lines), height + 2 * _PAD),))
 
 
 def _exercise_drawing(variant: Answerable, index: int, width: float) -> _Block:
-    blank = Field(
+    blank = AnswerField(
         index, variant.exercise.name, variant.seed, "", 0, 1, "drawing", Box(0, 0, 0, 0), is_millimetre=True
     )
     return _drawing(blank, variant.exercise.spec.drawing_mm or (0, 0), width)
 
 
-def _drawing(blank: Field, room: tuple[int, int], width: float) -> _Block:
+def _drawing(blank: AnswerField, room: tuple[int, int], width: float) -> _Block:
     wide, high = room
     box = Box((width - wide) / 2, _LABEL, float(wide), float(high))
     below = _SIDES if not blank.part else 2 * _PAD
@@ -338,15 +338,15 @@ class _Page:
 
     is_bare: bool  #: without rules and guides, for one large drawing
     y: float
-    fields: list[Field] = field(default_factory=list)
-    heads: list[Head] = field(default_factory=list)
+    fields: list[AnswerField] = field(default_factory=list)
+    heads: list[PageHead] = field(default_factory=list)
     captions: float | None = None  #: their height on the page, once they stand
 
-    def strip(self, row: Field) -> float:
+    def strip(self, row: AnswerField) -> float:
         """The room for captions that a row still needs above it."""
         return _CAPTIONS if row.what == "number" and self.captions is None else 0.0
 
-    def put(self, row: Field, height: float) -> None:
+    def put(self, row: AnswerField, height: float) -> None:
         if strip := self.strip(row):
             self.captions = self.y
             self.y += strip
@@ -354,7 +354,7 @@ class _Page:
         self.y += height
 
 
-class _Pages:
+class _PageLayout:
     """Rows laid on page after page."""
 
     def __init__(self, width: float, height: float):
@@ -383,7 +383,7 @@ class _Pages:
                 self._open()
             self._made[-1].put(row, height)
 
-    def _alone(self, row: Field, height: float, above: float) -> None:
+    def _alone(self, row: AnswerField, height: float, above: float) -> None:
         """Place a row that is higher than a usual page on a page of its own, without rules and guides."""
         left = self.height - FRAME - _TOP_BARE - above
         if height > left:
@@ -403,7 +403,7 @@ class _Pages:
         if self._waiting is not None:
             page = self._made[-1]
             page.heads.append(
-                Head(self._waiting, Box(LEFT, page.y + 1.0, self.width - 2 * LEFT, _HEAD - 2.0))
+                PageHead(self._waiting, Box(LEFT, page.y + 1.0, self.width - 2 * LEFT, _HEAD - 2.0))
             )
             page.y += _HEAD
         self._waiting = None
@@ -436,7 +436,7 @@ class _Pages:
         )  # fmt: skip
 
 
-def _lowered(row: Field, by: float) -> Field:
+def _lowered(row: AnswerField, by: float) -> AnswerField:
     """A row, and all its boxes, farther down the page."""
 
     def one(box: Box | None) -> Box | None:

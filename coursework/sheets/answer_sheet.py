@@ -28,7 +28,7 @@ from coursework.sheets.placed import placed_points
 from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
 
 if TYPE_CHECKING:
-    from coursework.course.texts import Text
+    from coursework.course.texts import RenderedText
     from coursework.course.variant import Variant
 
 
@@ -58,7 +58,7 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
     return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, drawn)
 
 
-def _models(variant: Variant, text: Text) -> Iterator[Step]:
+def _models(variant: Variant, text: RenderedText) -> Iterator[Step]:
     """The model answers of the questions that a person marks: sections of the solution's text."""
     for part in variant.parts:
         if part.sort.is_open and (section := text.sections.get(part.id)) is not None:

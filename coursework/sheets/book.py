@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Prose:
+class ProsePiece:
     """Running text, Markdown."""
 
     text: str
 
 
 @dataclass(frozen=True)
-class Head:
+class HeadPiece:
     """A heading inside a lesson: ``level`` 1 for a section, 2 for a part of one; ``number`` of a numbered section, else 0."""
 
     text: str  #: Markdown of a line, without its number
@@ -35,21 +35,21 @@ class Head:
 
 
 @dataclass(frozen=True)
-class Code:
+class CodePiece:
     """Code that is printed, and may be run where there is a machine."""
 
     text: str
 
 
 @dataclass(frozen=True)
-class Printed:
+class PrintedPiece:
     """Output that code has printed, letter by letter."""
 
     text: str
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrawnPiece:
     """A drawing: a figure, or an SVG; ``stills`` are the instants that stand on paper for one that moves."""
 
     said: str  #: what it shows, plain text
@@ -60,13 +60,13 @@ class Drawn:
 
 
 @dataclass(frozen=True)
-class Later:
+class LaterPiece:
     """Reference to a later question, by its number."""
 
     number: int
 
 
-Piece: TypeAlias = Prose | Head | Code | Printed | Drawn | Later
+Piece: TypeAlias = ProsePiece | HeadPiece | CodePiece | PrintedPiece | DrawnPiece | LaterPiece
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,12 @@ class LessonText:
     lang: str
     title: str
     pieces: tuple[Piece, ...]
-    answers: tuple[tuple[int, tuple[Piece, ...]], ...]  #: by their numbers, which :class:`Later` names
+    answers: tuple[tuple[int, tuple[Piece, ...]], ...]  #: by their numbers, which :class:`LaterPiece` names
     terms: tuple[str, ...] = ()  #: entries of the index
 
 
 @dataclass(frozen=True)
-class Practised:
+class BookExercise:
     """An exercise of a book: the variant that the book prints, and its solution where the book has them."""
 
     number: str  #: 2.3: the third exercise of the second chapter
@@ -93,11 +93,11 @@ class Practised:
 
 
 @dataclass(frozen=True)
-class Section:
+class BookSection:
     """A lesson and its exercises; one of the two may be missing."""
 
     lesson: LessonText | None
-    exercises: tuple[Practised, ...]
+    exercises: tuple[BookExercise, ...]
     title: str = ""  #: where there is no lesson
 
 
@@ -105,10 +105,10 @@ class Section:
 class BookChapter:
     number: int
     title: str
-    sections: tuple[Section, ...]
+    sections: tuple[BookSection, ...]
 
     @property
-    def exercises(self) -> tuple[Practised, ...]:
+    def exercises(self) -> tuple[BookExercise, ...]:
         return tuple(exercise for section in self.sections for exercise in section.exercises)
 
     @property
@@ -123,7 +123,7 @@ class SymbolRow:
     symbol: str  #: LaTeX
     unit: str
     meaning: str  #: Markdown
-    exercises: tuple[Practised, ...]
+    exercises: tuple[BookExercise, ...]
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ class Book:
     solved: bool  #: whether the solutions stand at its end, and its pages lead to them
 
     @property
-    def exercises(self) -> tuple[Practised, ...]:
+    def exercises(self) -> tuple[BookExercise, ...]:
         return tuple(exercise for chapter in self.chapters for exercise in chapter.exercises)
 
     @property
@@ -161,7 +161,7 @@ class Book:
         points and other expressions are none.
         """
         articles = words(self.lang)["book"]["articles"]
-        symbols: dict[tuple[str, str, str], list[Practised]] = {}
+        symbols: dict[tuple[str, str, str], list[BookExercise]] = {}
         for exercise in self.exercises:
             for question in exercise.handout.questions:
                 if question.kind not in _MEASURED or _EXPRESSION.search(question.symbol):

@@ -66,11 +66,11 @@ def follows_from(variant: Variant, quantity: str) -> str:
     texts, lang = words(variant.lang)["feedback"]["follows"], variant.lang
     noun = words(lang)["sheet"]["question"]["one"]
     pieces = [texts["many_given" if len(given) > 1 else "given"].format(listed(given, lang))] if given else []
-    pieces += [_asked(variant, name, f"{noun} {number}") for name, number in before]
+    pieces += [_question_words(variant, name, f"{noun} {number}") for name, number in before]
     return str(texts["from"]).format(f"{words(lang)['sheet']['separator']} ".join(pieces))
 
 
-def _asked(variant: Variant, name: str, question: str) -> str:
+def _question_words(variant: Variant, name: str, question: str) -> str:
     """Return the symbol and the number of an earlier question, or its number alone where no symbol says
     anything."""
     part = next(p for p in variant.parts if p.quantity == name)

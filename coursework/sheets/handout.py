@@ -11,7 +11,7 @@ from coursework.course.answer_keys import answer_keys
 from coursework.language.numbers import localise, plain, unit_text
 from coursework.language.words import words as engine_words
 from coursework.model import Part
-from coursework.sheets.sheet import Given, Handout, Question
+from coursework.sheets.sheet import GivenValue, Handout, Question
 from coursework.sheets.units import units_text
 
 if TYPE_CHECKING:
@@ -61,12 +61,12 @@ def _unnamed(variant: Variant) -> Handout:
     )
 
 
-def _given(variant: Variant, name: str) -> Given:
+def _given(variant: Variant, name: str) -> GivenValue:
     spec, value = variant.exercise.spec.given[name], variant.given[name]
     symbol = variant.exercise.symbol(name)
     if spec.is_choice:
-        return Given(name, symbol, variant.text.label(name, value), "", is_number=False)
-    return Given(name, symbol, plain(value), unit_text(spec.unit, variant.lang))
+        return GivenValue(name, symbol, variant.text.label(name, value), "", is_number=False)
+    return GivenValue(name, symbol, plain(value), unit_text(spec.unit, variant.lang))
 
 
 def _ways_to_write(variant: Variant) -> list[tuple[str, ...]]:

@@ -18,7 +18,7 @@ class Logo:
 
 
 @dataclass(frozen=True)
-class Heading:
+class PaperHeading:
     """Heading of a paper, in its language."""
 
     lang: str
@@ -41,7 +41,7 @@ class Heading:
 class Paper:
     """All that a student's paper shows."""
 
-    heading: Heading
+    heading: PaperHeading
     handouts: tuple[Handout, ...]
 
     @property
@@ -58,7 +58,7 @@ class Paper:
 class SolutionPaper:
     """A paper with its answers and worked solutions."""
 
-    heading: Heading
+    heading: PaperHeading
     sheets: tuple[AnswerSheet, ...]
 
 
@@ -66,7 +66,7 @@ class SolutionPaper:
 class FeedbackPaper:
     """A student's marks on a paper, or on several exercises that were handed out one by one."""
 
-    heading: Heading
+    heading: PaperHeading
     sheets: tuple[FeedbackSheet, ...]
     points: float
     out_of: float

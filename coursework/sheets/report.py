@@ -14,7 +14,7 @@ class Chart:
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """Rows of inline Markdown under their heads; a column of ``numbers`` is set to the right."""
 
     heads: tuple[str, ...]
@@ -24,17 +24,17 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Section:
+class ReportSection:
     """A titled part; what is in it follows in this order."""
 
     title: str
     text: str = ""
     charts: tuple[Chart, ...] = ()
-    tables: tuple[Table, ...] = ()
+    tables: tuple[ReportTable, ...] = ()
 
 
 @dataclass(frozen=True)
-class Report:
+class ReportContent:
     """One document in one language; ``source`` stands beside the title's line and in the footer."""
 
     lang: str
@@ -42,4 +42,4 @@ class Report:
     title: str
     source: str
     opening: str
-    sections: tuple[Section, ...]
+    sections: tuple[ReportSection, ...]

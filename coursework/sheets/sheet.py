@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Given:
+class GivenValue:
     """One given quantity, as printed."""
 
     name: str  #: public name, ``theta2``
@@ -72,7 +72,7 @@ class Handout:
     student: str  #: empty when the sheet is nobody's
     title: str
     statement: str  #: Markdown
-    given: tuple[Given, ...]
+    given: tuple[GivenValue, ...]
     figure: Figure | Picture | None
     figure_alt: str
     questions: tuple[Question, ...]

@@ -18,7 +18,7 @@ from coursework.language.numbers import localise, plain
 from coursework.language.typography import typeset
 from coursework.language.words import listed, words
 from coursework.markup.markdown import to_text
-from coursework.sheets.report import Chart, Report, Section, Table
+from coursework.sheets.report import Chart, ReportContent, ReportSection, ReportTable
 from coursework.statistics.captions import SHORT, Names
 from coursework.statistics.measures import (
     BINS,
@@ -46,7 +46,7 @@ def sheet_order(course: Course, exercises: Iterable[str]) -> dict[str, tuple[str
     return {name: tuple(p.id for p in course[name].spec.parts) for name in exercises if name in course}
 
 
-def report(course: Course, statistics: Statistics, lang: str) -> Report:
+def report(course: Course, statistics: Statistics, lang: str) -> ReportContent:
     """Return the report: conclusions, points, a section for each exercise, mistakes; with a note where no
     chart can be drawn."""
     page = _StatisticsPage(course, statistics, lang)
@@ -56,7 +56,7 @@ def report(course: Course, statistics: Statistics, lang: str) -> Report:
     sections += [page.exercise(name) for name in statistics.exercises]
     if statistics.mistakes:
         sections.append(page.mistakes())
-    return Report(
+    return ReportContent(
         lang,
         course.folder.title(lang),
         page.texts["title"],
@@ -87,7 +87,7 @@ class _StatisticsPage:
 
     # ---------------------------------------------------------------- sections
 
-    def short(self) -> Section:
+    def short(self) -> ReportSection:
         wording = self.statistics
         percents = wording.percents
         rows = [
@@ -106,36 +106,36 @@ class _StatisticsPage:
             rows.append((self.texts["mean_percent"], self._percent(percents.mean() / 100)))
             rows.append((self.texts["median_percent"], self._percent(np.median(percents) / 100)))
         text = "\n".join(f"- {sentence}" for sentence in self._reading())
-        table = Table((self.texts["measure"], self.texts["count"]), tuple(rows), (False, True))
-        return Section(self.texts["short"], text, tables=(table,))
+        table = ReportTable((self.texts["measure"], self.texts["count"]), tuple(rows), (False, True))
+        return ReportSection(self.texts["short"], text, tables=(table,))
 
-    def points(self) -> Section:
+    def points(self) -> ReportSection:
         counts = self.statistics.histogram().tolist()
         edges = [round(100 * k / BINS) for k in range(BINS + 1)]
         heads = tuple(f"{a}–{b}" for a, b in pairwise(edges))
         named = (self.texts["chart_points"], self.texts["axis_points"], self.texts["axis_students"])
-        table = Table(heads, (tuple(self._number(c) for c in counts),), (True,) * BINS)
-        return Section(
+        table = ReportTable(heads, (tuple(self._number(c) for c in counts),), (True,) * BINS)
+        return ReportSection(
             self.texts["points"],
             self.texts["points_text"],
             self._charts(lambda: histogram(counts, edges, *named), self.texts["chart_points"]),
             (table,),
         )
 
-    def exercise(self, name: str) -> Section:
+    def exercise(self, name: str) -> ReportSection:
         parts = [p for p in self.statistics.parts if p.exercise == name]
         title = self._heading(name)
         heading = self.texts["chart_right"].format(title)
         charts: list[Chart] = []
         for rows in _shared_out(parts, _CHART_ROWS):
             charts += self._charts(partial(self._right_chart, rows, heading), heading)
-        return Section(title, "", tuple(charts), (self._part_table(parts), self._verdict_table(parts)))
+        return ReportSection(title, "", tuple(charts), (self._part_table(parts), self._verdict_table(parts)))
 
     def _right_chart(self, parts: Sequence[PartStatistics], heading: str) -> bytes:
         rows = [(self._label(p), 100 * p.right, self._chart_text(self._percent(p.right))) for p in parts]
         return bars(rows, self._chart_text(heading), self.texts["axis_right"], full=100)
 
-    def mistakes(self) -> Section:
+    def mistakes(self) -> ReportSection:
         wording = self.statistics
         rows = [
             (self._mistake_label(m), m.count, str(m.count))
@@ -154,11 +154,11 @@ class _StatisticsPage:
         text = [self.texts["mistakes_text"]]
         if left_out:
             text.append(self.texts["mistakes_more"].format(left_out))
-        return Section(self.texts["mistakes"], " ".join(text), charts, tuple(tables))
+        return ReportSection(self.texts["mistakes"], " ".join(text), charts, tuple(tables))
 
     # ------------------------------------------------------------------ tables
 
-    def _part_table(self, parts: Sequence[PartStatistics]) -> Table:
+    def _part_table(self, parts: Sequence[PartStatistics]) -> ReportTable:
         keys = ("part", "part_answers", "right", "mean", "discrimination")
         rows = tuple(
             (
@@ -170,14 +170,14 @@ class _StatisticsPage:
             )
             for p in parts
         )
-        return Table(tuple(self.texts[k] for k in keys), rows, (False, True, True, True, True))
+        return ReportTable(tuple(self.texts[k] for k in keys), rows, (False, True, True, True, True))
 
     def _discriminates(self, part: PartStatistics) -> str:
         if part.discrimination is not None:
             return self._decimal(part.discrimination)
         return self.texts["too_few" if part.students < ENOUGH else "all_alike"]
 
-    def _verdict_table(self, parts: Sequence[PartStatistics]) -> Table:
+    def _verdict_table(self, parts: Sequence[PartStatistics]) -> ReportTable:
         """Return the table of verdicts, with a column for each verdict that occurs."""
         met = [f for f in VERDICTS if any(p.counts[f] for p in parts)]
         rows = tuple(
@@ -185,9 +185,9 @@ class _StatisticsPage:
             for p in parts
         )
         heads = (self.texts["part"], *(self.verdicts[f] for f in met))
-        return Table(heads, rows, (False, *[True] * len(met)), self.texts["became"])
+        return ReportTable(heads, rows, (False, *[True] * len(met)), self.texts["became"])
 
-    def _mistake_table(self, exercise: str, mistakes: Sequence[MistakeStatistics]) -> Table:
+    def _mistake_table(self, exercise: str, mistakes: Sequence[MistakeStatistics]) -> ReportTable:
         parts = {p.part: p for p in self.statistics.parts if p.exercise == exercise}
         rows = tuple(
             (
@@ -200,7 +200,7 @@ class _StatisticsPage:
             for item in mistakes
         )
         heads = tuple(self.texts[h] for h in ("part", "says", "part_answers", "share", "lost"))
-        return Table(heads, rows, (False, False, True, True, True), self._heading(exercise))
+        return ReportTable(heads, rows, (False, False, True, True, True), self._heading(exercise))
 
     # ----------------------------------------------------------------- reading
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from coursework.course.chapters import Chapter
-from coursework.course.chapters import Section as Placed
+from coursework.course.chapters import ChapterSection as Placed
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
 from coursework.course.lessons import PAGES, taught_by
@@ -15,7 +15,7 @@ from coursework.errors import BadCourse, BadInput
 from coursework.language.words import words
 from coursework.making.issuing import distinct_variants
 from coursework.sheets.answer_sheet import answer_sheet
-from coursework.sheets.book import Book, BookChapter, Practised, Section
+from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
 from coursework.sheets.handout import handout
 from coursework.workbook.lessons import lesson_text
 
@@ -103,7 +103,7 @@ def _chapter(
             exercises.append(_practised(course, name, lang, seed, f"{chapter.number}.{count}"))
             advance()
         title = "" if lesson else placed.titles.get(lang, "")
-        sections.append(Section(lesson, tuple(exercises), title))
+        sections.append(BookSection(lesson, tuple(exercises), title))
     return BookChapter(chapter.number, chapter.title(lang), tuple(sections))
 
 
@@ -115,9 +115,9 @@ def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant
     return distinct_variants(exercise, _FAR + _APART * seed, 1, lang)[0]
 
 
-def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str) -> Practised:
+def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str) -> BookExercise:
     exercise = course[name]
     variant = _variant(exercise, lang, seed)
     taught = tuple((item.name, item.title) for item in taught_by(course.folder, name, lang))
     solution = answer_sheet(variant) if course.folder.has_solutions else None
-    return Practised(number, handout(variant), solution, taught)
+    return BookExercise(number, handout(variant), solution, taught)

@@ -13,8 +13,8 @@ from coursework.course.course import Course
 from coursework.course.folder import Folder
 from coursework.course.lessons import lesson_file, lesson_sections, lesson_title, read_text, taught_by
 from coursework.errors import BadCourse, CourseworkError, counted, nearest
-from coursework.markup.links import TERM, Link, links
-from coursework.sheets.book import Code, Head, Later, LessonText, Piece, Prose
+from coursework.markup.links import TERM, TextLink, links
+from coursework.sheets.book import CodePiece, HeadPiece, LaterPiece, LessonText, Piece, ProsePiece
 from coursework.workbook import lesson_source as source
 from coursework.workbook.pictures import drawn
 from coursework.workbook.proofread import lines_of_words, place_of, proofread
@@ -107,7 +107,7 @@ class _Lesson:
             case source.LessonImage():
                 self.pieces.append(drawn(self._course, self._name, block, self._lang))
             case source.LessonAnswer():
-                self._later((Prose(block.text),))
+                self._later((ProsePiece(block.text),))
             case source.CodeCell():
                 self._cell(block)
 
@@ -115,7 +115,7 @@ class _Lesson:
         if source.NOTEBOOK in cell.tags:
             return
         if source.SHOWN in cell.tags or source.STILL in cell.tags:
-            self.pieces.append(Code(cell.code))
+            self.pieces.append(CodePiece(cell.code))
         displayed = CellOutput() if source.STILL in cell.tags else self._session.run(cell)
         self.pieces += displayed.now
         if displayed.later:
@@ -123,7 +123,7 @@ class _Lesson:
 
     def _later(self, pieces: tuple[Piece, ...]) -> None:
         number = 1 + len(self.answers)
-        self.pieces.append(Later(number))
+        self.pieces.append(LaterPiece(number))
         self.answers.append((number, pieces))
 
 
@@ -132,14 +132,14 @@ def _parted(text: str) -> Iterator[Piece]:
     end = 0
     for head in _HEAD.finditer(text):
         if before := text[end : head.start()].strip():
-            yield Prose(before)
-        yield Head(head[3], len(head[1]) - 1, int(head[2] or 0))
+            yield ProsePiece(before)
+        yield HeadPiece(head[3], len(head[1]) - 1, int(head[2] or 0))
         end = head.end()
     if after := text[end:].strip():
-        yield Prose(after)
+        yield ProsePiece(after)
 
 
-def _check_link(folder: Folder, link: Link, lang: str, position: str) -> None:
+def _check_link(folder: Folder, link: TextLink, lang: str, position: str) -> None:
     known_names = folder.names if link.kind == "exercise" else folder.lessons
     if link.name not in known_names:
         raise BadCourse(

@@ -10,10 +10,10 @@ from urllib.parse import quote
 from coursework.course.course import Course
 from coursework.course.lessons import lesson_sections, practised
 from coursework.language.words import words
-from coursework.markup.links import TERM, Link, relinked
+from coursework.markup.links import TERM, TextLink, relinked
 from coursework.markup.markdown import to_notebook_markdown
 from coursework.rendering.renderer import renderer_of
-from coursework.sheets.book import Drawn
+from coursework.sheets.book import DrawnPiece
 from coursework.workbook import lesson_source as source
 from coursework.workbook.lessons import opened
 from coursework.workbook.pictures import drawn
@@ -78,7 +78,7 @@ def _written(
 def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -> str:
     """Return the text with links to the notebooks beside this one, and with terms in italics."""
 
-    def write(link: Link) -> str:
+    def write(link: TextLink) -> str:
         if link.kind == TERM:
             return f"*{link.said}*"
         if link.name not in there:
@@ -93,7 +93,7 @@ def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -
     return relinked(text, write)
 
 
-def _attached(displayed: Drawn) -> Mapping[str, str]:
+def _attached(displayed: DrawnPiece) -> Mapping[str, str]:
     """Return a picture by MIME type; a moving one is SVG, which moves in a notebook too."""
     if displayed.svg:
         return {"image/svg+xml": base64.b64encode(displayed.svg.encode()).decode()}
@@ -101,7 +101,7 @@ def _attached(displayed: Drawn) -> Mapping[str, str]:
     return {"image/png": base64.b64encode(displayed.figure.png(ppi=_PPI)).decode()}
 
 
-def _picture(file: str, displayed: Drawn, lang: str) -> str:
+def _picture(file: str, displayed: DrawnPiece, lang: str) -> str:
     text = displayed.said.replace("[", "(").replace("]", ")").replace("\n", " ")
     caption = to_notebook_markdown(displayed.caption, lang)
     return f"![{text}](attachment:{file})" + (f"\n\n*{caption}*" if caption else "")

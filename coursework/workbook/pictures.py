@@ -17,7 +17,7 @@ from coursework.figures.moving_svg import moving_svg, still_svg
 from coursework.markup.markdown import plain_line
 from coursework.motion.animation import Animation
 from coursework.motion.reel import SECONDS
-from coursework.sheets.book import Drawn
+from coursework.sheets.book import DrawnPiece
 from coursework.workbook.lesson_source import LessonImage
 
 STILLS = 4  #: instants of what moves that stand on paper
@@ -25,7 +25,7 @@ _CELL = (80.0, 46.0)  #: the room of one of them, mm
 _ASKED = ("seed", "motion", "count")
 
 
-def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Drawn:
+def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> DrawnPiece:
     """Return a picture of a lesson.
 
     Raises
@@ -41,7 +41,7 @@ def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Dr
         raise BadCourse(f"{file}, line {image.line}: {fault}") from fault
 
 
-def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Drawn:
+def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> DrawnPiece:
     if not image.caption.strip():
         raise BadInput(
             f"the figure {image.name} has no caption, which tells what it shows to who does not see it"
@@ -51,7 +51,7 @@ def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) 
         created = created.beside(course.folder.lesson_place)
     text = plain_line(image.caption, lang)
     if isinstance(created, (Figure, Picture)):
-        return Drawn(text, image.caption, figure=created)
+        return DrawnPiece(text, image.caption, figure=created)
     if isinstance(created, Sequence) and created and all(isinstance(item, Figure) for item in created):
         return _moving(created, text, image.caption, lang)
     raise BadCourse(
@@ -75,12 +75,12 @@ def _call(folder: Folder, lesson: str, name: str) -> Any:
         raise BadCourse(f"the figure {name} fails{where}: {type(fault).__name__}: {fault}") from fault
 
 
-def _moving(frames: Sequence[Figure], text: str, caption: str, lang: str) -> Drawn:
+def _moving(frames: Sequence[Figure], text: str, caption: str, lang: str) -> DrawnPiece:
     """Return figures in a cycle, the first after the last."""
     elements, count = [frame.elements for frame in frames], len(frames)
     displayed, small = drawing(elements), drawing(elements, paper_mm=_CELL)
     entries = {"title": text, "words": text, "lang": lang}
-    return Drawn(
+    return DrawnPiece(
         text,
         caption,
         svg=moving_svg(displayed, order=[*range(count), 0], first=0, seconds=SECONDS, **entries),
@@ -88,7 +88,7 @@ def _moving(frames: Sequence[Figure], text: str, caption: str, lang: str) -> Dra
     )
 
 
-def _of_exercise(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Drawn:
+def _of_exercise(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> DrawnPiece:
     for name in image.asked:
         if name not in _ASKED:
             raise BadInput(f"nothing called {name!r} is asked of a picture{nearest(name, _ASKED)}")
@@ -102,9 +102,9 @@ def _of_exercise(course: Course[Any], lesson: str, image: LessonImage, lang: str
         )
     if variant.figure is None:
         raise BadInput(f"{image.name} has no figure")
-    return Drawn(variant.handout().figure_alt, image.caption, figure=variant.figure)
+    return DrawnPiece(variant.handout().figure_alt, image.caption, figure=variant.figure)
 
 
-def moving(animation: Animation, caption: str = "") -> Drawn:
+def moving(animation: Animation, caption: str = "") -> DrawnPiece:
     """Return an exercise's mechanism in motion, and its stills for paper."""
-    return Drawn(animation.words, caption, svg=animation.svg(), stills=animation.stills(STILLS, _CELL))
+    return DrawnPiece(animation.words, caption, svg=animation.svg(), stills=animation.stills(STILLS, _CELL))

@@ -20,7 +20,7 @@ from coursework.markup.shown import SvgPicture as ShownPicture
 from coursework.motion.animation import Animation
 from coursework.selfstudy.lessons import PredictionTable
 from coursework.selfstudy.worked import WorkedExample
-from coursework.sheets.book import Drawn, Piece, Printed, Prose
+from coursework.sheets.book import DrawnPiece, Piece, PrintedPiece, ProsePiece
 from coursework.workbook.lesson_source import CodeCell
 from coursework.workbook.pictures import moving
 
@@ -78,7 +78,7 @@ class CellSession:
                 value = self._value(cell)
         except (Exception, SystemExit) as fault:
             raise BadCourse(self._message(fault, cell)) from fault
-        displayed, text = shows(value), tuple(self._clean(Printed(printed.getvalue()), cell))
+        displayed, text = shows(value), tuple(self._clean(PrintedPiece(printed.getvalue()), cell))
         if isinstance(value, PredictionTable):  # what it prints would tell what is to be predicted
             return CellOutput((), (*map(_listed, text), *displayed.later))
         now = (piece for item in displayed.now for piece in self._clean(item, cell))
@@ -113,7 +113,7 @@ class CellSession:
 
     def _clean(self, piece: Piece, cell: CodeCell) -> Iterator[Piece]:
         """Yield the output of a cell, refused if it differs between runs or is too long."""
-        if not isinstance(piece, Printed):
+        if not isinstance(piece, PrintedPiece):
             yield piece
             return
         text = _UNSEEN.sub("", piece.text).rstrip()
@@ -123,7 +123,7 @@ class CellSession:
         elif lines > LINES:
             fault = f"prints {lines} lines; a book has room for {LINES}"
         else:
-            yield from [Printed(text)] if text else []
+            yield from [PrintedPiece(text)] if text else []
             return
         raise BadCourse(
             f"{self._file}, line {cell.line}: the cell {fault}; show something else, or tag it notebook"
@@ -149,10 +149,10 @@ def _link_beside(root: Path, position: Path) -> Path:
 
 def _listed(piece: Piece) -> Piece:
     """Return what a cell prints beside an answer as a list of sentences, unless it is drawn with signs."""
-    if not isinstance(piece, Printed) or "##" in piece.text:
+    if not isinstance(piece, PrintedPiece) or "##" in piece.text:
         return piece
     lines = (" ".join(line.split()) for line in piece.text.splitlines() if line.strip())
-    return Prose("\n".join(f"- {_MARKUP.sub(_ESCAPED, line)}" for line in lines))
+    return ProsePiece("\n".join(f"- {_MARKUP.sub(_ESCAPED, line)}" for line in lines))
 
 
 def shows(value: Any) -> CellOutput:
@@ -160,19 +160,19 @@ def shows(value: Any) -> CellOutput:
     if value is None:
         return CellOutput()
     if isinstance(value, PredictionTable):
-        return CellOutput(later=(Prose(value.outcome),))
+        return CellOutput(later=(ProsePiece(value.outcome),))
     if isinstance(value, WorkedExample):
         right = "\n".join(f"- {line}" for line in value.right)
-        return CellOutput(tuple(_pieces(value)), (Prose(right),) if right else ())
+        return CellOutput(tuple(_pieces(value)), (ProsePiece(right),) if right else ())
     if isinstance(value, NotebookDisplay):
         return CellOutput(tuple(_pieces(value)))
     if isinstance(value, Animation):
         return CellOutput((moving(value),))
     if isinstance(value, (Figure, Picture)):
-        return CellOutput((Drawn(type(value).__name__, figure=value),))
-    return CellOutput((Printed(str(value)),))
+        return CellOutput((DrawnPiece(type(value).__name__, figure=value),))
+    return CellOutput((PrintedPiece(str(value)),))
 
 
 def _pieces(displayed: NotebookDisplay) -> Iterator[Piece]:
     for piece in displayed.pieces:
-        yield Drawn(piece.said, svg=piece.svg) if isinstance(piece, ShownPicture) else Prose(piece)
+        yield DrawnPiece(piece.said, svg=piece.svg) if isinstance(piece, ShownPicture) else ProsePiece(piece)

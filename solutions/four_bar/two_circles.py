@@ -14,7 +14,15 @@ from coursework.degrees import from_radians, polar, wrap
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
-from coursework.marking.drawn_polygons import Asked, drawn, read_off, scale_for, to_paper, turned, verdicts
+from coursework.marking.drawn_polygons import (
+    DrawingParts,
+    drawn,
+    read_off,
+    scale_for,
+    to_paper,
+    turned,
+    verdicts,
+)
 from coursework.polygons import Polygon, Side
 from coursework.polygons.hand_drawn import TOLERANCE_MM, on_paper
 from coursework.solution import Judged, given, judge, mistake
@@ -28,7 +36,7 @@ _MEASURED, _DRAWN = (
     1.0,
     2.0,
 )  #: degrees by which an angle may be off: on one's own drawing, and from the right one
-_ASKED = Asked(
+_ASKED = DrawingParts(
     scale="kl",
     points={"p": "o", "a": "a", "c": "c"},
     lengths={},

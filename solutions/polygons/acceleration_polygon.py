@@ -6,7 +6,7 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
-from coursework.marking.drawn_polygons import Asked, Read, verdicts
+from coursework.marking.drawn_polygons import DrawingParts, Read, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, two_bars_a
 from coursework.solution import given, judge, mistake, stable
 
@@ -142,7 +142,7 @@ def drawing(answers, r1, r2, r3, r4, theta2, omega2, mode):
     _, coupler, rocker, *_ = bars
     of_coupler = {"radii_exchanged": ("b'", "b", 1 / r4)}
     of_rocker = {"radii_exchanged": ("b''", "b", 1 / r3), "alpha4_of_a_B": ("p_a", "b", 1 / r4)}
-    asked = Asked(
+    asked = DrawingParts(
         scale="ka",
         points={"p": "p_a", "a": "a", "n": "b'", "m": "b''", "b": "b"},
         lengths={"bb_t": ("b'", "b"), "pa_b": ("p_a", "b")},

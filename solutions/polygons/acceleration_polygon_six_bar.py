@@ -4,7 +4,7 @@ then that of C about B and the guide meet in c."""
 import numpy as np
 
 from coursework.marking.drawn_polygons import (
-    Asked,
+    DrawingParts,
     Read,
     met,
     off_both,
@@ -231,7 +231,7 @@ def drawing(answers, r1, r2, r3, r4, r5, theta2, omega2, mode):
     links = _links(linkage, r2, r3, r4, r5, theta2)
     rates = _rates(linkage, links, omega2)
     coupler, whole = links[1], {"alpha3_of_a_B": ("p_a", "b", 1 / r3)}
-    asked = Asked(
+    asked = DrawingParts(
         scale="ka",
         points={"p": "p_a", "a": "a", "n": "b'", "m": "b''", "b": "b", "f": "c'", "c": "c"},
         lengths={"bb_t": ("b'", "b"), "pa_c": ("p_a", "c")},

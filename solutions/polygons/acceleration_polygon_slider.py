@@ -6,7 +6,7 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.marking.drawn_polygons import Asked, Read, met, verdicts
+from coursework.marking.drawn_polygons import DrawingParts, Read, met, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, slider_a
 from coursework.solution import given, judge, mistake
 
@@ -140,7 +140,7 @@ def drawing(answers, r2, r3, e, theta2, omega2):
     bars = _bars(r2, r3, e, theta2)
     _, rod, *_ = bars
     of_rod = {"crank_for_rod": ("b'", "b", 1 / r2)}
-    asked = Asked(
+    asked = DrawingParts(
         scale="ka",
         points={"p": "p_a", "a": "a", "n": "b'", "b": "b"},
         lengths={"bb_t": ("b'", "b"), "pa_b": ("p_a", "b")},

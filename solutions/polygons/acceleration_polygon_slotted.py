@@ -4,7 +4,7 @@ acceleration besides, known from the velocities. The two accelerations of which 
 import numpy as np
 
 from coursework.marking.drawn_polygons import (
-    Asked,
+    DrawingParts,
     Read,
     met,
     off_both,
@@ -266,7 +266,7 @@ def drawing(answers, r1, r2, theta2, omega2):
     guide = _guide(r1, r2, theta2)
     _, along = vectors = _vectors(guide, r2, theta2)
     whole = {"alpha4_of_A4": ("p_a", "a_4", 1 / guide.arm)}
-    asked = Asked(
+    asked = DrawingParts(
         scale="ka",
         points={"p": "p_a", "a": "a_2", "k": "k", "n": "a_4'", "b": "a_4"},
         lengths={"bk": ("a_4", "k"), "nb_t": ("a_4'", "a_4")},

@@ -13,7 +13,7 @@ from coursework.figures import Figure, circle, ground_pivot, line, link, pin, po
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import (
-    Asked,
+    DrawingParts,
     Read,
     met,
     off_both,
@@ -316,7 +316,7 @@ def _own_rates(answers, bars, omega2):
 
 
 def _asked_v(bars):
-    return Asked(
+    return DrawingParts(
         scale="kv",
         points={"p": "p_v", "a": "p_2", "b": "p_4", "d": "d", "e": "e"},
         lengths={"pv_b": ("p_v", "p_4"), "pv_e": ("p_v", "e")},
@@ -332,7 +332,7 @@ def _asked_v(bars):
 
 
 def _asked_a():
-    return Asked(
+    return DrawingParts(
         scale="ka",
         points={"q": "p_a", "a2": "p_2", "k": "k", "n": "p_4'", "b2": "p_4", "d2": "d", "m": "e'", "e2": "e"},
         lengths={"pa_e": ("p_a", "e")},

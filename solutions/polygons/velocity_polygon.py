@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
-from coursework.marking.drawn_polygons import Asked, Read, verdicts
+from coursework.marking.drawn_polygons import DrawingParts, Read, verdicts
 from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
 from coursework.solution import given, judge, mistake
 
@@ -95,7 +95,7 @@ def drawing(answers, r1, r2, r3, r4, theta2, omega2, mode):
     _, coupler, rocker, *_ = bars
     of_coupler = {"radii_exchanged": ("a", "b", 1 / r4), "omega3_of_V_B": ("p_v", "b", 1 / r3)}
     of_rocker = {"radii_exchanged": ("p_v", "b", 1 / r3)}
-    asked = Asked(
+    asked = DrawingParts(
         scale="kv",
         points={"p": "p_v", "a": "a", "b": "b"},
         lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b")},

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.marking.drawn_polygons import Asked, Read, met, off_both, scale_for, verdicts
+from coursework.marking.drawn_polygons import DrawingParts, Read, met, off_both, scale_for, verdicts
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v, two_bars_v
 from coursework.solution import given, judge, mistake
 
@@ -178,7 +178,7 @@ def drawing(answers, r1, r2, r3, r4, r5, theta2, omega2, mode):
     linkage = _linkage(r1, r2, r3, r4, mode, theta2)
     _, coupler, rocker, rod = links = _links(linkage, r2, r3, r4, r5, theta2)
     absolute = "rate_of_absolute_velocity"
-    asked = Asked(
+    asked = DrawingParts(
         scale="kv",
         points={"p": "p_v", "a": "a", "b": "b", "c": "c"},
         lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b"), "bc": ("b", "c"), "pv_c": ("p_v", "c")},

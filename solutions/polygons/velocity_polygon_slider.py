@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.marking.drawn_polygons import Asked, Read, verdicts
+from coursework.marking.drawn_polygons import DrawingParts, Read, verdicts
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import given, judge, mistake
 
@@ -96,7 +96,7 @@ def drawing(answers, r2, r3, e, theta2, omega2):
     bars = _bars(r2, r3, e, theta2)
     _, rod, _ = bars
     of_rod = {"crank_for_rod": ("a", "b", 1 / r2), "omega3_of_V_B": ("p_v", "b", 1 / r3)}
-    asked = Asked(
+    asked = DrawingParts(
         scale="kv",
         points={"p": "p_v", "a": "a", "b": "b"},
         lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b")},

@@ -3,7 +3,7 @@ slides along the slot."""
 
 import numpy as np
 
-from coursework.marking.drawn_polygons import Asked, Read, verdicts
+from coursework.marking.drawn_polygons import DrawingParts, Read, verdicts
 from coursework.polygons import crank_v, guide_v, polygon_of_velocities
 from coursework.solution import given, judge, mistake, stable
 
@@ -102,7 +102,7 @@ def drawing(answers, r1, r2, theta2, omega2):
     _, along = vectors = _vectors(guide, r2, theta2)
     arm = guide.arm
     of_guide = {"crank_for_guide": ("p_v", "a_4", 1 / r2), "omega4_of_A2": ("p_v", "a_2", 1 / arm)}
-    asked = Asked(
+    asked = DrawingParts(
         scale="kv",
         points={"p": "p_v", "a": "a_2", "b": "a_4"},
         lengths={"ab": ("a_4", "a_2"), "pv_b": ("p_v", "a_4")},

@@ -7,7 +7,7 @@ from sweeps import sampled
 
 import coursework
 from coursework.authoring.check_alone import asked_alone, check_alone
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.authoring.checks import check
 from coursework.errors import BadCourse, BadStatement
 from coursework.making.issuing import distinct_variants
@@ -20,7 +20,7 @@ TELLING = {"closed_chain", "grashof", "slider_crank", "velocity_polygon_slotted"
 
 @pytest.mark.parametrize("name", sampled(COURSE.names, TELLING))
 def test_each_question_may_be_asked_alone(name):
-    exercise, report = COURSE[name], Report(name)
+    exercise, report = COURSE[name], CheckReport(name)
     drawn = distinct_variants(exercise, 0, VARIANTS, exercise.languages[0], parts=("all",))
     check_alone(drawn, report)
     assert report.failures == []

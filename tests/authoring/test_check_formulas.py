@@ -10,7 +10,7 @@ from tables import each_row
 
 import coursework
 from coursework.authoring.check_formulas import check_formulas, prove
-from coursework.authoring.check_report import Report, notes
+from coursework.authoring.check_report import CheckReport, notes
 from coursework.authoring.checks import check
 from coursework.course.exercise import ALL
 from coursework.quantities import formula_latex as worked
@@ -173,7 +173,7 @@ def test_a_quantity_that_is_another_one_has_its_number():
 
 @every_exercise
 def test_every_printed_formula_of_the_course_is_proved(name):
-    report = Report(name)
+    report = CheckReport(name)
     check_formulas(list(COURSE[name].variants(range(5), "en", (ALL,))), report)
     assert report.failures == []
     assert set(report.unproved.values()) <= {"told in words"}
@@ -230,7 +230,7 @@ def test_a_formula_in_words_is_listed_and_not_taken_for_proved(small_course):
 def test_a_printer_that_loses_its_brackets_is_caught(monkeypatch):
     formula_in_symbols.cache_clear()
     monkeypatch.setattr(worked._Printer, "latex", lambda self, node, within=0: self._print(node)[0])
-    report = Report("ball_reducer")
+    report = CheckReport("ball_reducer")
     try:
         check_formulas(list(COURSE["ball_reducer"].variants(range(3), "en", (ALL,))), report)
     finally:
@@ -252,7 +252,7 @@ def printed_of(small_course, formula):
     text = path.read_text("utf-8").replace("\ndef v(r, omega):", CONSTANTS)
     path.write_text(text.replace("    return r * omega\n", f"    {formula}\n"), "utf-8")
     variant = coursework.open_course(small_course)["crank_pin"].variant(3, "en")
-    report = Report("crank_pin")
+    report = CheckReport("crank_pin")
     check_formulas([variant], report)
     return next(s for s in variant.answer_sheet(polygons=False).steps if s.name == "v"), report
 

@@ -8,7 +8,7 @@ import pytest
 
 import coursework
 from coursework.authoring.check_mechanism import check_mechanism, counts, faults
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.course import Course
 from coursework.course.folder import course_folder
 from coursework.course.variant import Variant
@@ -24,7 +24,7 @@ def failures(name, mechanism=None, variants=3):
     exercise.__dict__.update(own.__dict__)
     if mechanism is not None:
         exercise.__dict__["solution"] = dataclasses.replace(exercise.solution, mechanism=mechanism)
-    report = Report(name)
+    report = CheckReport(name)
     check_mechanism(exercise.variants(range(variants)), report)
     return report.failures
 

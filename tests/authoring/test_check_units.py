@@ -9,7 +9,7 @@ import pytest
 from sweeps import sampled
 
 import coursework
-from coursework.authoring.check_report import Report, notes
+from coursework.authoring.check_report import CheckReport, notes
 from coursework.authoring.check_units import check_units
 from coursework.authoring.checks import check
 from coursework.course.builtin import builtin_root
@@ -19,7 +19,7 @@ NAMES = sorted(coursework.open_course())
 
 
 def report_of(exercise, variants=3):
-    report = Report(exercise.name)
+    report = CheckReport(exercise.name)
     check_units(exercise.variants(range(variants), "en", ("all",)), report)
     return report
 

@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 
 import coursework
-from coursework.authoring.check_report import Report, notes, table
+from coursework.authoring.check_report import CheckReport, notes, table
 from coursework.authoring.checks import agrees, check
 from coursework.cli.printing import print_table
 from coursework.language.words import file_of
@@ -160,7 +160,7 @@ def test_a_course_without_solutions_is_told_so_once_and_without_numbers_that_are
 
 def test_the_table_of_a_check_is_read_on_80_columns(capsys):
     counts = Counter({"right answers": 24_946, "mistakes recognised": 26_601})
-    report = Report("acceleration_polygon_slider", 200, counts, acceptance=0.4)
+    report = CheckReport("acceleration_polygon_slider", 200, counts, acceptance=0.4)
     print_table(table([report]))
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80

@@ -12,7 +12,7 @@ from tables import each_row
 
 import coursework
 from coursework.authoring import checks
-from coursework.authoring.check_report import KEPT_DIGITS, Report
+from coursework.authoring.check_report import KEPT_DIGITS, CheckReport
 from coursework.course.answer_key import Key
 from coursework.course.key_batch import keys_of
 from coursework.course.marking_rules import Rules
@@ -66,7 +66,7 @@ def test_the_last_digit_kept_does_not_hang_on_a_last_bit(exponent):
 @every_exercise
 @pytest.mark.parametrize("digits", KEPT_DIGITS)
 def test_who_rounds_at_every_step_is_right(name, digits):
-    report = Report(name)
+    report = CheckReport(name)
     drawn = issued(name)
     keys_of(COURSE[name], drawn)
     checks.check_rounding_students(COURSE[name], drawn, report, (digits,))
@@ -77,7 +77,7 @@ def test_who_rounds_at_every_step_is_right(name, digits):
 
 def test_rounding_would_cost_honest_students_the_usual_margin():
     """Why the margin follows the graph: at three digits many land outside 1 % by rounding alone."""
-    report = Report("slider_extras")
+    report = CheckReport("slider_extras")
     drawn = issued("slider_extras", 60)
     keys_of(COURSE["slider_extras"], drawn)
     checks.check_rounding_students(COURSE["slider_extras"], drawn, report, (3,))

@@ -12,7 +12,7 @@ from tables import each_row
 
 import coursework
 from coursework.authoring.check_loops import check_loops, equation_holds
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.errors import BadCourse, UnknownName, WrongValue
 from coursework.kinematics.chains import ClosedChain, Vector
 from coursework.making.issuing import issue
@@ -109,7 +109,7 @@ def test_any_correct_form_is_right(name, part, text):
 
 @pytest.mark.parametrize("name", sampled(WITH_LOOPS, ["slotted_mechanism", "four_bar_positions"]))
 def test_the_two_projections_may_be_exchanged_turned_and_complex(name):
-    report = Report(name)
+    report = CheckReport(name)
     check_loops(asking_all(name), report)
     assert report.failures == []
     assert report.counts["loops told"] > 30

@@ -12,7 +12,7 @@ from tables import each_row
 import coursework
 from coursework.authoring.check_knowledge import check_knowledge
 from coursework.authoring.check_prices import check_prices
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.authoring.check_usual import check_usual_errors
 from coursework.course.answer_key import Key
 from coursework.course.exercise import ALL
@@ -33,7 +33,7 @@ NUMERIC = [n for n in COURSE.names if any(p.sort.is_scalar and not p.judge for p
 
 @every_exercise
 def test_every_usual_error_that_shows_is_told_and_no_price_differs(name):
-    exercise, report = COURSE[name], Report(name)
+    exercise, report = COURSE[name], CheckReport(name)
     drawn = distinct_variants(exercise, 0, 7, "en", parts=(ALL,))
     check_usual_errors(drawn, report)
     check_prices(drawn, report)
@@ -184,7 +184,7 @@ def test_a_course_may_charge_for_the_other_case_wherever_it_shows():
 
 @every_exercise
 def test_nothing_follows_for_who_writes_without_work(name):
-    report = Report(name)
+    report = CheckReport(name)
     check_knowledge(distinct_variants(COURSE[name], 0, 3, "en"), report)
     assert report.failures == []
     assert report.counts["sheets without work"] >= 3 * 40

@@ -12,7 +12,7 @@ from sweeps import slow
 
 import coursework
 from coursework.authoring import checks
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.course.draws import BLOCK, acceptance
 from coursework.errors import NoSolution
 from coursework.language.words import languages
@@ -32,7 +32,7 @@ def keys(name, seeds=range(FEW)):
 
 
 def failures(name, check, *arguments):
-    report = Report(name)
+    report = CheckReport(name)
     check(*arguments, report)
     assert sum(report.counts.values()) > 0 or report.mistakes, "the check tried nothing"
     return report.failures
@@ -84,7 +84,7 @@ def test_texts_are_complete_in_every_language(name):
 @every_exercise
 @pytest.mark.parametrize("count", [1, pytest.param(2, marks=slow)])
 def test_sheets_render_in_every_format_and_language(name, count):
-    report = Report(name)
+    report = CheckReport(name)
     checks.check_rendering(COURSE[name], count, report)
     assert report.counts["sheets rendered"] == count * 5 * len(languages())
 

@@ -206,13 +206,13 @@ def test_an_attempt_of_many_digits_is_none(tmp_path):
     "field", ['"least": 1e999', '"number": "1"', '"is_straight": 1', '"code": []', '"reason": "\\ud800"', '"least": ' + "[" * 5000, '"number": true', '"fields": [{}]']
 )  # fmt: skip
 def test_a_page_that_is_kept_otherwise_is_read_anew(tmp_path, field):
-    from coursework.scanning.kept import page_kept
+    from coursework.scanning.kept import stored_page
 
     whole = json.loads(READERS["page of a scan"].samples[0])
     whole.pop(json.loads(f"[{field.partition(':')[0]}]")[0])
     (tmp_path / ".scanned").mkdir()
     (tmp_path / ".scanned" / "p.json").write_text(f"{json.dumps(whole)[:-1]}, {field}}}")
-    assert page_kept(tmp_path, "p") is None
+    assert stored_page(tmp_path, "p") is None
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from tables import each_row
 
 import coursework
 from coursework.authoring.check_guesses import MOST, best_guess
-from coursework.authoring.check_report import Report
+from coursework.authoring.check_report import CheckReport
 from coursework.authoring.checks import check_guesses
 from coursework.marking.answers import read
 from coursework.model import Part
@@ -162,7 +162,7 @@ def test_guesses_that_agree_with_each_other_earn_half_at_most():
 
 
 def test_an_exercise_that_a_guess_answers_is_told():
-    report = Report("one")
+    report = CheckReport("one")
     variants = [
         v.asking([p for p in v.exercise.spec.parts if p.id == "gamma"])
         for v in COURSE["closed_chain"].variants(range(60))

@@ -264,7 +264,10 @@ def test_a_sign_tells_the_share_of_the_points_and_none_is_told_by_colour_alone()
 def test_a_question_is_called_by_its_first_sentence(prompt, symbol, shown):
     line = feedback_sheet("en").lines[0]
     assert (
-        feedback.called(replace(line, question=replace(line.question, prompt=prompt, symbol=symbol))) == shown
+        feedback.question_heading(
+            replace(line, question=replace(line.question, prompt=prompt, symbol=symbol))
+        )
+        == shown
     )
 
 

@@ -12,7 +12,7 @@ from rendering_samples import handout
 
 from coursework.course.builtin import builtin_root
 from coursework.rendering.renderer import Renderer
-from coursework.sheets.sheet import Given
+from coursework.sheets.sheet import GivenValue
 
 TEMPLATES = builtin_root() / "templates"
 RENDERER = Renderer([TEMPLATES])
@@ -48,7 +48,7 @@ def test_a_notebook_names_each_choice_as_it_is_to_be_written_and_says_cases_as_w
     sheet = handout(lang)
     choices = (("one", "$w = 1$"), ("two", "l'autre"))
     question = replace(sheet.questions[0], kind="choice", choices=choices, letters=("a", "b"))
-    case = Given("mode", r"\text{mode}", "l'autre", "", is_number=False)
+    case = GivenValue("mode", r"\text{mode}", "l'autre", "", is_number=False)
     book = nbformat.reads(RENDERER.notebook(replace(sheet, questions=(question,), given=(case,))), 4)
     words_of = "\n".join(cells(book, "markdown"))
     assert "- `a`" in words_of
@@ -68,7 +68,7 @@ def test_a_notebook_sets_the_given_values_as_python_numbers(lang):
 
 
 def test_a_given_named_as_a_word_of_python_still_makes_a_variable():
-    sheet = replace(handout("en"), given=(Given("lambda", r"\lambda", "1.2e-3", ""),))
+    sheet = replace(handout("en"), given=(GivenValue("lambda", r"\lambda", "1.2e-3", ""),))
     book = json.loads(RENDERER.notebook(sheet))
     assert "lambda_ = 1.2e-3" in cells(book, "code")[0]
 

@@ -11,7 +11,7 @@ import typst
 from rendering_samples import answer_sheet, feedback_sheet, handout, many_given
 
 from coursework.course.builtin import builtin_root
-from coursework.course.texts import Section
+from coursework.course.texts import TextSection
 from coursework.rendering.renderer import Renderer, renderer_of
 
 TEMPLATES = builtin_root() / "templates"
@@ -125,7 +125,7 @@ def test_the_words_of_a_solutions_own_figure_stand_in_place_of_the_sheets(lang):
 def test_a_solutions_text_says_what_its_own_figure_shows(course, monkeypatch):
     variant = course["four_bar_positions"].variant(0, "en")
     text = variant.solution_text
-    said = replace(text, sections={**text.sections, "figure": Section("Two circles\nthat meet.")})
+    said = replace(text, sections={**text.sections, "figure": TextSection("Two circles\nthat meet.")})
     monkeypatch.setitem(variant.__dict__, "solution_text", said)
     sheet = variant.answer_sheet()
     assert sheet.figure is not None

@@ -5,7 +5,7 @@ import pytest
 from scanned_pages import DOTS, Hand, boxes_of, example_page, plain_digits, template_reader
 from tables import each_row
 
-from coursework.scanning.numbers import Reading, number
+from coursework.scanning.numbers import FieldText, number
 from coursework.scanning.outlines import Shifts
 from coursework.scanning.straightening import SCALE, Straight
 
@@ -79,12 +79,12 @@ def test_what_keeps_the_rules_is_read_as_it_would_be_typed(write, text):
 
 
 def test_the_unit_is_said_where_its_box_is_ticked():
-    assert said(row("42", unit=True)) == Reading("42 mm")
-    assert said(row("42")) == Reading("42")
+    assert said(row("42", unit=True)) == FieldText("42 mm")
+    assert said(row("42")) == FieldText("42")
 
 
 def test_an_empty_row_is_a_blank_answer_and_does_not_wait():
-    assert said(lambda hand: None) == Reading("")
+    assert said(lambda hand: None) == FieldText("")
 
 
 @each_row(

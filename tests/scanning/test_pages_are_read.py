@@ -20,7 +20,7 @@ from tables import each_row
 
 from coursework.scanning.codes import codes_in
 from coursework.scanning.pages import read_page
-from coursework.scanning.pictures import Picture, is_two_toned
+from coursework.scanning.pictures import PageImage, is_two_toned
 from coursework.scanning.straightening import straightened
 from coursework.sheets.answer_pages import Box
 
@@ -42,7 +42,7 @@ def answered(sheet, seed, pen=None):
 
 
 def read(picture, papers=PAPERS):
-    return read_page(Picture("scan.pdf", 1, picture), papers, READER)
+    return read_page(PageImage("scan.pdf", 1, picture), papers, READER)
 
 
 def told(page):
@@ -106,7 +106,7 @@ def test_in_black_and_white_doubt_counts_fivefold(bilevel, waits, sheet):
     hand = Hand(pen="black", bank=plain_digits, jitter=0.2, rng=np.random.default_rng(5))
     filled, _ = filled_in(sheet, PAGE, hand, odd=0.0)
     picture = scanned(filled, Scan(dpi=200, bilevel=bilevel), np.random.default_rng(0))
-    found = read_page(Picture("scan.pdf", 1, picture), PAPERS, hesitant)
+    found = read_page(PageImage("scan.pdf", 1, picture), PAPERS, hesitant)
     assert {bool(f.waits) for f in found.fields if f.field.what == "number" and f.text} == {waits}
 
 

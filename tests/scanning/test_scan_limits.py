@@ -13,7 +13,7 @@ from coursework.api import open_course
 from coursework.making.answer_papers import answer_papers
 from coursework.making.students import file_stems
 from coursework.scanning import names, pictures
-from coursework.scanning.kept import LOST, OTHER_NAME, page_kept
+from coursework.scanning.kept import LOST, OTHER_NAME, stored_page
 from coursework.scanning.pictures import BadPicture, page_count, picture_at
 from coursework.system.limits import MOST_PAGES
 from coursework.system.processes import ResourceLimits
@@ -134,7 +134,7 @@ def read(folder, sheets, out):
 
 def kept(folder):
     return [
-        page_kept(folder / "read", path.stem)
+        stored_page(folder / "read", path.stem)
         for path in sorted((folder / "read" / ".scanned").glob("*-0001.json"))
     ]
 

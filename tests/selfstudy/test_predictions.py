@@ -239,7 +239,7 @@ def test_every_exercise_that_computes_what_can_be_seen_has_something_to_predict(
     assert (name in NOTHING_TO_PREDICT) == (not before)
     assert len(before) <= predictions.MOST
     for one in (*before, *predictions.over_the_cycle(variant)):
-        assert predictions.asked(variant, one).endswith("?")
+        assert predictions.question_of(variant, one).endswith("?")
         assert predictions.options(variant, one)
 
 

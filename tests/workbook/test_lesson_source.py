@@ -6,7 +6,7 @@ import pytest
 from tables import each_row
 
 from coursework.errors import BadCourse
-from coursework.markup.links import Link, links, relinked
+from coursework.markup.links import TextLink, links, relinked
 from coursework.workbook.lesson_source import CodeCell, LessonAnswer, LessonImage, LessonProse, blocks
 
 TEXT = """# Rods
@@ -75,11 +75,11 @@ def test_what_is_none_is_refused_with_its_line(text, told):
 
 def test_links_are_found_and_written_anew_outside_code():
     assert links(TEXT) == (
-        Link("rod", "term", "rod"),
-        Link("two rods", "term", "rod, two"),
-        Link("the exercise", "exercise", "crank_pin"),
+        TextLink("rod", "term", "rod"),
+        TextLink("two rods", "term", "rod, two"),
+        TextLink("the exercise", "exercise", "crank_pin"),
     )
-    assert links("[a\nb](lesson:rods#3)") == (Link("a b", "lesson", "rods", 3),)
+    assert links("[a\nb](lesson:rods#3)") == (TextLink("a b", "lesson", "rods", 3),)
     written = relinked(TEXT, lambda link: link.said.upper())
     assert "A ROD and TWO RODS." in written
     assert "`[code](exercise:none)`" in written

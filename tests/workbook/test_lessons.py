@@ -15,8 +15,8 @@ from coursework.cli import run
 from coursework.course.lessons import lesson_file, lesson_sections, taught_by
 from coursework.errors import BadCourse, UnknownName
 from coursework.language.words import languages
-from coursework.sheets.book import Code, Printed
-from coursework.sheets.book import Prose as Prose_
+from coursework.sheets.book import CodePiece, PrintedPiece
+from coursework.sheets.book import ProsePiece as Prose_
 from coursework.workbook.lesson_source import CodeCell, LessonAnswer, LessonImage, LessonProse, blocks
 from coursework.workbook.lessons import faults, lesson_text, opened
 from coursework.workbook.notebooks import lesson_notebook
@@ -50,7 +50,7 @@ ENGLISH = re.compile(r"\b(the|with|crank|rocker|does not|velocity|yes|length|sli
 def prints(told):
     """The texts that a lesson prints, those of its answers too."""
     pieces = [*told.pieces, *(piece for _, answer in told.answers for piece in answer)]
-    return [piece.text for piece in pieces if isinstance(piece, (Printed, Prose_))]
+    return [piece.text for piece in pieces if isinstance(piece, (PrintedPiece, Prose_))]
 
 
 def numbers(told):
@@ -65,7 +65,7 @@ def test_a_lesson_is_read_drawn_and_run_and_is_the_same_in_every_language(course
     told = {lang: lesson_text(course, name, lang) for lang in languages()}
     for one in told.values():
         for piece in one.pieces:
-            if isinstance(piece, (Printed, Code)):
+            if isinstance(piece, (PrintedPiece, CodePiece)):
                 assert max(map(len, piece.text.splitlines())) <= 100, f"wider than a page: {piece.text}"
     if name != "accuracy":  # which has times
         assert numbers(told["en"]) == numbers(told["fr"])

@@ -19,7 +19,7 @@ from coursework.cli import run
 from coursework.errors import BadCourse, BadInput, UnknownName
 from coursework.language.words import languages
 from coursework.rendering.renderer import renderer_of
-from coursework.sheets.book import Book, BookChapter, Practised, Section
+from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
 from coursework.sheets.handout import handout
 from coursework.workbook.binding import bound
 from coursework.workbook.lessons import faults, lesson_text
@@ -202,10 +202,10 @@ def test_the_list_of_symbols_has_the_same_symbols_in_every_language(course):
     listed = []
     for lang in languages():
         asked = [
-            Practised(str(k), handout(course[name].variant(3, lang)), None)
+            BookExercise(str(k), handout(course[name].variant(3, lang)), None)
             for k, name in enumerate(course.folder.names)
         ]
-        book = Book(lang, "", 0, (BookChapter(1, "", (Section(None, tuple(asked)),)),), True)
+        book = Book(lang, "", 0, (BookChapter(1, "", (BookSection(None, tuple(asked)),)),), True)
         assert all(row.meaning[0].isupper() for row in book.symbols)
         listed.append({(row.symbol, one.handout.exercise) for row in book.symbols for one in row.exercises})
     first, second = listed

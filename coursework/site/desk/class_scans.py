@@ -15,17 +15,26 @@ from coursework.database.scans import pages_scanned, typed_rows
 from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import AnswerRow
 from coursework.messages import Message, localised
-from coursework.scanning.gathering import Answer, Card, Gathered
-from coursework.scanning.kept import ANSWERS, LOST, REFUSED, FileKept, PageKept, Scanned, page_of, with_copies
+from coursework.scanning.gathering import AnswerCard, Gathered, ScannedAnswer
+from coursework.scanning.kept import (
+    ANSWERS,
+    LOST,
+    REFUSED,
+    Scanned,
+    ScannedFile,
+    PageScan,
+    page_of,
+    with_copies,
+)
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.parts import Joins
-from coursework.scanning.queue import Queue
+from coursework.scanning.queue import ScanQueue
 from coursework.scanning.scan import LEAST, as_told, papers_asked, together
 from coursework.scanning.typed import Typed
 from coursework.site.frame.settings import Site
 
 SOURCE = "scans"  #: source of the submission; the next submission of scans replaces it
-_GONE = PageKept(REFUSED, Message("read by another version: send its file again"), has_picture=False)
+_GONE = PageScan(REFUSED, Message("read by another version: send its file again"), has_picture=False)
 
 
 @dataclass(frozen=True)
@@ -45,11 +54,11 @@ class ClassScans:
         return together(self.papers, self.expected, self.pages, self.typed)
 
     @cached_property
-    def queue(self) -> Queue:
-        return Queue(self.papers, self.expected, self.gathered, Joins(self.papers, self.expected), Path())
+    def queue(self) -> ScanQueue:
+        return ScanQueue(self.papers, self.expected, self.gathered, Joins(self.papers, self.expected), Path())
 
     @property
-    def cards(self) -> Sequence[Card]:
+    def cards(self) -> Sequence[AnswerCard]:
         return self.queue.cards
 
     @property
@@ -70,7 +79,7 @@ class ClassScans:
         return totals
 
     @property
-    def answers(self) -> list[Answer]:
+    def answers(self) -> list[ScannedAnswer]:
         """Answers on papers whose student is known."""
         return [answer for answer in self.gathered.answers if answer.student not in self.papers.papers]
 
@@ -91,7 +100,7 @@ def class_scans(site: Site, number: int) -> ClassScans:
     typed = tuple(Typed(*map(str, row[:7])) for row in rows_typed)
     pages = with_copies(
         as_told(
-            Scanned(FileKept(row.file, row.page.partition("-")[0], 0), row.number, row.page, page_of(row.kept) or _GONE),
+            Scanned(ScannedFile(row.file, row.page.partition("-")[0], 0), row.number, row.page, page_of(row.kept) or _GONE),
             papers, typed, LEAST,
         )
         for row in rows
@@ -130,12 +139,12 @@ def hand_over(site: Site, number: int, now: ClassScans) -> int:
     return len(rows)
 
 
-def answer_reference(answer: Answer) -> str:
+def answer_reference(answer: ScannedAnswer) -> str:
     """Return the text of an answer; for one that is marked from its picture, a reference to the picture."""
     return "; ".join(f"scan {s.page}/{s.index}" for s in answer.pictures) or answer.answer
 
 
-def _source(now: ClassScans, answer: Answer) -> str:
+def _source(now: ClassScans, answer: ScannedAnswer) -> str:
     return "; ".join(
         f"{now.by_id[name].file.name} p. {now.by_id[name].number}"
         for name in answer.pages

@@ -21,7 +21,7 @@ from coursework.database.audit import note
 from coursework.database.scans import ScannedPage, put_scanned
 from coursework.database.settings import put_value, value_of
 from coursework.errors import CourseworkError
-from coursework.scanning.kept import REFUSED, PageKept, page_as_json, page_id, page_kept, picture_of
+from coursework.scanning.kept import REFUSED, PageScan, page_as_json, page_id, picture_of, stored_page
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.scan import read_files
 from coursework.site.frame.settings import Site
@@ -47,7 +47,7 @@ class _ScannedPage(NamedTuple):
     page: str
     file: str
     number: int
-    content: PageKept
+    content: PageScan
     picture: bytes
 
 
@@ -127,11 +127,13 @@ def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> l
 
 def _scanned_pages(out: Path, name: str, digest: str, pages: int, fault: str) -> Sequence[_ScannedPage]:
     if fault:
-        return [_ScannedPage(page_id(digest, 0), name, 0, PageKept(REFUSED, fault, has_picture=False), b"")]
+        return [
+            _ScannedPage(page_id(digest, 0), name, 0, PageScan(REFUSED, fault, has_picture=False), b"")
+        ]
     scanned = []
     for number in range(1, pages + 1):
         page_name = page_id(digest, number)
-        page = page_kept(out, page_name)
+        page = stored_page(out, page_name)
         if page is not None:
             scanned.append(_ScannedPage(page_name, name, number, page, _bytes(out / picture_of(page_name))))
     return scanned

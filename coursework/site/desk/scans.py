@@ -13,7 +13,7 @@ from coursework.database.permissions import Permission
 from coursework.database.scans import TypedRow, name_scanned, picture_scanned, put_typed
 from coursework.errors import BadInput
 from coursework.language.words import words
-from coursework.scanning.gathering import Card
+from coursework.scanning.gathering import AnswerCard
 from coursework.scanning.page_reading import cut
 from coursework.scanning.queue import place_of_card
 from coursework.scanning.sources import ENDINGS
@@ -34,7 +34,7 @@ _PICTURE_SECONDS = 3600  #: seconds for which a browser may keep a picture
 class ScanCard:
     """Card as the page shows it."""
 
-    card: Card
+    card: AnswerCard
     group: Mapping[str, Any]
     why: str
     crops: tuple[str, ...]  #: addresses of pictures of the field, or of the page
@@ -115,7 +115,7 @@ def cards_page(request: Request) -> Response:
     return _card_response(request, class_now(request.site, now.about.id), later, at, message)
 
 
-def _answer(request: Request, card: Card) -> str:
+def _answer(request: Request, card: AnswerCard) -> str:
     """Return the typed answer.
 
     Raises
@@ -131,7 +131,7 @@ def _answer(request: Request, card: Card) -> str:
     return text
 
 
-def _typed(request: Request, now: CachedClass, scans: ClassScans, card: Card, answer: str) -> str:
+def _typed(request: Request, now: CachedClass, scans: ClassScans, card: AnswerCard, answer: str) -> str:
     """Store the typed answer; return the message."""
     student, exercise, seed, part, coordinate = place_of_card(card)
     row = TypedRow(
@@ -183,7 +183,7 @@ def _card_response(
     return class_page_of(request, now, "site_desk_scan_queue", "scans", **names)
 
 
-def _scan_card(request: Request, now: CachedClass, scans: ClassScans, card: Card) -> ScanCard:
+def _scan_card(request: Request, now: CachedClass, scans: ClassScans, card: AnswerCard) -> ScanCard:
     texts = words(request.lang, "scan")["waits"]
     base = f"/desk/{now.about.id}/scans"
     pages = tuple(f"{base}/picture?page={name}" for name in card.pages)

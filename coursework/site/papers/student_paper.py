@@ -22,7 +22,7 @@ from coursework.model import Part
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
-from coursework.sheets.paper import FeedbackPaper, Heading, Paper
+from coursework.sheets.paper import FeedbackPaper, Paper, PaperHeading
 from coursework.site.frame.drafts import LONGEST
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.requests import FormData, HTTPException
@@ -123,7 +123,7 @@ class StudentPaper:
                 yield PaperBox(f"e{index}-{part.id}", f"{index}.{number}", title, variant, part)
 
     @cached_property
-    def heading(self) -> Heading:
+    def heading(self) -> PaperHeading:
         """Heading of the paper."""
         printed = heading_of(self.course, self.issued, self.student, self.sitting, self.lang)
         return replace(printed, instructions=text_in(self.instructions, self.lang))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from markupsafe import Markup
 
-from coursework.course.chapters import Section
+from coursework.course.chapters import ChapterSection
 from coursework.course.lessons import lesson_title
 from coursework.errors import BadCourse
 from coursework.language.words import words
@@ -88,7 +88,7 @@ def _titles(site: Site, lang: str) -> tuple[ChapterEntry, ...]:
     )
 
 
-def _group(site: Site, section: Section, lang: str) -> LessonGroup:
+def _group(site: Site, section: ChapterSection, lang: str) -> LessonGroup:
     title = section.titles.get(lang, "")
     if section.lesson:
         try:

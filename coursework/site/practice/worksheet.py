@@ -263,7 +263,7 @@ class Worksheet:
             {
                 "id": prediction.id,
                 "question": Markup(
-                    markdown.html_inline(predictions.asked(self.variant, prediction), self.variant.lang)
+                    markdown.html_inline(predictions.question_of(self.variant, prediction), self.variant.lang)
                 ),
                 "options": self._options(prediction),
                 "said": str(choices.get(prediction.id, "")),

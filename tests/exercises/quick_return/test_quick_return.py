@@ -133,7 +133,7 @@ def test_closed_form_conditions_are_those_of_a_swept_turn():
     drawn = draws.candidates(EXERCISE.drawing, words)
     number = np.arange(len(words))
     drawn |= {"theta1": number * 37.0 % 360 - 180, "h": number * 53.0 % 1000 - 500}
-    _, refused = draws.kept(EXERCISE.drawing, drawn)
+    _, refused = draws.accepted(EXERCISE.drawing, drawn)
     turns = ~refused["crank_turns"] & ~refused["transmission_angle_from_30_to_150"]
     counts = []
     for i in np.flatnonzero(turns):
