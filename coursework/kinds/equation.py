@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 
 if TYPE_CHECKING:
-    from coursework.reading.equations import EquationKind as Read
+    from coursework.reading.equations import Equation as Read
     from coursework.reading.reading import Reading
 
 

@@ -156,7 +156,9 @@ def _follows(named: Sequence[Explanation]) -> bool:
     return named[0].verdict == "follow_through"
 
 
-def _followed_from(key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers) -> list[str]:
+def _followed_from(
+    key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
+) -> list[str]:
     """Return the fewest parts whose wrong answers an answer follows from, the others being right."""
     parts = _asked_above(key.variant, judged_by.quantity, before.wrong)
     nearest = [p.quantity for p in reversed(parts)]

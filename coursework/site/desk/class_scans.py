@@ -20,9 +20,9 @@ from coursework.scanning.kept import (
     ANSWERS,
     LOST,
     REFUSED,
+    PageScan,
     Scanned,
     ScannedFile,
-    PageScan,
     page_of,
     with_copies,
 )

@@ -127,9 +127,7 @@ def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> l
 
 def _scanned_pages(out: Path, name: str, digest: str, pages: int, fault: str) -> Sequence[_ScannedPage]:
     if fault:
-        return [
-            _ScannedPage(page_id(digest, 0), name, 0, PageScan(REFUSED, fault, has_picture=False), b"")
-        ]
+        return [_ScannedPage(page_id(digest, 0), name, 0, PageScan(REFUSED, fault, has_picture=False), b"")]
     scanned = []
     for number in range(1, pages + 1):
         page_name = page_id(digest, number)
