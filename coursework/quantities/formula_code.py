@@ -276,7 +276,7 @@ class _Coding(Evaluation):
                 return self.of(base)
         return super().of(node)
 
-    def called_name(self, name: str, arguments: Sequence[Any]) -> Any:
+    def called(self, name: str, arguments: Sequence[Any]) -> Any:
         return _Code(call(_CALLED.get(name, name), *map(_code, arguments)))
 
     def power(self, value: Any, exponent: Node) -> Any:

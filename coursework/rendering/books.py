@@ -84,7 +84,7 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
 
 def _with_kind(piece: Piece) -> dict[str, Any]:
     """A piece with the word by which the templates tell it."""
-    return {"kind": type(piece).__name__.lower(), "piece": piece}
+    return {"kind": type(piece).__name__.removesuffix("Piece").lower(), "piece": piece}
 
 
 # ------------------------------------------------------------------------ pages

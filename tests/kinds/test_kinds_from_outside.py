@@ -20,7 +20,7 @@ KIND = '''
 
 import numpy as np
 
-from coursework.kinds.kind import Kind, Spelling
+from coursework.kinds.kind import AnswerSpelling, Kind
 from coursework.kinds.nearness import in_half_widths
 from coursework.language.numbers import significant
 from coursework.reading.points import read_point
@@ -48,7 +48,7 @@ class Interval(Kind):
         return f"[{low} ; {high}]"
 
     def spellings(self, part, value, label):
-        yield Spelling("exact", "; ".join(repr(v) for v in value.tolist()))
+        yield AnswerSpelling("exact", "; ".join(repr(v) for v in value.tolist()))
         yield from (spelled for spelled in super().spellings(part, value, label) if spelled.way != "exact")
 '''
 

@@ -140,7 +140,7 @@ def made(course, lang="en", **options):
 
 def test_a_lesson_is_told_run_and_drawn(small):
     told = lesson_text(small, "rods", "en")
-    said = [f"{type(p).__name__} {getattr(p, 'text', '')}" for p in told.pieces]
+    said = [f"{type(p).__name__.removesuffix('Piece')} {getattr(p, 'text', '')}" for p in told.pieces]
     assert (told.title, told.number) == ("Rods & <pins>", 1)
     assert "Head One rod" in said
     assert "Printed seen at once" in said
@@ -154,7 +154,9 @@ def test_a_lesson_is_told_run_and_drawn(small):
     assert outcome.text == "- length: 120"
     assert "$" in right.text
     assert own.text == "It **is**, as $x = 42$."
-    still, moving = (p for p in told.pieces if type(p).__name__ == "Drawn" and p.said.startswith("A rod"))
+    still, moving = (
+        p for p in told.pieces if type(p).__name__ == "DrawnPiece" and p.said.startswith("A rod")
+    )
     assert still.figure is not None
     assert len(moving.stills) == 4
     assert "<animate" in moving.svg
