@@ -93,8 +93,8 @@ def subject_of(exercise: CourseExercise) -> Subject:
     needs_mpmath()
     if not numbers_of(exercise):
         raise BadInput(
-            f"{exercise.name} asks for no number that could lose digits: nothing to measure; "
-            "counts, choices and equations are exact"
+            "{name} asks for no number that could lose digits: nothing to measure; counts, choices and equations are exact",
+            name=exercise.name,
         )
     return Subject(exercise)
 
@@ -113,8 +113,9 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Measur
     checked(subject)
     if not subject.reference.wanted:
         raise BadInput(
-            f"{exercise.name}: there is no reference of {', '.join(subject.reference.lacking)}: its formula cannot be followed "
-            "in many digits; plain formulas with coursework.degrees and numpy's functions of numbers can"
+            "{name}: there is no reference of {lacking}: its formula cannot be followed in many digits; plain formulas with coursework.degrees and numpy's functions of numbers can",
+            name=exercise.name,
+            lacking=", ".join(subject.reference.lacking),
         )
     for sort in WHATS:
         if subject.quantities(sort):

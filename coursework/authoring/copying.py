@@ -55,17 +55,26 @@ def copy_exercise(source: Folder, name: str, target: Path, renamed: str, langs: 
     is_course = (target / "exercises").is_dir()
     spoken = course_folder(target).languages if is_course else langs
     if is_course and (home := course_folder(target).home("exercises", renamed)):
-        raise BadInput(f"{home} exists already; name the copy otherwise: --as NAME")
+        raise BadInput("{home} exists already; name the copy otherwise: --as NAME", home=home)
     if not set(spoken) & source.texts("exercises", name).keys():
         have = ", ".join(source.texts("exercises", name))
-        raise BadInput(f"{name} has no text in {' or '.join(spoken)}, which {target} speaks; it has {have}")
+        raise BadInput(
+            "{name} has no text in {spoken}, which {target} speaks; it has {have}",
+            name=name,
+            spoken=" or ".join(spoken),
+            target=target,
+            have=have,
+        )
     files = {target / path: content for path, content in _Copy(source, name, renamed, spoken).files().items()}
     there = [path for path in files if path.exists()]
     for path in there:
         if path.read_bytes() != files[path]:
             more = f" (and {counted(len(there) - 1, 'file')} more)" if len(there) > 1 else ""
             raise BadInput(
-                f"{path}{more} exists already, with other content than {name} needs; copy it into another folder"
+                "{path}{more} exists already, with other content than {name} needs; copy it into another folder",
+                path=path,
+                more=more,
+                name=name,
             )
     scaffold = {} if is_course else course_files(target, langs)
     written = [path for path in (*scaffold, *files) if path not in there]

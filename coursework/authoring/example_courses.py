@@ -25,9 +25,9 @@ def new_example(folder: Path, name: str) -> list[Path]:
     """
     names = example_names()
     if name not in names:
-        raise BadInput(f"no example {name!r}; there is: {', '.join(names)}")
+        raise BadInput("no example {name!r}; there is: {names}", name=name, names=", ".join(names))
     if not is_bare(folder):
-        raise BadInput(f"{folder} is not empty; name a new folder for the example")
+        raise BadInput("{folder} is not empty; name a new folder for the example", folder=folder)
     return _copied(EXAMPLES / name, folder)
 
 

@@ -35,14 +35,21 @@ def new_assignment(
     """
     if not names:
         some = " ".join(course.names[:3])
-        raise BadInput(f"an assignment asks exercises: coursework new assignment {path} {some}")
+        raise BadInput(
+            "an assignment asks exercises: coursework new assignment {path} {some}", path=path, some=some
+        )
     if path.exists():
-        raise BadInput(f"{path} exists already; choose another name")
+        raise BadInput("{path} exists already; choose another name", path=path)
     exercises = "".join(_exercise_entry(course, name) for name in names)
     for lang in langs or ():
         if silent := [name for name in names if lang not in course[name].languages]:
             speaks = ", ".join(course[silent[0]].languages)
-            raise BadInput(f"{silent[0]} is not written in {lang!r}; it is in {speaks}")
+            raise BadInput(
+                "{silent} is not written in {lang!r}; it is in {speaks}",
+                silent=silent[0],
+                lang=lang,
+                speaks=speaks,
+            )
     common = [code for code in course.folder.languages if all(code in course[n].languages for n in names)]
     chosen = tuple(
         langs or [code for code in (around, course.folder.language) if code in common][:1] or common[:1]

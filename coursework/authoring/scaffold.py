@@ -34,7 +34,8 @@ def new_course(folder: Path, langs: Collection[str] | None = None) -> list[Path]
     """
     if not is_bare(folder):
         raise BadInput(
-            f"{folder} is not empty; name a new folder, or add an exercise: coursework new {folder} NAME"
+            "{folder} is not empty; name a new folder, or add an exercise: coursework new {folder} NAME",
+            folder=folder,
         )
     return new_exercise(folder, FIRST_EXERCISE, langs)
 
@@ -71,7 +72,8 @@ def check_name(name: str) -> None:
     """
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or keyword.iskeyword(name):
         raise BadInput(
-            f"{name!r} cannot name an exercise; use small letters, digits and underscores: crank_pin"
+            "{name!r} cannot name an exercise; use small letters, digits and underscores: crank_pin",
+            name=name,
         )
 
 
@@ -94,7 +96,7 @@ def new_exercise(folder: Path, name: str, langs: Collection[str] | None = None) 
     targets = [folder / s.parent.name / s.name.replace("EXERCISE", name, 1) for s in sources]
     for target in targets:
         if target.exists():
-            raise BadInput(f"{target} exists already; choose another name")
+            raise BadInput("{target} exists already; choose another name", target=target)
     for source, target in zip(sources, targets, strict=True):
         write_whole(target, source.read_bytes())
     return [*written, *targets]

@@ -45,7 +45,12 @@ class _Settings:
         try:
             return parameter.type_cast_value(self.context, value)
         except click.BadParameter as fault:
-            raise BadInput(f"{self.base / self.assignment.name}.toml: {name}: {fault.message}") from fault
+            raise BadInput(
+                "{value}.toml: {name}: {message}",
+                value=self.base / self.assignment.name,
+                name=name,
+                message=fault.message,
+            ) from fault
 
     def path(self, name: str) -> Path | None:
         path_text = self.of(name)
@@ -65,7 +70,8 @@ def check_scan(formats: Sequence[str], *, booklet: bool) -> None:
     codes_ready()
     if "pdf" not in formats and not booklet:
         raise BadInput(
-            f"--scan adds answer pages to PDFs, and none is asked (--formats {','.join(formats)}): add pdf, or --booklet"
+            "--scan adds answer pages to PDFs, and none is asked (--formats {formats}): add pdf, or --booklet",
+            formats=",".join(formats),
         )
 
 
@@ -88,7 +94,7 @@ def build_assignment(
     settings = _Settings(context, assignment, path.parent)
     out = settings.path("out")
     if out is None:
-        raise BadInput(f'{path} says no folder to write: --out DIR, or out = "…" in the file')
+        raise BadInput('{path} says no folder to write: --out DIR, or out = "…" in the file', path=path)
     if settings.of("practice"):
         raise BadInput(
             "self-study notebooks are built by naming exercises: coursework build EXERCISE … --practice"
@@ -100,7 +106,9 @@ def build_assignment(
     before = None if overwrite else stood
     if before is None and (again or make_up):
         which = "--again" if again else "--make-up"
-        raise BadInput(f"{which} is for what was issued: there is no {out / 'issued.json'}")
+        raise BadInput(
+            "{which} is for what was issued: there is no {value}", which=which, value=out / "issued.json"
+        )
     notes: list[str] = []
     roster = settings.path("roster")
     if roster is not None and not again:
@@ -110,7 +118,8 @@ def build_assignment(
         students = []
         if not again and not make_up:
             raise BadInput(
-                f"papers were issued by a roster: name it, --roster FILE.csv ({out / 'issued.json'})"
+                "papers were issued by a roster: name it, --roster FILE.csv ({value})",
+                value=out / "issued.json",
             )
     else:
         students = [Student("") for _ in range(settings.of("variants", "count") or 1)]
@@ -201,7 +210,9 @@ def _student_column(name: str, names: set[str]) -> str:
 
     column = student_named(name, names)
     if column is None:
-        raise BadInput(f"no student {name!r} was issued a paper{nearest(name, names)}")
+        raise BadInput(
+            "no student {name!r} was issued a paper{nearest}", name=name, nearest=nearest(name, names)
+        )
     return column
 
 

@@ -115,15 +115,23 @@ def new(
         _new_assignment(context, Path(exercise), asked, langs)
         return
     if asked:
-        raise BadInput(f"one exercise at a time: coursework new {folder} {exercise}")
+        raise BadInput(
+            "one exercise at a time: coursework new {folder} {exercise}", folder=folder, exercise=exercise
+        )
     if (folder / "exercises").is_dir() and langs:
         raise BadInput(
-            f"{folder} is a course already, and its own course.toml says its languages; leave --lang out"
+            "{folder} is a course already, and its own course.toml says its languages; leave --lang out",
+            folder=folder,
         )
     if source is None and renamed is not None:
         raise BadInput("--as names a copy; say of which exercise: --from EXERCISE")
     if source is not None and exercise is not None:
-        raise BadInput(f"a copy is called by --as: coursework new {folder} --from {source} --as {exercise}")
+        raise BadInput(
+            "a copy is called by --as: coursework new {folder} --from {source} --as {exercise}",
+            folder=folder,
+            source=source,
+            exercise=exercise,
+        )
     spoken = langs or languages_around(os.environ)
     there: list[Path] = []
     if source is not None:
@@ -143,7 +151,9 @@ def _new_example(folder: Path, name: str, more: object) -> None:
     from coursework.authoring.example_courses import new_example
 
     if more:
-        raise BadInput(f"an example is copied whole: coursework new {folder} --example {name}")
+        raise BadInput(
+            "an example is copied whole: coursework new {folder} --example {name}", folder=folder, name=name
+        )
     for path in new_example(folder, name):
         click.echo(f"wrote {path}")
     click.echo(f"try: coursework --course {folder} check")

@@ -23,6 +23,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, print_table, progress_bar
 from coursework.errors import BadInput, closest, counted
+from coursework.messages import Message
 
 if TYPE_CHECKING:
     from coursework.database.grading import GradedNow
@@ -46,14 +47,19 @@ def store_at(context: click.Context, url: str, *, new: bool = False) -> Store:
 
     file = file_of(url)
     if not new and file is not None and not file.exists():
-        raise BadInput(f"no database {file}{_suggestion(file)}; 'coursework build … --db {url}' makes one")
+        raise BadInput(
+            "no database {file}{suggestion}; 'coursework build … --db {url}' makes one",
+            file=file,
+            suggestion=_suggestion(file),
+            url=url,
+        )
     return context.with_resource(closing(Store(url)))
 
 
-def _suggestion(file: Path) -> str:
+def _suggestion(file: Path) -> Message | str:
     names = [p.name for p in file.parent.iterdir()] if file.parent.is_dir() else []
     near = closest(file.name, names)
-    return f" (did you mean {file.with_name(near)}?)" if near else ""
+    return Message(" (did you mean {inside}?)", inside=file.with_name(near)) if near else ""
 
 
 # ------------------------------------------------------------------------ build
@@ -287,7 +293,11 @@ def _check_student(connection: Any, number: int, student: str) -> None:
 
     students = issued_of(connection, number).students
     if students and student not in students:
-        raise BadInput(f"no student {student!r} was issued anything{nearest(student, students)}")
+        raise BadInput(
+            "no student {student!r} was issued anything{nearest}",
+            student=student,
+            nearest=nearest(student, students),
+        )
 
 
 def _happened(entry: Any) -> str:
@@ -339,7 +349,7 @@ def sign_out(context: click.Context, url: str, login: str | None) -> None:
             return
         account = account_by_login(connection, login.strip().casefold())
         if account is None:
-            raise BadInput(f"nobody signs in as {login!r}")
+            raise BadInput("nobody signs in as {login!r}", login=login)
         end_sessions(connection, account.person_id)
         note(connection, datetime.now(UTC), "command line", "signed out", person=account.person_id)
     click.echo(f"the sessions of {login} ended")

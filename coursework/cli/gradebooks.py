@@ -76,7 +76,9 @@ def gradebook(
     if template is None:
         if platform != "moodle":
             raise BadInput(
-                f"--template takes the gradebook as {chosen.title_of_platform} exports it: {chosen.download}"
+                "--template takes the gradebook as {title_of_platform} exports it: {download}",
+                title_of_platform=chosen.title_of_platform,
+                download=chosen.download,
             )
         return _write_xml(out, item, [entry for entry in scored if entry.has_answered or zeros], out_of)
     from coursework.gradebook.filling import fill
@@ -94,7 +96,8 @@ def gradebook(
 def _check_out(out: Path, template: Path) -> None:
     if out.exists() and template.exists() and out.resolve() == template.resolve():
         raise BadInput(
-            f"--out is the --template itself, {template}: keep the platform's export as it came, and name another file"
+            "--out is the --template itself, {value}: keep the platform's export as it came, and name another file",
+            value=template,
         )
 
 

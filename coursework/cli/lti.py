@@ -128,9 +128,9 @@ def _platform(
     from coursework.lti.settings import LTIPlatform, checked_url, origin
 
     if kind not in KINDS:
-        raise BadInput(f"no kind of platform {kind!r}{nearest(kind, KINDS)}")
+        raise BadInput("no kind of platform {kind!r}{nearest}", kind=kind, nearest=nearest(kind, KINDS))
     if site is None:
-        raise BadInput(f"where is it? coursework lti platform {kind} https://{kind}.example.org")
+        raise BadInput("where is it? coursework lti platform {kind} https://{kind}.example.org", kind=kind)
     base = checked_url(site, "the site")
     endpoints: dict[str, Any] = known[kind](base) if kind in known else {"issuer": base}
     endpoints |= {key: text for key, text in addresses.items() if text}
@@ -140,7 +140,9 @@ def _platform(
         raise BadInput("a platform has a --client-id and a --deployment; its registration page shows both")
     for key in ("auth_url", "token_url", "jwks_url"):
         if not endpoints.get(key):
-            raise BadInput(f"--{key.replace('_', '-')} is missing, which {kind} does not say")
+            raise BadInput(
+                "--{replace} is missing, which {kind} does not say", replace=key.replace("_", "-"), kind=kind
+            )
         endpoints[key] = checked_url(str(endpoints[key]), f"--{key.replace('_', '-')}")
     origins = tuple(origin(checked_url(address, "the site")) for address in endpoints.pop("origins", ()))
     host = urlsplit(base).hostname or base
@@ -254,16 +256,18 @@ def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
     key_folder = KeyFolder(folder / "keys")
     if action not in ("list", "new", "rotate", "retire"):
         raise BadInput(
-            f"keys knows list, new, rotate and retire; found {action!r}{nearest(action, ('list', 'new', 'rotate', 'retire'))}"
+            "keys knows list, new, rotate and retire; found {action!r}{nearest}",
+            action=action,
+            nearest=nearest(action, ("list", "new", "rotate", "retire")),
         )
     if (kid is None) == (action == "retire"):
-        raise BadInput(
-            "which key? coursework lti keys retire KID"
-            if action == "retire"
-            else f"'keys {action}' takes no key"
-        )
+        if action == "retire":
+            raise BadInput("which key? coursework lti keys retire KID")
+        raise BadInput("'keys {action}' takes no key", action=action)
     if action == "new" and key_folder.keys:
-        raise BadInput(f"{key_folder.folder} has a key already; 'coursework lti keys rotate' makes another")
+        raise BadInput(
+            "{folder} has a key already; 'coursework lti keys rotate' makes another", folder=key_folder.folder
+        )
     if action in ("new", "rotate"):
         click.echo(f"{key_folder.new().kid} signs from now on")
     elif action == "retire":
@@ -348,7 +352,8 @@ def _application(
     settings = read_settings(folder)
     if not is_loopback(host) and not behind_proxy:
         raise BadInput(
-            f"--host {host} is open to others, in plain http: put a proxy that speaks https in front, and say --behind-proxy"
+            "--host {host} is open to others, in plain http: put a proxy that speaks https in front, and say --behind-proxy",
+            host=host,
         )
     public_url = url or settings.url or (f"http://{host}:{port}" if is_loopback(host) else "")
     if not public_url:
@@ -447,12 +452,15 @@ def roster(course_title: str | None, folder: Path, out: Path | None) -> None:
     if len(matches) != 1:
         titles = [title for _, title, _ in courses]
         raise BadInput(
-            f"{len(matches)} courses begin with {course_title!r}{nearest(course_title, titles) if not matches else ''}"
+            "{count} courses begin with {title!r}{nearest}",
+            count=len(matches),
+            title=course_title,
+            nearest="" if matches else nearest(course_title, titles),
         )
     ((issuer, client_id, *_), _, address) = matches[0]
     registered = read_settings(folder).platform(issuer, client_id)
     if registered is None:
-        raise BadInput(f"{issuer} is no longer in {folder}")
+        raise BadInput("{issuer} is no longer in {folder}", issuer=issuer, folder=folder)
     with httpx.Client(timeout=8.0, trust_env=False) as client:
         text = as_csv(Services(client, KeyFolder(folder / "keys")).roster(registered, address))
     if out is None:
@@ -472,7 +480,7 @@ def forget(person: str, folder: Path) -> None:
     storage = Storage(folder)
     gone = storage.forget(person)
     if not gone:
-        raise BadInput(f"nothing is kept of {person!r}")
+        raise BadInput("nothing is kept of {person!r}", person=person)
     if not storage.scrub():
         click.echo(
             f"{storage.path} still holds traces, since another program reads it: repeat this command later",

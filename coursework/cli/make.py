@@ -169,7 +169,8 @@ def build(
         raise BadInput("--variants and --roster exclude each other: a roster has one variant a student")
     if again_of and (exercises or roster or count or parts or context.params["seed"]):
         raise BadInput(
-            f"--issued {again_of} says what was issued: name no exercises, seed, parts, variants or roster beside it"
+            "--issued {again_of} says what was issued: name no exercises, seed, parts, variants or roster beside it",
+            again_of=again_of,
         )
     if scan:
         check_scan(formats, booklet=booklet)
@@ -270,8 +271,8 @@ def build_files(
     before = out / "issued.json"
     if not overwrite and before.is_file() and not _goes_on(before, text):
         raise BadInput(
-            f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them "
-            "(files that were filled in or changed are set aside, not lost)"
+            "{before} holds other variants, issued before; choose another --out, or --overwrite to replace them (files that were filled in or changed are set aside, not lost)",
+            before=before,
         )
     wanted = list(
         building.files(

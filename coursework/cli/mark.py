@@ -28,6 +28,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, progress_bar
 from coursework.errors import BadInput, counted
+from coursework.messages import Message
 from coursework.system.extras import libraries
 from coursework.system.visible import one_line
 
@@ -126,14 +127,22 @@ def grade(
         libraries(("pyarrow",), "Parquet needs", "parquet")
     if issued is not None and issued.is_dir():
         inside = issued / "issued.json"
-        would_do = f"did you mean {inside}?" if inside.exists() else "name the issued.json that build wrote"
-        raise BadInput(f"--issued takes a file; {issued} is a folder: {would_do}")
+        would_do = (
+            Message("did you mean {inside}?", inside=inside)
+            if inside.exists()
+            else Message("name the issued.json that build wrote")
+        )
+        raise BadInput(
+            "--issued takes a file; {issued} is a folder: {would_do}", issued=issued, would_do=would_do
+        )
     if db is None and issued is None:
         raise BadInput(
             "Missing option '--issued': the issued.json of the build, or --db with a database that has it"
         )
     if db is None and (assignment or replace):
-        raise BadInput(f"{'--assignment' if assignment else '--replace'} is of a database: --db URL")
+        raise BadInput(
+            "{option} is of a database: --db URL", option="--assignment" if assignment else "--replace"
+        )
     _check_source(submissions, marks, accepted, in_database=db is not None)
     from coursework.gradebook.feedback_form import FeedbackForm
 
@@ -224,18 +233,20 @@ def _check_source(
     database."""
     if marks is not None and in_database:
         raise BadInput(
-            f"--from takes the marks as they stand in {marks}, and --db those of the database: what is to count there is named "
-            "in accepted.csv"
+            "--from takes the marks as they stand in {marks}, and --db those of the database: what is to count there is named in accepted.csv",
+            marks=marks,
         )
     if marks is None and not submissions and not in_database:
         raise BadInput("nothing to mark; name SUBMISSIONS, files or folders of answers, or --from marks.csv")
     if marks is not None and submissions:
         raise BadInput(
-            f"--from takes the marks as they stand in {marks}: name no SUBMISSIONS, or leave --from to mark them anew"
+            "--from takes the marks as they stand in {marks}: name no SUBMISSIONS, or leave --from to mark them anew",
+            marks=marks,
         )
     if marks is not None and accepted is not None:
         raise BadInput(
-            f"--from takes the marks as they stand in {marks}: change them there, or leave --from to accept answers"
+            "--from takes the marks as they stand in {marks}: change them there, or leave --from to accept answers",
+            marks=marks,
         )
 
 

@@ -314,7 +314,8 @@ def exercise_names(course: Course, names: Sequence[str]) -> tuple[str, ...]:
         course[name]  # an unknown name stops here, with the nearest one
     if not course.names:
         raise BadInput(
-            f"the course {course.folder.root} has no exercise; 'coursework new {course.folder.root} NAME' writes one"
+            "the course {root} has no exercise; 'coursework new {root} NAME' writes one",
+            root=course.folder.root,
         )
     return tuple(dict.fromkeys(names)) or course.names
 

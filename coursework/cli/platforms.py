@@ -138,10 +138,13 @@ def export(
     notes: list[str] = []
     students = read_roster(roster, notes.append, columns) if roster else []
     if issued is not None and (exercises or roster):
-        raise BadInput(f"--issued {issued} says what was issued: name no exercises and no roster beside it")
+        raise BadInput(
+            "--issued {issued} says what was issued: name no exercises and no roster beside it", issued=issued
+        )
     if issued is not None and chosen.draws_variants:
         raise BadInput(
-            f"--issued is of gradescope, which marks what a build issued; {platform} deals a pool of its own"
+            "--issued is of gradescope, which marks what a build issued; {platform} deals a pool of its own",
+            platform=platform,
         )
     wanted = _Wanted(context, exercises, count or 0, seed, langs, split_list(parts) or None)
     if not chosen.draws_variants:
@@ -153,7 +156,10 @@ def export(
     lines = list(loss_lines(exported_files.lost, drawn.langs[0]))
     if strict and lines:
         raise BadInput(
-            f"--strict: {platform} loses {counted(len(lines), 'feature')}, and nothing is written: {' | '.join(lines)}"
+            "--strict: {platform} loses {features}, and nothing is written: {lines}",
+            platform=platform,
+            features=counted(len(lines), "feature"),
+            lines=" | ".join(lines),
         )
     if not overwrite:
         _check_folder(out, drawn)
@@ -185,7 +191,9 @@ def _export_autograder(
         try:
             data = issued.read_bytes()
         except OSError as fault:
-            raise BadInput(f"{issued} cannot be read: {fault.strerror}") from fault
+            raise BadInput(
+                "{issued} cannot be read: {strerror}", issued=issued, strerror=fault.strerror
+            ) from fault
         files = list(PLATFORM.autograder(course.folder, data, str(issued)))
     else:
         data = _as_built(course, wanted, students)
@@ -222,8 +230,8 @@ def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student])
     assignment, langs = _assignment(course, wanted)
     if assignment.secret is None:
         raise BadInput(
-            f"{wanted.exercises[0]} has no secret, so that its build has drawn papers of its own: name what was issued, "
-            "--issued DIR/issued.json"
+            "{exercises} has no secret, so that its build has drawn papers of its own: name what was issued, --issued DIR/issued.json",
+            exercises=wanted.exercises[0],
         )
     dealt = assign_variants(course, assignment, students or [Student("") for _ in range(count)], langs)
     print_notes(dealt.notes)
@@ -234,7 +242,7 @@ def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], ou
     from coursework.platforms.pools import of_assignment, of_exercises
 
     if not course.folder.has_solutions:
-        raise BadInput(f"{course.folder.label} has no solutions: a platform is told the answers")
+        raise BadInput("{label} has no solutions: a platform is told the answers", label=course.folder.label)
     count = wanted.variants or len(students)
     if not is_assignment(wanted.exercises):
         names = exercise_names(course, wanted.exercises)
@@ -273,7 +281,9 @@ def _refuse_options(context: click.Context, path: Path) -> None:
     for option in ("seed", "parts"):
         if context.get_parameter_source(option) is not default:
             raise BadInput(
-                f"--{option} is for exercises named on the command line; {path} says it for each of its own"
+                "--{option} is for exercises named on the command line; {path} says it for each of its own",
+                option=option,
+                path=path,
             )
 
 
@@ -296,8 +306,8 @@ def _check_folder(out: Path, drawn: DrawnPool) -> None:
     before = {_variant_key(item["record"]) for item in Issued.read_previous(path)["issued"]}
     if not before <= {_variant_key(issue.variant.record) for issue in drawn.issues}:
         raise BadInput(
-            f"{path} holds other variants, exported before; choose another --out, or --overwrite to replace them "
-            "(answers to them could no longer be marked from there)"
+            "{path} holds other variants, exported before; choose another --out, or --overwrite to replace them (answers to them could no longer be marked from there)",
+            path=path,
         )
 
 

@@ -69,7 +69,10 @@ def scan(
     what is no page of this paper, in rejected.csv. Run again on more scans it adds to what is there.
     """
     if issued.is_dir():
-        raise BadInput(f"--issued takes a file; {issued} is a folder: name the issued.json that build wrote")
+        raise BadInput(
+            "--issued takes a file; {issued} is a folder: name the issued.json that build wrote",
+            issued=issued,
+        )
     from coursework.scanning import scan as scanning
     from coursework.system.tables import SPREADSHEETS
 

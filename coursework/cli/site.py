@@ -205,7 +205,9 @@ def _address(host: str, at: socket.socket) -> str:
         It listens at every address of the machine, and none is told.
     """
     if host in ("0.0.0.0", "::"):
-        raise BadInput(f"--host {host}: where do browsers find it? --url https://mechanics.example.org")
+        raise BadInput(
+            "--host {host}: where do browsers find it? --url https://mechanics.example.org", host=host
+        )
     return f"http://{f'[{host}]' if ':' in host else host}:{at.getsockname()[1]}"
 
 
@@ -222,7 +224,8 @@ def _checked_url(url: str) -> str:
     parts = urlsplit(url)
     if parts.scheme not in ("http", "https") or not parts.hostname or parts.path.strip("/"):
         raise BadInput(
-            f"--url is the address of a host, https://mechanics.example.org, with no path behind it; found {url!r}"
+            "--url is the address of a host, https://mechanics.example.org, with no path behind it; found {url!r}",
+            url=url,
         )
     return url.rstrip("/")
 

@@ -42,7 +42,7 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
 
     course = opened(context)
     if not folder.is_dir():
-        raise BadInput(f"no such folder: {folder}")
+        raise BadInput("no such folder: {folder}", folder=folder)
     on = now() if day is None else day.replace(tzinfo=UTC)
     file = ProgressFile(folder, lambda: on)
     for path in sorted(folder.glob(f"*{EARLIER}")):

@@ -30,6 +30,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted, unknown
+from coursework.messages import Message
 from coursework.system.limits import MOST_SEED
 
 if TYPE_CHECKING:
@@ -107,11 +108,11 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
     """Notebooks that somebody may have written in are not replaced unasked."""
     there = [] if overwrite else [path for path in paths if path.exists()]
     if there:
-        existing = str(there[0]) if len(there) == 1 else f"{there[0]} and {len(there) - 1} more"
-        exist = "exists" if len(there) == 1 else "exist"
+        more = Message(" and {count} more", count=len(there) - 1) if len(there) > 1 else ""
         raise BadInput(
-            f"{existing} {exist} already, and may hold what somebody wrote; choose another --out, or --overwrite to "
-            "replace"
+            "there is {path}{more} already, which may hold what somebody wrote; choose another --out, or --overwrite to replace",
+            path=there[0],
+            more=more,
         )
 
 
@@ -271,7 +272,7 @@ def _numbers(text: str) -> tuple[int, ...]:
     pieces = [piece.strip() for piece in text.split(",") if piece.strip()]
     for piece in pieces:
         if not piece.isdecimal():
-            raise BadInput(f"--chapters takes numbers, as 1,2; found {piece!r}")
+            raise BadInput("--chapters takes numbers, as 1,2; found {piece!r}", piece=piece)
     return tuple(map(int, pieces))
 
 

@@ -211,8 +211,11 @@ class Folder:
         """
         if lang in languages() and lang not in self.languages:
             raise BadInput(
-                f"{self.label} does not speak {lang!r}; it speaks {', '.join(self.languages)}: "
-                f"languages = … in {self.relative(self._settings_file)}"
+                "{label} does not speak {lang!r}; it speaks {languages}: languages = … in {relative}",
+                label=self.label,
+                lang=lang,
+                languages=", ".join(self.languages),
+                relative=self.relative(self._settings_file),
             )
 
     @cached_property

@@ -40,12 +40,14 @@ class Records:
         """
         name, current = self.name, self.spec.version
         if record.get("exercise") != name:
-            raise BadInput(f"a record of {record.get('exercise')!r} was given to {name!r}")
+            raise BadInput("a record of {get!r} was given to {name!r}", get=record.get("exercise"), name=name)
         version = record.get("version")
         if not isinstance(version, int) or version > current:
             raise BadInput(
-                f"{name}: the record is of version {version}, the course has version {current}; "
-                "mark it with the course it was issued from"
+                "{name}: the record is of version {version}, the course has version {current}; mark it with the course it was issued from",
+                name=name,
+                version=version,
+                current=current,
             )
         try:
             given = {n: self._recorded(record["given"], n, version < current) for n in self.spec.given}
@@ -55,7 +57,7 @@ class Records:
                 str(part["id"]): tuple(part["choices"]) for part in record["parts"] if "choices" in part
             }
         except (KeyError, TypeError, ValueError) as fault:
-            raise BadInput(f"{name}: a record lacks {fault}") from fault
+            raise BadInput("{name}: a record lacks {fault}", name=name, fault=fault) from fault
         for quantity, value in given.items():
             self._check_recorded(quantity, value)
         parts = self._parts_of(tuple(points.items()), version < current)
@@ -77,10 +79,12 @@ class Records:
             points = dict(points_asked)
             gone = [i for i in points if self.spec.part(i) is None]
             if gone:
-                raise BadInput(
-                    f"{self.name}: a record of {'an older' if older else 'this'} version asks {gone[0]!r}, which the "
-                    f"course {'no longer has' if older else 'does not have'}; mark it with the course it was issued from"
+                template = (
+                    "{name}: a record of an older version asks {gone!r}, which the course no longer has; mark it with the course it was issued from"
+                    if older
+                    else "{name}: a record of this version asks {gone!r}, which the course does not have; mark it with the course it was issued from"
                 )
+                raise BadInput(template, name=self.name, gone=gone[0])
             # A record asks what it lists, in its order, whatever the exercise asks of these values now.
             by_id = {p.id: p for p in self.spec.parts}
             parts = tuple(
@@ -94,17 +98,31 @@ class Records:
 
     def _check_order(self, part: Part, order: tuple[str, ...]) -> None:
         strangers = [case for case in order if case not in part.choices]
-        if strangers or len(set(order)) < len(order):
+        if strangers:
             raise BadInput(
-                f"{self.name}: a record offers {strangers[0] if strangers else 'a case twice'!r} for {part.id!r}, whose "
-                f"choices are {', '.join(part.choices)}; mark it with the course it was issued from"
+                "{name}: a record offers {case!r} for {part!r}, whose choices are {choices}; mark it with the course it was issued from",
+                name=self.name,
+                case=strangers[0],
+                part=part.id,
+                choices=", ".join(part.choices),
+            )
+        if len(set(order)) < len(order):
+            raise BadInput(
+                "{name}: a record offers a case twice for {part!r}; mark it with the course it was issued from",
+                name=self.name,
+                part=part.id,
             )
 
     def _check_recorded(self, name: str, value: Any) -> None:
         spec = self.spec.given[name]
         fits = value in spec.choices if spec.is_choice else isinstance(value, (int, float))
         if not fits or isinstance(value, bool):
-            raise BadInput(f"{self.name}: a record gives {name} = {value!r}, which is no value of it")
+            raise BadInput(
+                "{name}: a record gives {name_2} = {value!r}, which is no value of it",
+                name=self.name,
+                name_2=name,
+                value=value,
+            )
 
 
 def _points(value: Any) -> float:

@@ -38,6 +38,7 @@ from coursework.errors import BadInput, CourseworkError, nearest
 from coursework.mechanics.loads import STROKES
 from coursework.mechanics.statement import Load, Place
 from coursework.mechanics.wrenches import GRAVITY
+from coursework.messages import Message
 from coursework.motion.added import BodyMass, Flywheel, Motor, SceneData
 from coursework.motion.effects import REFUSED, check_effect, check_turns, refusal
 from coursework.motion.scenes import Scene
@@ -79,11 +80,17 @@ def read_scene(path: Path, course: Course) -> SceneFile:
         text = path.read_text("utf-8-sig")
         table = tomllib.loads(text)
     except OSError as fault:
-        raise BadInput(f"the scene {path} cannot be read: {fault.strerror or fault}") from fault
+        raise BadInput(
+            "the scene {path} cannot be read: {value}", path=path, value=fault.strerror or fault
+        ) from fault
     except UnicodeDecodeError as fault:
-        raise BadInput(f"{path} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
+        raise BadInput(
+            "{path} is not UTF-8: {reason} at byte {start}", path=path, reason=fault.reason, start=fault.start
+        ) from fault
     except (ValueError, RecursionError) as fault:
-        raise BadInput(f'{path}: {fault}; a value with a unit is a text: mass = "3 kg"') from fault
+        raise BadInput(
+            '{path}: {fault}; a value with a unit is a text: mass = "3 kg"', path=path, fault=fault
+        ) from fault
     return _SceneReader(path, text, table, course).scene_file()
 
 
@@ -95,7 +102,9 @@ class _SceneReader:
 
     def refused(self, at: Path_, why: str) -> BadInput:
         line = line_of(self.text, at)
-        return BadInput(f"{self.path}{f', line {line}' if line else ''}: {why}")
+        if not line:
+            return BadInput("{path}: {why}", path=self.path, why=Message(why))
+        return BadInput("{path}, line {line}: {why}", path=self.path, line=line, why=Message(why))
 
     def scene_file(self) -> SceneFile:
         self._only(self.table, _KEYS, ())
@@ -224,7 +233,9 @@ class _SceneReader:
         name = self.table.get("exercise")
         if not isinstance(name, str):
             raise BadInput(
-                f'{self.path} names no exercise; write exercise = "…": {", ".join(self.course.names[:4])}, …'
+                '{path} names no exercise; write exercise = "…": {names}, …',
+                path=self.path,
+                names=", ".join(self.course.names[:4]),
             )
         self._checked_name(("exercise",), "exercise", name, self.course.names)
         return self.course[name]

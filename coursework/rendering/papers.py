@@ -186,7 +186,7 @@ def _harmless(svg: str) -> str:
     try:
         Picture(svg.encode()).size_mm  # noqa: B018  what cannot be shown is refused here
     except BadCourse as fault:
-        raise BadInput(f"the logo: {fault}") from fault
+        raise BadInput("the logo: {fault}", fault=fault) from fault
     return svg
 
 

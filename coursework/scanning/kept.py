@@ -177,8 +177,9 @@ def stored_files(out: Path) -> list[ScannedFile]:
         return [_checked_file(ScannedFile(**entry)) for entry in read_json(path)]
     except (ValueError, TypeError) as fault:
         raise BadInput(
-            f"{path} is not as 'coursework scan' leaves it ({str(fault)[:80]}): remove it and name all scans again, or choose "
-            "another --out"
+            "{path} is not as 'coursework scan' leaves it ({fault}): remove it and name all scans again, or choose another --out",
+            path=path,
+            fault=str(fault)[:80],
         ) from fault
 
 

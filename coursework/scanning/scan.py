@@ -138,7 +138,7 @@ def scan(
     files, read_now = read_files(papers, sources, issued, out, least, progress)
     everything = joined(stored_files(out), files)
     if not everything:
-        raise BadInput(f"nothing to read: name scans; {out} holds none of before")
+        raise BadInput("nothing to read: name scans; {out} holds none of before", out=out)
     put_files(out, everything)
     if typed_texts:
         write_whole(typed_path, typed_file(typed_texts))
@@ -174,11 +174,13 @@ def _read_issued(path: Path) -> Mapping[str, Any]:
     try:
         content = json.loads(path.read_bytes())
     except OSError as fault:
-        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=fault.strerror) from fault
     except (ValueError, RecursionError) as fault:
-        raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
+        raise BadInput("{path} is not JSON: {fault}", path=path, fault=str(fault)[:100]) from fault
     if not isinstance(content, dict):
-        raise BadInput(f"{path} is no list of issued records; 'coursework build' writes issued.json")
+        raise BadInput(
+            "{path} is no list of issued records; 'coursework build' writes issued.json", path=path
+        )
     Issued(content, str(path))
     return content
 

@@ -40,7 +40,7 @@ def scans(paths: Iterable[Path], unpacked: Path) -> list[Scan]:
     paths = tuple(paths)
     for path in paths:
         if not path.exists():
-            raise BadInput(f"no such file or folder: {path}")
+            raise BadInput("no such file or folder: {path}", path=path)
     by_key = {(scan.name, scan.digest): scan for path in paths for scan in _of(path, unpacked)}
     return [by_key[key] for key in sorted(by_key)]
 

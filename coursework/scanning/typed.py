@@ -49,7 +49,7 @@ def read_typed(path: Path) -> list[Typed]:
         with open_csv(path) as file:
             lines = list(file)  # which end as CSV has it: an answer may hold other ends of lines
     except OSError as fault:
-        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=fault.strerror) from fault
     if not lines:
         return []
     rows = csv.reader(lines, delimiter=delimiter_of(lines[0]))
@@ -57,13 +57,17 @@ def read_typed(path: Path) -> list[Typed]:
         header = [cell.strip().casefold() for cell in next(rows, [])]
         if missing := [c for c in _NEEDED if c not in header]:
             raise BadInput(
-                f"{path}: the header must name {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {', '.join(header)[:80]}"
+                "{path}: the header must name {needed}; {missing} missing, found {header}",
+                path=path,
+                needed=", ".join(_NEEDED),
+                missing=", ".join(missing),
+                header=", ".join(header)[:80],
             )
         if twice := duplicate_column(header, COLUMNS):
-            raise BadInput(f"{path}: {twice}")
+            raise BadInput("{path}: {twice}", path=path, twice=twice)
         return [_typed(header, row) for row in rows if any(cell.strip() for cell in row)]
     except csv.Error as fault:
-        raise BadInput(f"{path} is no CSV: {fault}") from fault
+        raise BadInput("{path} is no CSV: {fault}", path=path, fault=fault) from fault
 
 
 def _typed(header: Sequence[str], cells: Sequence[str]) -> Typed:

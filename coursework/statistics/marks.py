@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.errors import BadInput
+from coursework.errors import BadInput, counted
 from coursework.gradebook.columns import SITTING, VERDICTS
+from coursework.messages import Message
 from coursework.system.links import check_inside
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
@@ -85,12 +86,16 @@ def read(folder: Path) -> Marks:
     for name in ("marks.csv", "summary.csv", "rejected.csv"):
         check_inside(folder / name, folder)
     if not path.is_file():
-        raise BadInput(_no_marks(folder))
+        raise _no_marks(folder)
     decimals = _Decimals()
     lines = _Columns(_counting(folder, decimals))
     _check_verdicts(path, lines.verdicts)
     if lines.out_of and min(lines.out_of) <= 0:
-        raise BadInput(f"{path}: a line is out of {min(lines.out_of):g} points; every part is out of some")
+        raise BadInput(
+            "{path}: a line is out of {out_of:g} points; every part is out of some",
+            path=path,
+            out_of=min(lines.out_of),
+        )
     rejected = folder / "rejected.csv"
     count = sum(1 for _ in _lines(rejected, _REJECTED)) if rejected.is_file() else 0
     return lines.marks(_summary(folder / "summary.csv", decimals), count)
@@ -186,7 +191,7 @@ def _header(path: Path) -> list[str]:
         with open_csv(path) as file:
             line = file.readline()
     except OSError as fault:
-        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=fault.strerror) from fault
     return [name.strip().strip('"').casefold() for name in line.split(delimiter_of(line))]
 
 
@@ -200,22 +205,39 @@ def _summary(path: Path, decimals: _Decimals) -> dict[str, StudentSummary]:
     }
 
 
-def _no_marks(folder: Path) -> str:
+def _no_marks(folder: Path) -> BadInput:
     if folder.is_file():
-        return f"{folder} is a file; give the folder that 'coursework grade' wrote, with marks.csv in it"
+        return BadInput(
+            "{folder} is a file; give the folder that 'coursework grade' wrote, with marks.csv in it",
+            folder=folder,
+        )
     if not folder.is_dir():
-        return f"there is no folder {folder}; give the one that 'coursework grade' wrote"
+        return BadInput(
+            "there is no folder {folder}; give the one that 'coursework grade' wrote", folder=folder
+        )
     results = sorted(p.name for p in folder.iterdir())
-    text = f"found {', '.join(results[:6])}{', …' if len(results) > 6 else ''}" if results else "it is empty"
+    names = ", ".join(results[:6]) + (", …" if len(results) > 6 else "")
+    found = Message("found {names}", names=names) if results else Message("it is empty")
     below = sorted(p.parent for p in folder.glob("*/marks.csv"))
-    would = f"did you mean {below[0]}?" if below else "give the folder that 'coursework grade' wrote"
-    return f"{folder} holds no marks.csv ({text}); {would}"
+    would_do = (
+        Message("did you mean {inside}?", inside=below[0])
+        if below
+        else Message("give the folder that 'coursework grade' wrote")
+    )
+    return BadInput(
+        "{folder} holds no marks.csv ({found}); {would_do}", folder=folder, found=found, would_do=would_do
+    )
 
 
 def _check_verdicts(path: Path, verdicts: Mapping[str, int]) -> None:
     for verdict in verdicts:
         if family_of(verdict) not in VERDICTS:
-            raise BadInput(f"{path}: no verdict {verdict[:40]!r}; there is {', '.join(VERDICTS)}")
+            raise BadInput(
+                "{path}: no verdict {verdict!r}; there is {verdicts}",
+                path=path,
+                verdict=verdict[:40],
+                verdicts=", ".join(VERDICTS),
+            )
 
 
 def family_of(verdict: str) -> str:
@@ -251,11 +273,11 @@ def _lines(
                     yield row if decimals is None else (*row[:-2], decimals[row[-2]], decimals[row[-1]])
                 except (IndexError, ValueError) as fault:
                     if any(c.strip() for c in cells):
-                        raise BadInput(_bad_line(path, reader.line_num, cells, columns, fault)) from fault
+                        raise _bad_line(path, reader.line_num, cells, columns, fault) from fault
     except OSError as fault:
-        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=fault.strerror) from fault
     except csv.Error as fault:
-        raise BadInput(f"{path} is not CSV: {fault}") from fault
+        raise BadInput("{path} is not CSV: {fault}", path=path, fault=fault) from fault
 
 
 def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[int]:
@@ -264,15 +286,34 @@ def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[i
     if missing:
         result = ", ".join(n[:30] for n in names if n) or "nothing"
         raise BadInput(
-            f"{path} needs the columns {', '.join(columns)}; {', '.join(missing)} missing, found {result}; "
-            "'coursework grade' writes them"
+            "{path} needs the columns {columns}; {missing} missing, found {result}; 'coursework grade' writes them",
+            path=path,
+            columns=", ".join(columns),
+            missing=", ".join(missing),
+            result=result,
         )
     if twice := duplicate_column(header, columns):
-        raise BadInput(f"{path}: {twice}")
+        raise BadInput("{path}: {twice}", path=path, twice=twice)
     return [names.index(c) for c in columns]
 
 
-def _bad_line(path: Path, line: int, cells: Sequence[str], columns: Sequence[str], fault: Exception) -> str:
+def _bad_line(
+    path: Path, line: int, cells: Sequence[str], columns: Sequence[str], fault: Exception
+) -> BadInput:
     if isinstance(fault, IndexError):
-        return f"{path}, line {line}: {len(cells)} cells, too few for {', '.join(columns)}"
-    return f"{path}, line {line}: {' and '.join(columns[-2:])} are numbers, to {MOST_POINTS:g}; found {','.join(cells)[:60]!r}"
+        return BadInput(
+            "{path}, line {line}: {cells}, too few for {columns}",
+            path=path,
+            line=line,
+            cells=counted(len(cells), "cell"),
+            columns=", ".join(columns),
+        )
+    return BadInput(
+        "{path}, line {line}: {first} and {second} are numbers, to {most:g}; found {found!r}",
+        path=path,
+        line=line,
+        first=columns[-2],
+        second=columns[-1],
+        most=MOST_POINTS,
+        found=",".join(cells)[:60],
+    )

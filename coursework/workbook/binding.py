@@ -65,7 +65,11 @@ def bound(
     numbers = [chapter.number for chapter in results]
     for number in chapters:
         if number not in numbers:
-            raise BadInput(f"no chapter {number}; there is {', '.join(map(str, numbers)) or 'none'}")
+            raise BadInput(
+                "no chapter {number}; there is {value}",
+                number=number,
+                value=", ".join(map(str, numbers)) or "none",
+            )
     wanted = [chapter for chapter in results if not chapters or chapter.number in chapters]
     created = tuple(_chapter(course, chapter, lang, seed, advance) for chapter in wanted)
     return Book(lang, course.folder.title(lang), seed, created, solved)

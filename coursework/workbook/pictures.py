@@ -44,7 +44,8 @@ def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Dr
 def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> DrawnPiece:
     if not image.caption.strip():
         raise BadInput(
-            f"the figure {image.name} has no caption, which tells what it shows to who does not see it"
+            "the figure {name} has no caption, which tells what it shows to who does not see it",
+            name=image.name,
         )
     created = _call(course.folder, lesson, image.name)
     if isinstance(created, Picture):
@@ -91,17 +92,21 @@ def _moving(frames: Sequence[Figure], text: str, caption: str, lang: str) -> Dra
 def _of_exercise(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> DrawnPiece:
     for name in image.asked:
         if name not in _ASKED:
-            raise BadInput(f"nothing called {name!r} is asked of a picture{nearest(name, _ASKED)}")
+            raise BadInput(
+                "nothing called {name!r} is asked of a picture{nearest}",
+                name=name,
+                nearest=nearest(name, _ASKED),
+            )
     seed = image.asked.get("seed", "0")
     if not seed.isdecimal():
-        raise BadInput(f"the seed of a picture is a whole number; found {seed!r}")
+        raise BadInput("the seed of a picture is a whole number; found {seed!r}", seed=seed)
     variant = course[image.name].variant(int(seed), lang)
     if "motion" in image.asked:
         return moving(
             Animation(variant, tuple(filter(None, image.asked["motion"].split(",")))), image.caption
         )
     if variant.figure is None:
-        raise BadInput(f"{image.name} has no figure")
+        raise BadInput("{name} has no figure", name=image.name)
     return DrawnPiece(variant.handout().figure_alt, image.caption, figure=variant.figure)
 
 
