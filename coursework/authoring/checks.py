@@ -96,7 +96,7 @@ def check_all(
             return [tasks[name].result() for name in names]
         except Lost as fault:
             left = [name for name in names if not (tasks[name].done() and tasks[name].exception() is None)]
-            raise Lost(f"{fault}: not checked: {', '.join(left)}") from None
+            raise Lost("{problem}: not checked: {names}", problem=fault, names=", ".join(left)) from None
 
 
 _WORTH_PROCESSES = 50  #: variants an exercise; fewer are done before a process has started

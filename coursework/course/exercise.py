@@ -90,10 +90,12 @@ class CourseExercise(Generic[V]):
         from coursework.solution import Solution
 
         if self.folder.home("solutions", self.name) is None:
-            why = (
-                f"it lacks {self.name}.py" if self.folder.has_solutions else "it looks like a students' copy"
+            template = (
+                "no solution of {name!r} in {folder}: it lacks {name}.py"
+                if self.folder.has_solutions
+                else "no solution of {name!r} in {folder}: it looks like a students' copy"
             )
-            raise NoSolution(f"no solution of {self.name!r} in {self.folder.label}: {why}")
+            raise NoSolution(template, name=self.name, folder=self.folder.label)
         source = self.folder.source("solutions", self.name)
         return Solution.of(self.name, self.folder.module("solutions", self.name), source)
 
@@ -329,14 +331,17 @@ class CourseExercise(Generic[V]):
             return draws.draw(self.name, self.drawing, seeds, secret)
         if secret is not None:
             raise NoSolution(
-                f"{self.name}: which variants an assignment draws hangs on answers, which a students' copy does not hold"
+                "{name}: the variants that an assignment draws depend on answers, which a students' copy does not hold",
+                name=self.name,
             )
         for seed in seeds:
             if seed >= len(self._recorded):
                 raise NoSolution(
-                    f"{self.name}: which variant seed {seed} draws hangs on answers, which a students' copy does not "
-                    f"hold; it knows the seeds below {len(self._recorded)}, and any sheet by its record: "
-                    "exercise.from_record(record)"
+                    "{name}: the variant of seed {seed} depends on answers, which a students' copy does not hold; it knows "
+                    "the seeds below {count}, and any sheet by its record: exercise.from_record(record)",
+                    name=self.name,
+                    seed=seed,
+                    count=len(self._recorded),
                 )
         return [draws.nth_candidate(self.name, self.spec, seed, self._recorded[seed]) for seed in seeds]
 
