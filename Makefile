@@ -57,7 +57,7 @@ test-clients: $(VENV)/ready-test $(VENV)/ready-e2e  ## Exports in the real playe
 	$(BIN)/python tests/clients/run.py $(CLIENTS)
 
 # The tests of the numeric core, where a last bit would show.
-NUMBERS := kinematics mechanics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py
+NUMBERS := kinematics mechanics solids structure course/test_draws.py quantities/test_graph.py scenes/test_scenes.py
 
 # The vector units that numpy has found here and would use; nothing where it names none.
 VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extensions', {}).get('found', []))
@@ -88,7 +88,7 @@ docs: $(VENV)/ready-docs  ## The documentation, in build/site
 	mkdir -p build
 	cp -r docs build/docs
 	$(BIN)/python docs/gallery.py build/docs/gallery
-	$(BIN)/python docs/house.py build/docs/gallery/rooms.svg
+	$(BIN)/python docs/import_graph.py build/docs/gallery/rooms.svg
 	$(BIN)/sphinx-build -W --keep-going -q -b html -d build/doctrees build/docs build/site
 	@echo "open build/site/index.html"
 

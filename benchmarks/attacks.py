@@ -30,7 +30,7 @@ from timing import machine, print_table
 
 from coursework import open_course
 from coursework.errors import BadInput
-from coursework.making.assignment import OPTIONS, assignment_of, table_of
+from coursework.issuing.assignment import OPTIONS, assignment_of, table_of
 
 LENGTHS = (500, 1000, 2000, 4000, 40_000)
 #: Written over and over: spaces and separators that patterns try in many ways, brackets, operators, units, letters.

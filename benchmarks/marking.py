@@ -21,8 +21,8 @@ import time
 from pathlib import Path
 
 import coursework
+from coursework.issuing.issuing import distinct_variants
 from coursework.language.numbers import significant
-from coursework.making.issuing import distinct_variants
 
 EXERCISES = ("slotted_mechanism", "four_bar_motion", "slider_crank", "quick_return", "ball_reducer")
 VARIANTS = 300

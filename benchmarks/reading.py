@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 from timing import best_in_turn, machine, print_table
 
-from coursework.reading.equations import parse_equation, read_equation
-from coursework.reading.equivalence import same_equation
-from coursework.reading.numbers import read_number, read_numbers
-from coursework.reading.points import read_point
+from coursework.parsing.equations import parse_equation, read_equation
+from coursework.parsing.equivalence import same_equation
+from coursework.parsing.numbers import read_number, read_numbers
+from coursework.parsing.points import read_point
 
 COUNT = 100_000
 ROUNDS = 7

@@ -14,7 +14,7 @@ import numpy as np
 
 from coursework.mechanics.linkage import BodyPoint, Linkage
 from coursework.mechanics.wrenches import GRAVITY
-from coursework.motion.scenes import Scene
+from coursework.scenes.scenes import Scene
 
 # ------------------------------------------------------------------------- exudyn
 

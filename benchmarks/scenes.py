@@ -24,8 +24,8 @@ from timing import machine, median_ratio, print_table, times_in_turn
 import coursework
 from coursework.mechanics.equilibrium import PIECE, Equilibrium
 from coursework.mechanics.statement import Load, Mechanism
-from coursework.motion.added import BodyMass, Motor, SceneData
-from coursework.motion.scenes import Scene
+from coursework.scenes.added import BodyMass, Motor, SceneData
+from coursework.scenes.scenes import Scene
 
 COURSE = coursework.open_course()
 CLOCK = time.process_time  #: so that what else runs on the machine does not count

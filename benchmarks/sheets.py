@@ -17,8 +17,8 @@ from pathlib import Path
 from timing import machine, print_table
 
 import coursework
-from coursework.making import build as building
-from coursework.making import issuing
+from coursework.issuing import build as building
+from coursework.issuing import issuing
 from coursework.system import writing
 
 BY_LATEX = 20  #: sheets that pdflatex is timed on

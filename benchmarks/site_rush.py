@@ -37,11 +37,11 @@ from coursework.database.publication import Publication, publish
 from coursework.database.sessions import begin_session
 from coursework.database.store import Store
 from coursework.database.submissions import rows_of
-from coursework.making.assignment import AskedExercise, Assignment
-from coursework.making.issued import issued_content
-from coursework.making.roster import Student as Enrolled
-from coursework.making.students import folded
-from coursework.making.variant_assignment import assign_variants
+from coursework.issuing.assignment import AskedExercise, Assignment
+from coursework.issuing.issued import issued_content
+from coursework.issuing.roster import Student as Enrolled
+from coursework.issuing.students import folded
+from coursework.issuing.variant_assignment import assign_variants
 from coursework.site.frame.cookies import cookie_name
 from coursework.site.papers.submission import AS_SAVED
 

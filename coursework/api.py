@@ -208,7 +208,7 @@ class Variant(numbers.Variant):
 
     def animation(self, effects: Sequence[str] = (), count: int = 72) -> DisplayedAnimation:
         """Return the mechanism over the cycle of its driver; see
-        :class:`~coursework.motion.animation.Animation`."""
+        :class:`~coursework.scenes.animation.Animation`."""
         from coursework.rendering.displayed import DisplayedAnimation
 
         return DisplayedAnimation(self, effects, count)

@@ -28,7 +28,7 @@ from typing import Any
 
 from coursework.errors import BadCourse, WrongValue, nearest
 from coursework.kinds.kind import Kind, kind_of
-from coursework.reading.units import check_unit
+from coursework.parsing.units import check_unit
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 

@@ -16,7 +16,7 @@
 * ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.quantities.loops`;
   ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
 * ``MECHANISM`` states bodies and joints, a :class:`~coursework.mechanics.Mechanism`: forces and motions follow from it;
-* ``EFFECTS`` names what a scene shows of each effect, where it is not what ``LOOPS`` say: :mod:`coursework.motion.effects`;
+* ``EFFECTS`` names what a scene shows of each effect, where it is not what ``LOOPS`` say: :mod:`coursework.scenes.effects`;
 * ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
   may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
@@ -36,11 +36,11 @@ import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, nearest, unknown
 from coursework.mechanics.statement import Mechanism
-from coursework.quantities.error_kinds import PRICES
+from coursework.parsing.units import check_unit
+from coursework.quantities.error_kinds import PENALTIES
 from coursework.quantities.graph import Graph, QuantityNode, Replacement
 from coursework.quantities.in_radians import in_radians
 from coursework.quantities.loops import Loop, quantities, stated
-from coursework.reading.units import check_unit
 
 if TYPE_CHECKING:
     from coursework.polygons.polygon import Polygon
@@ -71,14 +71,14 @@ def mistake(
 
     The function returns the wrong value, or a tuple of them for several targets. A parameter that
     bears a target's name stands for its right value, so ``def sign(omega5): return -omega5`` reads
-    as it sounds. ``kind`` says which error it is, of those that :data:`~coursework.quantities.error_kinds.PRICES` knows:
+    as it sounds. ``kind`` says which error it is, of those that :data:`~coursework.quantities.error_kinds.PENALTIES` knows:
     what it leaves of the points is the course's price for it. ``share``, 0 to 1, is a price of its own;
     ``approximation`` declares a legitimate one.
     """
     if not targets or not all(isinstance(t, str) for t in targets):
         raise BadCourse('@mistake names what it gets wrong: @mistake("theta4")')
-    if kind not in PRICES:
-        raise BadCourse(f"a mistake is of a kind that has a price; found {kind!r}{nearest(kind, PRICES)}")
+    if kind not in PENALTIES:
+        raise BadCourse(f"a mistake is of a kind that has a price; found {kind!r}{nearest(kind, PENALTIES)}")
     if share is not None and not 0 <= share <= 1:
         raise BadCourse(f"a mistake leaves a share of the points between 0 and 1; found {share}")
 

@@ -15,7 +15,7 @@ html_title = "coursework"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 myst_enable_extensions = ["attrs_inline", "dollarmath"]
 myst_heading_anchors = 3
-exclude_patterns = ["gallery.py", "house.py"]
+exclude_patterns = ["gallery.py", "import_graph.py"]
 
 html_theme = "furo"
 html_static_path = ["_static"]

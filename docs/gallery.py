@@ -24,8 +24,8 @@ from coursework.language.numbers import plain, with_unit
 from coursework.markup.markdown import html_inline, to_html
 from coursework.markup.mathml import to_mathml
 from coursework.model import GivenSpec
-from coursework.motion.animation import Animation
 from coursework.rendering.renderer import renderer_of
+from coursework.scenes.animation import Animation
 from coursework.sheets.sheet import Question
 from coursework.workbook.binding import bound
 

@@ -7,8 +7,8 @@ from html.parser import HTMLParser
 import numpy as np
 
 import coursework
-from coursework.motion.scenes import Scene
 from coursework.rendering.displayed import DisplayedAnimation as Animation
+from coursework.scenes.scenes import Scene
 
 COURSE = coursework.open_course()
 DRIVEN = [n for n in COURSE.names if COURSE[n].spec.driver is not None]

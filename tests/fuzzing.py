@@ -371,7 +371,7 @@ def parquet() -> bytes:
 
 
 def _roster(path: Path) -> None:
-    from coursework.making.roster import read_roster
+    from coursework.issuing.roster import read_roster
 
     students = read_roster(path)
     assert students
@@ -394,7 +394,7 @@ def _typed(path: Path) -> None:
 
 
 def _page(path: Path) -> None:
-    from coursework.scanning.kept import page_as_json, page_of, put_page, stored_page
+    from coursework.scanning.scan_store import page_as_json, page_of, put_page, stored_page
 
     out = path.parent
     (out / ".scanned").mkdir(exist_ok=True)
@@ -407,7 +407,7 @@ def _page(path: Path) -> None:
 
 
 def _files(path: Path) -> None:
-    from coursework.scanning.kept import joined, scanned, stored_files
+    from coursework.scanning.scan_store import joined, scanned, stored_files
 
     (path.parent / ".scanned").mkdir(exist_ok=True)
     path.rename(path.parent / ".scanned" / "files.json")
@@ -417,14 +417,14 @@ def _files(path: Path) -> None:
 
 def _assignment(path: Path) -> None:
     from coursework.api import open_course
-    from coursework.making.assignment import read_assignment
+    from coursework.issuing.assignment import read_assignment
 
     read_assignment(path, open_course())
 
 
 def _scene(path: Path) -> None:
     from coursework.api import open_course
-    from coursework.motion.scene_files import read_scene
+    from coursework.scenes.scene_files import read_scene
 
     read_scene(path, open_course())
 
@@ -439,7 +439,7 @@ def _platforms(path: Path) -> None:
 
 def _course(path: Path) -> None:
     from coursework.api import open_course
-    from coursework.making.practice import offers_practice
+    from coursework.issuing.practice import offers_practice
 
     (path.parent / "exercises").mkdir()
     for name in ("coil", "gear"):

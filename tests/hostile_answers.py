@@ -15,7 +15,7 @@ from coursework.course.variant import Variant
 from coursework.kinds.choices import cases_of
 from coursework.language.numbers import significant
 from coursework.model import Part
-from coursework.reading.reading import Reading
+from coursework.parsing.reading import Reading
 
 # ------------------------------------------------------------------ one verdict
 

@@ -14,10 +14,10 @@ import numpy as np
 from scanned_pages import Bank, Hand, plain_sheet
 
 from coursework.api import open_course
-from coursework.making.answer_papers import answer_papers
-from coursework.making.issued import issued_content
-from coursework.making.issuing import issue
-from coursework.making.roster import Student
+from coursework.issuing.answer_papers import answer_papers
+from coursework.issuing.issued import issued_content
+from coursework.issuing.issuing import issue
+from coursework.issuing.roster import Student
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.pages import FieldRead, PageRead
 from coursework.scanning.pictures import PageImage

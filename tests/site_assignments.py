@@ -8,10 +8,10 @@ from site_people import MAX, ZOE
 
 from coursework.database.assignments import put_issued
 from coursework.database.publication import Publication, publish
-from coursework.making.assignment import AskedExercise, Assignment, Scale
-from coursework.making.issued import Issued, issued_content
-from coursework.making.roster import Student
-from coursework.making.variant_assignment import assign_variants
+from coursework.issuing.assignment import AskedExercise, Assignment, Scale
+from coursework.issuing.issued import Issued, issued_content
+from coursework.issuing.roster import Student
+from coursework.issuing.variant_assignment import assign_variants
 from coursework.site.publication import assigning
 
 OPENS, CLOSES = datetime(2026, 11, 23, 8, tzinfo=UTC), datetime(2026, 11, 23, 12, tzinfo=UTC)

@@ -9,7 +9,7 @@ from coursework import open_course
 from coursework.database.people import put_account, put_person
 from coursework.database.sessions import begin_session
 from coursework.database.store import Store
-from coursework.making.students import folded
+from coursework.issuing.students import folded
 from coursework.site.application import application
 from coursework.site.frame.cookies import COOKIE, Cookies, Session
 from coursework.site.frame.settings import Entrance, Site

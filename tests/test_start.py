@@ -36,7 +36,7 @@ def test_numbers_need_no_formulas_and_no_sheets(command):
 
 def test_a_variant_is_drawn_without_its_solution():
     modules = loaded("variant slotted_mechanism --seed 1 --json")
-    assert not modules & {"coursework.solution", "coursework.reading.numbers", "coursework.polygons"}
+    assert not modules & {"coursework.solution", "coursework.parsing.numbers", "coursework.polygons"}
 
 
 @pytest.mark.parametrize(
@@ -44,4 +44,9 @@ def test_a_variant_is_drawn_without_its_solution():
 )
 def test_without_a_cluster_nothing_of_one_is_loaded(command, tmp_path):
     modules = loaded(command.format(tmp_path / "out"))
-    assert not modules & {"dask", "distributed", "coursework.system.cluster", "coursework.course.carrying"}
+    assert not modules & {
+        "dask",
+        "distributed",
+        "coursework.system.cluster",
+        "coursework.course.course_transfer",
+    }

@@ -16,8 +16,8 @@ import numpy as np
 from coursework.accuracy.study import Study
 from coursework.accuracy.timing import Times, clock, times_of
 from coursework.course.exercise import CourseExercise
-from coursework.motion.scenes import Scene
-from coursework.motion.staged import INERTIA
+from coursework.scenes.scenes import Scene
+from coursework.scenes.staged import INERTIA
 
 FRICTION = "friction"
 FREE, RUBBING = "without friction", "with friction"

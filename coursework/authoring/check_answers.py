@@ -13,7 +13,7 @@ from coursework.authoring.check_report import KEPT_DIGITS, CheckReport
 from coursework.course.answer_key import Key, envelopes
 from coursework.course.exercise import CourseExercise
 from coursework.course.variant import Variant
-from coursework.making.flaws import SHOWN, judged_wrong, visibility
+from coursework.issuing.flaws import SHOWN, judged_wrong, visibility
 from coursework.marking.judges import judged, judges_of
 from coursework.marking.marking import mark as grade
 from coursework.model import Part

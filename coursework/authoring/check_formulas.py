@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 from coursework.authoring.check_report import CheckReport
 from coursework.course.variant import Variant
+from coursework.parsing.printed_formulas import DEGREE, FormulaValue, NotEvaluable, read
 from coursework.quantities.formula_latex import why_unprinted
-from coursework.reading.printed_formulas import DEGREE, FormulaValue, NotEvaluable, read
 from coursework.sheets.answer_sheet import PRINTED_DIGITS, answer_sheet
 from coursework.sheets.sheet import AnswerSheet, Step
 

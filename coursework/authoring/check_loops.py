@@ -10,8 +10,8 @@ from coursework.course.variant import Variant
 from coursework.marking.loop_judge import fault_answers, judge_of
 from coursework.marking.marking import mark as grade
 from coursework.model import Part
-from coursework.reading.equations import parse_equation
-from coursework.reading.vocabulary import MAX_LENGTH
+from coursework.parsing.equations import parse_equation
+from coursework.parsing.vocabulary import MAX_LENGTH
 
 
 def check_loops(variant: Variant, report: CheckReport) -> None:

@@ -13,7 +13,7 @@ from coursework.errors import CourseworkError
 from coursework.mechanics.linkage import MM
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import GROUND, Mechanism
-from coursework.motion.scenes import Scene
+from coursework.scenes.scenes import Scene
 from coursework.structure.joints import FRAME, Counts, JointGraph
 
 TRIED = 20  #: variants

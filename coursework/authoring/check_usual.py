@@ -14,9 +14,9 @@ from coursework.authoring.check_report import CheckReport
 from coursework.course.answer_key import Key
 from coursework.course.error_values import TAKEN, UsualError
 from coursework.course.variant import Variant
+from coursework.issuing.flaws import SHOWN
+from coursework.issuing.protection import protection
 from coursework.language.numbers import significant
-from coursework.making.flaws import SHOWN
-from coursework.making.protection import protection
 from coursework.marking.marking import mark as grade
 from coursework.model import Part
 from coursework.quantities.formula_code import formula_of

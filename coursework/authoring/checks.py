@@ -26,7 +26,7 @@ from coursework.authoring.check_guesses import check_guesses
 from coursework.authoring.check_knowledge import check_knowledge
 from coursework.authoring.check_loops import check_loops
 from coursework.authoring.check_mechanism import check_mechanism
-from coursework.authoring.check_prices import check_prices
+from coursework.authoring.check_penalties import check_prices
 from coursework.authoring.check_report import RESIDUAL, CheckReport
 from coursework.authoring.check_units import check_units
 from coursework.authoring.check_usual import check_usual_errors
@@ -36,14 +36,14 @@ from coursework.course.course import Course, opened
 from coursework.course.exercise import ALL, CourseExercise, refuse_complex
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
+from coursework.issuing.flaws import conditioning
+from coursework.issuing.issuing import distinct_variants
+from coursework.issuing.protection import valid_variants
 from coursework.language.words import file_of, words
-from coursework.making.flaws import conditioning
-from coursework.making.issuing import distinct_variants
-from coursework.making.protection import valid_variants
 from coursework.model import Part
-from coursework.motion.animation import Animation
 from coursework.quantities.graph import plain_scalar
 from coursework.rendering.renderer import renderer_of
+from coursework.scenes.animation import Animation
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.handout import handout as handout_of
 from coursework.sheets.handout import prompt

@@ -16,7 +16,7 @@ from coursework.errors import BadInput, counted, nearest
 from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
-    from coursework.making.assignment import Assignment
+    from coursework.issuing.assignment import Assignment
 
 
 def is_assignment(exercises: Sequence[str]) -> bool:
@@ -79,12 +79,12 @@ def build_assignment(
     context: click.Context, path: Path, *, again: Sequence[str], make_up: Sequence[str], overwrite: bool
 ) -> None:
     """Issue an assignment and write its files."""
-    from coursework.making import papers
-    from coursework.making.assignment import read_assignment
-    from coursework.making.issued import issued_content, secret_of
-    from coursework.making.letters import unprinted_names
-    from coursework.making.roster import Student, read_roster
-    from coursework.making.variant_assignment import assign_variants
+    from coursework.issuing import papers
+    from coursework.issuing.assignment import read_assignment
+    from coursework.issuing.issued import issued_content, secret_of
+    from coursework.issuing.letters import unprinted_names
+    from coursework.issuing.roster import Student, read_roster
+    from coursework.issuing.variant_assignment import assign_variants
     from coursework.rendering.renderer import renderer_of
     from coursework.system.tables import SPREADSHEETS, json_text
     from coursework.system.writing import write_tree
@@ -193,7 +193,7 @@ def for_practice(lang: str) -> str:
 
 def _issued_before(path: Path, *, anew: bool) -> Mapping[str, Any] | None:
     """Return what was issued there; of what is dealt ``anew``, whatever can still be read."""
-    from coursework.making.issued import Issued
+    from coursework.issuing.issued import Issued
 
     if not path.is_file():
         return None
@@ -206,7 +206,7 @@ def _issued_before(path: Path, *, anew: bool) -> Mapping[str, Any] | None:
 
 
 def _student_column(name: str, names: set[str]) -> str:
-    from coursework.making.students import student_named
+    from coursework.issuing.students import student_named
 
     column = student_named(name, names)
     if column is None:
@@ -218,7 +218,7 @@ def _student_column(name: str, names: set[str]) -> str:
 
 def _check_identity(assignment: Assignment, students: Sequence[Any], notes: list[str]) -> None:
     """Columns that are to be printed should be in the roster; else there are boxes."""
-    from coursework.making.students import folded
+    from coursework.issuing.students import folded
 
     columns = list(dict.fromkeys(title for student in students for title in student.columns))
     folded_columns = set(map(folded, columns))

@@ -106,7 +106,7 @@ def grade_stored(
     store = store_at(context, url, new=issued is not None)
     from coursework.database.assignments import assignment_called, name_of, put_issued
     from coursework.database.grading import grade_new, write_standing
-    from coursework.making.issued import Issued
+    from coursework.issuing.issued import Issued
     from coursework.system.tables import SPREADSHEETS
 
     if issued is not None:

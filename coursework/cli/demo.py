@@ -19,10 +19,10 @@ import numpy as np
 from coursework.api import Variant, open_course
 from coursework.course.answer_key import Key
 from coursework.course.answer_keys import answer_keys
+from coursework.issuing.issued import COLUMNS, Issued
+from coursework.issuing.roster import read_roster
 from coursework.language.numbers import significant
 from coursework.language.words import languages
-from coursework.making.issued import COLUMNS, Issued
-from coursework.making.roster import read_roster
 from coursework.markup.markdown import to_text
 from coursework.model import Part
 from coursework.rendering.renderer import renderer_of

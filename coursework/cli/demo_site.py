@@ -24,10 +24,10 @@ from coursework.database.publication import AT_ONCE, CLOSED, Publication, publis
 from coursework.database.store import Store
 from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import AnswerRow, RowOrigin
-from coursework.making.assignment import Assignment, read_assignment
-from coursework.making.issued import Issued, issued_content
-from coursework.making.roster import Student, read_roster
-from coursework.making.variant_assignment import assign_variants
+from coursework.issuing.assignment import Assignment, read_assignment
+from coursework.issuing.issued import Issued, issued_content
+from coursework.issuing.roster import Student, read_roster
+from coursework.issuing.variant_assignment import assign_variants
 from coursework.system.folder_lock import only_writer
 
 FILE = "coursework.db"

@@ -153,7 +153,7 @@ def variant(
 
 
 def _with_answers(drawn: Any) -> dict[str, Any]:
-    from coursework.making.issued import record_with_answers
+    from coursework.issuing.issued import record_with_answers
 
     return record_with_answers(drawn)
 
@@ -179,8 +179,8 @@ def solve(
     as_json: bool,
 ) -> None:
     """Solve an exercise for one's own numbers."""
+    from coursework.issuing.issued import plain_value
     from coursework.language.numbers import significant, unit_text
-    from coursework.making.issued import plain_value
 
     chosen_exercise = opened(context)[exercise]
     given = settings_given(settings)
@@ -219,6 +219,6 @@ def solve(
 
 
 def _json_value(value: Any) -> Any:
-    from coursework.making.issued import plain_value
+    from coursework.issuing.issued import plain_value
 
     return {"re": value.real, "im": value.imag} if isinstance(value, complex) else plain_value(value)

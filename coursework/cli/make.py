@@ -41,8 +41,8 @@ from coursework.system.limits import MOST_VARIANTS
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
-    from coursework.making.issued import Issued
-    from coursework.making.roster import Student
+    from coursework.issuing.issued import Issued
+    from coursework.issuing.roster import Student
 
 
 # ------------------------------------------------------------------------ build
@@ -163,7 +163,7 @@ def build(
         raise BadInput("--again and --make-up are of an assignment: coursework build FILE.toml …")
     if out is None:
         raise BadInput("no folder to write: --out DIR")
-    from coursework.making.roster import read_roster
+    from coursework.issuing.roster import read_roster
 
     if roster and count:
         raise BadInput("--variants and --roster exclude each other: a roster has one variant a student")
@@ -220,7 +220,7 @@ def build(
 
 
 def _issued(path: Path) -> Issued:
-    from coursework.making.issued import Issued
+    from coursework.issuing.issued import Issued
 
     return Issued.read(path)
 
@@ -253,11 +253,11 @@ def build_files(
 ) -> int:
     """Issue and write a build, or one of what was ``issued``; gives how many files were written. ``store`` is handed what ``issued.json`` says, before
     anything is written."""
-    from coursework.making import build as building
-    from coursework.making.issued import issued_content
-    from coursework.making.issued_again import issued_again
-    from coursework.making.issuing import issue
-    from coursework.making.letters import unprinted_names
+    from coursework.issuing import build as building
+    from coursework.issuing.issued import issued_content
+    from coursework.issuing.issued_again import issued_again
+    from coursework.issuing.issuing import issue
+    from coursework.issuing.letters import unprinted_names
     from coursework.rendering.renderer import renderer_of
     from coursework.system.tables import SPREADSHEETS, json_text
     from coursework.system.writing import write_tree
@@ -303,7 +303,7 @@ def build_files(
 def _goes_on(before: Path, issued: str) -> bool:
     """Return whether every sheet that was issued before is unchanged in the new record, which may have more
     students."""
-    from coursework.making.issued import Issued
+    from coursework.issuing.issued import Issued
 
     old, new = _by_place(Issued.read_previous(before)), _by_place(json.loads(issued))
     return all(new.get(index) == record for index, record in old.items())

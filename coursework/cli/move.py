@@ -31,10 +31,10 @@ from coursework.messages import localised
 from coursework.system.limits import MOST_STEPS
 
 if TYPE_CHECKING:
-    from coursework.motion.added import Motor
-    from coursework.motion.scene_files import SceneFile
-    from coursework.motion.scenes import Scene, SceneTable
-    from coursework.motion.worth import EffectBudget, EffectInfluence
+    from coursework.scenes.added import Motor
+    from coursework.scenes.effect_cost import EffectBudget, EffectInfluence
+    from coursework.scenes.scene_files import SceneFile
+    from coursework.scenes.scenes import Scene, SceneTable
 
 # --------------------------------------------------------------------- simulate
 
@@ -112,8 +112,8 @@ def simulate(
 
 def _scene_file(course: Any, exercise: str, settings: dict[str, Any], typed: set[str]) -> SceneFile:
     """The scene of a file, or that of the options."""
-    from coursework.motion.scene_files import SceneFile, read_scene
-    from coursework.motion.scenes import Scene
+    from coursework.scenes.scene_files import SceneFile, read_scene
+    from coursework.scenes.scenes import Scene
 
     if exercise.endswith(".toml"):
         for option in ("effects", "settings", "show", "seed", "over", "steps", "drive", "duration"):
@@ -140,7 +140,7 @@ def _scene_file(course: Any, exercise: str, settings: dict[str, Any], typed: set
 
 
 def _seconds(text: str | None) -> float:
-    from coursework.reading.numbers import read_number
+    from coursework.parsing.numbers import read_number
 
     if text is None:
         return 1.0
@@ -181,7 +181,7 @@ def _tell_table(scene_file: SceneFile, out: Path | None, decimal: str, as_json: 
 
 
 def _tell_plan(scene: Scene, as_json: bool) -> None:
-    from coursework.motion.planning import plan
+    from coursework.scenes.planning import plan
 
     steps = plan(scene)
     if as_json:
@@ -193,7 +193,7 @@ def _tell_plan(scene: Scene, as_json: bool) -> None:
 def _tell_budget(
     scene_file: SceneFile, tolerance: float, out: Path | None, decimal: str, as_json: bool
 ) -> None:
-    from coursework.motion.worth import budget
+    from coursework.scenes.effect_cost import budget
 
     effect_budget = budget(scene_file.scene, partial(_run, scene_file), tolerance)
     summary, rows = list(effect_budget.said()), list(_budget_rows(effect_budget))
@@ -319,8 +319,8 @@ def _short_number(value: Any, digits: int = 5) -> str:
 
 def _drive(exercise: Any, text: str) -> Motor:
     """The torque of ``--drive torque=5``, in N*m, by that name or by the exercise's own."""
-    from coursework.motion.added import Motor
-    from coursework.reading.numbers import read_number
+    from coursework.parsing.numbers import read_number
+    from coursework.scenes.added import Motor
 
     name, equals, value = text.partition("=")
     effort = exercise.spec.driver.effort if exercise.spec.driver else ""

@@ -165,7 +165,7 @@ def unknown_language(lang: str) -> str:
 
 
 def known_formats() -> tuple[str, ...]:
-    from coursework.making.formats import FORMATS
+    from coursework.issuing.formats import FORMATS
 
     return FORMATS
 
@@ -176,7 +176,7 @@ class Columns(click.ParamType):
     name = "columns"
 
     def convert(self, value: Any, param: Any, ctx: Any) -> dict[str, str]:
-        from coursework.making.roster import COLUMNS
+        from coursework.issuing.roster import COLUMNS
 
         pairs = (
             value.items()
@@ -303,7 +303,7 @@ def shared_by_cluster(context: click.Context, address: str | None) -> None:
     """From here to the end of the command, large jobs are shared by the cluster that is named, if one is."""
     if address is None:
         return
-    from coursework.course.carrying import Carried
+    from coursework.course.course_transfer import Carried
     from coursework.system.cluster import cluster
 
     context.with_resource(cluster(address, Carried(opened(context).folder)))

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 
     from coursework.course.course import Course
     from coursework.course.secrecy import Secret
-    from coursework.making.assignment import Assignment
-    from coursework.making.roster import Student
+    from coursework.issuing.assignment import Assignment
+    from coursework.issuing.roster import Student
     from coursework.platforms.pools import DrawnPool
 
 _VARIANTS = 20  #: of a pool, where nothing says how many
@@ -125,7 +125,7 @@ def export(
     Of exercises, or of an assignment's file. The export holds the answers: it is for the staff. What the platform cannot do is
     told, and listed in lost.csv; what comes back from it is marked by 'coursework grade' against issued.json.
     """
-    from coursework.making.roster import read_roster
+    from coursework.issuing.roster import read_roster
     from coursework.platforms.exporting import export as exported
     from coursework.platforms.losses import loss_lines
     from coursework.platforms.platform import platform_of
@@ -208,10 +208,10 @@ def _export_autograder(
 
 def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student]) -> bytes:
     """The ``issued.json`` that a build writes."""
-    from coursework.making.issued import issued_content
-    from coursework.making.issuing import issue
-    from coursework.making.roster import Student
-    from coursework.making.variant_assignment import assign_variants
+    from coursework.issuing.issued import issued_content
+    from coursework.issuing.issuing import issue
+    from coursework.issuing.roster import Student
+    from coursework.issuing.variant_assignment import assign_variants
     from coursework.system.tables import json_text
 
     count = wanted.variants or 1
@@ -257,7 +257,7 @@ def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], ou
 def _secret_beside(wanted: _Wanted, out: Path, lang: str) -> Secret:
     """Return the secret of an export made there before, else a new one, which is told."""
     from coursework.course.secrecy import Secret
-    from coursework.making.issued import Issued, secret_of
+    from coursework.issuing.issued import Issued, secret_of
 
     path = out / "issued.json"
     secret = secret_of(Issued.read_previous(path), str(path)) if path.is_file() else None
@@ -268,7 +268,7 @@ def _secret_beside(wanted: _Wanted, out: Path, lang: str) -> Secret:
 
 def _assignment(course: Course[Any], wanted: _Wanted) -> tuple[Assignment, Sequence[str]]:
     """The assignment of the file that is named, and the languages of its questions."""
-    from coursework.making.assignment import read_assignment
+    from coursework.issuing.assignment import read_assignment
 
     path = Path(wanted.exercises[0])
     assignment = read_assignment(path, course)
@@ -298,7 +298,7 @@ def _langs(context: click.Context, assignment: Assignment, langs: Sequence[str])
 
 def _check_folder(out: Path, drawn: DrawnPool) -> None:
     """An export takes the place of one of the same pool, or of a smaller one; not of another."""
-    from coursework.making.issued import Issued
+    from coursework.issuing.issued import Issued
 
     path = out / "issued.json"
     if not path.is_file():

@@ -151,7 +151,7 @@ def notebook(
     One for each exercise named, else for every exercise of the course; and the lessons that teach them, which they lead to.
     """
     from coursework.course.lessons import taught_by
-    from coursework.making.issuing import distinct_variants
+    from coursework.issuing.issuing import distinct_variants
     from coursework.rendering.renderer import renderer_of
     from coursework.system.writing import write_whole
     from coursework.workbook.notebooks import lesson_notebook, notebook_name

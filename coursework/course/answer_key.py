@@ -21,9 +21,9 @@ from coursework.course.exercise import CourseExercise
 from coursework.course.marking_rules import ILL_DEGREES, ILL_SHARE, Rules
 from coursework.errors import CourseworkError
 from coursework.model import Part
+from coursework.parsing.units import convert
 from coursework.quantities.graph import plain_scalar
 from coursework.quantities.rounding import envelope
-from coursework.reading.units import convert
 
 #: Factors by which a unit is mistaken for another.
 _UNIT_FACTORS = (1e3, 1e-3, 10.0, 0.1)

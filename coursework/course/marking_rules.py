@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from coursework.errors import BadCourse, nearest
-from coursework.quantities.error_kinds import PRICES
+from coursework.quantities.error_kinds import PENALTIES
 
 #: Beyond these a variant is ill-conditioned: rounding alone may cost a student the answer.
 ILL_SHARE, ILL_DEGREES = 0.03, 1.0
@@ -34,7 +34,7 @@ class Rules:
             return self.prices[kind]
         if self.slip is not None and kind in _SLIPS:
             return self.slip
-        return PRICES.get(kind, 0.0)
+        return PENALTIES.get(kind, 0.0)
 
     @staticmethod
     def of(table: Any, source: str, usual: Rules | None = None) -> Rules:
@@ -57,19 +57,19 @@ class Rules:
             if name == "digits" and not (is_integer and 2 <= value <= 12):
                 raise BadCourse(f"{source}: digits is a whole number from 2 to 12; found {value!r}")
             if name == "prices":
-                value = {**usual.prices, **_prices(value, source)}
+                value = {**usual.prices, **_penalties(value, source)}
             elif name != "digits":
                 _check_share(name, value, source)
             stated[name] = value
         return replace(usual, **stated)
 
 
-def _prices(table: Any, source: str) -> Mapping[str, float]:
+def _penalties(table: Any, source: str) -> Mapping[str, float]:
     if not isinstance(table, Mapping):
         raise BadCourse(f"{source}: [marking.prices] is a table: sign = 0.5")
     for kind, value in table.items():
-        if kind not in PRICES:
-            raise BadCourse(f"{source}: no price for {kind!r}{nearest(str(kind), PRICES)}")
+        if kind not in PENALTIES:
+            raise BadCourse(f"{source}: no price for {kind!r}{nearest(str(kind), PENALTIES)}")
         _check_share(f"the price of {kind}", value, source)
     return table
 

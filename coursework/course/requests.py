@@ -115,7 +115,7 @@ class Intake:
         return value if isinstance(value, str) else np.asarray(value)
 
     def _read(self, name: str, text: str) -> float:
-        from coursework.reading.numbers import read_number
+        from coursework.parsing.numbers import read_number
 
         unit = self._units.get(name, "1")
         reading = read_number(text, unit)

@@ -43,7 +43,7 @@ from coursework.gradebook.waiting import (
     name_of,
     written,
 )
-from coursework.making.students import folded
+from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
 
 CHUNK = 200  #: students that are computed at once

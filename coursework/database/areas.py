@@ -17,7 +17,7 @@ from coursework.database.permissions import (
     may,
 )
 from coursework.database.tables import area, assignment, dealt, person, variant
-from coursework.making.identity import is_called
+from coursework.issuing.identity import is_called
 
 GROUP = ("group", "groupe", "td", "groupe de td", "section")  #: titles of the roster's column of groups
 

@@ -14,8 +14,8 @@ from coursework.database.outdated import outdate, outdate_all, outdate_rows
 from coursework.database.people import put_people
 from coursework.database.tables import assignment, dealt, variant
 from coursework.errors import BadInput, nearest
-from coursework.making.issued import ISSUED_FORMAT, SECRET, Issued, secret_of
-from coursework.making.roster import Student
+from coursework.issuing.issued import ISSUED_FORMAT, SECRET, Issued, secret_of
+from coursework.issuing.roster import Student
 
 _Place = tuple[
     str, int, str, str, int

@@ -41,8 +41,8 @@ from coursework.gradebook.waiting import (
     groups,
     measures,
 )
-from coursework.making.issued import Issued
-from coursework.making.students import namesakes
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import namesakes
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ from coursework.database.tables import (
     variant,
 )
 from coursework.gradebook.waiting import OFTEN, OFTEN_SHARE, SHOWN_ON_REQUEST, WHY
-from coursework.making.students import folded
+from coursework.issuing.students import folded
 
 PAGE = 100  #: rows of a page
 SORTS = ("name", "total", "waits", "late", "tries")

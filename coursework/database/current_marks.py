@@ -19,7 +19,7 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, placed_sheets
 from coursework.gradebook.platform_files import platform_file_lines
 from coursework.gradebook.to_mark import TO_MARK
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.marking.mark import Mark
 
 _SHEET = (marking.c.student, marking.c.exercise, marking.c.seed, marking.c.attempt)

@@ -20,7 +20,7 @@ from coursework.errors import UnknownName
 from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.to_mark import GivenPoints, ToMark
-from coursework.making.students import folded
+from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
 
 

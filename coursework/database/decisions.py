@@ -15,7 +15,7 @@ from coursework.errors import BadInput, UnknownName, nearest
 from coursework.gradebook.accepted import accepted_mark, check_points
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.to_mark import given_mark, same_answer
-from coursework.making.students import folded
+from coursework.issuing.students import folded
 from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 

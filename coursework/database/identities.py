@@ -10,7 +10,7 @@ from coursework.database.people import people, person_by_id
 from coursework.database.permissions import STAFF
 from coursework.database.store import insert_unless_there
 from coursework.database.tables import account, identity, person
-from coursework.making.identity import EMAIL, NUMBER, is_called, same_id
+from coursework.issuing.identity import EMAIL, NUMBER, is_called, same_id
 
 
 def person_linked_to(connection: Connection, issuer: str, subject: str) -> Any | None:

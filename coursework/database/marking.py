@@ -23,7 +23,7 @@ from coursework.gradebook.book import marks_rows
 from coursework.gradebook.class_marking import judged, record_of, rules_of
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets, placed_sheets
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 
 _CHUNK = 5000  #: rows that are written at once
 

@@ -9,7 +9,7 @@ from typing import Any
 from sqlalchemy import Connection, Select, insert, select, update
 
 from coursework.database.tables import account, person
-from coursework.making.roster import Student
+from coursework.issuing.roster import Student
 from coursework.markup.markdown import sort_key
 
 

@@ -31,8 +31,8 @@ from coursework.database.tables import (
     typed,
     variant,
 )
-from coursework.making.identity import identifies
-from coursework.making.students import folded
+from coursework.issuing.identity import identifies
+from coursework.issuing.students import folded
 
 #: Columns that concern the database alone, or nobody.
 _HIDDEN = {

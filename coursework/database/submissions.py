@@ -35,7 +35,7 @@ from coursework.database.store import insert_unless_there
 from coursework.database.tables import answer, dealt, delivery, marking, rejected, seen, variant
 from coursework.gradebook.placing import UnplacedError, student_of
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 
 _CHUNK = 5000  #: rows that are written at once
 _PlacedRow = tuple[tuple[Any, ...], AnswerRow | Rejected | PlatformFile]  #: submission and place in it

@@ -369,7 +369,7 @@ worksheet = Table(
     UniqueConstraint("assignment_id", "file"),
 )
 
-#: Page of a scan: its reading (:class:`coursework.scanning.kept.PageScan`), and its picture, a JPEG in base64. A
+#: Page of a scan: its reading (:class:`coursework.scanning.scan_store.PageScan`), and its picture, a JPEG in base64. A
 #: file without a readable page has one row without a number.
 scanned = Table(
     "scanned",

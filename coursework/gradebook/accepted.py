@@ -14,9 +14,9 @@ from coursework.gradebook.changes import lines_of
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import UnplacedError, name_hint, sheet_of_row
 from coursework.gradebook.rows import AnswerRow
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import folded
 from coursework.language.words import words
-from coursework.making.issued import Issued
-from coursework.making.students import folded
 from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 from coursework.messages import Message, as_message

@@ -32,8 +32,8 @@ from coursework.gradebook.columns import VERDICTS as VERDICTS
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import exact, mark_of
-from coursework.making.issued import Issued
-from coursework.making.students import folded
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
 from coursework.messages import localised
 

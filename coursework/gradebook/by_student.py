@@ -12,7 +12,7 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.notebooks import NO_NAME
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.marking.marking import mark
 
 

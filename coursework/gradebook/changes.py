@@ -11,7 +11,7 @@ from typing import Any
 
 from coursework.errors import BadInput
 from coursework.gradebook.columns import VERDICTS
-from coursework.making.students import folded
+from coursework.issuing.students import folded
 from coursework.system.limits import check_size
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 

@@ -15,8 +15,8 @@ from coursework.errors import BadCourse, BadInput, CourseworkError, NoSolution, 
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets, as_texts
 from coursework.gradebook.rows import Rejected
+from coursework.issuing.issued import Issued
 from coursework.language.words import words
-from coursework.making.issued import Issued
 from coursework.marking.feedback import Sentence, right_feedback, right_says
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark

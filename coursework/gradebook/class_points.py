@@ -12,7 +12,7 @@ from coursework.errors import BadInput, nearest
 from coursework.gradebook.changes import rows_of
 from coursework.gradebook.columns import LATE, VERDICTS
 from coursework.gradebook.scale import exact
-from coursework.making.identity import Ids, identifies
+from coursework.issuing.identity import Ids, identifies
 from coursework.system.links import check_inside
 
 SCORES = ("points", "mark", "percent")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from coursework.making.issued import Issued
-from coursework.making.students import folded
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import folded
 
 MARKS_COLUMNS = (
     "student", "exercise", "seed", "part", "answer", "read_as", "verdict", "points", "out_of", "feedback",

@@ -13,8 +13,8 @@ from functools import lru_cache
 from pathlib import Path
 
 from coursework.gradebook.rows import AnswerRow, joined_by_and
-from coursework.making.issued import Issued
-from coursework.making.students import file_stems
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import file_stems
 from coursework.messages import Message
 
 Sheet = tuple[str, str, int]  #: student, exercise and seed

@@ -21,9 +21,9 @@ from coursework.gradebook.columns import MARKS_COLUMNS, REJECTED_COLUMNS, SITTIN
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import Sheets, placed_sheets
 from coursework.gradebook.rows import AnswerRow, Rejected, RowOrigin
-from coursework.making.identity import identifies
-from coursework.making.issued import Issued
-from coursework.making.students import folded
+from coursework.issuing.identity import identifies
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import folded
 from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from coursework.errors import BadInput
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 
 FORMATS = ("pdf", "html", "ipynb")
 

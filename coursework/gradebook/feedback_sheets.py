@@ -18,14 +18,14 @@ from coursework.gradebook.columns import own_columns
 from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
+from coursework.issuing.assignment import text_in
+from coursework.issuing.identity import printed_columns
+from coursework.issuing.issued import Issued
+from coursework.issuing.papers import date_text
+from coursework.issuing.practice import PracticeOf
+from coursework.issuing.students import file_stems
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
-from coursework.making.assignment import text_in
-from coursework.making.identity import printed_columns
-from coursework.making.issued import Issued
-from coursework.making.papers import date_text
-from coursework.making.practice import PracticeOf
-from coursework.making.students import file_stems
 from coursework.marking.feedback import localised
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark

@@ -13,9 +13,9 @@ from coursework.errors import BadInput, nearest
 from coursework.gradebook.class_points import Scored
 from coursework.gradebook.platform_gradebooks import People, PlatformGradebook, people_in
 from coursework.gradebook.rows import joined_by_and
-from coursework.making.identity import same_id, words_of
-from coursework.making.platform_rosters import TEST_STUDENT, first_name_first
-from coursework.making.students import folded
+from coursework.issuing.identity import same_id, words_of
+from coursework.issuing.platform_rosters import TEST_STUDENT, first_name_first
+from coursework.issuing.students import folded
 from coursework.system.cells import CellTable, PositionedCell
 
 _NUMBER = re.compile(r"\s*-?[0-9]+(?P<sign>[.,])[0-9]+\s*%?\s*")

@@ -28,7 +28,7 @@ from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.sheets_on_disk import placed_on_disk
 from coursework.gradebook.submissions import find, read_file
 from coursework.gradebook.to_mark import TO_MARK, TO_MARK_COLUMNS, ToMark, sorted_rows
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.messages import Message
 from coursework.system.build_folder import free_name, is_as_written, write_down
 from coursework.system.tables import SPREADSHEETS, Spreadsheet

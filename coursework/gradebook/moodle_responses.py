@@ -16,7 +16,7 @@ from coursework.errors import counted
 from coursework.gradebook.item_label import NO_LABEL, ItemLabel, label_in
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.gradebook.stack_responses import stack_answers
-from coursework.making.identity import EMAIL, FIRST_NAME, SURNAME, WHOLE, identifies, is_called
+from coursework.issuing.identity import EMAIL, FIRST_NAME, SURNAME, WHOLE, identifies, is_called
 from coursework.messages import Message
 from coursework.system.tables import as_written
 

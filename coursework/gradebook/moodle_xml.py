@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from coursework.errors import BadInput
 from coursework.gradebook.class_points import Scored
-from coursework.making.identity import NUMBER, plain
+from coursework.issuing.identity import NUMBER, plain
 
 _NUMBERS = ("id number", plain("numéro d'identification"), *NUMBER)
 

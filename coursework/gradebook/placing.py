@@ -15,8 +15,8 @@ from coursework.course.course import Course
 from coursework.errors import CourseworkError, UnknownName, nearest
 from coursework.gradebook.conflicting_sheets import Doubts, doubts, file_of
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin, joined_by_and
-from coursework.making.issued import Issued
-from coursework.making.students import namesakes
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import namesakes
 from coursework.messages import Message, as_message
 
 _LISTED = 8  #: names that a message lists

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from coursework.errors import unknown
-from coursework.making.identity import FIRST_NAME, SURNAME, WHOLE, identifies, is_called, plain
+from coursework.issuing.identity import FIRST_NAME, SURNAME, WHOLE, identifies, is_called, plain
 
 
 class PlatformGradebook(NamedTuple):

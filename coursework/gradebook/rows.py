@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from coursework.making.identity import Ids
+from coursework.issuing.identity import Ids
 from coursework.messages import Message
 from coursework.system.tables import decode
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 
 
 def mark_of(issued: Issued, points: float, out_of: float) -> str:

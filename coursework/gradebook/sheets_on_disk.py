@@ -24,7 +24,7 @@ from typing import IO, Any, NamedTuple
 from coursework.course.course import Course
 from coursework.gradebook.placing import PlacedRow, SheetKey, Sheets, fill, placed_rows, row_placer
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.system.writing import writing
 
 AT_ONCE = 50_000  #: rows kept in memory; more are stored on disk

@@ -32,7 +32,7 @@ from coursework.gradebook.rows import (
     short_fault,
 )
 from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, latest_first, submitted_file
-from coursework.making.issued import COLUMNS
+from coursework.issuing.issued import COLUMNS
 from coursework.messages import Message
 from coursework.system.extras import NotAtHand, library
 from coursework.system.limits import MOST_BYTES as MAX_BYTES

@@ -11,8 +11,8 @@ from coursework.errors import BadInput, nearest
 from coursework.gradebook.accepted import ACCEPTED, check_points, points_of
 from coursework.gradebook.changes import rows_of
 from coursework.gradebook.graded_sheet import Graded
+from coursework.issuing.students import folded
 from coursework.language.words import words
-from coursework.making.students import folded
 from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 

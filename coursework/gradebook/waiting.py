@@ -16,10 +16,10 @@ from coursework.course.course import Course
 from coursework.course.key_batch import keys_of
 from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.graded_sheet import Graded
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.marking.margins import half_widths_off
 from coursework.marking.mark import Mark
-from coursework.reading.spelling import plain_spelling, unwrapped
+from coursework.parsing.spelling import plain_spelling, unwrapped
 
 NEAR = 2.0  #: accepted margins up to which a wrong answer is near the margin
 JUST = 0.9  #: of the accepted margin, beyond which a right answer is just inside it

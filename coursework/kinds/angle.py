@@ -11,8 +11,8 @@ import numpy as np
 from coursework.kinds.kind import Asking, Stated
 from coursework.kinds.nearness import SLACK, TRUSTED, in_half_widths, is_fine
 from coursework.kinds.number import Number
-from coursework.reading.reading import MOST_TURNS, Reading
-from coursework.reading.spelling import shorten
+from coursework.parsing.reading import MOST_TURNS, Reading
+from coursework.parsing.spelling import shorten
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,7 +28,7 @@ class Angle(Number):
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         # Modulo a turn any number may be near: a thousand of degrees is no honest reading of 1,234.
-        from coursework.reading.numbers import read_number
+        from coursework.parsing.numbers import read_number
 
         reading = read_number(answer, part.unit, thousands=False)
         return self._of_few_turns(reading) if reading.status == "read" else reading

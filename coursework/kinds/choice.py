@@ -11,7 +11,7 @@ from coursework.kinds.ticks import by_letters, lettered_ticks
 from coursework.quantities.graph import plain_scalar
 
 if TYPE_CHECKING:
-    from coursework.reading.reading import Reading
+    from coursework.parsing.reading import Reading
 
 
 class Choice(Kind):
@@ -30,7 +30,7 @@ class Choice(Kind):
     }
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        from coursework.reading.choices import read_choice
+        from coursework.parsing.choices import read_choice
 
         return read_choice(answer, asking.labels(part), asking.letters(part))
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated, Tick
 from coursework.kinds.ticks import by_letters, lettered_ticks, share_of_named
-from coursework.reading.reading import Reading
-from coursework.reading.several import read_choices
+from coursework.parsing.reading import Reading
+from coursework.parsing.several import read_choices
 
 _NONE = "none"  #: what is ticked, and read, where no case is right
 

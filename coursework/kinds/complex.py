@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.kinds.nearness import in_half_widths
 from coursework.language.numbers import significant
-from coursework.reading.complexes import read_complex
-from coursework.reading.reading import Reading
+from coursework.parsing.complexes import read_complex
+from coursework.parsing.reading import Reading
 
 
 class Complex(Kind):

@@ -8,7 +8,7 @@ from typing import Any
 from coursework.errors import WrongValue
 from coursework.kinds.kind import Asking, Stated
 from coursework.kinds.open import OpenKind
-from coursework.reading.reading import Reading
+from coursework.parsing.reading import Reading
 
 _WIDEST, _HIGHEST = 160, 240  #: mm, of what a page holds
 

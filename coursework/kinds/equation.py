@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 
 if TYPE_CHECKING:
-    from coursework.reading.equations import Equation as Read
-    from coursework.reading.reading import Reading
+    from coursework.parsing.equations import Equation as Read
+    from coursework.parsing.reading import Reading
 
 
 class EquationKind(Kind):
@@ -31,7 +31,7 @@ class EquationKind(Kind):
     }
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        from coursework.reading.equations import read_equation
+        from coursework.parsing.equations import read_equation
 
         return read_equation(answer, part.variables)
 
@@ -46,8 +46,8 @@ class EquationKind(Kind):
         return self.distance(part, _parsed(value, part.variables), reference)
 
     def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
-        from coursework.reading.equations import parse_equation
-        from coursework.reading.equivalence import same_equation
+        from coursework.parsing.equations import parse_equation
+        from coursework.parsing.equivalence import same_equation
 
         reference_equation = parse_equation(reference, part.variables)
         put_in = {
@@ -75,7 +75,7 @@ class EquationKind(Kind):
 @lru_cache(maxsize=4096)
 def _same(value: Read, reference: str, variables: tuple[str, ...], parameters: tuple[str, ...]) -> bool:
     """Equations are dear to compare, and many students write the same."""
-    from coursework.reading.equivalence import same_equation
+    from coursework.parsing.equivalence import same_equation
 
     reference_equation = _parsed(reference, variables)
     opened = value.without_inverse()
@@ -87,6 +87,6 @@ def _same(value: Read, reference: str, variables: tuple[str, ...], parameters: t
 @lru_cache(maxsize=1024)
 def _parsed(text: str, variables: tuple[str, ...]) -> Read:
     """A reference equation, or a mistaken one, read once."""
-    from coursework.reading.equations import parse_equation
+    from coursework.parsing.equations import parse_equation
 
     return parse_equation(text, variables)

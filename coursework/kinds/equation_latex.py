@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from coursework.reading.equations import parse_equation
-from coursework.reading.trees import Operation
+from coursework.parsing.equations import parse_equation
+from coursework.parsing.trees import Operation
 
 _LATEX_FUNCTIONS = {
     "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan", "atan2": r"\operatorname{atan2}",

@@ -11,9 +11,9 @@ from typing import Any, ClassVar
 from coursework.errors import WrongValue
 from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.language.words import words
-from coursework.reading.graph_likeness import Compared, compare, names_that_fit
-from coursework.reading.graphs import Edge, Graph, graph_of, read_graph, spelled
-from coursework.reading.reading import Reading
+from coursework.parsing.graph_likeness import Compared, compare, names_that_fit
+from coursework.parsing.graphs import Edge, Graph, graph_of, read_graph, spelled
+from coursework.parsing.reading import Reading
 
 _MOST_LINES = 20
 _RENAMED = 0.5  #: share of the points for the right graph under other names

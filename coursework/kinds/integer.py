@@ -11,7 +11,7 @@ from coursework.language.numbers import significant
 from coursework.quantities.graph import plain_scalar
 
 if TYPE_CHECKING:
-    from coursework.reading.reading import Reading
+    from coursework.parsing.reading import Reading
 
 _DIGITS = 9  #: with which a count is written
 
@@ -26,7 +26,7 @@ class Integer(Kind):
     unitless = "wrong_unit_integer"
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        from coursework.reading.numbers import read_integer
+        from coursework.parsing.numbers import read_integer
 
         return read_integer(answer)
 

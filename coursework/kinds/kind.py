@@ -17,7 +17,7 @@ import numpy as np
 from coursework.errors import BadCourse, nearest
 
 if TYPE_CHECKING:
-    from coursework.reading.reading import Reading
+    from coursework.parsing.reading import Reading
 
 
 class Stated(Protocol):

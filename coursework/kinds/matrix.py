@@ -10,8 +10,8 @@ import numpy as np
 from coursework.kinds.entries import Entries
 from coursework.kinds.kind import AnswerSpelling, Asking, Stated
 from coursework.language.numbers import significant
-from coursework.reading.matrices import read_matrix
-from coursework.reading.reading import Reading
+from coursework.parsing.matrices import read_matrix
+from coursework.parsing.reading import Reading
 
 
 class Matrix(Entries):

@@ -12,7 +12,7 @@ from coursework.kinds.nearness import SLACK, in_half_widths
 from coursework.language.numbers import plain, significant
 
 if TYPE_CHECKING:
-    from coursework.reading.reading import Reading
+    from coursework.parsing.reading import Reading
 
 
 class Number(Kind):
@@ -21,7 +21,7 @@ class Number(Kind):
     prediction = "size"
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        from coursework.reading.numbers import read_number
+        from coursework.parsing.numbers import read_number
 
         return read_number(answer, part.unit)
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
-from coursework.reading.reading import Reading, text_of
+from coursework.parsing.reading import Reading, text_of
 
 
 class OpenKind(Kind):

@@ -16,8 +16,8 @@ from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated, Tick
 from coursework.kinds.nearness import in_half_widths, offset
 from coursework.kinds.ticks import share_of_named
 from coursework.language.numbers import significant
-from coursework.reading.reading import Reading
-from coursework.reading.torsors import TorsorForm, component_place, read_pattern, read_torsor
+from coursework.parsing.reading import Reading
+from coursework.parsing.torsors import TorsorForm, component_place, read_pattern, read_torsor
 
 _UNITS = (1e-3, 1e3)  #: metres for millimetres
 _PARALLEL = 1e-9  #: of what is square to the resultant but for rounding

@@ -1,7 +1,7 @@
 """The twist of a motion at a point: angular velocity in rad/s before velocity, in the part's unit."""
 
 from coursework.kinds.torsors import Torsor
-from coursework.reading.torsors import TWIST
+from coursework.parsing.torsors import TWIST
 
 
 class Twist(Torsor):

@@ -1,7 +1,7 @@
 """Components of a twist that may differ from zero: ``wz vx``."""
 
 from coursework.kinds.torsors import Pattern
-from coursework.reading.torsors import TWIST
+from coursework.parsing.torsors import TWIST
 
 
 class TwistPattern(Pattern):

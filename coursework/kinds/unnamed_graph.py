@@ -6,8 +6,8 @@ from functools import lru_cache
 from typing import Any
 
 from coursework.kinds.graph import JointGraphKind, _graph
-from coursework.reading.graph_likeness import Compared, compare, held_names, names_that_fit, nearest_names
-from coursework.reading.graphs import Graph, renamed
+from coursework.parsing.graph_likeness import Compared, compare, held_names, names_that_fit, nearest_names
+from coursework.parsing.graphs import Graph, renamed
 
 
 class UnnamedGraph(JointGraphKind):

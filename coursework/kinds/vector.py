@@ -8,8 +8,8 @@ from typing import Any
 from coursework.kinds.entries import Entries
 from coursework.kinds.kind import AnswerSpelling, Asking, Stated
 from coursework.language.numbers import significant
-from coursework.reading.matrices import read_vector
-from coursework.reading.reading import Reading
+from coursework.parsing.matrices import read_vector
+from coursework.parsing.reading import Reading
 
 
 class VectorKind(Entries):

@@ -9,7 +9,7 @@ from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.language.numbers import significant
 
 if TYPE_CHECKING:
-    from coursework.reading.reading import Reading
+    from coursework.parsing.reading import Reading
 
 
 def axes(count: int) -> tuple[str, ...]:
@@ -28,8 +28,8 @@ class Coordinates(Kind):
     }
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        from coursework.reading.points import read_point, worked_out
-        from coursework.reading.reading import Reading
+        from coursework.parsing.points import read_point, worked_out
+        from coursework.parsing.reading import Reading
 
         count = len(asking.reference(part.quantity))
         reading = read_point(answer, part.unit, count)

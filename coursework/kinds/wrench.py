@@ -1,7 +1,7 @@
 """The wrench of an action at a point: force, in N or in what goes with the part's unit, before moment."""
 
 from coursework.kinds.torsors import Torsor
-from coursework.reading.torsors import WRENCH
+from coursework.parsing.torsors import WRENCH
 
 
 class Wrench(Torsor):

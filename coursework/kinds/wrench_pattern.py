@@ -1,7 +1,7 @@
 """Components of a wrench that may differ from zero: ``X Y M``."""
 
 from coursework.kinds.torsors import Pattern
-from coursework.reading.torsors import WRENCH
+from coursework.parsing.torsors import WRENCH
 
 
 class WrenchPattern(Pattern):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
+from coursework.issuing.students import folded
 from coursework.lti.roles import Role
 from coursework.lti.services import Member
-from coursework.making.students import folded
 from coursework.system.tables import csv_text
 
 COLUMNS = ("student", "email", "number", "lti_user_id")

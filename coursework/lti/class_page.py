@@ -6,6 +6,9 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from coursework.issuing.assignment import Assignment
+from coursework.issuing.issued import COLUMNS, ISSUED_FORMAT
+from coursework.issuing.students import folded
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.class_list import students
@@ -13,9 +16,6 @@ from coursework.lti.host import LTIRequest
 from coursework.lti.link_settings import BEST, LinkSettings
 from coursework.lti.services import Member
 from coursework.lti.storage import LTIAttempt, LTIPaper, Waiting
-from coursework.making.assignment import Assignment
-from coursework.making.issued import COLUMNS, ISSUED_FORMAT
-from coursework.making.students import folded
 from coursework.system.tables import csv_file
 
 

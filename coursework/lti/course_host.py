@@ -20,6 +20,9 @@ from coursework.course.variant import Variant
 from coursework.errors import UnknownName
 from coursework.gradebook.feedback_sheets import feedback_sheet
 from coursework.gradebook.graded_sheet import Graded
+from coursework.issuing.assignment import AskedExercise, Assignment, read_assignment, text_in
+from coursework.issuing.papers import date_text
+from coursework.issuing.variant_assignment import keyed
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.class_page import class_rows, issued_json, settings_rows, taken_csv
@@ -31,9 +34,6 @@ from coursework.lti.roles import Role
 from coursework.lti.services import NotServed
 from coursework.lti.single_assignment import own_records, variants
 from coursework.lti.storage import LTIAttempt, LTIPaper, Score, Storage
-from coursework.making.assignment import AskedExercise, Assignment, read_assignment, text_in
-from coursework.making.papers import date_text
-from coursework.making.variant_assignment import keyed
 from coursework.marking.marking import mark
 from coursework.messages import localised
 from coursework.rendering.feedback import verdict_word

@@ -8,10 +8,10 @@ from typing import Any
 from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
+from coursework.issuing.assignment import Assignment
+from coursework.issuing.issuing import drawn_by
+from coursework.issuing.variant_assignment import keyed, with_points
 from coursework.lti.launch import Launch
-from coursework.making.assignment import Assignment
-from coursework.making.issuing import drawn_by
-from coursework.making.variant_assignment import keyed, with_points
 
 Record = Mapping[str, Any]
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from coursework.model import Part
-from coursework.reading.plain_values import plain_answer
-from coursework.reading.reading import Reading
-from coursework.reading.spoken import refers_elsewhere, says_nothing
+from coursework.parsing.plain_values import plain_answer
+from coursework.parsing.reading import Reading
+from coursework.parsing.spoken import refers_elsewhere, says_nothing
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant

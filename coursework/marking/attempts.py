@@ -15,7 +15,7 @@ import numpy as np
 
 from coursework.course.answer_key import Key
 from coursework.model import Part
-from coursework.reading.reading import Reading
+from coursework.parsing.reading import Reading
 
 FARTHEST = 100.0  #: factor between the size of an attempt and that of the reference, unless a known error explains it
 THINGS = 2  #: different things that a measured number is written for, before it means nothing

@@ -9,7 +9,7 @@ from typing import Any
 from coursework.course.answer_key import Key
 from coursework.marking.usual import last_digit
 from coursework.model import Part
-from coursework.reading.reading import Reading
+from coursework.parsing.reading import Reading
 
 SEVERAL = 2  #: wrong answers at least that such a calculator gives
 _SHARE = 0.01  #: of an angle in radians, that rounding on the way may move it

@@ -8,11 +8,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from coursework.marking.answers import read
-from coursework.marking.explaining import nearest_reading
+from coursework.marking.diagnosis import nearest_reading
 from coursework.model import Part
-from coursework.reading.reading import Reading
-from coursework.reading.spelling import shorten, tidy
-from coursework.reading.spoken import has_sense
+from coursework.parsing.reading import Reading
+from coursework.parsing.spelling import shorten, tidy
+from coursework.parsing.spoken import has_sense
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant

@@ -15,7 +15,7 @@ from coursework.polygons.hand_drawn import (
     judge_drawing,
 )
 from coursework.polygons.polygon import Polygon
-from coursework.quantities.error_kinds import PRICES
+from coursework.quantities.error_kinds import PENALTIES
 from coursework.solution import Judged
 
 Answers: TypeAlias = Mapping[str, Any]  #: by part id, those that were read
@@ -100,7 +100,7 @@ def read_off(
     """
     is_drawn = 2 * sum(judgements[i].share == 1.0 for i in points if i in judgements) >= len(points)
     nothing = undrawn if is_drawn else read
-    little = Judged(PRICES["not_drawn"], slip="not_drawn")
+    little = Judged(PENALTIES["not_drawn"], slip="not_drawn")
     return {
         i: little if verdict.share == 1.0 and i in nothing else verdict for i, verdict in judgements.items()
     }

@@ -10,10 +10,10 @@ import numpy as np
 
 from coursework.kinds.nearness import gaps
 from coursework.marking.answers import read
-from coursework.marking.explaining import CLOSE, fits_followed, nearest_reading
+from coursework.marking.diagnosis import CLOSE, fits_followed, nearest_reading
 from coursework.marking.usual import nearness
 from coursework.model import Part
-from coursework.reading.reading import Reading
+from coursework.parsing.reading import Reading
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant

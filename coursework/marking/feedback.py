@@ -14,11 +14,11 @@ from coursework.language.numbers import localise, significant, unit_text, with_u
 from coursework.language.words import listed, quoted, words
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
-from coursework.reading.choices import read_choice
-from coursework.reading.labels import head
-from coursework.reading.reading import Reading
-from coursework.reading.spelling import plain_spelling, spelled_out
-from coursework.reading.vocabulary import vocabulary_of
+from coursework.parsing.choices import read_choice
+from coursework.parsing.labels import head
+from coursework.parsing.reading import Reading
+from coursework.parsing.spelling import plain_spelling, spelled_out
+from coursework.parsing.vocabulary import vocabulary_of
 
 if TYPE_CHECKING:
     from coursework.course.exercise import CourseExercise

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from coursework.errors import BadCourse, CannotAssemble, Undefined
-from coursework.reading.reading import Reading
+from coursework.parsing.reading import Reading
 from coursework.solution import Judged
 
 if TYPE_CHECKING:

@@ -26,11 +26,11 @@ import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError
 from coursework.marking.judges import Verdict
+from coursework.parsing.equations import Equation, parse_equation, value_or_nan
+from coursework.parsing.equivalence import same_equation
+from coursework.parsing.reading import Reading
+from coursework.parsing.trees import Expression, Operation
 from coursework.quantities.loops import Loop, LoopFault
-from coursework.reading.equations import Equation, parse_equation, value_or_nan
-from coursework.reading.equivalence import same_equation
-from coursework.reading.reading import Reading
-from coursework.reading.trees import Expression, Operation
 from coursework.solution import Judged
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from coursework.marking.answers import read
-from coursework.marking.explaining import nearest_reading
+from coursework.marking.diagnosis import nearest_reading
 from coursework.model import Part
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from coursework.errors import unknown
 from coursework.marking.feedback import RecordedSentence, Sentence
 from coursework.model import Part
-from coursework.reading.reading import Reading
+from coursework.parsing.reading import Reading
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant

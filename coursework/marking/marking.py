@@ -19,18 +19,18 @@ from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.marking.attempts import sheet_of
 from coursework.marking.calculator import is_in_radians
+from coursework.marking.deduplicate_penalties import signs_counted_once
+from coursework.marking.diagnosis import EarlierAnswers, fits_followed, nearest_reading
 from coursework.marking.doubtful import settled
+from coursework.marking.error_messages import mark_wrong, shown_as
 from coursework.marking.exchanged import Exchange, exchanged
-from coursework.marking.explaining import EarlierAnswers, fits_followed, nearest_reading
 from coursework.marking.feedback import Sentence, echo, part_name, questions, say, say_not_read
+from coursework.marking.joint_marking import is_scale, is_told_with, mark_judged, waits_for
 from coursework.marking.judges import best_judged
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, SheetMarks, made_mark
-from coursework.marking.mending import mark_wrong, shown_as
-from coursework.marking.once import signs_counted_once
-from coursework.marking.together import is_scale, is_told_with, mark_judged, waits_for
 from coursework.model import Part
-from coursework.reading.reading import Reading
+from coursework.parsing.reading import Reading
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant

@@ -13,7 +13,7 @@ import numpy as np
 
 from coursework.course.exercise import CourseExercise
 from coursework.course.key_batch import Batch
-from coursework.reading.numbers import read_numbers
+from coursework.parsing.numbers import read_numbers
 
 _SHOWN_OTHERWISE = {"*"}  #: what the echo of a unit has another sign for
 

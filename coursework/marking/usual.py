@@ -14,10 +14,10 @@ from coursework.kinds.nearness import gaps
 from coursework.language.words import listed, words
 from coursework.marking.feedback import symbol
 from coursework.model import Part
+from coursework.parsing.reading import Reading
 from coursework.quantities.formula_latex import PrintedName, tree_latex
 from coursework.quantities.rounding import half_step
 from coursework.quantities.usual_errors import formula_errors
-from coursework.reading.reading import Reading
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant

@@ -14,7 +14,7 @@ from coursework.gradebook.by_student import OwnMarks, for_student, marks_of_stud
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.notebooks import read_notebook
 from coursework.gradebook.rows import Rejected
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.messages import Message
 from coursework.nbgrader import outputs as cell_outputs
 from coursework.nbgrader.cells import answers_id, grade_id

@@ -19,11 +19,11 @@ from typing import Any
 from coursework.course.course import Course
 from coursework.course.folder import Folder
 from coursework.errors import BadInput, counted
+from coursework.issuing.assignment import Assignment
+from coursework.issuing.issued import issued_content
+from coursework.issuing.issuing import Issue
+from coursework.issuing.papers import IssuedPaper, papers
 from coursework.language.words import words
-from coursework.making.assignment import Assignment
-from coursework.making.issued import issued_content
-from coursework.making.issuing import Issue
-from coursework.making.papers import IssuedPaper, papers
 from coursework.messages import Message
 from coursework.nbgrader.cells import for_nbgrader, without_variants
 from coursework.rendering.renderer import Renderer, renderer_of

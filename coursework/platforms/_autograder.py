@@ -23,9 +23,9 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.scale import mark_of
 from coursework.gradebook.submissions import find, read_file
+from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise
 from coursework.language.words import languages, words
-from coursework.making.issued import Issued
 from coursework.markup.markdown import plain_line
 from coursework.messages import Message
 from coursework.rendering.feedback import hint, note, sign, verdict_word

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 
+from coursework.parsing.units import convert, find_unit
 from coursework.platforms.items import Item, PoolSection
 from coursework.platforms.posed import Interval, Posed
-from coursework.reading.units import convert, find_unit
 from coursework.sheets.sheet import Question
 
 _PLACES = Decimal("0.0001")  #: the page keeps four decimals of a number that is typed

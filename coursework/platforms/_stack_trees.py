@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from coursework.course.variant import Variant
 from coursework.language.numbers import settled
 from coursework.model import Part
+from coursework.parsing.units import DIMENSIONS, find_unit
 from coursework.platforms._maxima import Unprintable, number, text
 from coursework.platforms._stack_following import Following, following, follows
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval, Posed
-from coursework.reading.units import DIMENSIONS, find_unit
 
 _SLACK = 1e-12  #: relative; an end belongs to the margin whatever its last bit
 EMPTY = "empty"  #: the verdict of a box that is left so, which costs no penalty

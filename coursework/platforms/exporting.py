@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from coursework.issuing.issued import issued_content
+from coursework.issuing.roster import Student
 from coursework.language.words import words
-from coursework.making.issued import issued_content
-from coursework.making.roster import Student
 from coursework.platforms.losses import COLUMNS, Loss, losses
 from coursework.platforms.platform import Platform
 from coursework.platforms.pools import DrawnPool

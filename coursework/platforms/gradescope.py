@@ -16,8 +16,8 @@ from typing import Any
 from coursework.course.builtin import builtin_root
 from coursework.course.folder import Folder
 from coursework.errors import BadInput
+from coursework.issuing.issued import SECRET, Issued, without_secret
 from coursework.language.words import words
-from coursework.making.issued import SECRET, Issued, without_secret
 from coursework.platforms._autograder import SETTINGS
 from coursework.platforms.items import Pool
 from coursework.platforms.platform import Platform

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from coursework.course.variant import Variant
-from coursework.making.assignment import Assignment
-from coursework.making.issuing import Issue
+from coursework.issuing.assignment import Assignment
+from coursework.issuing.issuing import Issue
 from coursework.platforms.posed import Posed, posed
 from coursework.rendering.views import variant_code
 from coursework.sheets.handout import handout

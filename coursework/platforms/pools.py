@@ -13,11 +13,11 @@ from coursework.course.exercise import CourseExercise
 from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
 from coursework.errors import BadInput
+from coursework.issuing.assignment import AskedExercise, Assignment, text_in
+from coursework.issuing.flaws import try_judges
+from coursework.issuing.issuing import Issue, chosen_parts, distinct_variants, drawn_by
+from coursework.issuing.variant_assignment import keyed, with_points
 from coursework.language.words import words
-from coursework.making.assignment import AskedExercise, Assignment, text_in
-from coursework.making.flaws import try_judges
-from coursework.making.issuing import Issue, chosen_parts, distinct_variants, drawn_by
-from coursework.making.variant_assignment import keyed, with_points
 from coursework.markup.markdown import plain_line
 from coursework.platforms.items import Pool, section
 from coursework.rendering.renderer import renderer_of
@@ -131,7 +131,7 @@ def of_exercises(
     Raises
     ------
     BadInput, Starved, UnknownName
-        As :func:`coursework.making.issuing.issue`.
+        As :func:`coursework.issuing.issuing.issue`.
     """
     chosen = chosen_parts(course, names, parts)
     exercises = [AskedExercise(name, chosen[name]) for name in names]

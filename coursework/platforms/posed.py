@@ -15,7 +15,7 @@ from coursework.course.variant import Variant
 from coursework.kinds.choices import cases_of
 from coursework.kinds.ticks import cost_of_wrong
 from coursework.language.numbers import plain, settled, significant
-from coursework.marking.explaining import CLOSE
+from coursework.marking.diagnosis import CLOSE
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.marking.usual import NEAR

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 #: The share of a question's points that one error leaves, by its kind: the same in every exercise, whoever names it.
 #: The size is right, or nearly all of the way; or something of the relation is missing.
-PRICES: Mapping[str, float] = MappingProxyType({
+PENALTIES: Mapping[str, float] = MappingProxyType({
     # the answer itself
     "sign": 0.5, "conjugate": 0.5, "inverse": 0.5, "unit": 0.5, "radians": 0.5, "turns_a_minute": 0.5,
     "quadrant": 0.5, "branch": 0.5, "exchanged": 0.5, "count": 0.5, "other_case": 0.0, "input": 0.0,

@@ -23,7 +23,7 @@ import numpy as np
 from coursework import degrees
 from coursework.errors import BadStatement
 from coursework.markup.formula_tree import Fence, Fraction, Node, Num, Root, Script, Symbol, parse
-from coursework.reading.printed_formulas import DEGREE_SIGNS, Evaluation, NotEvaluable
+from coursework.parsing.printed_formulas import DEGREE_SIGNS, Evaluation, NotEvaluable
 from coursework.system import python_code
 
 

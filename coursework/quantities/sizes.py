@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from coursework.reading.units import DIMENSIONS, find_unit
+from coursework.parsing.units import DIMENSIONS, find_unit
 
 #: Dimensions that may go unsaid: an angle is a ratio, a turn is a count, and ``180`` may be a number like any other.
 _SOFT = ("angle", "cycle")

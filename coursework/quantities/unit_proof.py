@@ -12,10 +12,10 @@ import numpy as np
 
 from coursework.errors import CourseworkError
 from coursework.quantities.graph import Graph, QuantityNode
-from coursework.quantities.lens import Lens
-from coursework.quantities.measured import UnitValue, gathered, leaves, stripped
-from coursework.quantities.opaque import Opaque, unmeasured
 from coursework.quantities.sizes import Size, UnitFault, Unprovable, fits, size_text, sizes_of
+from coursework.quantities.unit_check import Lens
+from coursework.quantities.unit_check_by_scaling import Opaque, unmeasured
+from coursework.quantities.unit_numbers import UnitValue, gathered, leaves, stripped
 
 _NUMBERS = (int, float, complex, np.number)
 

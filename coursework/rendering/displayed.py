@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import lru_cache
 
 from coursework.course.variant import Variant
-from coursework.motion.animation import Animation
 from coursework.polygons.construction import Construction
 from coursework.rendering.renderer import builtin_renderer, renderer_of
+from coursework.scenes.animation import Animation
 from coursework.sheets.drawings import stated_polygons
 
 

@@ -13,10 +13,10 @@ from markupsafe import Markup
 from coursework.figures.moving import COLOURS, MotionTrack
 from coursework.language.numbers import localise, rounded, significant
 from coursework.language.words import words
-from coursework.motion.animation import Animation
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.rendering.keeping import in_script
+from coursework.scenes.animation import Animation
 
 
 def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> str:

@@ -12,9 +12,9 @@ from coursework.course.folder import Folder
 from coursework.errors import unknown
 
 if TYPE_CHECKING:
-    from coursework.motion.animation import Animation
     from coursework.polygons.construction import Construction
     from coursework.rendering.papers import AnyPaper
+    from coursework.scenes.animation import Animation
     from coursework.sheets.book import Book
     from coursework.sheets.paper import FeedbackPaper, Paper, SolutionPaper
     from coursework.sheets.report import ReportContent

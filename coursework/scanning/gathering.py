@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
-from coursework.scanning.kept import ANSWERS, LOST, OTHER_NAME, PageScan, Scanned, ScannedField
+from coursework.scanning.scan_store import ANSWERS, LOST, OTHER_NAME, PageScan, Scanned, ScannedField
 from coursework.scanning.typed import NAME, PAGE, Typed
 
 DIFFERS = "differs"  #: scans of one page say different things

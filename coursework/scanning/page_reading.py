@@ -13,8 +13,8 @@ import numpy as np
 from coursework.course.course import Course, opened
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
-from coursework.making.answer_papers import answer_papers
-from coursework.scanning.kept import (
+from coursework.issuing.answer_papers import answer_papers
+from coursework.scanning.scan_store import (
     ANSWERS,
     BLANK,
     LOST,

@@ -13,13 +13,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from coursework.issuing.issued import COLUMNS as ANSWER_COLUMNS
 from coursework.language.words import languages, words
-from coursework.making.issued import COLUMNS as ANSWER_COLUMNS
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.rendering.keeping import in_script
 from coursework.scanning.gathering import AnswerCard, Gathered, PrintedPaper
-from coursework.scanning.kept import ScannedField, picture_of
+from coursework.scanning.scan_store import ScannedField, picture_of
 from coursework.scanning.typed import COLUMNS as TYPED_COLUMNS
 from coursework.scanning.typed import NAME, PAGE
 from coursework.system.tables import json_text

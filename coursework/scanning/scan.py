@@ -19,8 +19,8 @@ from typing import Any
 
 from coursework.course.course import Course
 from coursework.errors import BadInput
-from coursework.making.answer_papers import AnswerPaper
-from coursework.making.issued import COLUMNS, Issued
+from coursework.issuing.answer_papers import AnswerPaper
+from coursework.issuing.issued import COLUMNS, Issued
 from coursework.scanning.digits import CONFIDENT
 from coursework.scanning.gathering import (
     FieldPosition,
@@ -30,7 +30,10 @@ from coursework.scanning.gathering import (
     ScannedAnswer,
     gather,
 )
-from coursework.scanning.kept import (
+from coursework.scanning.page_reading import Desk, PageRange, Papers, count_pages, cut, read_pages, typed_page
+from coursework.scanning.parts import Joins
+from coursework.scanning.queue import ScanQueue, write_queue
+from coursework.scanning.scan_store import (
     ANSWERS,
     LOST,
     REFUSED,
@@ -49,9 +52,6 @@ from coursework.scanning.kept import (
     stored_page,
     with_copies,
 )
-from coursework.scanning.page_reading import Desk, PageRange, Papers, count_pages, cut, read_pages, typed_page
-from coursework.scanning.parts import Joins
-from coursework.scanning.queue import ScanQueue, write_queue
 from coursework.scanning.sources import Scan, scans
 from coursework.scanning.typed import PAGE, Typed, merged, read_typed, typed_file
 from coursework.system.processes import processes, workers

@@ -9,7 +9,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from coursework.errors import Starved
-from coursework.making.issuing import distinct_variants
+from coursework.issuing.issuing import distinct_variants
 from coursework.rendering.views import chain_on_lines
 from coursework.selfstudy import hints
 from coursework.selfstudy.theory import unchanging

@@ -23,7 +23,7 @@ from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.markup.markdown import to_text
 from coursework.model import Part
-from coursework.reading.numbers import read_number
+from coursework.parsing.numbers import read_number
 from coursework.selfstudy import word_answers as wording
 from coursework.selfstudy.store import is_blank
 

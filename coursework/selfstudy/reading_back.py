@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from coursework.language.numbers import unit_text
 from coursework.marking.answers import read
+from coursework.marking.error_messages import shown_as
 from coursework.marking.feedback import say_not_read
 from coursework.marking.mark import made_mark
-from coursework.marking.mending import shown_as
 from coursework.selfstudy.answers import sentence_of
 
 if TYPE_CHECKING:

@@ -16,9 +16,9 @@ from coursework.language.words import words
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.model import Part
-from coursework.motion.gauges import EFFECTS
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.views import offered, points_number
+from coursework.scenes.gauges import EFFECTS
 from coursework.selfstudy import hints, predictions, refusals
 from coursework.selfstudy import word_answers as wording
 from coursework.selfstudy.advice import next_step, told_advice, told_skills, told_standings
@@ -153,7 +153,7 @@ class StudySession:
 
     def motion(self, *effects: str) -> NotebookDisplay:
         """Return the mechanism over its cycle; ``effects`` as in
-        :class:`~coursework.motion.animation.Animation`.
+        :class:`~coursework.scenes.animation.Animation`.
 
         Unless told, paths and velocities, where the solution states them.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from coursework.course.builtin import builtin_root
 from coursework.course.lessons import taught_by
 from coursework.errors import NoSolution, Starved
-from coursework.making.issuing import distinct_variants
+from coursework.issuing.issuing import distinct_variants
 from coursework.selfstudy import predictions
 from coursework.selfstudy.examples import has_example
 from coursework.selfstudy.predictions import Prediction

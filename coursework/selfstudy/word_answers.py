@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from coursework.language.words import languages, words
-from coursework.reading.numbers import read_number
+from coursework.parsing.numbers import read_number
 
 _DASHES = str.maketrans("−–—‐‑", "-----")
 _ROMAN = {"i": 1, "ii": 2, "iii": 3, "iv": 4}

@@ -12,8 +12,8 @@ from coursework.course.exercise import CourseExercise
 from coursework.course.lessons import PAGES, taught_by
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, BadInput
+from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
-from coursework.making.issuing import distinct_variants
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
 from coursework.sheets.handout import handout

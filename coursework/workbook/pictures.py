@@ -15,8 +15,8 @@ from coursework.figures import Figure, Picture
 from coursework.figures.moving import drawing
 from coursework.figures.moving_svg import moving_svg, still_svg
 from coursework.markup.markdown import plain_line
-from coursework.motion.animation import Animation
-from coursework.motion.reel import SECONDS
+from coursework.scenes.animation import Animation
+from coursework.scenes.reel import SECONDS
 from coursework.sheets.book import DrawnPiece
 from coursework.workbook.lesson_source import LessonImage
 

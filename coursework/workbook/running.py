@@ -17,7 +17,7 @@ from coursework.errors import BadCourse, CourseworkError
 from coursework.figures import Figure, Picture
 from coursework.markup.shown import NotebookDisplay
 from coursework.markup.shown import SvgPicture as ShownPicture
-from coursework.motion.animation import Animation
+from coursework.scenes.animation import Animation
 from coursework.selfstudy.lessons import PredictionTable
 from coursework.selfstudy.worked import WorkedExample
 from coursework.sheets.book import DrawnPiece, Piece, PrintedPiece, ProsePiece

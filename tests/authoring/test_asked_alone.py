@@ -10,7 +10,7 @@ from coursework.authoring.check_alone import asked_alone, check_alone
 from coursework.authoring.check_report import CheckReport
 from coursework.authoring.checks import check
 from coursework.errors import BadCourse, BadStatement
-from coursework.making.issuing import distinct_variants
+from coursework.issuing.issuing import distinct_variants
 
 COURSE = coursework.open_course()
 VARIANTS = 8

@@ -13,9 +13,9 @@ from coursework.authoring.check_formulas import check_formulas, prove
 from coursework.authoring.check_report import CheckReport, notes
 from coursework.authoring.checks import check
 from coursework.course.exercise import ALL
+from coursework.parsing.printed_formulas import NotEvaluable, read
 from coursework.quantities import formula_latex as worked
 from coursework.quantities.formula_latex import formula_in_symbols
-from coursework.reading.printed_formulas import NotEvaluable, read
 from coursework.sheets.sheet import Step
 
 COURSE = coursework.open_course()

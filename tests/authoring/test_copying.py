@@ -12,7 +12,7 @@ from coursework.authoring.checks import check
 from coursework.authoring.copying import copy_exercise
 from coursework.course.folder import course_folder
 from coursework.errors import BadInput, UnknownName
-from coursework.making.issued import plain_value
+from coursework.issuing.issued import plain_value
 
 COURSE = coursework.open_course()
 BUILTIN = COURSE.folder

@@ -23,10 +23,10 @@ from pathlib import Path
 import pytest
 
 import coursework
+from coursework.issuing.assignment import Assignment
+from coursework.issuing.roster import read_roster
+from coursework.issuing.variant_assignment import keyed
 from coursework.lti.storage import Storage
-from coursework.making.assignment import Assignment
-from coursework.making.roster import read_roster
-from coursework.making.variant_assignment import keyed
 
 MOODLE, CHROMIUM = os.environ.get("COURSEWORK_MOODLE", ""), os.environ.get("COURSEWORK_CHROMIUM", "")
 PICTURES, ADMIN = os.environ.get("COURSEWORK_PICTURES", ""), os.environ.get("COURSEWORK_MOODLE_ADMIN", "")

@@ -274,7 +274,7 @@ def test_a_comma_is_refused_by_an_english_moodle_and_a_point_taken_by_a_french_o
 
 
 def test_moodle_takes_xml_by_id_numbers(moodle, quiz, tmp_path):
-    from coursework.making.roster import read_roster
+    from coursework.issuing.roster import read_roster
 
     students = {s.name: dict(s.columns) for s in read_roster(quiz["gradebook_en"])}
     graded(tmp_path, quiz["en.csv"], students=students)

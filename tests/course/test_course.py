@@ -20,8 +20,8 @@ from coursework.errors import (
     WrongUnit,
     WrongValue,
 )
-from coursework.motion.effects import EFFECTS
 from coursework.rendering.renderer import renderer_of
+from coursework.scenes.effects import EFFECTS
 
 PACKAGE = Path(coursework.__file__).parent
 

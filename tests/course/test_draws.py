@@ -14,7 +14,7 @@ from tables import each_row
 
 from coursework.course import draws
 from coursework.errors import BadCourse, Starved
-from coursework.making.issuing import distinct_variants
+from coursework.issuing.issuing import distinct_variants
 from coursework.model import Exercise, Part, chosen, fixed
 from coursework.model import drawn as ranged
 

@@ -24,13 +24,13 @@ from coursework.gradebook.class_marking import marked
 from coursework.gradebook.feedback_sheets import feedback_sheet
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import Rejected
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.rendering.renderer import renderer_of
 
 SOLUTION = "solutions/crank_pin.py"
 #: Imported beside the engine; they carry marks, and make none.
 CARRIES = {f"gradebook/{name}.py" for name in ("doubtful", "graded", "placing", "rows")} | {
-    f"making/{name}.py" for name in ("identity", "issued", "students")
+    f"issuing/{name}.py" for name in ("identity", "issued", "students")
 }
 
 

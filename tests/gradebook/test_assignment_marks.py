@@ -16,7 +16,7 @@ from coursework.gradebook.class_marking import marked
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.scale import mark_of
 from coursework.gradebook.submissions import read_file
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.statistics.marks import read
 from coursework.statistics.measures import measure
 

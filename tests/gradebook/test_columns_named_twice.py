@@ -8,7 +8,7 @@ from coursework.errors import BadInput
 from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.submissions import read_file
-from coursework.making.roster import read_roster
+from coursework.issuing.roster import read_roster
 from coursework.scanning.typed import read_typed
 from coursework.statistics.marks import _lines
 

@@ -23,13 +23,13 @@ from coursework.gradebook.feedback_sheets import FeedbackOptions, feedback_paper
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.submissions import read_file
+from coursework.issuing import practice as practice_module
+from coursework.issuing.issued import Issued
+from coursework.issuing.issuing import distinct_variants
+from coursework.issuing.practice import PracticeOf, unissued_seed
+from coursework.issuing.protection import valid_variants
 from coursework.language.typography import typeset
 from coursework.language.words import words
-from coursework.making import practice as practice_module
-from coursework.making.issued import Issued
-from coursework.making.issuing import distinct_variants
-from coursework.making.practice import PracticeOf, unissued_seed
-from coursework.making.protection import valid_variants
 from coursework.marking.marking import mark
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.sheet import Lesson

@@ -16,7 +16,7 @@ from coursework.gradebook.item_label import label_in
 from coursework.gradebook.moodle_responses import columns_of, parts_of
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.submissions import find, read_file
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 
 
 def rows_of(path, data=None):

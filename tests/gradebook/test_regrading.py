@@ -17,7 +17,7 @@ from coursework.gradebook.class_marking import _waiting, marked
 from coursework.gradebook.feedback_sheets import feedback_sheet
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.submissions import read_file
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.rendering.renderer import renderer_of
 
 SOLUTION = "solutions/crank_pin.py"

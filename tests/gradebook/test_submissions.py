@@ -16,7 +16,7 @@ from coursework.gradebook.notebooks import literal_answers
 from coursework.gradebook.placing import UnplacedError, sheet_of_row
 from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import find, read_file
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 
 HEADER = "student,exercise,seed,part,answer\n"
 

@@ -13,8 +13,8 @@ from coursework.cli.demo import HABITS
 from coursework.errors import BadCourse
 from coursework.kinds.kind import kind_of
 from coursework.model import Part
-from coursework.reading.graph_likeness import compare, names_that_fit
-from coursework.reading.graphs import edge, graph_of, in_order, read_graph, renamed
+from coursework.parsing.graph_likeness import compare, names_that_fit
+from coursework.parsing.graphs import edge, graph_of, in_order, read_graph, renamed
 from coursework.structure.joints import JointGraph
 from coursework.structure.numbered import to_count
 
@@ -250,7 +250,7 @@ def test_its_room_is_a_number_of_lines(room):
 
 def test_every_name_of_a_kind_of_joint_means_one_kind():
     from coursework.language.words import languages, words
-    from coursework.reading.graph_tokens import kind_named
+    from coursework.parsing.graph_tokens import kind_named
 
     for lang in languages():
         for kind, names in words(lang)["graph"]["kinds"].items():

@@ -23,7 +23,7 @@ import numpy as np
 from coursework.kinds.kind import AnswerSpelling, Kind
 from coursework.kinds.nearness import in_half_widths
 from coursework.language.numbers import significant
-from coursework.reading.points import read_point
+from coursework.parsing.points import read_point
 
 
 class Interval(Kind):

@@ -19,7 +19,7 @@ from coursework.cli import run
 from coursework.cli.demo import HABITS
 from coursework.errors import BadCourse
 from coursework.model import Part
-from coursework.reading.several import read_choices
+from coursework.parsing.several import read_choices
 
 GIVEN = {"R": 30.0, "X": 40.0, "U": 100.0}
 

@@ -26,14 +26,14 @@ from lti_platform import (
 )
 
 from coursework.cli import run
+from coursework.issuing.assignment import Assignment
+from coursework.issuing.roster import read_roster
+from coursework.issuing.variant_assignment import keyed
 from coursework.language.words import words
 from coursework.lti.launch import launch_of
 from coursework.lti.sending import wait_after
 from coursework.lti.services import Services
 from coursework.lti.storage import Score
-from coursework.making.assignment import Assignment
-from coursework.making.roster import read_roster
-from coursework.making.variant_assignment import keyed
 
 SAID = words("en")["lti"]
 NAME = "slotted_mechanism"

@@ -6,8 +6,8 @@ import random
 import pytest
 
 import coursework
+from coursework.issuing.issuing import distinct_variants
 from coursework.language.numbers import significant
-from coursework.making.issuing import distinct_variants
 
 COURSE = coursework.open_course()
 MOST = 0.01

@@ -17,9 +17,9 @@ from coursework.course.answer_key import Key
 from coursework.course.key_batch import keys_of
 from coursework.course.marking_rules import Rules
 from coursework.errors import BadCourse, Starved
-from coursework.making.flaws import HIDDEN, SHOWN, flaws, visibility
-from coursework.making.issuing import distinct_variants
-from coursework.making.protection import valid_variants
+from coursework.issuing.flaws import HIDDEN, SHOWN, flaws, visibility
+from coursework.issuing.issuing import distinct_variants
+from coursework.issuing.protection import valid_variants
 from coursework.model import Part
 from coursework.quantities.rounding import envelope, half_step, rounded, student_who_rounds
 

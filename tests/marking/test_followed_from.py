@@ -7,7 +7,7 @@ import coursework
 from coursework.language.numbers import significant
 from coursework.language.words import words
 from coursework.marking.answers import read
-from coursework.marking.explaining import fits_followed
+from coursework.marking.diagnosis import fits_followed
 
 COURSE = coursework.open_course()
 TOLD = words("en")["marking"]["follow_through_from"].partition("{earlier}")[0].rpartition(" ")[2]

@@ -11,7 +11,7 @@ import coursework
 from coursework.authoring import check_answers, checks
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
-from coursework.making import issuing
+from coursework.issuing import issuing
 
 EXERCISE = """
 from coursework.model import Exercise, Part, drawn

@@ -12,9 +12,9 @@ import pytest
 import coursework
 from coursework import degrees
 from coursework.errors import CourseworkError
+from coursework.issuing.issuing import distinct_variants
 from coursework.language.numbers import significant
-from coursework.making.issuing import distinct_variants
-from coursework.quantities.error_kinds import PRICES
+from coursework.quantities.error_kinds import PENALTIES
 
 COURSE = coursework.open_course()
 
@@ -136,7 +136,10 @@ def test_two_exchanged_boxes_are_found_and_counted_once(name):
             continue
         marking = variant.grade({**right, one.id: right[other.id], other.id: right[one.id]})
         said = [(marking[p.id].verdict, marking[p.id].points / marking[p.id].out_of) for p in (one, other)]
-        assert said == [("slip:exchanged", PRICES["exchanged"]), ("follow_through", 1.0)], (one.id, other.id)
+        assert said == [("slip:exchanged", PENALTIES["exchanged"]), ("follow_through", 1.0)], (
+            one.id,
+            other.id,
+        )
         assert {marking[i].verdict for i in right if i not in (one.id, other.id)} <= {"correct"}
 
 

@@ -14,12 +14,12 @@ import coursework
 from coursework.authoring.check_loops import check_loops, equation_holds
 from coursework.authoring.check_report import CheckReport
 from coursework.errors import BadCourse, UnknownName, WrongValue
+from coursework.issuing.issuing import issue
 from coursework.kinematics.chains import ClosedChain, Vector
-from coursework.making.issuing import issue
 from coursework.marking.loop_judge import judge_of
 from coursework.model import Part, loop_equations
+from coursework.parsing.equations import parse_equation
 from coursework.quantities.loops import Loop, stated
-from coursework.reading.equations import parse_equation
 
 COURSE = coursework.open_course()
 WITH_LOOPS = tuple(n for n in COURSE.names if any(part.loop for part in COURSE[n].spec.parts))

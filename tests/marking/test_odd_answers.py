@@ -12,7 +12,7 @@ from tables import each_row
 
 import coursework
 from coursework.errors import WrongValue
-from coursework.reading.plain_values import Strange, plain_answer
+from coursework.parsing.plain_values import Strange, plain_answer
 
 
 def _raise(*_, **__):

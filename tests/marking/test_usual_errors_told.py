@@ -11,7 +11,7 @@ from tables import each_row
 
 import coursework
 from coursework.authoring.check_knowledge import check_knowledge
-from coursework.authoring.check_prices import check_prices
+from coursework.authoring.check_penalties import check_prices
 from coursework.authoring.check_report import CheckReport
 from coursework.authoring.check_usual import check_usual_errors
 from coursework.course.answer_key import Key
@@ -19,11 +19,11 @@ from coursework.course.exercise import ALL
 from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse
+from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
-from coursework.making.issuing import distinct_variants
 from coursework.marking.feedback import symbol
 from coursework.marking.usual import why
-from coursework.quantities.error_kinds import PRICES
+from coursework.quantities.error_kinds import PENALTIES
 from coursework.quantities.usual_errors import formula_errors
 
 COURSE = coursework.open_course()
@@ -91,7 +91,7 @@ def test_one_wrong_sign_costs_the_same_in_every_exercise():
                     and variant.exercise.solution.mistakes[mark.verdict[8:]].kind == "sign"
                 )
                 if is_sign:
-                    assert mark.points == PRICES["sign"] * mark.out_of, (name, part.id)
+                    assert mark.points == PENALTIES["sign"] * mark.out_of, (name, part.id)
 
 
 def test_all_signs_of_an_equation_are_one_error():
@@ -135,7 +135,7 @@ def test_metres_everywhere_are_one_error():
     lengths = [p for p in variant.parts if p.unit == "mm" and p.sort.is_number and not p.judge]
     marking = variant.grade({p.id: f"{variant.key.reference[p.quantity] / 1000:.6g}" for p in lengths})
     points = [marking[p.id].points / marking[p.id].out_of for p in lengths]
-    assert points[0] == PRICES["unit"]
+    assert points[0] == PENALTIES["unit"]
     assert set(points[1:]) == {1.0}
 
 

@@ -15,8 +15,8 @@ from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.linkage import BodyPoint, Linkage
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.wrenches import inertia_at_rate, inertia_at_start, weight
-from coursework.motion.added import BodyMass, SceneData
-from coursework.motion.scenes import Scene
+from coursework.scenes.added import BodyMass, SceneData
+from coursework.scenes.scenes import Scene
 
 COURSE = coursework.open_course()
 DRIVEN = [

@@ -12,8 +12,8 @@ import coursework
 from coursework.errors import UnknownName
 from coursework.mechanics.friction import contacts
 from coursework.mechanics.statement import Load
-from coursework.motion.added import BodyMass, SceneData
-from coursework.motion.scenes import Scene
+from coursework.scenes.added import BodyMass, SceneData
+from coursework.scenes.scenes import Scene
 
 COURSE = coursework.open_course()
 #: A 3-4-5 triangle: the crank upright, the rod falls by 3 over 4.

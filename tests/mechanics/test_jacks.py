@@ -18,9 +18,9 @@ import coursework
 from coursework.cli import run
 from coursework.errors import BadCourse, BadInput, WrongValue
 from coursework.mechanics.statement import Load
-from coursework.motion.added import BodyMass, Flywheel, SceneData
-from coursework.motion.scene_files import read_scene
-from coursework.motion.scenes import Scene
+from coursework.scenes.added import BodyMass, Flywheel, SceneData
+from coursework.scenes.scene_files import read_scene
+from coursework.scenes.scenes import Scene
 
 COURSE = coursework.open_course()
 ROOT = Path(__file__).resolve().parents[2]

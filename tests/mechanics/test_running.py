@@ -13,8 +13,8 @@ import coursework
 from coursework.errors import Undefined, WrongValue
 from coursework.mechanics.statement import Body, Load, Mechanism, Slide
 from coursework.mechanics.turn_table import TURN, TurnTable
-from coursework.motion.added import BodyMass, Flywheel, Motor, SceneData
-from coursework.motion.scenes import Scene
+from coursework.scenes.added import BodyMass, Flywheel, Motor, SceneData
+from coursework.scenes.scenes import Scene
 
 COURSE = coursework.open_course()
 FOUR_BAR = {

@@ -11,7 +11,7 @@ from tables import each_row
 import coursework
 from coursework.cli import run
 from coursework.course.answer_keys import answer_keys
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.nbgrader.marking import marked_notebook
 
 ROSTER = "student,e-mail\nAda Byron,ada@uni.example\nBen Adda,ben@uni.example\n"

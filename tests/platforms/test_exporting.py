@@ -9,7 +9,7 @@ import json
 import pytest
 
 import coursework
-from coursework.making.roster import Student
+from coursework.issuing.roster import Student
 from coursework.platforms.exporting import export, steps
 from coursework.platforms.platform import platform_of, platforms
 from coursework.platforms.pools import alike, of_exercises

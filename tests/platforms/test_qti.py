@@ -20,7 +20,7 @@ import coursework
 from coursework.course.secrecy import Secret
 from coursework.gradebook.qti_results import read_results
 from coursework.gradebook.rows import AnswerRow, PlatformFile
-from coursework.making.assignment import read_assignment
+from coursework.issuing.assignment import read_assignment
 from coursework.marking.marking import mark
 from coursework.platforms._qti_item import identifier, identifier_of, item_file
 from coursework.platforms._qti_tree import QTI_3, QTI_21, decimal, kebab, written

@@ -3,7 +3,7 @@
 import pytest
 
 import coursework
-from coursework.quantities.error_kinds import PRICES
+from coursework.quantities.error_kinds import PENALTIES
 
 COURSE = coursework.open_course()
 DRAWN = [name for name in COURSE.names if COURSE[name].spec.drawing_mm]
@@ -35,4 +35,4 @@ def test_what_is_read_off_no_drawing_or_one_turned_by_a_right_angle_earns_little
         assert whole == out_of
         for drawing in ({}, {i: turned(*place) for i, place in places.items()}):
             earned, _ = read_off(variant, answers(variant, drawing))
-            assert earned <= PRICES["not_drawn"] * out_of, (variant.seed, drawing)
+            assert earned <= PENALTIES["not_drawn"] * out_of, (variant.seed, drawing)

@@ -20,7 +20,7 @@ from coursework.cli import run
 from coursework.cli.commands import commands as cli
 from coursework.course.marking_rules import Rules
 from coursework.errors import BadInput
-from coursework.making.assignment import OPTIONS, read_assignment
+from coursework.issuing.assignment import OPTIONS, read_assignment
 from coursework.markup.mathml import to_mathml
 from coursework.rendering.renderer import renderer_of
 
@@ -295,14 +295,14 @@ def test_every_python_block_runs(page, tmp_path, monkeypatch):
 
 @pytest.mark.e2e
 def test_the_page_on_architecture_tells_of_every_room_and_draws_it():
-    house = gallery("house")
+    graph = gallery("import_graph")
     page = (DOCS / "architecture.md").read_text("utf-8")
-    rooms = house.rooms()
+    rooms = graph.rooms()
     assert {f"`{room}`" for room in rooms} <= set(re.findall(r"`\w+`", page))
-    plan = house.floors(rooms)
+    plan = graph.floors(rooms)
     height = {room: floor for floor, row in enumerate(plan) for room in row}
     assert all(height[below] < height[room] for room, needs in rooms.items() for below in needs)
-    drawn = house.drawing().svg()
+    drawn = graph.drawing().svg()
     assert all(f">{room}<" in drawn for room in rooms)
 
 

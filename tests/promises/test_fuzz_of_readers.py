@@ -206,7 +206,7 @@ def test_an_attempt_of_many_digits_is_none(tmp_path):
     "field", ['"least": 1e999', '"number": "1"', '"is_straight": 1', '"code": []', '"reason": "\\ud800"', '"least": ' + "[" * 5000, '"number": true', '"fields": [{}]']
 )  # fmt: skip
 def test_a_page_that_is_kept_otherwise_is_read_anew(tmp_path, field):
-    from coursework.scanning.kept import stored_page
+    from coursework.scanning.scan_store import stored_page
 
     whole = json.loads(READERS["page of a scan"].samples[0])
     whole.pop(json.loads(f"[{field.partition(':')[0]}]")[0])
@@ -255,13 +255,13 @@ def test_an_archive_with_a_file_without_a_name_is_told(tmp_path):
 
 
 def test_a_roster_beyond_its_size_or_its_columns_is_told(tmp_path, monkeypatch):
-    from coursework.making.roster import read_roster
+    from coursework.issuing.roster import read_roster
 
     path = tmp_path / "r.csv"
     path.write_text("student" + ",x" * 5000 + "\nAna\n")
     with pytest.raises(BadInput, match=r"r\.csv: a table of 5,001 columns is not read; the limit is 5,000"):
         read_roster(path)
-    monkeypatch.setattr("coursework.making.roster.MOST_TABLE_BYTES", 10)
+    monkeypatch.setattr("coursework.issuing.roster.MOST_TABLE_BYTES", 10)
     with pytest.raises(BadInput, match=r"r\.csv: a file of [0-9,]+ bytes is not read; the limit is 10"):
         read_roster(path)
 

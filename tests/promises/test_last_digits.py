@@ -14,9 +14,9 @@ import pytest
 from sweeps import sampled
 
 import coursework
+from coursework.issuing.issued import KEY_DIGITS, key_content, key_rows
+from coursework.issuing.issuing import issue
 from coursework.language.numbers import rounded, settled, significant
-from coursework.making.issued import KEY_DIGITS, key_content, key_rows
-from coursework.making.issuing import issue
 from coursework.quantities import graph
 from coursework.rendering.renderer import renderer_of
 
@@ -96,7 +96,7 @@ def test_the_key_has_ten_digits_and_no_more(name):
 
 
 def test_a_key_of_noise_is_zero_beside_its_margin_and_beside_what_stands_with_it():
-    from coursework.making.issued import _in_key
+    from coursework.issuing.issued import _in_key
 
     assert _in_key(3e-17, 0.01) == 0.0
     assert _in_key(np.array([120.0, -4e-15])).tolist() == [120.0, 0.0]

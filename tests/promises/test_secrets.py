@@ -17,10 +17,10 @@ import coursework
 from coursework.cli import run
 from coursework.course import draws
 from coursework.course.secrecy import Secret
-from coursework.making.assignment import read_assignment
-from coursework.making.issued import issued_content
-from coursework.making.roster import Student
-from coursework.making.variant_assignment import assign_variants
+from coursework.issuing.assignment import read_assignment
+from coursework.issuing.issued import issued_content
+from coursework.issuing.roster import Student
+from coursework.issuing.variant_assignment import assign_variants
 
 COURSE = coursework.open_course()
 CLASS = [Student(f"Student {n}", columns={"number": str(4000 + n), "group": "AB"[n % 2]}) for n in range(4)]
@@ -244,7 +244,7 @@ def test_a_file_without_a_secret_has_one_beside_it_and_goes_on_with_it(tmp_path,
 
 def test_what_was_issued_without_a_secret_goes_on_and_who_comes_later_has_one(tmp_path):
     """Of versions, the late ones have the paper of their letter."""
-    from coursework.making.issuing import drawn_by
+    from coursework.issuing.issuing import drawn_by
 
     path = stated(tmp_path, SOME, "versions = 2")
     letters = {s.name: "AB"[n % 2] for n, s in enumerate(CLASS)}

@@ -16,7 +16,7 @@ from tables import each_row
 from coursework import open_course
 from coursework.cli import run
 from coursework.course.builtin import builtin_root
-from coursework.making.answer_papers import answer_papers
+from coursework.issuing.answer_papers import answer_papers
 from coursework.rendering.codes import qr_modules
 from coursework.rendering.pdf import source
 from coursework.rendering.renderer import builtin_renderer

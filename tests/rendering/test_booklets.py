@@ -16,7 +16,7 @@ from coursework.cli import run
 from coursework.cli.options import DONE
 from coursework.course.builtin import builtin_root
 from coursework.errors import BadStatement, UnknownName
-from coursework.making import booklets, issuing
+from coursework.issuing import booklets, issuing
 from coursework.rendering.pdf import source
 from coursework.rendering.renderer import PAPERS, Renderer, renderer_of
 from coursework.system import writing

@@ -16,8 +16,8 @@ from tables import each_row
 from coursework.cli import run
 from coursework.cli.options import DONE
 from coursework.course.builtin import builtin_root
-from coursework.making import build as building
-from coursework.making import issuing
+from coursework.issuing import build as building
+from coursework.issuing import issuing
 from coursework.markup.formula_tree import GRIDS, MACROS
 from coursework.markup.latex import latex_text, plain_latex, to_latex
 from coursework.markup.spoken import spoken

@@ -14,8 +14,8 @@ from scanned_pages import Hand, Scan, scanned, sheet_of_pdf
 from coursework.api import open_course
 from coursework.cli import run
 from coursework.course.answer_key import Key
-from coursework.making.answer_papers import answer_papers
-from coursework.making.students import file_stems
+from coursework.issuing.answer_papers import answer_papers
+from coursework.issuing.students import file_stems
 from coursework.system.tables import csv_file
 
 EXERCISE = "slotted_mechanism"

@@ -10,11 +10,11 @@ from tables import each_row
 
 from coursework import cli
 from coursework.api import open_course
-from coursework.making.answer_papers import answer_papers
-from coursework.making.students import file_stems
+from coursework.issuing.answer_papers import answer_papers
+from coursework.issuing.students import file_stems
 from coursework.scanning import names, pictures
-from coursework.scanning.kept import LOST, OTHER_NAME, stored_page
 from coursework.scanning.pictures import BadPicture, page_count, picture_at
+from coursework.scanning.scan_store import LOST, OTHER_NAME, stored_page
 from coursework.system.limits import MOST_PAGES
 from coursework.system.processes import ResourceLimits
 

@@ -11,8 +11,8 @@ from study_words import BOTH, SAID, flat, start_of
 import coursework
 from coursework.course.answer_keys import answer_keys
 from coursework.errors import BadInput, CourseworkError, UnknownName
+from coursework.issuing.protection import valid_variants
 from coursework.language.words import words
-from coursework.making.protection import valid_variants
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy import predictions
 from coursework.selfstudy.progress import Progress

@@ -14,7 +14,7 @@ from site_practising import right_answer
 
 from coursework.database.people import put_account, put_person
 from coursework.database.submissions import submissions_of
-from coursework.making.students import folded
+from coursework.issuing.students import folded
 from coursework.site.people import accounts
 
 pytestmark = pytest.mark.e2e

@@ -18,7 +18,7 @@ from coursework.database.jobs import MARK, PREPARE, given_up_jobs, take_job
 from coursework.database.prepared import drop_prepared
 from coursework.database.publication import student_assignments
 from coursework.database.tables import assignment, job, person, prepared
-from coursework.making.assignment import AskedExercise
+from coursework.issuing.assignment import AskedExercise
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of

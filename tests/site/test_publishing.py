@@ -15,7 +15,7 @@ from coursework.database.assignments import issued_content, names
 from coursework.database.audit import noted
 from coursework.database.publication import ACCEPT, CHARGE, Publication, extensions, published
 from coursework.errors import unknown
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.site.publication import assigning
 from coursework.site.publication.publishing import holders
 
@@ -67,7 +67,7 @@ def test_a_file_and_a_roster_are_dealt_and_published(class_of_three, staff):
 
 
 def test_what_an_uploaded_file_names_is_never_looked_for(class_of_three, staff, monkeypatch):
-    from coursework.making.assignment import _AssignmentReader
+    from coursework.issuing.assignment import _AssignmentReader
 
     def looked(self, value):
         raise AssertionError(value)

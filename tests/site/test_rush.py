@@ -19,7 +19,7 @@ from coursework.database.people import put_account, put_person
 from coursework.database.publication import record_passed_date
 from coursework.database.submissions import submissions_of
 from coursework.database.tables import delivery, job, mark, marking
-from coursework.making.students import folded
+from coursework.issuing.students import folded
 from coursework.site.frame import arrivals
 from coursework.site.frame.cookies import COOKIE
 from coursework.site.papers import submission

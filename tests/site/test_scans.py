@@ -19,7 +19,7 @@ from coursework.database.assignments import issued_content
 from coursework.database.erasing import erase
 from coursework.database.scans import pages_scanned
 from coursework.database.tables import person
-from coursework.making.answer_papers import answer_papers
+from coursework.issuing.answer_papers import answer_papers
 from coursework.site.desk import scan_jobs
 from coursework.site.desk.class_cache import class_now
 

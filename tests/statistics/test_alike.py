@@ -7,7 +7,7 @@ import csv
 import coursework
 from coursework.cli import run
 from coursework.gradebook.columns import MARKS_COLUMNS
-from coursework.making.issuing import distinct_variants
+from coursework.issuing.issuing import distinct_variants
 from coursework.statistics.alike import alike
 
 COURSE = coursework.open_course()

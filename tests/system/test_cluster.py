@@ -21,8 +21,8 @@ from cluster_machines import PACKAGE, Machines
 import coursework
 from coursework.authoring.scaffold import new_course
 from coursework.cli import run
-from coursework.course import carrying
-from coursework.course.carrying import Carried
+from coursework.course import course_transfer
+from coursework.course.course_transfer import Carried
 from coursework.course.folder import course_folder
 from coursework.errors import BadInput
 from coursework.gradebook import class_marking
@@ -284,7 +284,7 @@ def test_places_are_told_from_the_course_and_back(load, course_of_one):
 def test_a_worker_whose_disk_is_full_is_named(course_of_one, tmp_path, monkeypatch):
     """Not to be taken for the disk of who called."""
     (tmp_path / "full").touch()  # a file where the folder is to be: as little room as on a full disk
-    monkeypatch.setattr(carrying, "_home", lambda: tmp_path / "full")
+    monkeypatch.setattr(course_transfer, "_home", lambda: tmp_path / "full")
     load = Carried(course_folder(course_of_one))
     made = pickle.loads(load.packed(os.path.exists, ("/",)), buffers=[load.content])
     with pytest.raises(
@@ -297,8 +297,8 @@ def test_a_worker_whose_disk_is_full_is_named(course_of_one, tmp_path, monkeypat
 
 
 def test_another_version_at_a_worker_is_told_in_a_line(capsys, machines, course_of_one, monkeypatch):
-    here = {**carrying.versions(), "numpy": "1.0", "Python": "2.7"}
-    monkeypatch.setattr(carrying, "versions", lambda: here)
+    here = {**course_transfer.versions(), "numpy": "1.0", "Python": "2.7"}
+    monkeypatch.setattr(course_transfer, "versions", lambda: here)
     status = run(["--course", str(course_of_one), "check", "--variants", "3", "--cluster", machines.address])
     told = capsys.readouterr().err
     assert status == 2

@@ -46,9 +46,9 @@ from coursework.gradebook.waiting import (
     groups,
     measures,
 )
-from coursework.making.assignment import text_in
-from coursework.making.issued import Issued
-from coursework.making.students import namesakes
+from coursework.issuing.assignment import text_in
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import namesakes
 from coursework.messages import localised
 from coursework.site.frame.requests import HTTPException, Request, Response
 from coursework.site.frame.settings import Site

@@ -12,8 +12,8 @@ from coursework.gradebook.book import Result
 from coursework.gradebook.columns import own_columns
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
+from coursework.issuing.students import folded
 from coursework.language.numbers import localise
-from coursework.making.students import folded
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import CachedClass, assignment_of, class_now, class_page_of

@@ -16,7 +16,11 @@ from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import AnswerRow
 from coursework.messages import Message, localised
 from coursework.scanning.gathering import AnswerCard, Gathered, ScannedAnswer
-from coursework.scanning.kept import (
+from coursework.scanning.page_reading import Papers
+from coursework.scanning.parts import Joins
+from coursework.scanning.queue import ScanQueue
+from coursework.scanning.scan import LEAST, as_told, papers_asked, together
+from coursework.scanning.scan_store import (
     ANSWERS,
     LOST,
     REFUSED,
@@ -26,10 +30,6 @@ from coursework.scanning.kept import (
     page_of,
     with_copies,
 )
-from coursework.scanning.page_reading import Papers
-from coursework.scanning.parts import Joins
-from coursework.scanning.queue import ScanQueue
-from coursework.scanning.scan import LEAST, as_told, papers_asked, together
 from coursework.scanning.typed import Typed
 from coursework.site.frame.settings import Site
 

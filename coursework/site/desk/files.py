@@ -27,8 +27,8 @@ from coursework.gradebook.placing import as_texts
 from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebook
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.submissions import find, read_file
-from coursework.making.issued import COLUMNS
-from coursework.making.roster import roster_and_notes
+from coursework.issuing.issued import COLUMNS
+from coursework.issuing.roster import roster_and_notes
 from coursework.messages import Message, as_message, localised
 from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import moment

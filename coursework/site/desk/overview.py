@@ -11,7 +11,7 @@ from coursework.database.audit import note
 from coursework.database.instructor_queries import listed_assignments
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput, CourseworkError
-from coursework.making.issued import Issued
+from coursework.issuing.issued import Issued
 from coursework.site.desk.class_cache import CachedClass, assignment_of, assignment_title, by_whom, class_now
 from coursework.site.desk.question_cards import moment, question_card
 from coursework.site.frame.budgets import DESK_FILES, read_apart

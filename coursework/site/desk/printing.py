@@ -10,8 +10,8 @@ from sqlalchemy import Connection
 from coursework.database.permissions import Permission
 from coursework.database.publication import student_assignments
 from coursework.errors import BadInput
-from coursework.making.booklets import parted
-from coursework.making.students import file_stems
+from coursework.issuing.booklets import parted
+from coursework.issuing.students import file_stems
 from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.requests import Request, Response, Route
 from coursework.site.papers.student_paper import StudentPaper, student_paper

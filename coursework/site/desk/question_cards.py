@@ -17,9 +17,9 @@ from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.graded_sheet import Graded
+from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise, significant, unit_text
 from coursework.language.words import quoted
-from coursework.making.issued import Issued
 from coursework.marking.mark import Mark
 from coursework.model import Part
 from coursework.sheets.answer_sheet import answer_text

@@ -21,9 +21,9 @@ from coursework.database.audit import note
 from coursework.database.scans import ScannedPage, put_scanned
 from coursework.database.settings import put_value, value_of
 from coursework.errors import CourseworkError
-from coursework.scanning.kept import REFUSED, PageScan, page_as_json, page_id, picture_of, stored_page
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.scan import read_files
+from coursework.scanning.scan_store import REFUSED, PageScan, page_as_json, page_id, picture_of, stored_page
 from coursework.site.frame.settings import Site
 from coursework.system.processes import processes, workers
 

@@ -30,8 +30,8 @@ from coursework.gradebook.accepted import points_of
 from coursework.gradebook.columns import own_columns
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
+from coursework.issuing.students import folded
 from coursework.language.numbers import localise
-from coursework.making.students import folded
 from coursework.marking.mark import Mark
 from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import (

@@ -16,7 +16,7 @@ from coursework.course.course import Course
 from coursework.database.pool import Pooled, issued_given, issued_seeds, pooled, pools, put_pooled
 from coursework.database.store import Store
 from coursework.errors import CourseworkError, Starved
-from coursework.making.issuing import distinct_variants
+from coursework.issuing.issuing import distinct_variants
 
 LOG = logging.getLogger("coursework.site")
 FIRST_SEED = 3_000_000  #: far from the seeds of classes, self-study and books

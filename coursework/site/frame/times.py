@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
+from coursework.issuing.papers import date_text
 from coursework.language.words import words
-from coursework.making.papers import date_text
 
 _FORM = "%Y-%m-%dT%H:%M"  #: format of a form field
 

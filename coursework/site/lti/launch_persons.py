@@ -19,11 +19,11 @@ from coursework.database.identities import (
 from coursework.database.instructor_queries import stamp
 from coursework.database.people import person_by_identifier, put_person
 from coursework.database.tables import assignment
-from coursework.making.assignment import Assignment, assignment_of
-from coursework.making.issued import issued_content as content_of
-from coursework.making.roster import Student
-from coursework.making.students import folded
-from coursework.making.variant_assignment import assign_variants
+from coursework.issuing.assignment import Assignment, assignment_of
+from coursework.issuing.issued import issued_content as content_of
+from coursework.issuing.roster import Student
+from coursework.issuing.students import folded
+from coursework.issuing.variant_assignment import assign_variants
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
 from coursework.site.lti import connecting

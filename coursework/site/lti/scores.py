@@ -26,13 +26,13 @@ from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
 from coursework.gradebook.graded_sheet import Graded
+from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.launch import Launch
 from coursework.lti.link_settings import LinkSettings
 from coursework.lti.refusal import LTIRefusal
 from coursework.lti.storage import Score, Storage
-from coursework.making.issued import Issued
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import CachedClass, class_now
 from coursework.site.frame.settings import Site

@@ -17,6 +17,7 @@ from coursework.database.publication import Phase, published, student_assignment
 from coursework.database.submissions import rows_of
 from coursework.errors import BadInput
 from coursework.gradebook.rows import AnswerRow
+from coursework.issuing.students import folded
 from coursework.language.words import words
 from coursework.lti.class_list import students
 from coursework.lti.course_host import CourseHost
@@ -28,7 +29,6 @@ from coursework.lti.refusal import LTIRefusal
 from coursework.lti.roles import Role
 from coursework.lti.services import Member, NotServed
 from coursework.lti.storage import Score, Storage
-from coursework.making.students import folded
 from coursework.messages import as_message
 from coursework.site.desk.class_cache import assignment_title, class_now
 from coursework.site.frame.arrivals import arrived

@@ -16,8 +16,8 @@ from coursework.database.publication import (
     student_assignments,
 )
 from coursework.database.submissions import Submission, attempts_used, submissions_of
+from coursework.issuing.assignment import text_in
 from coursework.language.numbers import localise, plain
-from coursework.making.assignment import text_in
 from coursework.site.frame.requests import HTTPException, Request
 from coursework.site.frame.times import length_text, moment_text
 from coursework.site.papers.student_paper import StudentPaper, student_paper

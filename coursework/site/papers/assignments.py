@@ -21,7 +21,7 @@ from coursework.gradebook.by_student import as_students, for_student
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import AnswerRow
 from coursework.gradebook.submissions import read_rows
-from coursework.making.students import file_stems, folded
+from coursework.issuing.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, read_apart
 from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts

@@ -12,8 +12,8 @@ from coursework.database.submissions import Submission
 from coursework.gradebook.feedback_form import FeedbackForm, shows_solutions
 from coursework.gradebook.feedback_sheets import FeedbackOptions, feedback_paper
 from coursework.gradebook.scale import mark_of
+from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise, plain
-from coursework.making.issued import Issued
 from coursework.sheets.paper import FeedbackPaper
 from coursework.site.frame.requests import Request
 from coursework.site.frame.times import length_text

@@ -16,8 +16,8 @@ from coursework.database.prepared import PreparedPieces
 from coursework.database.publication import StudentAssignment
 from coursework.database.states import page_state
 from coursework.gradebook.feedback_sheets import heading_of
-from coursework.making.assignment import text_in
-from coursework.making.issued import Issued
+from coursework.issuing.assignment import text_in
+from coursework.issuing.issued import Issued
 from coursework.model import Part
 from coursework.rendering import papers
 from coursework.rendering.environment import render

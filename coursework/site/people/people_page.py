@@ -17,9 +17,9 @@ from coursework.database.identities import links_of, unlink_identity
 from coursework.database.instructor_queries import listed_assignments
 from coursework.database.people import people, person_by_id, person_by_identifier, put_person
 from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Area, Permission, may, to_invite
+from coursework.issuing.identity import EMAIL, LOGIN, plain
+from coursework.issuing.roster import Student, read_roster
 from coursework.lti.storage import Storage
-from coursework.making.identity import EMAIL, LOGIN, plain
-from coursework.making.roster import Student, read_roster
 from coursework.site.desk.class_cache import assignment_title
 from coursework.site.frame.budgets import DESK_FILE, read_apart
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload

@@ -19,9 +19,9 @@ from coursework.database.identities import identities_of
 from coursework.database.people import people
 from coursework.database.permissions import Permission
 from coursework.database.personal_data import identifiers_of, personal_data
+from coursework.issuing.students import file_stems
 from coursework.language.words import words
 from coursework.lti.storage import Storage
-from coursework.making.students import file_stems
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.site.papers.release import Release, full_release, release_to
 from coursework.site.people import scrubbing

@@ -9,9 +9,9 @@ from typing import Any
 from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.marking.marking import mark
-from coursework.motion.gauges import EFFECTS
 from coursework.rendering import motion_page, views
 from coursework.rendering.displayed import DisplayedAnimation
+from coursework.scenes.gauges import EFFECTS
 from coursework.selfstudy.attempt import CheckedAnswers
 from coursework.selfstudy.store import is_blank
 from coursework.sheets.answer_sheet import answer_sheet

@@ -22,10 +22,10 @@ from coursework.database.audit import note
 from coursework.database.settings import put_value, value_of
 from coursework.database.tables import assignment
 from coursework.errors import CourseworkError
-from coursework.making.assignment import assignment_of
-from coursework.making.issued import SECRET, issued_content
-from coursework.making.roster import Student
-from coursework.making.variant_assignment import assign_variants
+from coursework.issuing.assignment import assignment_of
+from coursework.issuing.issued import SECRET, issued_content
+from coursework.issuing.roster import Student
+from coursework.issuing.variant_assignment import assign_variants
 from coursework.messages import localised
 from coursework.site.frame.settings import Site
 from coursework.site.papers.opening import prepare_soon

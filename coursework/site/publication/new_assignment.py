@@ -19,9 +19,9 @@ from coursework.course.course import Course
 from coursework.database.assignments import names
 from coursework.database.people import people
 from coursework.errors import BadInput
-from coursework.making.assignment import FILES, OPTIONS, Assignment, assignment_of, table_of
-from coursework.making.issued import Issued
-from coursework.making.roster import Student, read_roster
+from coursework.issuing.assignment import FILES, OPTIONS, Assignment, assignment_of, table_of
+from coursework.issuing.issued import Issued
+from coursework.issuing.roster import Student, read_roster
 from coursework.messages import as_message
 from coursework.site.frame.budgets import DESK_FILE, read_apart
 from coursework.site.frame.requests import Request, Upload

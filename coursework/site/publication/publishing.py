@@ -35,7 +35,7 @@ from coursework.database.publication import (
 )
 from coursework.database.tables import assignment, audit, dealt, delivery, variant
 from coursework.errors import BadInput
-from coursework.making.assignment import (
+from coursework.issuing.assignment import (
     MOST_VERSIONS,
     SITTINGS,
     AskedExercise,
@@ -43,10 +43,10 @@ from coursework.making.assignment import (
     assignment_of,
     text_in,
 )
-from coursework.making.issued import Issued
-from coursework.making.issued import issued_content as content_of
-from coursework.making.roster import Student
-from coursework.making.variant_assignment import assign_variants
+from coursework.issuing.issued import Issued
+from coursework.issuing.issued import issued_content as content_of
+from coursework.issuing.roster import Student
+from coursework.issuing.variant_assignment import assign_variants
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.requests import FormData, HTTPException, Request, Response, Route
 from coursework.site.frame.times import exact_text, field_text, from_field, moment_text, zone_name

@@ -9,7 +9,7 @@ from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, MissingQuantity, UnknownName
-from coursework.motion.scenes import Scene
+from coursework.scenes.scenes import Scene
 
 EXERCISE = coursework.open_course()["four_bar_torque"]
 EFFECTS = ("load", "gravity", "inertia")

@@ -9,7 +9,7 @@ from tables import each_row
 
 import coursework
 from coursework.figures import contact, line, point, trace, wheel
-from coursework.motion.animation import Animation
+from coursework.scenes.animation import Animation
 
 EXERCISE = coursework.open_course()["ball_reducer"]
 MOTIONS = ("30", "31", "32")
@@ -152,7 +152,7 @@ def test_no_slip_equations_are_judged_as_equations(part, text, verdict):
 
 
 def test_no_slip_equations_hold_for_the_answers():
-    from coursework.reading.equations import parse_equation
+    from coursework.parsing.equations import parse_equation
 
     variant = EXERCISE.variant(0, parts=["all"])
     answers = variant.solution()

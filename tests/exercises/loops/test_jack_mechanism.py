@@ -133,7 +133,7 @@ def test_vectors_of_the_animation_are_the_slopes_of_paths_at_the_rate_of_the_jac
 
 def test_the_statement_of_bodies_and_joints_turns_them_as_the_formulas_do():
     """By the joints, for one of the tilt: the jack turns by omega2 / omega4."""
-    from coursework.motion.scenes import Scene
+    from coursework.scenes.scenes import Scene
 
     variant = EXERCISE.variant(6)
     found = EXERCISE.solve(**variant.given, only=("theta4", "omega4", "omega2"))

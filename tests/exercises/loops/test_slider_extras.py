@@ -128,7 +128,7 @@ def test_misprints_of_the_notes_move_what_they_touch():
 
 
 def test_the_loop_equations_hold_for_the_positions_and_fail_for_those_of_the_mistakes():
-    from coursework.reading.equations import parse_equation
+    from coursework.parsing.equations import parse_equation
 
     variant = EXERCISE.variant(0)
     answers = variant.solution()

@@ -8,7 +8,7 @@ from tables import each_row
 import coursework
 from coursework.errors import CannotAssemble
 from coursework.kinematics.chains import ClosedChain, Vector
-from coursework.reading.equations import parse_equation
+from coursework.parsing.equations import parse_equation
 
 EXERCISE = coursework.open_course()["two_loop_linkage"]
 PLAIN = {

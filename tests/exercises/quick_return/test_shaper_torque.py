@@ -7,7 +7,7 @@ from tables import each_row
 
 import coursework
 from coursework.errors import CannotAssemble, Undefined
-from coursework.motion.scenes import Scene
+from coursework.scenes.scenes import Scene
 
 EXERCISE = coursework.open_course()["shaper_torque"]
 ASKED = tuple(part.quantity for part in EXERCISE.spec.parts)

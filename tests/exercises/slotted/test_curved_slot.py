@@ -115,7 +115,7 @@ def test_where_the_normal_passes_through_the_pivot_the_lever_has_no_rate():
 
 
 def test_bodies_and_joints_turn_the_lever_as_the_formulas_do():
-    from coursework.motion.scenes import Scene
+    from coursework.scenes.scenes import Scene
 
     variant = EXERCISE.variant(5)
     found = EXERCISE.solve(**variant.given, only=("omega4", "alpha4"))

@@ -1,0 +1,92 @@
+"""Papers with answer pages: their exercises, from the record of issued variants, and the code that identifies
+them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from coursework.sheets.answer_pages import SIZES, AnswerPage, answer_pages, paper_code
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+    from coursework.course.variant import Variant
+    from coursework.issuing.issuing import Issue
+    from coursework.sheets.sheet import Handout
+
+
+@dataclass(frozen=True)
+class AnswerPaper:
+    """Answer pages of one student and sitting, or of one exercise that was handed out alone."""
+
+    assignment: str  #: its name; empty for single exercises
+    student: str  #: empty for a paper without a name
+    sitting: int
+    records: tuple[Mapping[str, Any], ...]
+    size: str  #: of the paper, a4 or letter
+
+    @property
+    def code(self) -> str:
+        return paper_code(self.assignment, self.student, self.sitting, self.records, self.size)
+
+    def variants(self, course: Course[Any]) -> tuple[Variant, ...]:
+        """Return the exercises of the paper, in order.
+
+        Raises
+        ------
+        BadInput
+            A record no longer fits the course.
+        """
+        return tuple(course[record["exercise"]].from_record(record) for record in self.records)
+
+    def pages(self, course: Course[Any], lang: str = "en") -> tuple[AnswerPage, ...]:
+        """Return the pages as printed; ``lang`` is the language of the units on them and does not change the
+        layout."""
+        return answer_pages(self.variants(course), lang, self.size, self.code)
+
+
+def answer_papers(issued: Mapping[str, Any]) -> dict[str, AnswerPaper]:
+    """Return the papers of an ``issued.json`` by their codes, for every paper size that they may have been
+    printed on."""
+    papers = (paper for size in SIZES for paper in _papers(issued, size))
+    return {paper.code: paper for paper in papers}
+
+
+def _papers(issued: Mapping[str, Any], size: str) -> Iterator[AnswerPaper]:
+    assignment = issued.get("assignment")
+    if assignment is None:
+        for item in issued["issued"]:
+            yield AnswerPaper("", *_owner_of(item), (item["record"],), size)
+        return
+    together: dict[tuple[str, int, int], list[Mapping[str, Any]]] = {}
+    for number, item in enumerate(issued["issued"]):
+        student, sitting = _owner_of(item)
+        # Papers without a name follow each other, each with the exercises of the assignment.
+        nobody = -1 if student else number // max(1, len(assignment["exercises"]))
+        together.setdefault((student, sitting, nobody), []).append(item["record"])
+    for (student, sitting, _), records in together.items():
+        yield AnswerPaper(str(assignment["name"]), student, sitting, tuple(records), size)
+
+
+def _owner_of(item: Mapping[str, Any]) -> tuple[str, int]:
+    return str(item.get("student", "")), int(item.get("sitting", 1))
+
+
+def printed_handouts(
+    issues: Sequence[Issue], lang: str, size: str = "", assignment: str = ""
+) -> tuple[Handout, ...]:
+    """Return the handouts of one paper as printed; with a ``size``, they have separate answer pages."""
+    variants = [issue.variant.in_language(lang) for issue in issues]
+    handouts = tuple(variant.handout(issues[0].student) for variant in variants)
+    if not size:
+        return handouts
+    records = tuple(issue.variant.record for issue in issues)
+    code = paper_code(assignment, issues[0].student, issues[0].sitting, records, size)
+    pages = answer_pages(variants, lang, size, code)
+    return tuple(replace(handout, answer_pages=pages) for handout in handouts)
+
+
+def printed_handout(issue: Issue, lang: str, size: str = "") -> Handout:
+    """Return the printed handout of an exercise that is handed out alone."""
+    return printed_handouts((issue,), lang, size)[0]

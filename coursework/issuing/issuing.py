@@ -1,0 +1,366 @@
+"""Issuing of variants: distinct draws for students, and the exercises' answer keys."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol, Self, TypeVar
+
+from coursework.course import draws
+from coursework.course.answer_key import Key
+from coursework.course.asked import KeySource
+from coursework.course.course import Course
+from coursework.course.exercise import ALL, USUAL, CourseExercise
+from coursework.course.secrecy import Secret
+from coursework.course.variant import Variant
+from coursework.errors import BadInput, NoSolution, Starved, counted, unknown
+from coursework.issuing.flaws import try_judges
+from coursework.issuing.protection import valid_variants
+from coursework.issuing.roster import Student
+from coursework.issuing.students import file_stems
+from coursework.kinds.kind import Asking
+from coursework.messages import Message
+from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
+
+V = TypeVar("V", bound=Variant)
+
+
+def distinct_variants(
+    exercise: CourseExercise[V],
+    first_seed: int,
+    count: int,
+    lang: str,
+    refused: Counter[str] | None = None,
+    parts: Sequence[str] | None = None,
+    fits: Callable[[V], bool] | None = None,
+) -> list[V]:
+    """Return ``count`` variants of different given values that are worth issuing, from the first seed on.
+
+    Equal variants are skipped, and so are those that mark badly (:mod:`coursework.issuing.flaws`).
+
+    Parameters
+    ----------
+    exercise, lang
+        The exercise, and the language of the variants.
+    first_seed, count
+        The first seed to try, and the number of variants.
+    refused
+        Counter of skipped variants by their flaw, filled in.
+    parts
+        Ids of the parts to ask; a variant that asks none of them is skipped.
+    fits
+        Further condition on a variant.
+
+    Raises
+    ------
+    NoSolution
+        The course folder is a students' copy, which cannot find the variants that mark badly.
+    Starved
+        Too few variants exist or were found; the message gives the number and the most frequent flaws.
+    """
+    _check_can_tell(exercise)
+    by_values: dict[tuple, V] = {}
+    refused = Counter() if refused is None else refused
+    seed = first_seed
+    limit = first_seed + 100 * count + 1000
+    while len(by_values) < count and seed < limit:
+        # Enough for the missing ones at the share of good variants so far.
+        good = (len(by_values) + 1) / (seed - first_seed + 1)
+        batch = range(seed, min(limit, seed + max(16, math.ceil((count - len(by_values)) / good))))
+        drawn = exercise.variants(batch, lang, parts)
+        asking = _that_ask(drawn, fits)
+        if len(asking) < len(drawn):
+            refused["asks none of the parts" if fits is None else "asks other parts"] += len(drawn) - len(
+                asking
+            )
+            drawn = asking
+        for variant in valid_variants(exercise, drawn, refused):
+            by_values.setdefault(tuple(variant.given.values()), variant)
+            if len(by_values) == count:
+                break
+        seed = batch.stop
+    if len(by_values) < count:
+        exist = draws.population(exercise.drawing)
+        reason = (
+            Message("{count} found", count=len(by_values))
+            if exist is None or refused
+            else Message("only {count} exist", count=exist)
+        )
+        raise Starved(
+            "{exercise}: {variants} asked, {reason}{flaws}; ask for fewer, widen a range or make a step finer",
+            exercise=exercise.name,
+            variants=counted(count, "different variant"),
+            reason=reason,
+            flaws=_passed_over(refused),
+        )
+    return list(by_values.values())
+
+
+def _passed_over(refused: Counter[str]) -> str:
+    """Return the most frequent flaws of the skipped variants, for a message; empty if there is none."""
+    if not refused:
+        return ""
+    flaws = ", ".join(f"{flaw} ({number}×)" for flaw, number in refused.most_common(3))
+    return Message("; passed over as {flaws}", flaws=flaws)
+
+
+def _check_can_tell(exercise: CourseExercise[Any]) -> None:
+    """Raise for a students' copy: it would issue variants that the full course skips, and so different
+    ones."""
+    if not exercise.folder.has_solutions:
+        raise NoSolution(
+            "{exercise}: {course} has no solutions/, as a students' copy, and cannot tell which variants the full course passes over; 'coursework build --issued issued.json' writes the sheets of what was issued: ask the teacher for that file, or for the sheets",
+            exercise=exercise.name,
+            course=exercise.folder.label,
+        )
+
+
+def _that_ask(variants: Sequence[V], fits: Callable[[V], bool] | None) -> list[V]:
+    """Return the variants that ask a part and fit."""
+    return [v for v in variants if v.parts and (fits is None or fits(v))]
+
+
+SEEDS = 1_000_000  #: seeds drawn by student have at most six digits
+_ROUNDS = 1000  #: draws for one student before variants count as used up
+_ALIKE = 60  #: the same if all their draws are in use already
+_TOGETHER = 256  #: draws that are computed together
+
+
+def seed_for(stream: str, exercise: str, person: str, round_: int, secret: Secret | None = None) -> int:
+    """Return the seed of a person in a round, always the same; with the secret of an assignment, a code."""
+    key = f"coursework/assignment/{stream}/{exercise}/{person}/{round_}"
+    bits = hashlib.shake_128(key.encode()).digest(8) if secret is None else secret.digest("code", key)[:8]
+    return int.from_bytes(bits, "little") % SEEDS
+
+
+def drawn_by(
+    stream: str,
+    exercise: CourseExercise[V],
+    people: Sequence[str],
+    lang: str,
+    parts: Sequence[str] | None = None,
+    used_values: set[tuple[Any, ...]] | None = None,
+    fits: Callable[[V], bool] | None = None,
+    secret: Secret | None = None,
+    issued_values: Mapping[int, tuple[Any, ...]] | None = None,
+) -> tuple[dict[str, V], list[str]]:
+    """Return a variant for each person, independent of their order, and the people who share theirs.
+
+    Parameters
+    ----------
+    stream
+        Name that separates the draws of different assignments.
+    people
+        Keys of the people.
+    used_values
+        Given values that no variant may have; those of the result are added. All variants differ while variants last.
+    fits
+        Further condition on a variant.
+    secret
+        Secret of an assignment, without which nobody can repeat the draws.
+    issued_values
+        Given values of earlier variants by seed: none of these seeds is used for other values.
+
+    Raises
+    ------
+    NoSolution
+        As :func:`distinct_variants`.
+    Starved
+        No variant worth issuing was found for somebody.
+    """
+    _check_can_tell(exercise)
+    used_values = set() if used_values is None else used_values
+    issued_values = {} if issued_values is None else issued_values
+    variants: dict[str, V] = {}
+    spare: dict[str, V] = {}  # valid, but in use by another student
+    refused: Counter[str] = Counter()
+    waiting = list(people)
+    round_, together = 0, 1
+    while waiting and round_ < (_ALIKE if spare.keys() >= set(waiting) else _ROUNDS):
+        rounds = range(round_, min(round_ + together, _ROUNDS))
+        seeds = {
+            (r, person): seed_for(stream, exercise.name, person, r, secret)
+            for r in rounds
+            for person in waiting
+        }
+        drawn = _that_ask(exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts, secret), fits)
+        drawn = [v for v in drawn if issued_values.get(v.seed, given := tuple(v.given.values())) == given]
+        by_seed = {v.seed: v for v in valid_variants(exercise, drawn, refused)}
+        for r in rounds:
+            # If two draw the same, the draw decides who gets it, not the roster.
+            for person in sorted(waiting, key=lambda person: (seeds[r, person], person)):
+                variant = by_seed.get(seeds[r, person])
+                if variant is not None and (given := tuple(variant.given.values())) not in used_values:
+                    used_values.add(given)
+                    variants[person] = variant
+                elif variant is not None:
+                    spare.setdefault(person, variant)
+            waiting = [person for person in waiting if person not in variants]
+        round_ = rounds.stop
+        together = max(1, min(2 * together, _TOGETHER // max(1, len(waiting))))
+    shared = [person for person in waiting if person in spare]
+    variants |= {person: spare[person] for person in shared}
+    if len(variants) < len(people):
+        raise Starved(
+            "{exercise}: no variant that is worth issuing was found for {students}{flaws}; widen a range or make a step finer",
+            exercise=exercise.name,
+            students=counted(len(people) - len(variants), "student"),
+            flaws=_passed_over(refused),
+        )
+    return variants, shared
+
+
+class Issuable(KeySource, Asking, Protocol):
+    """Variant that provides the content of its sheets."""
+
+    @property
+    def key(self) -> Key: ...
+
+    @property
+    def seed(self) -> int: ...
+
+    @property
+    def record(self) -> dict[str, Any]: ...
+
+    def in_language(self, lang: str) -> Self: ...
+
+    def handout(self, student: str = "") -> Handout: ...
+
+    def answer_sheet(self, student: str = "", *, polygons: bool = True) -> AnswerSheet: ...
+
+    def study_sheet(self, student: str = "") -> StudySheet: ...
+
+
+@dataclass(frozen=True)
+class Issue:
+    """Variant of one student, in the languages of its sheets."""
+
+    student: str
+    variant: Issuable
+    langs: tuple[str, ...]
+    stem: str  #: stem of the names of its files
+    sitting: int = 1  #: 2 for a make-up
+    version: str = ""  #: A to D, if there are versions
+    columns: Mapping[str, str] = field(default_factory=dict)  #: of the student's row in the roster
+
+
+def issue(
+    course: Course,
+    names: Sequence[str],
+    *,
+    first_seed: int,
+    count: int,
+    langs: Sequence[str],
+    roster: Sequence[Student] = (),
+    parts: Sequence[str] | None = None,
+) -> list[Issue]:
+    """Return one variant of each exercise for each student, by the student and not by the position in the
+    roster; without a roster, ``count`` variants from the first seed on.
+
+    ``parts`` are ids of parts to ask instead of the usual ones; each exercise asks those that it has.
+
+    Raises
+    ------
+    UnknownName
+        A part that none of the exercises has.
+    Starved
+        An exercise has not enough different variants.
+    NoSolution
+        The course folder is a students' copy.
+    BadInput
+        An exercise has no text in one of the languages.
+    """
+    issues = []
+    students = list(roster) or [Student("")] * count
+    stems = file_stems(s.name for s in students)
+    asked_parts = chosen_parts(course, names, parts)
+    for name in names:
+        exercise = course[name]
+        check_languages(exercise, langs)
+        check_languages(exercise, *whose_languages(students))
+        variants: list[Any]
+        if roster:
+            people = [student.draw_key for student in roster]
+            drawn, _ = drawn_by(str(first_seed), exercise, people, langs[0], asked_parts[name])
+            variants = [drawn[person] for person in people]
+        else:
+            variants = distinct_variants(
+                exercise, first_seed, len(students), langs[0], parts=asked_parts[name]
+            )
+        if variants:
+            try_judges(variants[0].key)
+        for student, stem, variant in zip(students, stems, variants, strict=True):
+            student_langs = (student.lang,) if student.lang else tuple(langs)
+            stem = stem or f"{variant.seed:05d}"
+            issues.append(
+                Issue(
+                    student.name,
+                    variant.in_language(student_langs[0]),
+                    student_langs,
+                    stem,
+                    columns=student.columns,
+                )
+            )
+    return issues
+
+
+def whose_languages(students: Sequence[Student]) -> tuple[dict[str, str], str]:
+    """Return the first student of each language in a roster, and the words of a message that name the
+    student's row."""
+    first = {student.lang: student.name for student in reversed(students) if student.lang}
+    return first, ", which the line of {name} in the roster asks for"
+
+
+def check_languages(
+    exercise: CourseExercise[Any], langs: Collection[str] | Mapping[str, str], source: str = ""
+) -> None:
+    """Raise at a language in which an exercise has no text; ``source`` is the message's text on the origin of
+    ``langs[lang]``.
+
+    Raises
+    ------
+    BadInput
+        The message names the languages of the exercise.
+    """
+    for lang in langs:
+        if lang not in exercise.languages:
+            have = ", ".join(exercise.languages) or Message("none")
+            origin = Message(source, name=langs[lang]) if isinstance(langs, Mapping) else ""
+            raise BadInput(
+                "{exercise} has no text in {lang!r}{origin}; it has {have}",
+                exercise=exercise.name,
+                lang=lang,
+                origin=origin,
+                have=have,
+            )
+
+
+def chosen_parts(
+    course: Course, names: Sequence[str], parts: Sequence[str] | None
+) -> Mapping[str, tuple[str, ...] | None]:
+    """Return for each exercise those of the parts that it has; None for the usual ones.
+
+    Raises
+    ------
+    UnknownName
+        A part that none of the exercises has.
+    BadInput
+        An exercise has none of the parts.
+    """
+    if parts is None:
+        return dict.fromkeys(names)
+    ids_of = {name: {USUAL, ALL, *(p.id for p in course[name].spec.parts)} for name in names}
+    for part in parts:
+        if not any(part in ids for ids in ids_of.values()):
+            part_ids = dict.fromkeys(p.id for name in names for p in course[name].spec.parts)
+            raise unknown("part", part, [*part_ids, USUAL, ALL], ", ".join(names))
+    chosen = {name: tuple(p for p in parts if p in ids_of[name]) for name in names}
+    for name, some in chosen.items():
+        if not some:
+            raise BadInput(
+                "{name} has none of the parts {parts}; build it by itself", name=name, parts=", ".join(parts)
+            )
+    return chosen

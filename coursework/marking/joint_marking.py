@@ -1,0 +1,135 @@
+"""Marks of parts that are judged together: drawings, demands that many answers meet, equations of a loop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from coursework.course.answer_key import Key
+from coursework.errors import CourseworkError
+from coursework.language.words import words
+from coursework.marking.diagnosis import EarlierAnswers, mistakes_that_fit
+from coursework.marking.feedback import Sentence, amount, echo, either_symbol, part_name, questions, say
+from coursework.marking.judges import Verdict, judged
+from coursework.marking.mark import Mark, made_mark
+from coursework.model import Part
+from coursework.parsing.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+
+
+def is_told_with(earlier: Part, part: Part, together: Mapping[str, Verdict]) -> bool:
+    """Return whether the message for a judged part already stands with an earlier part of its group."""
+    same_group = part.judge and earlier.judge == part.judge and earlier.id in together
+    return bool(same_group) and together[earlier.id][1:] == together[part.id][1:]
+
+
+def mark_judged(
+    variant: Variant,
+    key: Key,
+    part: Part,
+    reading: Reading,
+    judgement: Verdict,
+    told_with: Part | None,
+    missed: Callable[[], str],
+    before: EarlierAnswers,
+) -> Mark:
+    """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
+    read_as, verdict = reading.read_as[judgement.reading], judgement.said
+    mark_of = partial(made_mark, variant, part, reading)
+    if verdict is None:
+        read = echo(read_as, variant.lang)
+        return mark_of("wrong", 0.0, read_as, say(variant, part, "incomplete", read=read, missing=missed()))
+    share = min(1.0, max(0.0, float(verdict.share)))
+
+    def told(sentence: str, **pieces: str) -> Sentence:
+        """A sentence, then what follows from the student's own answers."""
+        message = say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
+        amounts = {} if told_with else verdict.found
+        amount_words = {f"found{n}": amount(variant, q, v) for n, (q, v) in enumerate(amounts.items())}
+        if not amount_words:
+            return message
+        listed = ", ".join("{" + name + "}" for name in amount_words)
+        follows = words(variant.lang)["marking"]["found"].format(listed)
+        return Sentence(f"{message.sentence} {follows}", {**message.pieces, **amount_words})
+
+    if verdict.slip:
+        slip = f"slip:{verdict.slip}"
+        return mark_of(slip, key.rules.share(verdict.slip), read_as, told(f"slip_{verdict.slip}"), (slip,))
+    is_followed = judgement.followed or verdict.follows
+    if (
+        share == 1.0
+        and is_followed
+        and part.sort.is_scalar
+        and not _has_work(part, key, reading.values[judgement.reading], before)
+    ):
+        return mark_of("wrong", 0.0, read_as, told(part.sort.wrong))
+    if share == 1.0:
+        kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
+        return mark_of(kind, share, read_as, told(kind))
+    mistakes = [verdict.mistake, *verdict.also] if verdict.mistake else mistakes_that_fit(key, part, reading)
+    matches = tuple(f"mistake:{name}" for name in mistakes) + (
+        (f"slip:{judgement.slip}",) if judgement.slip else ()
+    )
+    if mistakes:
+        share = share if verdict.mistake and share else key.price(mistakes[0])
+
+        if told_with and verdict.mistake:
+            message = told("told_with", first=part_name(variant, told_with))
+        else:
+            message = told("mistake", says=variant.told(mistakes[0]))
+        return mark_of(matches[0], share, read_as, message, matches)
+    if judgement.slip:
+        error = f"{judgement.slip}/{'/'.join(judgement.about)}"
+        if judgement.about and error in before.paid and before.sheet.has_work:
+            return mark_of(
+                "follow_through",
+                key.rules.follow_through,
+                read_as,
+                told("same_error", first=questions(variant, [before.paid[error]], "and")),
+                matches,
+            )
+        before.paid[error] = part.id
+        about = either_symbol(variant, judgement.about, both=judgement.slip == "frame_missing")
+        message = told(f"slip_{judgement.slip}", about=about)
+        return mark_of(matches[0], key.rules.share(judgement.slip), read_as, message, matches)
+    return mark_of("wrong", share, read_as, told(part.sort.wrong))
+
+
+def _has_work(part: Part, key: Key, value: Any, before: EarlierAnswers) -> bool:
+    """Return whether a number that follows from others is more than one that is written everywhere."""
+    reference = key.reference.get(part.quantity)
+    is_right = reference is not None and part.sort.distance(part, value, reference) <= 1
+    return is_right or before.is_work(part, value)
+
+
+def is_scale(part: Part) -> bool:
+    """Return whether a part asks for the scale of a drawing: so much for a millimetre of paper."""
+    return bool(part.judge) and part.sort.is_number and part.unit.endswith("/mm")
+
+
+def waits_for(
+    variant: Variant,
+    part: Part,
+    readings: Mapping[str, Reading],
+    waiting: dict[str, dict[str, frozenset[str]]],
+) -> str:
+    """Return the questions that must be answered before an answer can be judged: any one of those that
+    suffice alone, else all of its group.
+
+    ``waiting`` remembers by judge what could be judged with each missing answer.
+    """
+    group = {p.id: p.quantity for p in variant.parts if p.judge == part.judge}
+    read = {i: readings[i].values[0] for i in group if readings[i].status == "read"}
+    unread = [i for i in group if i not in read]
+    if part.judge not in waiting:
+        waiting[part.judge] = {}
+        for i in unread:
+            with suppress(CourseworkError):
+                right = variant.key.reference[group[i]]
+                waiting[part.judge][i] = frozenset(judged(variant, part.judge, {**read, i: right}))
+    enough = [i for i, would_be in waiting[part.judge].items() if part.id in would_be]
+    return questions(variant, enough, "or") if enough else questions(variant, unread, "and")

@@ -1,0 +1,128 @@
+"""Words that answers hold beside numbers: that nothing is known, that it stands elsewhere, a sign, a sense, a root."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from coursework.language.words import languages, words
+from coursework.parsing.labels import folded
+from coursework.parsing.reading import Stop
+
+_LONGEST = 80  #: characters of a text that answers nothing
+_MARKS = re.compile(r"[\s?!.…/\\_xX×*∅øØ~=#,;:–—−-]+")
+_A_PHRASE = 2  #: words of what says so wherever it stands: ``sorry, I do not know``
+
+
+@lru_cache(maxsize=8)
+def _phrases(category: str) -> tuple[str, ...]:
+    """Words of every language, folded, the longest first."""
+    phrases = {folded(word) for lang in languages() for word in words(lang)["answers"][category]}
+    return tuple(sorted(phrases, key=len, reverse=True))
+
+
+def says_nothing(text: str) -> bool:
+    """Return whether a text says that there is no answer: ``?``, ``NSP``, ``je ne sais pas``, ``no time``."""
+    if len(text) > _LONGEST:
+        return False
+    if _MARKS.fullmatch(text):
+        return True
+    text_folded = folded(text)
+    if text_folded in _phrases("nothing"):
+        return True
+    phrases = (s for s in _phrases("nothing") if len(s.split()) >= _A_PHRASE)
+    return not re.search(r"[0-9]", text_folded) and any(
+        f" {phrase} " in f" {text_folded} " for phrase in phrases
+    )
+
+
+def refers_elsewhere(text: str) -> bool:
+    """Return whether a text says that the answer stands elsewhere: ``voir feuille``, ``see sheet``."""
+    text_folded = folded(text.replace(".", " "))
+    return len(text) <= _LONGEST and f"{text_folded} ".startswith(
+        tuple(f"{s} " for s in _phrases("elsewhere"))
+    )
+
+
+# ------------------------------------------------------------------- beside a number
+
+
+def _either(category: str) -> str:
+    """The words of every language as a pattern, their spaces of any length, with accents and without."""
+    phrases = {
+        w for lang in languages() for word in words(lang)["answers"][category] for w in (word, folded(word))
+    }
+    return "|".join(re.escape(w).replace(r"\ ", r"[\s-]+") for w in sorted(phrases, key=len, reverse=True))
+
+
+@lru_cache(maxsize=8)
+def _before(category: str) -> re.Pattern[str]:
+    return re.compile(rf"(?:{_either(category)})(?![^\W\d_])\s*(?=\S)", re.I)
+
+
+@lru_cache(maxsize=2)
+def _sense(category: str) -> re.Pattern[str]:
+    """Words for a sense at the end of a text: ``20,54 rad/s (sens horaire)``, ``201.5 mm/s to the right``."""
+    return re.compile(rf"[(\[]?(?<![^\W\d_])(?:{_either(category)})\s{{0,9}}[)\]]?[.!]?$", re.I)
+
+
+def _number_before(category: str, text: str) -> str:
+    """The number that stands before words for a sense; nothing where none does."""
+    match = _sense(category).search(text) if len(text) <= _LONGEST else None
+    number = text[: match.start()].strip(" ,;(") if match else ""
+    return number if re.match(r"[+-]?\s*[0-9]", number) else ""
+
+
+@lru_cache(maxsize=1)
+def number_words() -> dict[str, int]:
+    """Numbers in words, of every language."""
+    tables = (words(lang)["study"]["reads"]["numbers"] for lang in languages())
+    return {
+        word.casefold(): n for names in tables for n, name in enumerate(names) for word in name.split("|")
+    }
+
+
+def with_signs(text: str) -> str:
+    """A number with digits and a sign in place of words: ``moins 18,32``, ``cinq``, ``à peu près 15``.
+
+    A sense in words gives the sign of a number that has none.
+
+    Raises
+    ------
+    Stop
+        The sign is against the words: ``two_values``.
+    """
+    if not any(map(str.isalpha, text)):
+        return text
+    if about := _before("about").match(text):
+        text = text[about.end() :]
+    for category, sign in (("minus", "-"), ("plus", "")):
+        if match := _before(category).match(text):
+            text = sign + text[match.end() :]
+    number = number_words().get(text.lstrip("-").casefold())
+    if number is not None:
+        return f"{'-' if text[0] == '-' else ''}{number}"
+    for category in ("negative", "positive"):  # counterclockwise ends as clockwise does, and is no part of it
+        if number_text := _number_before(category, text):
+            is_negative = number_text.startswith("-")
+            if category == "positive" and is_negative:
+                raise Stop("two_values", text)
+            return (
+                f"-{number_text.lstrip('+ ')}" if category == "negative" and not is_negative else number_text
+            )
+    return text
+
+
+def has_sense(text: str) -> bool:
+    """Return whether words for its sense follow a number."""
+    return any(_number_before(category, text) for category in ("negative", "positive"))
+
+
+@lru_cache(maxsize=1)
+def _root() -> re.Pattern[str]:
+    return re.compile(rf"(?<![^\W\d_])(?:{_either('root')})(?![^\W\d_])\s*", re.I)
+
+
+def with_roots(text: str) -> str:
+    """A formula with a radical sign in place of the word: ``racine(2)``, ``square root of 2``."""
+    return _root().sub("√", text)

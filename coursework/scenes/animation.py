@@ -1,0 +1,251 @@
+"""Animation of an exercise: its figure over the cycle of its driver, paths of points, and vectors.
+
+The figure is the statement's own, asked again at every angle, unless the solution states a :class:`~coursework.solution.Film`
+with one that can move. The points that leave a trace and carry vectors are those of the solution's ``MECHANISM``, or of its
+function ``motion`` of quantities, called once with arrays over the cycle::
+
+    def motion(r2, theta2, omega2):
+        A = polar(r2, theta2)
+        return {"A": Moving(A, 1j * omega2 * A, -(omega2**2) * A)}
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coursework.course.variant import Variant
+from coursework.errors import WrongValue, unknown
+from coursework.figures.base import Element
+from coursework.figures.elements import bar
+from coursework.figures.marks import angle_mark, dimension, line
+from coursework.figures.moving import PAPER_MM, Arrow, LegendKey, MovingDrawing, TracedPoint, drawing, extent
+from coursework.figures.moving_svg import moving_svg, still_svg
+from coursework.language.numbers import unit_text
+from coursework.language.words import words
+from coursework.markup.shown import SvgPicture
+from coursework.scenes.gauges import EFFECTS, UNIT, Gauge, gauges, number
+from coursework.scenes.reel import Reel
+from coursework.scenes.scenes import Scene
+from coursework.solution import Moving
+
+if TYPE_CHECKING:
+    pass
+
+
+_LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
+
+
+class Animation(Reel):
+    """Animation of a variant's mechanism over the cycle of its driver, or over the turns of its film.
+
+    Parameters
+    ----------
+    variant
+        Of an exercise that names a driver and a figure, or whose solution states a film.
+    effects
+        What is seen from the start: ``position`` (paths of points), ``velocity``, ``acceleration``,
+        ``coriolis``; paths alone unless told.
+    count
+        Angles in a turn of the driver.
+
+    Raises
+    ------
+    BadCourse
+        The exercise names no driver or no figure, and no solution at hand states a film.
+    UnknownName
+        An effect that is none of the four.
+    WrongValue
+        An effect of which the solution states nothing.
+    """
+
+    def __init__(self, variant: Variant, effects: Sequence[str] = (), count: int = 72):
+        super().__init__(variant, count)
+        for effect in effects:
+            if effect not in EFFECTS:
+                raise unknown("effect", effect, EFFECTS, variant.exercise.name)
+            if effect != "position" and effect not in self.available:
+                raise WrongValue(
+                    f"{variant.exercise.name}: no {effect} to show; "
+                    f"{variant.exercise.folder.source('solutions', variant.exercise.name)} states none in motion(…)"
+                )
+        self.effects = tuple(e for e in EFFECTS if e in effects) or ("position",)
+
+    # --------------------------------------------------------------------- points
+
+    @cached_property
+    def points(self) -> Mapping[str, Moving]:
+        """Points that the solution states, over the instants."""
+        exercise = self.variant.exercise
+        if not exercise.folder.has_solutions:
+            return {}
+        if exercise.solution.motion is None:
+            return self._of_mechanism if exercise.solution.mechanism is not None else {}
+        result = self._stated("motion", exercise.solution.motion, self._with_driver_at(self.angles))
+        return {name: point.over(len(self.angles)) for name, point in result.items()}
+
+    @property
+    def _of_mechanism(self) -> Mapping[str, Moving]:
+        """The moving points of the mechanism that the solution states."""
+        scene = Scene(self.variant.exercise, self.variant.given)
+        return scene.moving_points(self.angles)
+
+    @cached_property
+    def readings(self) -> tuple[Gauge, ...]:
+        """Values of the effects' quantities over the instants; none in a course without solutions."""
+        return gauges(self, self._vectors)
+
+    @cached_property
+    def available(self) -> tuple[str, ...]:
+        """Effects with something to show: a path, a vector or a number."""
+        drawn = {effect for _, effect, _ in self._vectors} | ({"position"} if self.points else set())
+        return tuple(e for e in EFFECTS if e in drawn or any(e in r.effects for r in self.readings))
+
+    @property
+    def _vectors(self) -> list[tuple[str, str, np.ndarray]]:
+        return [
+            (name, effect, getattr(point, effect))
+            for effect in EFFECTS[1:]
+            for name, point in self.points.items()
+            if getattr(point, effect) is not None
+        ]
+
+    @cached_property
+    def scales(self) -> Mapping[str, float]:
+        """Scale of the vectors of each effect: units for one mm of mechanism, the same for the whole cycle.
+
+        Coriolis terms are accelerations and have their scale.
+        """
+        low, high = extent(self.frames)
+        size = max((high - low).real, (high - low).imag)
+        results: dict[str, float] = {}
+        for kind in (("velocity",), ("acceleration", "coriolis")):
+            lengths = [np.abs(v[self._inside]) for _, effect, v in self._vectors if effect in kind]
+            longest = max((float(np.nanmax(item)) for item in lengths), default=0.0)
+            if longest > 0:
+                results |= dict.fromkeys(kind, longest / (_LONGEST * size))
+        return results
+
+    @property
+    def _inside(self) -> slice:
+        """Instants that are not limits: at a limit the velocities do not exist."""
+        return slice(None) if self.turns else slice(1, -1)
+
+    # -------------------------------------------------------------------- picture
+
+    def drawing(
+        self,
+        effects: Sequence[str],
+        paper_mm: tuple[float, float] = PAPER_MM,
+        frames: Sequence[tuple[Element, ...]] | None = None,
+    ) -> MovingDrawing:
+        """Return the drawing over all instants with the vectors and paths of these effects, in a box of this
+        size.
+
+        ``frames`` replace the animation's own.
+        """
+        arrows, spots = [], []
+        for name, effect, v in self._vectors:
+            if effect in effects and effect in self.scales:
+                displayed = np.full(v.shape, complex(np.nan, np.nan))
+                displayed[self._inside] = v[self._inside] / self.scales[effect]
+                arrows.append(Arrow(self.points[name].position, displayed, effect, name))
+        if "position" in effects:
+            spots = [TracedPoint(point.position, name, self.closed) for name, point in self.points.items()]
+        keys = self._keys({a.effect for a in arrows})
+        return drawing(
+            frames or self.frames,
+            arrows=arrows,
+            spots=spots,
+            keys=keys,
+            closed=self.closed,
+            paper_mm=paper_mm,
+        )
+
+    def _keys(self, effects: set[str]) -> list[LegendKey]:
+        """Return the legend: an arrow of a round value for each effect."""
+        low, high = extent(self.frames)
+        texts = words(self.variant.lang)["motion"]
+        size, keys = max((high - low).real, (high - low).imag), []
+        for effect in EFFECTS:
+            if effect in effects:
+                value = _round_below(0.25 * size * self.scales[effect])
+                unit = unit_text(UNIT[effect], self.variant.lang)
+                text = f"{texts[effect]}{texts['colon']} {number(value, self.variant.lang)} {unit}"
+                keys.append(LegendKey(effect, value / self.scales[effect], text))
+        return keys
+
+    @cached_property
+    def title(self) -> str:
+        return self.variant.text.title
+
+    @cached_property
+    def words(self) -> str:
+        """Description of the picture for readers who cannot see it: the statement's own words, or the film's."""
+        from coursework.language.typography import typeset
+
+        section = (
+            self.variant.text.section("figure")
+            if self.film is None
+            else self.variant.solution_text.section("motion")
+        )
+        text = " ".join(section.text.split())
+        return typeset(text, self.variant.lang) or self.title
+
+    def svg(self) -> str:
+        """Return the moving figure as SVG without scripts; it stands still for readers who prefer reduced
+        motion."""
+        return moving_svg(
+            self.drawing(self.effects),
+            order=self.order,
+            first=self.first,
+            seconds=self.seconds,
+            times=self._key_times(),
+            title=self.title,
+            words=self.words,
+            lang=self.variant.lang,
+        )
+
+    def stills(self, count: int, paper_mm: tuple[float, float]) -> tuple[str, ...]:
+        """Return ``count`` instants of the cycle as SVG, evenly spread, the statement's first, each in a box
+        of this size.
+
+        Letters of lengths and angles are left out, since the box has no room for them.
+        """
+        frames = [_without_sizes(frame) for frame in self.frames]
+        displayed, instants = self.drawing(self.effects, paper_mm, frames), len(self.angles)
+        turned = [(self.first + round(k * instants / count)) % instants for k in range(count)]
+        text = {"title": self.title, "words": self.words, "lang": self.variant.lang}
+        return tuple(still_svg(displayed, instant, **text) for instant in turned)
+
+    def _key_times(self) -> str:
+        """Return the times as SVG key times; empty when they are evenly spread."""
+        if np.ptp(np.diff(self.times)) < 1e-9:
+            return ""
+        return ";".join([*(f"{t:.5f}" for t in self.times[:-1]), "1"])
+
+    def _repr_html_(self) -> str:
+        return SvgPicture(self.svg(), self.words).html
+
+
+def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
+    """Return a figure without its angles and the letters of its lengths; points keep their names, bodies
+    their numbers."""
+    stored = (item for item in frame if not isinstance(item, (angle_mark, dimension)))
+    return tuple(
+        replace(item, label=None)
+        if isinstance(item, (bar, line)) and item.label and not item.label.isdigit()
+        else item
+        for item in stored
+    )
+
+
+def _round_below(value: float) -> float:
+    """Return the largest of 1, 2 and 5 times a power of ten that does not exceed a value."""
+    power = 10.0 ** math.floor(math.log10(value) + 1e-12)
+    return max(m * power for m in (1, 2, 5) if m * power <= value * (1 + 1e-12))

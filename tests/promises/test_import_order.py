@@ -1,0 +1,90 @@
+"""Order of imports: a file imports from its own folder and from folders below it, wherever the import stands."""
+
+import ast
+from pathlib import Path
+
+from tables import each_row
+
+import coursework
+
+PACKAGE = Path(coursework.__file__).resolve().parent
+
+#: From the ground up.
+ROOMS = (
+    "messages errors degrees system language kinematics solids markup figures structure mechanics parsing polygons quantities kinds model solution "
+    "course marking sheets scenes rendering accuracy issuing gradebook statistics selfstudy scanning database workbook platforms nbgrader lti authoring api site __init__ cli __main__"
+).split()
+
+FILES = {
+    path.relative_to(PACKAGE).as_posix(): path.read_text("utf-8")
+    for path in sorted(PACKAGE.rglob("*.py"))
+    if not {"skeleton", "examples", "_course"} & set(path.parts)
+}
+
+
+def room_of(file):
+    return file.split("/")[0].removesuffix(".py")
+
+
+def imported(text):
+    """The modules of the package that a file imports, at its top, inside functions or for types alone, with the line."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from (
+                (alias.name, node.lineno) for alias in node.names if alias.name.split(".")[0] == "coursework"
+            )
+        elif isinstance(node, ast.ImportFrom) and (
+            node.level or (node.module or "").split(".")[0] == "coursework"
+        ):
+            assert not node.level, f"line {node.lineno}: a relative import; name the room"
+            for alias in node.names:
+                whole = f"{node.module}.{alias.name}"
+                yield (whole if file_of(whole) else node.module), node.lineno
+
+
+def file_of(module):
+    stem = "/".join(module.split(".")[1:])
+    if not stem:
+        return "__init__.py"
+    return next((f for f in (f"{stem}.py", f"{stem}/__init__.py") if f in FILES), None)
+
+
+def upward(file, text):
+    """What a file imports from above."""
+    floor = ROOMS.index(room_of(file))
+    return [
+        f"coursework/{file}:{line} imports {module} from above"
+        for module, line in imported(text)
+        if ROOMS.index(room_of(file_of(module) or module.split(".")[1])) > floor
+    ]
+
+
+@each_row("file", FILES)
+def test_a_file_imports_from_its_own_room_and_from_rooms_below(file):
+    assert not upward(file, FILES[file])
+
+
+@each_row(
+    "planted",
+    [
+        "from coursework.cli.options import opened",
+        "def late():\n    from coursework.api import open_course",
+        "if TYPE_CHECKING:\n    from coursework.selfstudy.session import StudySession",
+        "import coursework.rendering.renderer",
+        "from coursework import api",
+    ],
+)
+def test_a_planted_import_from_above_is_found(planted):
+    assert upward("marking/marking.py", FILES["marking/marking.py"] + "\n" + planted)
+
+
+def test_every_file_stands_in_a_room():
+    assert {room_of(file) for file in FILES} <= set(ROOMS)
+
+
+def test_no_files_import_each_other_in_a_circle():
+    needs = {f: {file_of(m) for m, _ in imported(text)} - {None, f} for f, text in FILES.items()}
+    while needs:
+        free = {f for f, others in needs.items() if not others & needs.keys()}
+        assert free, f"these import each other: {', '.join(sorted(needs))}"
+        needs = {f: others for f, others in needs.items() if f not in free}
