@@ -46,7 +46,7 @@ class MissingQuantity(CourseworkError, TypeError):
         return self.advising(f"{', '.join(f'{name}=…' for name in self.names)} to the request")
 
     def advising(self, subject: str) -> str:
-        """The message, with what to add."""
+        """Return the message, with what to add."""
         return f"{self.needed}; add {subject}" if self.names else self.needed
 
 

@@ -25,7 +25,7 @@ from coursework.sheets.handout import handout
 
 
 def asked_alone(exercise: CourseExercise) -> tuple[tuple[Part, ...], ...]:
-    """The least that may be asked of an exercise: each question, with those that it is judged together with."""
+    """Return the least that may be asked of an exercise: each question, with those that it is judged together with."""
     return tuple(dict.fromkeys(exercise.chosen_parts([part.id]) or () for part in exercise.spec.parts))
 
 

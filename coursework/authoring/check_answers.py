@@ -43,7 +43,7 @@ def check_right_answers(variant: Variant, key: Key, report: CheckReport) -> None
 
 
 def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
-    """The right answers of a variant in the ways people write them."""
+    """Yield the right answers of a variant in the ways people write them."""
     sheets: dict[str, dict[str, Any]] = {spelling: {} for spelling in ("exact", "printed", "comma", "edge")}
     for part in variant.parts:
         if part.sort.is_open:
@@ -101,7 +101,7 @@ def check_rounding_students(
 
 
 def _check_rounded_together(variant: Variant, own_answers: Mapping[str, Any], report: CheckReport) -> None:
-    """The same for parts that are judged together, whose margin does not follow the rounding."""
+    """Check the same of parts that are judged together, whose margin does not follow the rounding."""
     parts = {part.id: part for part in variant.parts}
     for name, ids in judges_of(variant):
         answers = {
@@ -144,7 +144,7 @@ def check_mistakes(variant: Variant, key: Key, report: CheckReport) -> None:
 
 
 def check_slips(variant: Variant, key: Key, report: CheckReport) -> None:
-    """A slip that shows is recognised, and earns nothing that a right answer does.
+    """Check that a slip that shows is recognised, and earns nothing that a right answer does.
 
     The first slip of every part on one sheet, then the second of every part, and so on.
     """
@@ -196,7 +196,7 @@ def _little_and_much(part: Part, key: Key) -> tuple[Any, ...]:
 
 
 def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any, report: CheckReport) -> None:
-    """The same for parts that are judged together."""
+    """Check the same of parts that are judged together."""
     parts = {part.id: part for part in variant.parts}
     own_answers = {first.quantity: wrong}
     for name, ids in judges_of(variant):
@@ -215,14 +215,14 @@ def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any,
 
 
 def _written(value: Any) -> Any:
-    """A value as a student may write it: a vector by its coordinates, a matrix as lists, several cases by their names."""
+    """Return a value as a student may write it: a vector by its coordinates, a matrix as lists, several cases by their names."""
     if isinstance(value, np.ndarray) and value.ndim == 2:
         return str(value.tolist())
     return "; ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else value
 
 
 def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], report: CheckReport) -> None:
-    """A sheet of mistakes by part: the name of each, if any, and the answer that it gives."""
+    """Check that the mistakes on a sheet are recognised; by part the name of each, if any, and the answer that it gives."""
     marking = grade(variant, {part_id: answer for part_id, (_, answer) in sheet.items()})
     for part_id, (name, answer) in sheet.items():
         if not name:
@@ -255,7 +255,7 @@ def check_nonsense(variant: Variant, report: CheckReport) -> None:
 
 
 def _check_extreme(variant: Variant, number: str, report: CheckReport) -> None:
-    """The same for a sheet of one absurd number, and for one such answer beside right ones to the same judge.
+    """Check the same of a sheet of one absurd number, and of one such answer beside right ones to the same judge.
 
     Where each answer stands for itself, nought may be right.
     """

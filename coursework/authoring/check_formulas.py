@@ -39,7 +39,7 @@ class Proof:
 
 
 def check_formulas(drawn: Sequence[Variant], report: CheckReport) -> None:
-    """The printed formula of each step gives its printed value; a step that fails is told once."""
+    """Check that the printed formula of each step gives its printed value; report a step that fails once."""
     failed = set()
     for variant in drawn[:TRIED]:
         sheet = answer_sheet(variant, polygons=False)
@@ -68,7 +68,7 @@ def _why_not(variant: Variant, step: Step, proof: Proof) -> str:
 
 
 def _shown_by_symbol(sheet: AnswerSheet) -> dict[str, str]:
-    """The printed number of each quantity of a sheet, by its symbol."""
+    """Return the printed number of each quantity of a sheet, by its symbol."""
     given = {g.symbol: rf"\num{{{g.value}}}" for g in sheet.handout.given if g.is_number}
     return given | {step.symbol: _number_of(step.value) for step in sheet.steps}
 
@@ -94,7 +94,7 @@ def prove(step: Step, by_symbol: Mapping[str, str]) -> Proof | None:
 
 
 def _number_of(value: str) -> str:
-    """The LaTeX of a printed value without its unit."""
+    """Return the LaTeX of a printed value without its unit."""
     return value.partition(r"\ \mathrm")[0]
 
 

@@ -42,7 +42,7 @@ def best_guess(drawn: Sequence[Variant]) -> Guess:
 
 
 def _right(variant: Variant, part: Part) -> str | None:
-    """The right answer to a part as who guesses may write it; None of what nobody guesses."""
+    """Return the right answer to a part as who guesses may write it; None of what nobody guesses."""
     sort = part.sort
     is_guessed = sort.family in ("choice", "choices", "pattern") or (sort.is_exact and sort.is_scalar)
     if sort.is_open or not is_guessed:

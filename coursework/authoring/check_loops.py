@@ -15,7 +15,7 @@ from coursework.parsing.vocabulary import MAX_LENGTH
 
 
 def check_loops(variant: Variant, report: CheckReport) -> None:
-    """The equations of the loops hold for the answers, are right in other forms, and wrong links are told.
+    """Check that the equations of the loops hold for the answers, are right in other forms, and that wrong links are named.
 
     An equation does not depend on the variant: one is enough.
     """

@@ -20,7 +20,7 @@ _SAME = 1e-6  #: of a value, by which two ways to compute it may differ
 
 
 def check_prices(drawn: Sequence[Variant], report: CheckReport) -> None:
-    """A named mistake is of the kind of the usual error that it is, unless it says a price of its own."""
+    """Check that a named mistake is of the kind of the usual error that it is, unless it states a penalty of its own."""
     exercise = drawn[0].exercise
     for name, mistake in exercise.solution.mistakes.items():
         kinds = set(usual_kinds(exercise, name, drawn))
@@ -37,7 +37,7 @@ def check_prices(drawn: Sequence[Variant], report: CheckReport) -> None:
 
 
 def usual_kinds(exercise: CourseExercise, mistake: str, drawn: Sequence[Variant]) -> Iterator[str]:
-    """The kinds of usual errors that give what a named mistake gives, of the first quantity that it is about."""
+    """Yield the kinds of usual errors that give what a named mistake gives, of the first quantity that it is about."""
     solution = exercise.solution
     target = solution.mistakes[mistake].targets[0]
     given = given_columns(exercise, drawn)

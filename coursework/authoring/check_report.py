@@ -49,7 +49,7 @@ class CheckReport:
         return not self.failures
 
     def fail(self, message: str) -> None:
-        """A promise is broken: how, in one line; said once, however often it is met."""
+        """Record a broken promise in one line; once, however often it is met."""
         message = message.removeprefix(f"{self.name}: ")  # whoever prints it says whose it is
         if message not in self.failures:
             self.failures.append(message)
@@ -78,7 +78,7 @@ class CheckReport:
 
 
 def table(reports: Sequence[CheckReport]) -> list[Mapping[str, Any]]:
-    """A line an exercise, for printing: narrow enough for 80 columns."""
+    """Return a line an exercise, for printing: narrow enough for 80 columns."""
     return [
         {
             "exercise": r.name,

@@ -42,7 +42,7 @@ def check_usual_errors(drawn: Sequence[Variant], report: CheckReport) -> None:
 
 
 def _own_errors(part: Part, key: Key) -> Iterator[tuple[UsualError, float]]:
-    """The errors in a part's own formula that move its answer."""
+    """Yield the errors in a part's own formula that move its answer."""
     if not part.sort.is_scalar or part.judge:
         return
     errors, values = key.usual_ways(part.quantity)
@@ -71,7 +71,7 @@ def _count_verdict(variant: Variant, part: Part, error: UsualError, mark: Any, r
 
 
 def _list_unprotected(variant: Variant, report: CheckReport) -> None:
-    """The asked numbers that a weighty error may leave right on some variants, and those of which none is made."""
+    """Add the asked numbers that a weighty error may leave right on some variants, and those of which none is made."""
     exercise = variant.exercise
     for demand, share in protection(exercise, None).unprotected.items():
         if demand.error.kind in WEIGHTY:

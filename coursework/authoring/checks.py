@@ -82,7 +82,7 @@ def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) 
 def check_all(
     course: Course, names: Sequence[str], variants: int, progress: Callable[[], None] = lambda: None
 ) -> list[CheckReport]:
-    """A report an exercise, in this order, made by as many processes as there are processors."""
+    """Return a report an exercise, in this order, made by as many processes as there are processors."""
     count = min(workers(len(names)), workers(variants, _WORTH_PROCESSES))
     if count < 2:
         return [_with_progress(_check_one(course, name, variants), progress) for name in names]
@@ -283,7 +283,7 @@ def check_symbols(exercise: CourseExercise, report: CheckReport) -> None:
 
 
 def check_known(exercise: CourseExercise, report: CheckReport) -> None:
-    """The solution gives the values known without it."""
+    """Check that the solution gives the values known without it."""
     if not exercise.solution.known:
         report.fail("the solution states no KNOWN case; closure alone cannot tell the branch")
     for given, expected, *effect_names in exercise.solution.known:
@@ -300,7 +300,7 @@ def _is_orientation(exercise: CourseExercise, name: str) -> bool:
 
 
 def agrees(value: Any, expected: Any, *, is_angle: bool = False) -> bool:
-    """A printed text agrees to its last digit, a number to 1e-9 relative, a vector likewise."""
+    """Return a printed text agrees to its last digit, a number to 1e-9 relative, a vector likewise."""
     if isinstance(value, str):
         return value == expected
     if isinstance(expected, str):

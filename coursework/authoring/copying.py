@@ -127,7 +127,7 @@ class _Copy:
         return []
 
     def _beside(self, path: Path) -> list[Path]:
-        """The data that stand beside the module of another exercise; its texts are not asked for."""
+        """Return the data that stand beside the module of another exercise; its texts are not asked for."""
         if not self._is_of_another(path):
             return []
         return [p for p in path.parent.glob(f"{path.stem}.*") if not p.name.endswith((".j2", *MADE))]
@@ -170,7 +170,7 @@ class _Copy:
         return re.sub(own_name, self.renamed, text).encode("utf-8")
 
     def _with_imports(self, text: str, path: Path) -> str:
-        """A module that imports what was renamed by its new name."""
+        """Return a module that imports what was renamed by its new name."""
         lines = text.splitlines(keepends=True)
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.ImportFrom) and node.level:

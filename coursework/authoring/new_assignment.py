@@ -82,7 +82,7 @@ def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence
 
 
 def _texts(texts: dict[str, str]) -> str:
-    """A text, or one a language, as TOML."""
+    """Return a text, or one a language, as TOML."""
     if len(set(texts.values())) == 1:
         return json.dumps(next(iter(texts.values())), ensure_ascii=False)
     return (

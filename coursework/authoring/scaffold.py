@@ -19,7 +19,7 @@ FIRST_EXERCISE = "crank_pin"
 
 
 def languages_around(environment: Mapping[str, str]) -> tuple[str, ...]:
-    """The languages of a new course: the environment's where the engine speaks it, else all."""
+    """Return the languages of a new course: the environment's where the engine speaks it, else all."""
     around = language_of(environment)
     return (around,) if around in languages() else languages()
 

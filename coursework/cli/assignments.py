@@ -33,7 +33,7 @@ class _Settings:
     base: Path  #: the file's folder, from which its paths are told
 
     def of(self, name: str, option: str = "") -> Any:
-        """An option's value; ``option`` is what the command calls it."""
+        """Return an option's value; ``option`` is what the command calls it."""
         option = option or name
         given = self.context.params[option]
         default = click.core.ParameterSource.DEFAULT

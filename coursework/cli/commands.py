@@ -76,7 +76,7 @@ class _Commands(click.Group):
         return command.help or "" if command else ""
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """The commands by their names, which need not be loaded, and the options of them all."""
+        """Return the commands by their names, which need not be loaded, and the options of them all."""
         from click.shell_completion import CompletionItem
 
         names = [CompletionItem(name) for name in self.list_commands(ctx) if name.startswith(incomplete)]
@@ -93,6 +93,6 @@ def commands(context: click.Context, folder: str | None) -> None:
 
 
 def named_command(arguments: Sequence[str]) -> str:
-    """The command that some arguments name, and a space; nothing where they name none."""
+    """Return the command that some arguments name, and a space; nothing where they name none."""
     named = [a for a in arguments if a in COMMANDS]
     return f"{named[0]} " if named else ""

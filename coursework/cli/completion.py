@@ -11,7 +11,7 @@ from coursework.errors import CourseworkError
 
 
 def exercises(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """The exercises whose names begin so; none where there is no course."""
+    """Return the exercises whose names begin so; none where there is no course."""
     from coursework.course.folder import course_folder
 
     with suppress(CourseworkError):
@@ -24,7 +24,7 @@ def exercises(context: click.Context, parameter: click.Parameter, begun: str) ->
 
 
 def languages(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """The languages that the course speaks; none where there is no course."""
+    """Return the languages that the course speaks; none where there is no course."""
     from coursework.course.folder import course_folder
 
     with suppress(CourseworkError):

@@ -36,7 +36,7 @@ _TOLD = 10  #: lines that are told, of however many
 
 
 def store_at(context: click.Context, url: str, *, new: bool = False) -> Store:
-    """A database, let go of when the command ends; a file that is not there is made where it may be ``new``.
+    """Return a database, let go of when the command ends; a file that is not there is made where it may be ``new``.
 
     Raises
     ------
@@ -219,7 +219,7 @@ def written_marks(context: click.Context, url: str, name: str, folder: Path, dec
 
 @click.group()
 def database() -> None:
-    """A database of what is issued, answered, marked and decided: look into it, write it out, put it back."""
+    """Look into a database of what is issued, answered, marked and decided; write it out, put it back."""
 
 
 _url_argument = click.argument("url", metavar="URL")

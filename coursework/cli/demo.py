@@ -36,7 +36,7 @@ Habit = Callable[[Variant, Key, Part, int], Any]  #: variant, key, part, its pla
 
 
 def _right(variant: Variant, key: Key, part: Part, digits: int = 5) -> str:
-    """The right answer as a careful student writes it, without unit."""
+    """Return the right answer as a careful student writes it, without unit."""
 
     def label(case: str) -> str:
         return " ".join(to_text(variant.label(part.id, case), variant.lang).split())

@@ -39,7 +39,7 @@ TEACHER = "Ada Keller"
 
 
 def demo_database(folder: str | None, target: Path) -> str:
-    """The database of a demonstration of a course in a folder; as it was left where it is there.
+    """Return the database of a demonstration of a course in a folder; as it was left where it is there.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def _fill(course: Course[Any], store: Store, is_own: bool, folder: Path) -> None
 
 
 def _assignment(course: Course[Any], name: str, index: int, is_own: bool, folder: Path) -> Assignment:
-    """That of the built-in course, or one of some exercises of another."""
+    """Return the assignment of the built-in course, or one of some exercises of another."""
     path = CLASS / f"{name}.toml"
     if not is_own:
         path = folder / f"{name}.toml"

@@ -78,7 +78,7 @@ def _chapter_of(folder: Any, exercise: str) -> dict[str, Any]:
 
 
 def _row(listed: dict[str, Any]) -> dict[str, Any]:
-    """A row of the table: the chapter stands above it, and the lesson is the first thing needed."""
+    """Return a row of the table: the chapter stands above it, and the lesson is the first thing needed."""
     cells = {k: v for k, v in listed.items() if k not in ("chapter", "lesson")}
     return {**cells, "title": "\n".join(listed["title"].values()), "needs": "\n".join(listed["needs"])}
 

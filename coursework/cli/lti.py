@@ -123,7 +123,7 @@ def _platform(
     name: str,
     addresses: dict[str, str | None],
 ) -> LTIPlatform | None:
-    """The platform that is told; none as long as it has not said its client ID."""
+    """Return the platform that is told; none as long as it has not said its client ID."""
     from coursework.lti.settings import KINDS as known
     from coursework.lti.settings import LTIPlatform, checked_url, origin
 
@@ -339,7 +339,7 @@ _LOGS: dict[str, Any] = {
 def _application(
     context: click.Context, folder: Path, host: str, port: int, url: str | None, behind_proxy: bool
 ) -> tuple[Any, str]:
-    """The service of a folder, and where browsers find it."""
+    """Return the service of a folder, and where browsers find it."""
     from dataclasses import replace
 
     from coursework.lti.course_host import CourseHost

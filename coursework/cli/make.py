@@ -310,7 +310,7 @@ def _goes_on(before: Path, issued: str) -> bool:
 
 
 def _by_place(content: Mapping[str, Any]) -> dict[tuple[Any, ...], Any]:
-    """The records by student, exercise and seed."""
+    """Return the records by student, exercise and seed."""
     records = ((item.get("student", ""), item["record"]) for item in content["issued"])
     return {(student, record["exercise"], record["seed"]): record for student, record in records}
 

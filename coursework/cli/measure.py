@@ -100,7 +100,7 @@ def _in_detail(course: Any, names: Sequence[str], quick: bool, lang: str, silent
 
 
 def _overview(course: Any, quick: bool, lang: str, silent: bool) -> tuple[list, Any]:
-    """A line for each exercise of the course."""
+    """Return a line for each exercise of the course."""
     from coursework.accuracy.overview import overview
     from coursework.accuracy.pages import overview_report
 

@@ -111,7 +111,7 @@ def simulate(
 
 
 def _scene_file(course: Any, exercise: str, settings: dict[str, Any], typed: set[str]) -> SceneFile:
-    """The scene of a file, or that of the options."""
+    """Return the scene of a file, or that of the options."""
     from coursework.scenes.scene_files import SceneFile, read_scene
     from coursework.scenes.scenes import Scene
 
@@ -151,7 +151,7 @@ def _seconds(text: str | None) -> float:
 
 
 def _run(scene_file: SceneFile, scene: Scene) -> SceneTable:
-    """A scene as its file says: over a cycle, or in time."""
+    """Return a scene as its file says: over a cycle, or in time."""
     if scene_file.drive is None:
         return scene.over_cycle(scene_file.steps)
     return scene.in_time(scene_file.drive, scene_file.duration)
@@ -269,7 +269,7 @@ def _below(spread: float | None) -> str:
 
 
 def _write_budget_plot(effect_budget: EffectBudget, title: str, stem: Path) -> None:
-    """A bar an effect: what leaving it out changes at most, and what it costs."""
+    """Write a chart with a bar for each effect: its influence at most, and its cost."""
     from coursework.figures.charts import bars
     from coursework.system.writing import write_whole
 
@@ -291,7 +291,7 @@ def _rounded(value: float) -> str:
 
 
 def _write_rows(rows: Sequence[dict[str, Any]], stem: Path, decimal: str) -> None:
-    """A table as ``STEM.csv``."""
+    """Write a table as ``STEM.csv``."""
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
@@ -299,7 +299,7 @@ def _write_rows(rows: Sequence[dict[str, Any]], stem: Path, decimal: str) -> Non
 
 
 def _write_plot(table: SceneTable, title: str, stem: Path) -> None:
-    """The curves of a scene as ``STEM.svg``."""
+    """Write the curves of a scene as ``STEM.svg``."""
     from coursework.figures.charts import curves
     from coursework.system.writing import write_whole
 
@@ -318,7 +318,7 @@ def _short_number(value: Any, digits: int = 5) -> str:
 
 
 def _drive(exercise: Any, text: str) -> Motor:
-    """The torque of ``--drive torque=5``, in N*m, by that name or by the exercise's own."""
+    """Return the torque of ``--drive torque=5``, in N*m, by that name or by the exercise's own."""
     from coursework.parsing.numbers import read_number
     from coursework.scenes.added import Motor
 

@@ -143,7 +143,7 @@ class Lists(click.ParamType):
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        """The last of the words, after those that stand there."""
+        """Return the last of the words, after those that stand there."""
         from click.shell_completion import CompletionItem
 
         before, comma, begun = incomplete.rpartition(",")
@@ -225,7 +225,7 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON."
 
 
 def spoken(context: click.Context, parameter: click.Parameter, told: Any) -> Any:
-    """The language, or the languages, that are told; else the environment's where the course speaks it, else the course's."""
+    """Return the language, or the languages, that are told; else the environment's where the course speaks it, else the course's."""
     from coursework.course.folder import course_folder
     from coursework.language.environment import language_of
 
@@ -281,7 +281,7 @@ def is_typed(context: click.Context, option: str) -> bool:
 
 
 def writes(context: click.Context, folder: Path) -> None:
-    """This command alone writes into a folder, until it ends.
+    """Lock a folder, so that this command alone writes into it until it ends.
 
     Raises
     ------
@@ -321,7 +321,7 @@ def exercise_names(course: Course, names: Sequence[str]) -> tuple[str, ...]:
 
 
 def settings_given(settings: Sequence[str]) -> dict[str, str]:
-    """The given values of ``--set NAME=VALUE``, as texts."""
+    """Return the given values of ``--set NAME=VALUE``, as texts."""
     given: dict[str, str] = {}
     for setting in settings:
         name, equals, value = setting.partition("=")

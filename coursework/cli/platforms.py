@@ -207,7 +207,7 @@ def _export_autograder(
 
 
 def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student]) -> bytes:
-    """The ``issued.json`` that a build writes."""
+    """Return the ``issued.json`` that a build writes."""
     from coursework.issuing.issued import issued_content
     from coursework.issuing.issuing import issue
     from coursework.issuing.roster import Student
@@ -267,7 +267,7 @@ def _secret_beside(wanted: _Wanted, out: Path, lang: str) -> Secret:
 
 
 def _assignment(course: Course[Any], wanted: _Wanted) -> tuple[Assignment, Sequence[str]]:
-    """The assignment of the file that is named, and the languages of its questions."""
+    """Return the assignment of the file that is named, and the languages of its questions."""
     from coursework.issuing.assignment import read_assignment
 
     path = Path(wanted.exercises[0])
@@ -288,7 +288,7 @@ def _refuse_options(context: click.Context, path: Path) -> None:
 
 
 def _langs(context: click.Context, assignment: Assignment, langs: Sequence[str]) -> Sequence[str]:
-    """The languages told, else those of the assignment."""
+    """Return the languages told, else those of the assignment."""
     stated = assignment.options.get("lang")
     is_told = context.get_parameter_source("langs") is not click.core.ParameterSource.DEFAULT
     if is_told or stated is None:
@@ -297,7 +297,7 @@ def _langs(context: click.Context, assignment: Assignment, langs: Sequence[str])
 
 
 def _check_folder(out: Path, drawn: DrawnPool) -> None:
-    """An export takes the place of one of the same pool, or of a smaller one; not of another."""
+    """Check that an export replaces one of the same pool, or of a smaller one; not of another."""
     from coursework.issuing.issued import Issued
 
     path = out / "issued.json"

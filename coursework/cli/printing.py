@@ -23,7 +23,7 @@ def print_json(content: Any) -> None:
 
 
 def print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
-    """A table, a column a key of the first row; nothing where there is no row."""
+    """Print a table with a column for each key of the first row; nothing where there is no row."""
     if not rows:
         return
     cells = [[visible(str(v)) for v in row] for row in (rows[0], *(row.values() for row in rows))]
@@ -59,7 +59,7 @@ def _fits_a_terminal() -> bool:
 
 
 def _ruled(cells: Sequence[Sequence[str]], right: Sequence[bool], title: str) -> list[str]:
-    """The lines of a table of plain letters, drawn as on a terminal wide enough, which takes a tenth of a second less.
+    """Return the lines of a table of plain letters, drawn as on a terminal wide enough, which takes a tenth of a second less.
 
     Nothing where a letter is none of Latin's, whose width is one, or where the table is too wide.
     """
@@ -102,7 +102,7 @@ def _is_plain(text: str) -> bool:
 
 
 def print_note(text: str) -> None:
-    """A line of words; on a terminal wrapped to its width, the lines after the first indented."""
+    """Print a line of words; on a terminal wrapped to its width, the lines after the first indented."""
     from rich.console import Console
 
     console = Console()
@@ -111,7 +111,7 @@ def print_note(text: str) -> None:
 
 @contextmanager
 def progress_bar(label: str, total: int | None) -> Iterator[Callable[..., None]]:
-    """A progress bar on a terminal; nothing elsewhere."""
+    """Provide a progress bar on a terminal; nothing elsewhere."""
     if not sys.stderr.isatty():
         yield lambda *_: None
         return

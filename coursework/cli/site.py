@@ -183,7 +183,7 @@ def _usual() -> str:
 
 @contextmanager
 def _database_of(course: str | None, db: str | None, demo: str | None) -> Iterator[str]:
-    """The database's address."""
+    """Provide the database's address."""
     if demo is None:
         yield db or _usual()
         return
@@ -212,7 +212,7 @@ def _address(host: str, at: socket.socket) -> str:
 
 
 def _checked_url(url: str) -> str:
-    """The address that somebody tells.
+    """Return the address that somebody tells.
 
     Raises
     ------

@@ -69,7 +69,7 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
 
 
 def _plain(fields: dict[str, object]) -> dict[str, object]:
-    """The same with dates as texts."""
+    """Return the same with dates as texts."""
     return {
         name: value.isoformat() if hasattr(value, "isoformat") else value for name, value in fields.items()
     }

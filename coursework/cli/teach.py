@@ -78,7 +78,7 @@ def lesson(
 
 
 def _check_language(lang: str) -> None:
-    """A lesson and a book are in one language that the package has words for."""
+    """Check that the language of a lesson or a book is one that the package has words for."""
     if lang not in known_languages():
         raise BadInput(unknown_language(lang))
 
@@ -268,7 +268,7 @@ def workbook(
 
 
 def _numbers(text: str) -> tuple[int, ...]:
-    """The chapters asked for."""
+    """Return the chapters asked for."""
     pieces = [piece.strip() for piece in text.split(",") if piece.strip()]
     for piece in pieces:
         if not piece.isdecimal():

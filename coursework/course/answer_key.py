@@ -47,7 +47,7 @@ class Slip(NamedTuple):
         return reference * self.factor
 
     def mended(self, answer: float) -> float:
-        """The answer without it."""
+        """Return the answer without it."""
         return answer / self.factor
 
 
@@ -94,7 +94,7 @@ class Key:
         return KeyNumbers(self.reference, self.envelope)
 
     def half_width(self, part: Part) -> float:
-        """The largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
+        """Return the largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
         if not part.has_margin:
             return 0.0
         size = part.sort.size(self.reference[part.quantity])
@@ -135,18 +135,18 @@ class Key:
         return {quantity: plain_scalar(value) for quantity, value in values.items()}
 
     def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
-        """The named mistakes that reach a quantity, each with its wrong value, in the solution's order."""
+        """Yield the named mistakes that reach a quantity, each with its wrong value, in the solution's order."""
         for name, values in self.wrong.items():
             if quantity in values:
                 yield name, values[quantity]
 
     def price(self, name: str) -> float:
-        """The share of the points that a named mistake leaves."""
+        """Return the share of the points that a named mistake leaves."""
         mistake = self.solution.mistakes[name]
         return self.rules.share(mistake.kind) if mistake.share is None else mistake.share
 
     def usual_ways(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
-        """The errors that nobody need list, those in a quantity's own formula first, and the values that they give.
+        """Return the errors that nobody need list, those in a quantity's own formula first, and the values that they give.
 
         Shape ``(errors,)``; NaN where one leads nowhere.
         """
@@ -156,7 +156,7 @@ class Key:
     def usual_ways_from(
         self, quantity: str, own_answers: Mapping[str, Any]
     ) -> tuple[tuple[UsualError, ...], np.ndarray]:
-        """The errors in a quantity's own formula, and what they give from a student's own earlier answers."""
+        """Return the errors in a quantity's own formula, and what they give from a student's own earlier answers."""
         variant = self.variant
         given = {
             **variant.used,
@@ -177,7 +177,7 @@ class Key:
         return {q: list(self.followed_in_radians(q, {})) for q in self._quantities}
 
     def followed_in_radians(self, quantity: str, own_answers: Mapping[str, Any]) -> Iterator[float]:
-        """The same from a student's own earlier answers."""
+        """Yield the same from a student's own earlier answers."""
         given = {**self.variant.used, **{q: v for q, v in own_answers.items() if q != quantity}}
         for graph in self.solution.in_radians:
             with suppress(CourseworkError):
@@ -243,7 +243,7 @@ class Key:
         return self._other_values(part.quantity) if is_alone else []
 
     def slip_values(self, part: Part) -> Iterator[tuple[str, Any]]:
-        """The wrong values that slips, and the other case, give of a part, each with its kind."""
+        """Yield the wrong values that slips, and the other case, give of a part, each with its kind."""
         for slip in self.slips(part):
             yield slip.kind, slip.made(self.reference[part.quantity])
         for value in self.other_cases(part):
@@ -272,7 +272,7 @@ def _metres_for_millimetres(unit: str) -> float:
 
 
 def ill_limit(part: Part, reference: Any) -> float:
-    """The widest envelope of a variant that may be issued, in the part's unit."""
+    """Return the widest envelope of a variant that may be issued, in the part's unit."""
     if part.unit == "deg":
         return ILL_DEGREES
     return ILL_SHARE * float(np.linalg.norm(reference)) if not isinstance(reference, str) else math.inf

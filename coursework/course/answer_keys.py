@@ -41,7 +41,7 @@ def _key(number: int, part: Part, ids: frozenset[str]) -> str:
 
 
 def part_called(name: str, ids: Sequence[str]) -> str:
-    """The id of the part that an answer under a name is of, among those asked, in order; the name itself where it is none."""
+    """Return the id of the part that an answer under a name is of, among those asked, in order; the name itself where it is none."""
     if name in ids:
         return name
     match = _NUMBERED.fullmatch(name)

@@ -34,4 +34,4 @@ class KeySource(Protocol):
         """The quantities of the parts, and those that parts are judged with; none of what a person marks."""
 
     def solution(self) -> dict[str, Any]:
-        """The asked quantities in canonical units and full precision."""
+        """Return the asked quantities in canonical units and full precision."""

@@ -6,6 +6,6 @@ from pathlib import Path
 
 
 def builtin_root() -> Path:
-    """The folder of the course that ships with the package, in a wheel or in a checkout."""
+    """Return the folder of the course that ships with the package, in a wheel or in a checkout."""
     shipped = Path(__file__).parent.parent / "_course"
     return shipped if shipped.is_dir() else Path(__file__).parent.parent.parent

@@ -68,7 +68,7 @@ class Chapter:
 def chapters(
     stated: Any, exercises: Sequence[str], lessons: Sequence[str], source: str
 ) -> tuple[Chapter, ...]:
-    """The chapters that a course states.
+    """Return the chapters that a course states.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def _section(stated: Mapping[str, Any], where: str) -> ChapterSection:
 
 
 def _placed(stated: Any, where: str) -> tuple[str, tuple[str, ...]]:
-    """An exercise, and what it needs besides its lesson."""
+    """Return an exercise, and what it needs besides its lesson."""
     if isinstance(stated, str):
         return stated, ()
     if isinstance(stated, Mapping) and {"name"} <= set(stated) <= {"name", "needs"}:
@@ -199,6 +199,6 @@ def _check_order(course_chapters: Sequence[Chapter], source: str) -> None:
 
 
 def sections(course_chapters: Sequence[Chapter]) -> Iterator[ChapterSection]:
-    """The sections of chapters, one after another."""
+    """Yield the sections of chapters, one after another."""
     for chapter in course_chapters:
         yield from chapter.sections

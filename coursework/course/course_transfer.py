@@ -62,7 +62,7 @@ class Carried:
         self._roots: Roots = {**roots, **_builtin()}
 
     def packed(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
-        """A task as a pickle that does it where it is read, with :attr:`content` as its one buffer, and whose value is what
+        """Return a task as a pickle that does it where it is read, with :attr:`content` as its one buffer, and whose value is what
         :meth:`unpacked` reads: who passes it on, or reads it, needs to know nothing of the package before."""
         task = tuple(_dumped(item, self._roots) for item in (function, *arguments))
         return pickle.dumps(_Task(self.content, self._caller, task), 5, buffer_callback=lambda _: False)
@@ -126,7 +126,7 @@ def versions() -> Mapping[str, str]:
 
 
 def _digest_of_package() -> str:
-    """The same for a wheel and a checkout of the same content."""
+    """Return the same for a wheel and a checkout of the same content."""
     package = Path(__file__).parents[1]
     digest = hashlib.sha256()
     kinds = ((builtin_root() / kind, kind) for kind in KINDS)
@@ -179,7 +179,7 @@ _UNPACKING = threading.Lock()
 
 @cache
 def _home() -> Path:
-    """The folder where this process unpacks courses: it goes with the worker."""
+    """Return the folder where this process unpacks courses: it goes with the worker."""
     from distributed import get_worker
 
     try:
@@ -257,7 +257,7 @@ class _Unpickler(pickle.Unpickler):
 
 
 def _dumped(obj: Any, roots: Roots) -> bytes:
-    """A pickle; each object of one that may hold a place is looked at, which takes several times as long."""
+    """Return a pickle; each object of one that may hold a place is looked at, which takes several times as long."""
     plain = pickle.dumps(obj, 5)
     names = (name.encode("utf-8", "surrogatepass") for names in roots.values() for name in names)
     if not any(name in plain for name in (b"pathlib", *names)):

@@ -45,7 +45,7 @@ def _evaluate(bound: Bound | None, drawn: Mapping[str, np.ndarray]) -> Any:
 
 
 def _constant(spec: GivenSpec) -> float:
-    """The one value of a quantity that is fixed."""
+    """Return the one value of a quantity that is fixed."""
     assert spec.default is not None
     return float(spec.default)
 
@@ -67,14 +67,14 @@ class _Grid:
         return _Grid(int(step * power), power)
 
     def first(self, low: Any) -> np.ndarray:
-        """The first multiple not below ``low``; a bound on the grid, but for rounding, is on it."""
+        """Return the first multiple not below ``low``; a bound on the grid, but for rounding, is on it."""
         return self._steps(np.ceil, low, -1e-9, without=1)
 
     def last(self, high: Any) -> np.ndarray:
         return self._steps(np.floor, high, 1e-9, without=0)
 
     def _steps(self, to_whole: Callable, bound: Any, slack: float, without: int) -> np.ndarray:
-        """A bound in whole steps; a bound that is not a number makes the range empty."""
+        """Return a bound in whole steps; a bound that is not a number makes the range empty."""
         steps = to_whole(np.asarray(bound, dtype=float) * self.denominator / self.numerator + slack)
         return np.where(np.isfinite(steps), steps, without).astype(np.int64)
 
@@ -111,7 +111,7 @@ def candidates(exercise: Exercise, words: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def conditions(exercise: Exercise) -> tuple[Graph, tuple[str, ...]]:
-    """The conditions of an exercise as a graph, and their names."""
+    """Return the conditions of an exercise as a graph, and their names."""
     functions: dict[str, Callable] = {f.__name__: f for f in (*exercise.helpers, *exercise.keep)}
     return Graph(functions), tuple(f.__name__ for f in exercise.keep)
 
@@ -141,7 +141,7 @@ def accepted(exercise: Exercise, drawn: Mapping[str, np.ndarray]) -> tuple[np.nd
 def draw(
     name: str, exercise: Exercise, seeds: Sequence[int], secret: Secret | None = None
 ) -> list[dict[str, float | str]]:
-    """The given values of each seed's variant, in canonical units; with a secret, of each code of an assignment.
+    """Return the given values of each seed's variant, in canonical units; with a secret, of each code of an assignment.
 
     Raises
     ------
@@ -175,7 +175,7 @@ def draw(
 
 
 def nth_candidate(name: str, exercise: Exercise, seed: int, index: int) -> dict[str, float | str]:
-    """The given values of a candidate of a seed, by its place among them."""
+    """Return the given values of a candidate of a seed, by its place among them."""
     words = _words(name, exercise.version, seed, index // BLOCK, len(exercise.given))
     return {n: v[index % BLOCK].item() for n, v in candidates(exercise, words).items()}
 
@@ -229,7 +229,7 @@ def acceptance(name: str, exercise: Exercise, count: int = 4096) -> tuple[float,
 
 
 def first_candidates(name: str, exercise: Exercise, count: int) -> dict[str, np.ndarray]:
-    """The first candidates of the first seeds, at least so many, whether or not they are variants."""
+    """Return the first candidates of the first seeds, at least so many, whether or not they are variants."""
     seeds = range(math.ceil(count / BLOCK))
     words = np.concatenate([_words(name, exercise.version, s, 0, len(exercise.given)) for s in seeds])
     return candidates(exercise, words)

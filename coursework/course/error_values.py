@@ -48,7 +48,7 @@ class ErrorValues:
         self._rows: dict[str, tuple[tuple[UsualError, ...], np.ndarray]] = {}
 
     def of(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
-        """The errors that reach a quantity, those in its own formula first, and their values: shape ``(errors, n)``.
+        """Return the errors that reach a quantity, those in its own formula first, and their values: shape ``(errors, n)``.
 
         NaN where an error leads nowhere.
         """
@@ -60,7 +60,7 @@ class ErrorValues:
         return self._rows[quantity]
 
     def in_own_formula(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
-        """The errors in a quantity's own formula, and their values: shape ``(errors, n)``."""
+        """Return the errors in a quantity's own formula, and their values: shape ``(errors, n)``."""
         if quantity not in self.exercise.solution.graph.textbook.names or quantity not in self.quantities:
             return (), np.empty((0, self.count))
         errors, columns = self._errors_of(quantity)
@@ -84,7 +84,7 @@ class ErrorValues:
                 yield from zip(errors, columns[quantity], strict=True)
 
     def _errors_of(self, source: str) -> tuple[tuple[UsualError, ...], dict[str, np.ndarray]]:
-        """The errors in a formula, and by quantity that they reach their values, shape ``(errors, n)``."""
+        """Return the errors in a formula, and by quantity that they reach their values, shape ``(errors, n)``."""
         node = self.exercise.solution.graph.textbook.node(source)
         errors_found = formula_errors(node.function)
         errors = tuple(UsualError(error.kind, source, index) for index, error in enumerate(errors_found))
@@ -139,7 +139,7 @@ class ErrorValues:
             return np.full(self.count, np.nan)  # the error leads nowhere
 
     def _column(self, value: Any) -> np.ndarray:
-        """A number, or one a variant, as a column ``(n,)``; NaN for whatever else."""
+        """Return a number, or one a variant, as a column ``(n,)``; NaN for whatever else."""
         real = _real(value, (self.count,) if self._is_batch else ())
         return np.broadcast_to(np.nan if real is None else real, (self.count,))
 
@@ -149,7 +149,7 @@ class ErrorValues:
 
 
 def _real(value: Any, shape: tuple[int, ...]) -> np.ndarray | None:
-    """A real number, or an array of this shape; None for whatever else."""
+    """Return a real number, or an array of this shape; None for whatever else."""
     if isinstance(value, bool) or not isinstance(value, (int, float, np.generic, np.ndarray)):
         return None
     array = np.asarray(value)

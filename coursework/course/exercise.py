@@ -113,7 +113,7 @@ class CourseExercise(Generic[V]):
     def plan(
         self, only: Sequence[str] | None = None, *, effects: Iterable[str] | None = None
     ) -> tuple[str, ...]:
-        """The quantities that a request evaluates, in order; ``effects`` as for :meth:`solve`."""
+        """Return the quantities that a request evaluates, in order; ``effects`` as for :meth:`solve`."""
         effects = self.spec.effects if effects is None else effects
         return self.solution.graph.plan(
             self._wanted(only), frozenset(self.spec.given) & self.quantity_names, effects
@@ -194,7 +194,7 @@ class CourseExercise(Generic[V]):
         return result
 
     def existing(self, name: str, value: Any, given: Mapping[str, Any]) -> Any:
-        """A quantity of scalars as plain Python holds it.
+        """Return a quantity of scalars as plain Python holds it.
 
         Raises
         ------
@@ -262,7 +262,7 @@ class CourseExercise(Generic[V]):
         parts: Sequence[str] | None = None,
         secret: Secret | None = None,
     ) -> V:
-        """The variant of a seed: the same for ever for this exercise and version; in the course's language unless told.
+        """Return the variant of a seed: the same for ever for this exercise and version; in the course's language unless told.
 
         ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told, ``all``
         for every one. With the ``secret`` of an assignment, the seed is one of its codes.
@@ -285,7 +285,7 @@ class CourseExercise(Generic[V]):
         parts: Sequence[str] | None = None,
         secret: Secret | None = None,
     ) -> list[V]:
-        """The variants of many seeds, drawn together; with a ``secret``, of many codes of its assignment."""
+        """Return the variants of many seeds, drawn together; with a ``secret``, of many codes of its assignment."""
         lang = self.folder.language if lang is None else lang
         chosen = self.chosen_parts(parts)
         seeds = list(seeds)
@@ -300,7 +300,7 @@ class CourseExercise(Generic[V]):
         ]
 
     def _orders(self, code: int, secret: Secret | None) -> dict[str, tuple[str, ...]] | None:
-        """The orders of choices by part that a code of an assignment draws; None where they are the seed's."""
+        """Return the orders of choices by part that a code of an assignment draws; None where they are the seed's."""
         if secret is None:
             return None
         return {p.id: printed_order(self.name, code, p, secret) for p in self.spec.parts if p.choices}
@@ -326,7 +326,7 @@ class CourseExercise(Generic[V]):
         return spec
 
     def _drawn(self, seeds: Sequence[int], secret: Secret | None) -> list[dict[str, float | str]]:
-        """The given values of seeds; without the solution that keeps them, of those that are recorded."""
+        """Return the given values of seeds; without the solution that keeps them, of those that are recorded."""
         if not self.spec.kept_by_solution or self.folder.home("solutions", self.name) is not None:
             return draws.draw(self.name, self.drawing, seeds, secret)
         if secret is not None:
@@ -384,7 +384,7 @@ class CourseExercise(Generic[V]):
         )
 
     def from_record(self, record: Mapping[str, Any]) -> V:
-        """The variant that a record issued, with the values that the record holds.
+        """Return the variant that a record issued, with the values that the record holds.
 
         A record of an older version keeps its data, its parts and their points, and is solved as the
         exercise is solved now: so a corrected solution marks what was issued before.
@@ -407,7 +407,7 @@ class CourseExercise(Generic[V]):
         return tuple(p for p in self.spec.parts if not p.sort.is_open)
 
     def usual_parts(self, given: Mapping[str, Any]) -> tuple[Part, ...]:
-        """The parts that these given values ask unless others are named."""
+        """Return the parts that these given values ask unless others are named."""
         return tuple(p for p in self.spec.parts if not p.by_request and p.is_asked(given))
 
     # -------------------------------------------------------------------- texts
@@ -418,7 +418,7 @@ class CourseExercise(Generic[V]):
         return self.texts.languages
 
     def title(self, lang: str) -> str:
-        """The title; where it is not the same for every variant, that of the first."""
+        """Return the title; where it is not the same for every variant, that of the first."""
         return self.texts.title(lang) or self.variant(0, lang).text.title
 
 

@@ -31,7 +31,7 @@ _packages = itertools.count()
 
 
 def course_folder(folder: str | Path | None) -> Folder:
-    """A course's folder, that of the built-in course where none is named; nothing of it is loaded yet.
+    """Return a course's folder, that of the built-in course where none is named; nothing of it is loaded yet.
 
     Raises
     ------
@@ -76,7 +76,7 @@ class Folder:
         return tuple(sorted(self._modules("exercises")))
 
     def home(self, kind: str, name: str) -> Path | None:
-        """The file of ``KIND/NAME``, wherever it stands: ``NAME.py``, or ``NAME/__init__.py``; none where there is none.
+        """Return the file of ``KIND/NAME``, wherever it stands: ``NAME.py``, or ``NAME/__init__.py``; none where there is none.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class Folder:
         return home if home is not None and home.exists() else None
 
     def _modules(self, kind: str) -> dict[str, Path]:
-        """The modules of ``exercises`` or ``solutions`` by name; shared ones, whose names begin with an underscore, are none."""
+        """Return the modules of ``exercises`` or ``solutions`` by name; shared ones, whose names begin with an underscore, are none."""
         top = self.root / kind
         topics = [
             p
@@ -119,7 +119,7 @@ class Folder:
         return next((folder / file for folder in folders if (folder / file).exists()), folders[-1] / file)
 
     def texts(self, kind: str, name: str) -> dict[str, Path]:
-        """The texts of ``KIND/NAME`` by language, whatever is spoken."""
+        """Return the texts of ``KIND/NAME`` by language, whatever is spoken."""
         return {
             path.name.removeprefix(f"{name}.").removesuffix(".md.j2"): path
             for folder in self._text_folders(kind, name)
@@ -280,7 +280,7 @@ class Folder:
         return tuple(dict.fromkeys([*(n for c in self.chapters for n in c.exercises), *self.names]))
 
     def section_of(self, exercise: str) -> ChapterSection | None:
-        """The section of the chapters that an exercise belongs to."""
+        """Return the section of the chapters that an exercise belongs to."""
         return next((s for c in self.chapters for s in c.sections if exercise in s.exercises), None)
 
     @property
@@ -337,7 +337,7 @@ class Folder:
         return study
 
     def title(self, lang: str) -> str:
-        """The course's title in a language; the folder's name when it states none."""
+        """Return the course's title in a language; the folder's name when it states none."""
         return str(self._titles(lang).get(lang, self.root.name))
 
     def lacks_title(self, lang: str) -> bool:
@@ -407,7 +407,7 @@ class Folder:
 
 
 def _where(fault: Exception, root: Path) -> str:
-    """The fault in one line, with the last line of the course's own code on its way."""
+    """Return the fault in one line, with the last line of the course's own code on its way."""
     if isinstance(fault, SyntaxError):
         return f"line {fault.lineno}: {fault.msg}"
     return f"{_line_of(fault, root)}{type(fault).__name__}: {fault}"

@@ -42,7 +42,7 @@ def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed], rules: Rul
 
 
 def given_columns(exercise: CourseExercise[Any], variants: Sequence[KeySource]) -> dict[str, np.ndarray]:
-    """The given quantities that the solution knows, each of shape ``(n,)``: a value a variant."""
+    """Return the given quantities that the solution knows, each of shape ``(n,)``: a value a variant."""
     names = (n for n in exercise.spec.given if n in exercise.quantity_names)
     return {n: np.array([v.given[n] for v in variants]) for n in names}
 
@@ -193,7 +193,7 @@ class _KeyOfBatch(Key):
 
 
 def _rows(columns: Mapping[str, Any], count: int, ranks: Mapping[str, int] = NO_RANKS) -> dict[str, list]:
-    """A list a quantity, a value a variant; vectors and matrices, whose axes are ``ranks``, as arrays."""
+    """Return a list a quantity, a value a variant; vectors and matrices, whose axes are ``ranks``, as arrays."""
     rows = {}
     for name, values in columns.items():
         array = np.asarray(values)

@@ -33,7 +33,7 @@ class Lesson:
 
 
 def lesson_file(folder: Folder, name: str, lang: str) -> Path:
-    """The text of a lesson in a language.
+    """Return the text of a lesson in a language.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def lesson_file(folder: Folder, name: str, lang: str) -> Path:
 
 
 def _check_name(folder: Folder, name: str) -> None:
-    """A lesson's name is that of a file in books, of a module, and of a target of links."""
+    """Check a lesson's name, which is that of a file in books, of a module, and of a target of links."""
     owner = (
         "is an exercise"
         if name in folder.names
@@ -71,7 +71,7 @@ def _check_name(folder: Folder, name: str) -> None:
 
 
 def read_text(path: Path) -> str:
-    """The text of a lesson's file.
+    """Return the text of a lesson's file.
 
     Raises
     ------
@@ -87,19 +87,19 @@ def read_text(path: Path) -> str:
 
 
 def lesson_title(folder: Folder, name: str, lang: str) -> str:
-    """The title of a lesson; its name where it has none."""
+    """Return the title of a lesson; its name where it has none."""
     path = lesson_file(folder, name, lang)
     return _headings(path, path.stat().st_mtime_ns)[0]
 
 
 def lesson_sections(folder: Folder, name: str, lang: str) -> Mapping[int, str]:
-    """The headings of a lesson's numbered sections, by number."""
+    """Return the headings of a lesson's numbered sections, by number."""
     path = lesson_file(folder, name, lang)
     return _headings(path, path.stat().st_mtime_ns)[1]
 
 
 def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
-    """The lessons that teach an exercise, in a language: that of its section of the chapters, then those that ``[lessons]`` of
+    """Return the lessons that teach an exercise, in a language: that of its section of the chapters, then those that ``[lessons]`` of
     ``course.toml`` names for it.
 
     ``crank_pin = { lesson = "rods", sections = [8] }``, or a list of these; a bare ``"rods"`` is a whole
@@ -128,7 +128,7 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
 
 
 def practised(folder: Folder, lesson: str, lang: str) -> tuple[str, ...]:
-    """The exercises that a lesson teaches, in the order in which they are learnt."""
+    """Return the exercises that a lesson teaches, in the order in which they are learnt."""
     return tuple(
         name
         for name in folder.in_order
@@ -167,7 +167,7 @@ def _sections(exercise: str, lesson: str, wanted: Any, headings: Mapping[int, st
 
 @lru_cache(maxsize=64)
 def _headings(path: Path, changed: int) -> tuple[str, Mapping[int, str]]:
-    """The title of a lesson, and the headings of its numbered sections."""
+    """Return the title of a lesson, and the headings of its numbered sections."""
     text = read_text(path)
     title = _TITLE.search(text)
     return title[1] if title else path.name.split(".")[0], {

@@ -17,7 +17,7 @@ _LAST = ("none", "neither", "other")  #: cases that stand behind those that they
 
 
 def printed_order(exercise: str, seed: int, part: Part, secret: Secret | None = None) -> tuple[str, ...]:
-    """The cases of a part in the order in which the variant of a seed, or of a code of an assignment with its secret,
+    """Return the cases of a part in the order in which the variant of a seed, or of a code of an assignment with its secret,
     prints them: the same for ever.
 
     Parts of an exercise that offer the same cases offer them in one order.
@@ -33,7 +33,7 @@ def printed_order(exercise: str, seed: int, part: Part, secret: Secret | None = 
 
 
 def letters_of(cases: Sequence[str]) -> Mapping[str, str]:
-    """The letter of each case, in the order printed."""
+    """Return the letter of each case, in the order printed."""
     return dict(zip(cases, LETTERS, strict=False))
 
 

@@ -75,7 +75,7 @@ def _cached(folder: Folder) -> _CachedListing:
 
 
 def _loaded(files: Mapping[str, State]) -> dict[str, State]:
-    """The files of modules that were loaded, besides some files and those of Python itself."""
+    """Return the files of modules that were loaded, besides some files and those of Python itself."""
     modules = [(name, getattr(module, "__file__", None)) for name, module in list(sys.modules.items())]
     return {
         path: state(path)

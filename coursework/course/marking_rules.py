@@ -29,7 +29,7 @@ class Rules:
     prices: Mapping[str, float] = field(default_factory=dict)
 
     def share(self, kind: str) -> float:
-        """The share of the points that an error of a kind leaves."""
+        """Return the share of the points that an error of a kind leaves."""
         if kind in self.prices:
             return self.prices[kind]
         if self.slip is not None and kind in _SLIPS:
@@ -38,7 +38,7 @@ class Rules:
 
     @staticmethod
     def of(table: Any, source: str, usual: Rules | None = None) -> Rules:
-        """The rules that a course states; what it leaves unsaid is as ``usual``.
+        """Return the rules that a course states; what it leaves unsaid is as ``usual``.
 
         Raises
         ------

@@ -67,14 +67,14 @@ class Records:
         return Recorded(seed, given, str(record.get("lang", "fr")), parts, issued, orders)
 
     def _recorded(self, given: Mapping[str, Any], name: str, older: bool) -> Any:
-        """A given value as issued; what an older version did not have yet is its default."""
+        """Return a given value as issued; what an older version did not have yet is its default."""
         default = self.spec.given[name].default
         if older and name not in given and default is not None:
             return default
         return given[name]["value"]
 
     def _parts_of(self, points_asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
-        """The parts that a record asks, by id, worth what it says: an assignment may say so, or an older version."""
+        """Return the parts that a record asks, by id, worth what it says: an assignment may say so, or an older version."""
         if (points_asked, older) not in self._parts:
             points = dict(points_asked)
             gone = [i for i in points if self.spec.part(i) is None]

@@ -73,7 +73,7 @@ class Intake:
         return values
 
     def value(self, name: str, value: Any) -> Any:
-        """A given value as a float, an array or a case's name, in the canonical unit, within its domain."""
+        """Return a given value as a float, an array or a case's name, in the canonical unit, within its domain."""
         if name in self._structures:
             return _structure(name, value)
         spec = self._given.get(name)
@@ -92,7 +92,7 @@ class Intake:
         return value
 
     def _numbers(self, name: str, value: Any) -> Any:
-        """A float, a complex number or an array of them from whatever numpy can make one."""
+        """Return a float, a complex number or an array of them from whatever numpy can make one."""
         try:
             array = np.asarray(value)
         except ValueError:
@@ -142,7 +142,7 @@ class Intake:
 
 
 def _within_a_turn(angle: Any) -> Any:
-    """The same direction, without rounding, where whole turns would take digits from what is added to it."""
+    """Return the same direction, without rounding, where whole turns would take digits from what is added to it."""
     if isinstance(angle, float):
         if abs(angle) <= 360:
             return angle
@@ -155,7 +155,7 @@ def _within_a_turn(angle: Any) -> Any:
 
 
 def _structure(name: str, value: Any) -> Any:
-    """A list or a record as it comes, or from its JSON."""
+    """Return a list or a record as it comes, or from its JSON."""
     if not isinstance(value, str):
         return tuple(value) if isinstance(value, list) else value
     try:

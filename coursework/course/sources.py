@@ -48,7 +48,7 @@ def _needed(folder: Folder, path: Path) -> list[Path]:
 
 
 def own_folder(folder: Folder, kind: str, name: str) -> Path | None:
-    """The folder that bears the exercise's name, or would; none where it has no module of the kind."""
+    """Return the folder that bears the exercise's name, or would; none where it has no module of the kind."""
     home = folder.home(kind, name) if kind in KINDS else None
     if home is None:
         return None
@@ -73,7 +73,7 @@ def is_source(path: Path) -> bool:
 
 
 def parsed(path: Path) -> ast.Module:
-    """A module as Python reads it.
+    """Return a module as Python reads it.
 
     Raises
     ------
@@ -87,14 +87,14 @@ def parsed(path: Path) -> ast.Module:
 
 
 def imported(tree: ast.Module, path: Path) -> Iterator[Path]:
-    """The files of the modules that a module imports from its course."""
+    """Yield the files of the modules that a module imports from its course."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.level:
             yield from modules(node, path)
 
 
 def modules(node: ast.ImportFrom, path: Path) -> Iterator[Path]:
-    """The files of the modules that a relative import names."""
+    """Yield the files of the modules that a relative import names."""
     folder = path.parents[node.level - 1]
     base = folder.joinpath(*(node.module or "").split(".")) if node.module else folder
     names = [base] if node.module else []
@@ -103,7 +103,7 @@ def modules(node: ast.ImportFrom, path: Path) -> Iterator[Path]:
 
 
 def named(tree: ast.Module, path: Path) -> Iterator[Path]:
-    """The files beside a module that it names in a text: ``"loads.csv"``."""
+    """Yield the files beside a module that it names in a text: ``"loads.csv"``."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             name = node.value
@@ -115,7 +115,7 @@ def named(tree: ast.Module, path: Path) -> Iterator[Path]:
 
 
 def included(folder: Folder, path: Path) -> list[Path]:
-    """The files that a text includes, but those that every course has.
+    """Return the files that a text includes, but those that every course has.
 
     Raises
     ------

@@ -64,7 +64,7 @@ class RenderedText:
     source: str  #: the file, for messages
 
     def section(self, name: str) -> TextSection:
-        """The section of this name; a clear error if the file has none."""
+        """Return the section of this name; a clear error if the file has none."""
         if name not in self.sections:
             is_there = f"{self.source} has no" if self.title else f"{self.source} is missing, and with it the"
             raise BadStatement(f"{is_there} section '## {name}'")
@@ -131,7 +131,7 @@ def render(
 
 
 def _rendered(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object], source: str) -> str:
-    """A text through Jinja2, which is loaded for those that need it."""
+    """Return a text through Jinja2, which is loaded for those that need it."""
     import jinja2
 
     try:
@@ -146,7 +146,7 @@ def _rendered(path: Path, folders: tuple[Path, ...], variables: Mapping[str, obj
 
 
 def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> RenderedText:
-    """The sections of a rendered text, once it is proofread; its formulas only where told."""
+    """Return the sections of a rendered text, once it is proofread; its formulas only where told."""
     from coursework.markup.proofreading import pair_dollars, read_formulas
 
     def place(piece: str) -> str:
@@ -238,7 +238,7 @@ _templates: dict[tuple, Any] = {}
 
 
 def _template(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> Any:
-    """A text to render; one without a variable in it is the same for every variant."""
+    """Return a text to render; one without a variable in it is the same for every variant."""
     key = (path, changed, folders)
     if key not in _templates:
         try:
@@ -256,7 +256,7 @@ def _template(path: Path, changed: int, folders: tuple[Path, ...], source: str) 
 
 @lru_cache(maxsize=1024)
 def _jinja(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> Any:
-    """A template of Jinja2; it may include others, from the folders too."""
+    """Return a template of Jinja2; it may include others, from the folders too."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -275,7 +275,7 @@ def _jinja(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> 
 
 @lru_cache(maxsize=1024)
 def _names(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> frozenset[str]:
-    """The variables of a text and of those that it includes by name; what cannot be read is told where it is rendered."""
+    """Return the variables of a text and of those that it includes by name; what cannot be read is told where it is rendered."""
     template = _template(path, changed, folders, source)
     if isinstance(template, RenderedText):
         return frozenset()
@@ -329,13 +329,13 @@ class ExerciseTexts:
         }
 
     def title(self, lang: str) -> str:
-        """The statement's title, where no variable stands in it; else, and where there is none, nothing."""
+        """Return the statement's title, where no variable stands in it; else, and where there is none, nothing."""
         path = self.file("exercises", lang)
         first = next(iter(path.read_text(_ENCODING).splitlines()), "") if path.exists() else ""
         return first[2:].strip() if first.startswith("# ") and not _TAG.search(first) else ""
 
     def text(self, kind: str, lang: str, variables: Mapping[str, object]) -> RenderedText:
-        """A text, rendered. A solution need not have one: then every section is absent.
+        """Return a text, rendered. A solution need not have one: then every section is absent.
 
         Raises
         ------

@@ -96,7 +96,7 @@ class Variant:
         return {**attributes, "choices": list(letters)} if letters else attributes
 
     def in_language(self, lang: str) -> Self:
-        """The same variant on a sheet in another language."""
+        """Return the same variant on a sheet in another language."""
         variant = type(self)(
             self.exercise, self.seed, self.given, lang, self.chosen, self._issued, self._orders
         )
@@ -104,7 +104,7 @@ class Variant:
         return variant
 
     def asking(self, parts: Sequence[Part]) -> Self:
-        """The same variant with other parts, or the same worth other points."""
+        """Return the same variant with other parts, or the same worth other points."""
         return type(self)(
             self.exercise, self.seed, self.given, self.lang, tuple(parts), self._issued, self._orders
         )
@@ -130,7 +130,7 @@ class Variant:
         return MappingProxyType(self._found)
 
     def solution(self) -> dict[str, Any]:
-        """The asked quantities in canonical units and full precision.
+        """Return the asked quantities in canonical units and full precision.
 
         Raises
         ------
@@ -214,7 +214,7 @@ class Variant:
         return values
 
     def letters(self, part: Part) -> Mapping[str, str]:
-        """The letters of a choice by case, in the order printed; none of a sheet that was issued without."""
+        """Return the letters of a choice by case, in the order printed; none of a sheet that was issued without."""
         if not part.choices:
             return {}
         if self._orders is not None:
@@ -222,11 +222,11 @@ class Variant:
         return letters_of(printed_order(self.exercise.name, self.seed, part))
 
     def cases(self, part: Part) -> tuple[str, ...]:
-        """The cases of a choice in the order printed."""
+        """Return the cases of a choice in the order printed."""
         return tuple(self.letters(part)) or part.choices
 
     def called(self, part: Part, case: str) -> str:
-        """A case as its sheet offers it, with its letter where there is one: ``b) oscille``."""
+        """Return a case as its sheet offers it, with its letter where there is one: ``b) oscille``."""
         label, letter = self.label(part.id, case), self.letters(part).get(case)
         return label if letter is None else words(self.lang)["choices"]["lettered"].format(letter, label)
 
@@ -285,7 +285,7 @@ class Variant:
         return {n: (v, units[n]) for n, v in self.given.items() if not isinstance(v, str)}
 
     def reference(self, quantity: str) -> Any:
-        """The right value of an asked quantity."""
+        """Return the right value of an asked quantity."""
         return self.key.reference[quantity]
 
     @property
@@ -357,7 +357,7 @@ def _made_anew(
 
 
 def _rounded(value: Any, lang: str) -> Any:
-    """A number as running text; a list of records as it is, for the text to go through."""
+    """Return a number as running text; a list of records as it is, for the text to go through."""
     if isinstance(value, tuple):
         return value
     return localise(significant(value), lang) if isinstance(value, (int, float)) else str(value)

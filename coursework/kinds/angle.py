@@ -34,7 +34,7 @@ class Angle(Number):
         return self._of_few_turns(reading) if reading.status == "read" else reading
 
     def _of_few_turns(self, reading: Reading) -> Reading:
-        """A reading without the values of too many turns."""
+        """Return a reading without the values of too many turns."""
         turns = [abs(value) / self.turn for value in reading.values]
         if len(turns) == 1 and turns[0] <= MOST_TURNS:
             return reading

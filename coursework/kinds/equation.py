@@ -86,7 +86,7 @@ def _same(value: Read, reference: str, variables: tuple[str, ...], parameters: t
 
 @lru_cache(maxsize=1024)
 def _parsed(text: str, variables: tuple[str, ...]) -> Read:
-    """A reference equation, or a mistaken one, read once."""
+    """Return a reference equation, or a mistaken one, read once."""
     from coursework.parsing.equations import parse_equation
 
     return parse_equation(text, variables)

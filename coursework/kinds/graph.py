@@ -20,7 +20,7 @@ _RENAMED = 0.5  #: share of the points for the right graph under other names
 
 
 def _graph(value: Any) -> Graph:
-    """A graph as it was read, or as a solution states it."""
+    """Return a graph as it was read, or as a solution states it."""
     return graph_of(value) if isinstance(value, str) else value
 
 
@@ -120,11 +120,11 @@ def _compared(value: Graph, reference: Graph) -> Compared:
 
 
 def _by_kind(graph: Graph, label: Callable[[str], str]) -> Iterator[str]:
-    """A line a kind: ``pivot: 1-2, 2-3``."""
+    """Yield a line a kind: ``pivot: 1-2, 2-3``."""
     for kind in dict.fromkeys(joint.kind for joint in graph):
         yield f"{label(kind)}: " + ", ".join("-".join(j.bodies) for j in graph if j.kind == kind)
 
 
 def _chained(joint: Edge) -> Iterator[tuple[str, str]]:
-    """A shared pivot as pairs, one body after another."""
+    """Yield a shared pivot as pairs, one body after another."""
     return pairwise(joint.bodies)

@@ -49,14 +49,14 @@ class Asking(Protocol):
         """Return the labels of each case of a choice."""
 
     def letters(self, part: Any) -> Mapping[str, str]:
-        """The letters of a choice by case, in the order printed; none where the sheet has none."""
+        """Return the letters of a choice by case, in the order printed; none where the sheet has none."""
 
     @property
     def stated(self) -> Mapping[str, tuple[float, str]]:
         """The numbers that the statement gives by their names, each with its unit."""
 
     def reference(self, quantity: str) -> Any:
-        """A reference value: a vector has as many coordinates as its reference."""
+        """Return a reference value: a vector has as many coordinates as its reference."""
 
 
 class Tick(NamedTuple):
@@ -156,7 +156,7 @@ class Kind(ABC):
         """Return the reading of an answer."""
 
     def kept(self, read_as: str) -> Any:
-        """The value of an answer that is known to be right, from its echo."""
+        """Return the value of an answer that is known to be right, from its echo."""
         return float(read_as.partition(" ")[0])
 
     # ------------------------------------------------------------------ judging
@@ -188,7 +188,7 @@ class Kind(ABC):
     def apart(
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
     ) -> float:
-        """The distance of two values that the solution gives, one of them by a mistake."""
+        """Return the distance of two values that the solution gives, one of them by a mistake."""
         return self.distance(part, value, reference, along, envelope)
 
     def size(self, reference: Any) -> float:
@@ -200,11 +200,11 @@ class Kind(ABC):
         return not self.is_exact and not value
 
     def share(self, part: Stated, value: Any, reference: Any) -> float:
-        """The share of the points that an answer earns which is not wholly right, and which no mistake explains."""
+        """Return the share of the points that an answer earns which is not wholly right, and which no mistake explains."""
         return 0.0
 
     def checked_room(self, room: Any) -> Any:
-        """The room that a part states, or why it is none, as a :class:`WrongValue`."""
+        """Return the room that a part states, or why it is none, as a :class:`WrongValue`."""
         return room
 
     def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
@@ -227,19 +227,19 @@ class Kind(ABC):
         return ""
 
     def words(self, value: Any, label: Callable[[str], str]) -> str:
-        """A reference in words, Markdown, where it is no formula; ``label`` calls its cases."""
+        """Return a reference in words, Markdown, where it is no formula; ``label`` calls its cases."""
         return ""
 
     def units(self, unit: str) -> tuple[str, ...]:
-        """The units that an answer to a part of this unit is in: one, or one a column."""
+        """Return the units that an answer to a part of this unit is in: one, or one a column."""
         return (unit,)
 
     def formula(self, value: np.ndarray, number: Callable[[float], str]) -> str:
-        """A reference that is an array, as a formula without its unit; nothing where its entries say enough."""
+        """Return a reference that is an array, as a formula without its unit; nothing where its entries say enough."""
         return ""
 
     def latex(self, value: str, symbols: Mapping[str, str]) -> str:
-        """A reference that is a text, as a formula; nothing where it is none."""
+        """Return a reference that is a text, as a formula; nothing where it is none."""
         return ""
 
     # ------------------------------------------------- paper that is read back
@@ -249,31 +249,31 @@ class Kind(ABC):
         return ("",)
 
     def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
-        """The boxes to tick, in the order printed."""
+        """Return the boxes to tick, in the order printed."""
         return ()
 
     def from_paper(self, boxes: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
-        """The answer that a page says, as :meth:`read` takes it: of the number of each row, or of the ticked cases;
+        """Return the answer that a page says, as :meth:`read` takes it: of the number of each row, or of the ticked cases;
         ``unit``: the box beside the printed unit is ticked."""
         behind = f" {part.unit}" if unit and part.unit != "1" else ""
         return f"{self.joined(boxes, part, asking)}{behind}"
 
     def joined(self, texts: Sequence[str], part: Stated, asking: Asking) -> str:
-        """The numbers of the rows as one text."""
+        """Return the numbers of the rows as one text."""
         return texts[0] if len(texts) == 1 else "(" + " ; ".join(texts) + ")"
 
     # ----------------------------------------------------------------- students
 
     @abstractmethod
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
-        """A right answer as a careful student writes it, without its unit, to so many significant digits."""
+        """Return a right answer as a careful student writes it, without its unit, to so many significant digits."""
 
     def comma(self, written: str) -> str:
-        """The same with decimal commas."""
+        """Return the same with decimal commas."""
         return written if self.is_text else written.replace(".", ",")
 
     def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[AnswerSpelling]:
-        """A right answer in the ways people write it."""
+        """Yield a right answer in the ways people write it."""
         printed = self.written(value, 6, label)
         yield AnswerSpelling("exact", value)
         yield AnswerSpelling("printed", printed)
@@ -286,14 +286,14 @@ _ROOM = Path(__file__).parent
 
 
 def kinds() -> tuple[str, ...]:
-    """The names of the kinds there are: those of this room, and those that courses brought."""
+    """Return the names of the kinds there are: those of this room, and those that courses brought."""
     for path in _ROOM.glob("*.py"):
         import_module(f"coursework.kinds.{path.stem}".removesuffix(".__init__"))
     return tuple(sorted(_known))
 
 
 def kind_of(name: str) -> Kind:
-    """The kind of a name.
+    """Return the kind of a name.
 
     Raises
     ------

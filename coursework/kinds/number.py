@@ -54,5 +54,5 @@ class Number(Kind):
             yield AnswerSpelling("edge", plain(self.on_edge(part, value)))
 
     def on_edge(self, part: Stated, value: Any) -> float:
-        """The last value that is right."""
+        """Return the last value that is right."""
         return float(value + part.half_width(value))

@@ -8,7 +8,7 @@ from coursework.kinds.kind import Asking, Stated, Tick
 
 
 def lettered_ticks(part: Stated, asking: Asking) -> tuple[Tick, ...]:
-    """The cases with their letters, in the order printed; by name where the sheet prints no letters."""
+    """Return the cases with their letters, in the order printed; by name where the sheet prints no letters."""
     letters = asking.letters(part)
     return tuple(Tick(case, letters.get(case, case)) for case in letters or part.choices)
 

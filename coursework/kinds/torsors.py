@@ -41,7 +41,7 @@ class Torsor(Kind):
     form: ClassVar[TorsorForm]
 
     def of_resultant(self, unit: str) -> str:
-        """The unit of the resultant where ``unit`` is that of the moments."""
+        """Return the unit of the resultant where ``unit`` is that of the moments."""
         raise NotImplementedError
 
     def units(self, unit: str) -> tuple[str, ...]:
@@ -77,7 +77,7 @@ class Torsor(Kind):
         return float(np.max(self._gaps(part, value, reference, envelope)))
 
     def size(self, reference: Any) -> float:
-        """The largest moment: the margin that is told is that of the second column; of a torsor without moments, the resultant."""
+        """Return the largest moment: the margin that is told is that of the second column; of a torsor without moments, the resultant."""
         absolute = np.abs(np.asarray(reference, dtype=float))
         return float(np.max(absolute[self._places(len(absolute))[1]])) or float(np.max(absolute))
 
@@ -85,7 +85,7 @@ class Torsor(Kind):
         return not np.any(value)
 
     def share(self, part: Stated, value: Any, reference: Any) -> float:
-        """The share of components that are right, noughts too; none where nothing that is not 0 is right."""
+        """Return the share of components that are right, noughts too; none where nothing that is not 0 is right."""
         right = self._gaps(part, value, reference, 0.0) <= 1
         return float(np.mean(right)) if np.any(right & (np.asarray(reference) != 0)) else 0.0
 
@@ -158,7 +158,7 @@ class Torsor(Kind):
         return tuple(_symbol(name) for name in self._names(len(asking.reference(part.quantity))))
 
     def _names(self, count: int) -> tuple[str, ...]:
-        """The components of an array of 6, or of a plane one of 3."""
+        """Return the components of an array of 6, or of a plane one of 3."""
         return tuple(self.form.names[index] for index in (self.form.plane if count == 3 else range(6)))
 
     def from_paper(self, texts: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
@@ -225,7 +225,7 @@ class Pattern(Kind):
         return ", ".join(boxes)
 
     def components(self, value: Any) -> frozenset[str]:
-        """The names that a reference holds, ``"wz vx"``, or a set of them."""
+        """Return the names that a reference holds, ``"wz vx"``, or a set of them."""
         if isinstance(value, (set, frozenset, tuple, list)):
             return frozenset(map(str, value))
         names = str(value).replace(",", " ").replace(";", " ").split()

@@ -11,13 +11,13 @@ MINUS = "\N{MINUS SIGN}"
 
 
 def localise(number: str, lang: str) -> str:
-    """A number written with a point (``-1234.5``) as the language prints it."""
+    """Return a number written with a point (``-1234.5``) as the language prints it."""
     style = words(lang)["numbers"]
     return number.replace("-", MINUS).replace(".", style["decimal"])
 
 
 def plain(value: float) -> str:
-    """The shortest decimal text of a number, with a point and no exponent where that is readable.
+    """Return the shortest decimal text of a number, with a point and no exponent where that is readable.
 
     ``228.6`` -> ``"228.6"``, ``90.0`` -> ``"90"``. Reading it back gives the same double.
     """
@@ -33,7 +33,7 @@ _EXACT = 1e-9  #: of a number that is printed as it is, and no rounded one
 
 
 def settled(value: float) -> float:
-    """A computed number to ten digits, its last bits set aside, which differ from one processor to another.
+    """Return a computed number to ten digits, its last bits set aside, which differ from one processor to another.
 
     Halfway between two printed numbers, as 46.75 is to a tenth, they would choose between the two.
     """
@@ -41,12 +41,12 @@ def settled(value: float) -> float:
 
 
 def rounded(value: float, decimals: int) -> float:
-    """A computed number as it is printed or drawn, to so many decimals: whatever its last bits, and never ``-0.0``."""
+    """Return a computed number as it is printed or drawn, to so many decimals: whatever its last bits, and never ``-0.0``."""
     return round(settled(value), decimals) + 0.0
 
 
 def significant(value: float, digits: int = 4) -> str:
-    """A number rounded to significant digits, as a text with a point; for templates only.
+    """Return a number rounded to significant digits, as a text with a point; for templates only.
 
     Zeros at its end say that it is rounded there: ``197.10`` for 197.104, ``138`` for 138.
     """
@@ -64,7 +64,7 @@ def significant(value: float, digits: int = 4) -> str:
 
 
 def unit_text(unit: str, lang: str) -> str:
-    """A canonical unit as printed: ``cm^4`` -> ``cm⁴``, ``ohm`` -> ``Ω``, ``deg`` -> ``°``, ``1`` -> nothing."""
+    """Return a canonical unit as printed: ``cm^4`` -> ``cm⁴``, ``ohm`` -> ``Ω``, ``deg`` -> ``°``, ``1`` -> nothing."""
     table = words(lang)["units"]
     if unit in table:
         return table[unit]
@@ -82,14 +82,14 @@ _NAMES = (
 
 
 def _signs(unit: str) -> str:
-    """A unit with the signs of its names: ``kohm`` -> ``kΩ``, ``delta_degC`` -> ``°C``."""
+    """Return a unit with the signs of its names: ``kohm`` -> ``kΩ``, ``delta_degC`` -> ``°C``."""
     for name, sign in _NAMES:
         unit = name.sub(sign, unit)
     return unit
 
 
 def unit_latex(unit: str) -> str:
-    r"""A unit as LaTeX after a number: ``\ \mathrm{cm^{4}}``, ``^{\circ}``; nothing for a ratio."""
+    r"""Return a unit as LaTeX after a number: ``\ \mathrm{cm^{4}}``, ``^{\circ}``; nothing for a ratio."""
     if unit in ("1", "deg"):
         return r"^{\circ}" if unit == "deg" else ""
     text = _POWER.sub(lambda power: f"^{{{power[1].lstrip('+')}}}", _signs(unit))
@@ -105,7 +105,7 @@ def unit_latex(unit: str) -> str:
 
 
 def with_unit(number: str, unit: str, lang: str) -> str:
-    """A number and its unit as running text: ``228,6 mm``, ``135°``."""
+    """Return a number and its unit as running text: ``228,6 mm``, ``135°``."""
     unit_shown = unit_text(unit, lang)
     space = "" if not unit_shown or unit_shown == "°" else words(lang)["numbers"]["unit_space"]
     return localise(number, lang) + space + unit_shown

@@ -21,7 +21,7 @@ _OPENING_QUOTE = re.compile(r"«[ \u00a0\u202f]?")
 
 
 def typeset(text: str, lang: str) -> str:
-    """The same words with the language's own apostrophes and unbreakable spaces.
+    """Return the same words with the language's own apostrophes and unbreakable spaces.
 
     French has a narrow space before ``; : ! ? »``, after ``«``, and between a number and its unit.
     """

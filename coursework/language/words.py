@@ -22,13 +22,13 @@ _PLACE = re.compile(r"\{\{|\}\}|\{[^{}]*\}|[{}]")
 
 @cache
 def languages() -> tuple[str, ...]:
-    """The languages the engine speaks, in alphabetical order."""
+    """Return the languages the engine speaks, in alphabetical order."""
     return tuple(sorted(f.name.removesuffix(".toml") for f in _FOLDER.iterdir() if f.name.endswith(".toml")))
 
 
 @cache
 def words(lang: str, of: str = "") -> Mapping[str, Any]:
-    """The engine's words in one language, as nested tables of texts; ``of`` names those that a part of it has to itself, ``site``.
+    """Return the engine's words in one language, as nested tables of texts; ``of`` names those that a part of it has to itself, ``site``.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def _braces_text(places: Iterable[str]) -> str:
 
 
 def texts_of(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    """The texts of a table by name, ``study.refused.near`` for one in a table in a table."""
+    """Yield the texts of a table by name, ``study.refused.near`` for one in a table in a table."""
     for name, text in table.items():
         if isinstance(text, dict):
             yield from texts_of(text, f"{above}{name}.")
@@ -126,7 +126,7 @@ def texts_of(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, A
 
 
 def listed(items: Iterable[str], lang: str, joint: str = "and") -> str:
-    """``a, b and c``; ``joint`` is ``and`` or ``or``."""
+    """Return ``a, b and c``; ``joint`` is ``and`` or ``or``."""
     *first, last = items
     return f"{', '.join(first)} {words(lang)['marking'][joint]} {last}" if first else last
 

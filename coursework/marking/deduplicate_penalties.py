@@ -19,7 +19,7 @@ _SEVERAL = 4  #: quantities at least that formulas of one equation take
 
 
 def signs_counted_once(variant: Variant, marks: Mapping[str, Mark], share: float) -> dict[str, Mark]:
-    """Marks where turning every sign of an equation is one error: of quantities that a formula takes together, all
+    """Return the marks where turning every sign of an equation is one error: of quantities that a formula takes together, all
     with the opposite sign, the first alone pays."""
     turned = {i for i, mark in marks.items() if _is_turned(variant, mark)}
     if len(turned) < 2:

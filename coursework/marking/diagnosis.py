@@ -132,7 +132,7 @@ class Explanation(NamedTuple):
 
 
 def mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
-    """The named mistakes that give an answer, in the solution's order."""
+    """Return the named mistakes that give an answer, in the solution's order."""
     ways = key.wrong_ways(part.quantity)
     return [name for name, value in ways if _fits(part, reading, value, None, 0.0)]
 
@@ -189,7 +189,7 @@ def explained(
 
 
 def alternatives(explanations: Sequence[Explanation]) -> list[Explanation]:
-    """The first explanation, and those that fit as well: nothing tells which of them it was."""
+    """Return the first explanation, and those that fit as well: nothing tells which of them it was."""
     first = explanations[0]
     if first.is_here and first.error is None:
         return [first]
@@ -291,7 +291,7 @@ _FEW_WRONG = 2  #: earlier answers that are wrong, from which one more error is 
 def _from_own(
     key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
 ) -> Iterator[Explanation]:
-    """The usual errors in a quantity's formula that give an answer from what the student had wrong before."""
+    """Yield the usual errors in a quantity's formula that give an answer from what the student had wrong before."""
     if len(before.wrong) > _FEW_WRONG and ALL_DEGREES not in before.paid:
         return  # of so many errors nobody can tell
     if any(judged_by.quantity in key.solution.depending_on(q) for q in before.wrong):
@@ -342,7 +342,7 @@ def _is_constant(key: Key, part: Part, value: Any, before: EarlierAnswers) -> bo
 
 
 def _lengths(variant: KeySource) -> dict[str, float]:
-    """The given numbers that are no angles."""
+    """Return the given numbers that are no angles."""
     units = variant.exercise.units
     return {n: v for n, v in variant.used.items() if not isinstance(v, str) and units.get(n) != "deg"}
 
@@ -354,7 +354,7 @@ def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) ->
 def _fitting(
     part: Part, answers: Sequence[Any], value: Any, along: Any, width: float
 ) -> tuple[int, float] | None:
-    """The first of an answer's readings that is this value, if any is, and how far from it in half-widths."""
+    """Return the first of an answer's readings that is this value, if any is, and how far from it in half-widths."""
     for index, read in enumerate(answers):
         gap = part.sort.distance(part, read, value, along, width)
         if gap <= 1:

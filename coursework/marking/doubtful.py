@@ -72,7 +72,7 @@ def _with_thousands(
     gap: float,
     answers: Mapping[str, Any],
 ) -> Reading:
-    """The reading of ``1,747`` or ``1.747``, which the decimal mark of the sheet's other numbers decides."""
+    """Return the reading of ``1,747`` or ``1.747``, which the decimal mark of the sheet's other numbers decides."""
     text = reading.text.replace(mark, "", 1)
     if part.sort.turn or (gap <= 1 and index == 0) or not _is_right(variant, part, text):
         return reading
@@ -85,7 +85,7 @@ def _with_thousands(
 
 
 def _decimal_mark(texts: Iterable[Any], lang: str) -> str:
-    """The decimal mark of the numbers of a sheet, in English the point where none says it; nothing where they differ or say nothing."""
+    """Return the decimal mark of the numbers of a sheet, in English the point where none says it; nothing where they differ or say nothing."""
     marks = {mark for text in texts if isinstance(text, str) for mark in _DECIMAL.findall(text)}
     if len(marks) == 1:
         return marks.pop()

@@ -27,7 +27,7 @@ _NOTHING_MM = 1e-9 * max(_BOX_MM)  #: what rounding leaves of a coordinate that 
 
 
 def to_paper(image: Any, scale: Any) -> np.ndarray:
-    """An image point as coordinates on paper, mm from the pole, shape (..., 2)."""
+    """Return an image point as coordinates on paper, mm from the pole, shape (..., 2)."""
     return _coordinates(np.asarray(image / scale, dtype=complex))
 
 
@@ -38,7 +38,7 @@ def _coordinates(on_paper: np.ndarray) -> np.ndarray:
 
 
 def scale_for(*images: Any) -> Any:
-    """The least of 1, 2 and 5 times a power of ten at which the pole and these images fit the box."""
+    """Return the least of 1, 2 and 5 times a power of ten at which the pole and these images fit the box."""
     images = (np.zeros_like(images[0]), *images)
     least = np.maximum(
         (np.maximum.reduce([z.real for z in images]) - np.minimum.reduce([z.real for z in images]))
@@ -78,7 +78,7 @@ class DrawingParts(NamedTuple):
 
 
 def verdicts(answers: Answers, polygon: Polygon, asked: DrawingParts) -> dict[str, Judged]:
-    """A :class:`Judged` for each answer that can be judged."""
+    """Return a :class:`Judged` for each answer that can be judged."""
     judgements = _verdicts(answers, polygon, asked)
     ends = {**asked.lengths, **{part: (read.start, read.end) for part, read in asked.reads.items()}}
     drawn_ones = {asked.points[i] for i in asked.points if i in answers}
@@ -128,7 +128,7 @@ def _verdicts(answers: Answers, polygon: Polygon, asked: DrawingParts) -> dict[s
 
 
 def drawn(answers: Answers, polygon: Polygon, asked: DrawingParts) -> tuple[JudgedDrawing, bool] | None:
-    """The judged drawing of these answers, and whether its scale is stated upside down; None unless the pole and
+    """Return the judged drawing of these answers, and whether its scale is stated upside down; None unless the pole and
     another point are drawn."""
     points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
     if polygon.pole not in points or len(points) < 2:
@@ -143,7 +143,7 @@ def drawn(answers: Answers, polygon: Polygon, asked: DrawingParts) -> tuple[Judg
 
 
 def _stated(answers: Answers, polygon: Polygon, asked: DrawingParts) -> float | None:
-    """The scale that the answers state, if it is one."""
+    """Return the scale that the answers state, if it is one."""
     scale = float(answers[asked.scale]) if asked.scale in answers else None
     return scale if scale is not None and is_scale(polygon, scale) else None
 
@@ -197,7 +197,7 @@ def _of_fault(point: str, drawing: JudgedDrawing, asked: DrawingParts) -> Judged
 
 
 def _named(point: str, fault: DrawingFault, asked: DrawingParts) -> str:
-    """The mistake that a fault is; none where a vector hangs on a point of which no mistake tells."""
+    """Return the mistake that a fault is; none where a vector hangs on a point of which no mistake tells."""
     parts = {image: i for i, image in asked.points.items()}
     if fault.side is None:
         return f"{parts[point]}_{fault.kind}"
@@ -273,7 +273,7 @@ def _of_value(
 
 
 def _wrong_ways(number: float, read: Read, values: Sequence[float], drawing: JudgedDrawing) -> Iterator[str]:
-    """The mistakes that explain a value, from the right drawing or the student's own."""
+    """Yield the mistakes that explain a value, from the right drawing or the student's own."""
     near = 2 * drawing.tolerance * drawing.scale * read.gain
     if any(abs(number + value) <= min(near, _MOST * abs(value)) for value in values):
         yield read.sense
@@ -290,7 +290,7 @@ def _wrong_ways(number: float, read: Read, values: Sequence[float], drawing: Jud
 
 
 def turned(p: np.ndarray, a: np.ndarray, degrees: Any) -> np.ndarray:
-    """A point turned about another, coordinates on paper."""
+    """Return a point turned about another, coordinates on paper."""
     turn = np.exp(1j * np.radians(degrees))
     vector = (a[..., 0] - p[..., 0] + 1j * (a[..., 1] - p[..., 1])) * turn
     return p + np.stack([vector.real, vector.imag], axis=-1)
@@ -304,7 +304,7 @@ def met(through: np.ndarray, along: Any, other: np.ndarray, other_along: Any) ->
 
 
 def off_both(b: np.ndarray, lines: Sequence[Any], end: np.ndarray) -> np.ndarray:
-    """A point off both the lines that cross at b by as much, nearly half as far as b is from ``end``."""
+    """Return a point off both the lines that cross at b by as much, nearly half as far as b is from ``end``."""
     first, second = (line / abs(line) for line in lines)
     between = np.where(abs(first + second) < abs(first - second), first + second, first - second)
     step = 0.4 * np.hypot(*np.moveaxis(b - end, -1, 0)) * between / abs(between)

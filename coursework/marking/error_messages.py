@@ -41,7 +41,7 @@ def shown_as(variant: Variant, part: Part, reading: Reading, index: int) -> tupl
 def mark_wrong(
     variant: Variant, key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
 ) -> Mark:
-    """The mark of an answer that was read and is not right."""
+    """Return the mark of an answer that was read and is not right."""
     explanations = explained(key, part, reading, judged_by, before)
     matches = tuple(dict.fromkeys(e.verdict for e in explanations))
     named = _named(explanations, before)
@@ -206,7 +206,7 @@ def _given_above(variant: Variant, quantity: str) -> list[str]:
 
 
 def _asked_above(variant: KeySource, quantity: str, among: set[str]) -> list[Part]:
-    """The nearest parts that a quantity is computed from, of some quantities, in the order of the sheet."""
+    """Return the nearest parts that a quantity is computed from, of some quantities, in the order of the sheet."""
     graph = variant.exercise.solution.graph.textbook
     met: set[str] = set()
     names: set[str] = set()

@@ -36,7 +36,7 @@ class Sentence(NamedTuple):
     pieces: Mapping[str, str]
 
     def markdown(self) -> str:
-        """The sentence with its pieces, Markdown."""
+        """Return the sentence with its pieces, Markdown."""
         return self.sentence.format(**self.pieces)
 
     def plain(self, lang: str) -> str:
@@ -64,7 +64,7 @@ _is_plain = _BARE.fullmatch
 
 @lru_cache(maxsize=1024)
 def _plain_sentence(sentence: str, lang: str) -> str:
-    """A sentence with its places still open. Braces are no markup, and come through."""
+    """Return a sentence with its places still open. Braces are no markup, and come through."""
     return plain_line(sentence, lang)
 
 
@@ -98,12 +98,12 @@ def localised(read_as: str, lang: str) -> str:
 
 
 def say(variant: Variant, part: Part, sentence: str, **pieces: str) -> Sentence:
-    """A sentence of the engine about a part."""
+    """Return a sentence of the engine about a part."""
     return Sentence(words(variant.lang)["marking"][sentence], {"name": _opening(variant, part), **pieces})
 
 
 def _opening(variant: Variant, part: Part) -> str:
-    """The part's name at the head of a sentence."""
+    """Return the part's name at the head of a sentence."""
     name = part_name(variant, part)
     return name[:1].upper() + name[1:]
 
@@ -148,7 +148,7 @@ def _to_eliminate(variant: Variant, part: Part, run: str) -> str:
 
 
 def shortened(answer: str) -> str:
-    """An answer on one line, its end left out where it is long."""
+    """Return an answer on one line, its end left out where it is long."""
     line = " ".join(str(answer).split())
     return line if len(line) <= QUOTED else line[: QUOTED - 1] + "…"
 
@@ -209,14 +209,14 @@ _MARKUP = re.compile(r"([\\`*_$\[\]|#~<>&])")
 
 
 def _harmless(text: str) -> str:
-    """A quotation as it was typed, which no Markdown reader takes for markup."""
+    """Return a quotation as it was typed, which no Markdown reader takes for markup."""
     if _HARMLESS.fullmatch(text):
         return text
     return _MARKUP.sub(r"\\\1", "".join(filter(str.isprintable, text)))
 
 
 def amount(variant: Variant, name: str, value: float) -> str:
-    """A quantity and its value as Markdown: ``$r_3$ = 120,4 mm``."""
+    """Return a quantity and its value as Markdown: ``$r_3$ = 120,4 mm``."""
     unit = variant.exercise.units.get(name, "1")
     return f"${symbol(variant, name)}$ = {with_unit(significant(value), unit, variant.lang)}"
 
@@ -228,7 +228,7 @@ def either_symbol(variant: Variant, names: Sequence[str], *, both: bool) -> str:
 
 
 def symbol(variant: Variant, name: str) -> str:
-    """The LaTeX symbol of a quantity, asked or met on the way."""
+    """Return the LaTeX symbol of a quantity, asked or met on the way."""
     return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
 
 
@@ -239,7 +239,7 @@ def right_feedback(variant: Variant, part: Part, read_as: str) -> str:
 
 
 def right_says(variant: Variant, part: Part, read_as: str) -> str:
-    """The same, Markdown."""
+    """Return the same, Markdown."""
     return _right(variant.exercise, part, variant.lang, echo(read_as, variant.lang)).markdown()
 
 

@@ -37,7 +37,7 @@ def mark_judged(
     missed: Callable[[], str],
     before: EarlierAnswers,
 ) -> Mark:
-    """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
+    """Return the mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
     read_as, verdict = reading.read_as[judgement.reading], judgement.said
     mark_of = partial(made_mark, variant, part, reading)
     if verdict is None:
@@ -46,7 +46,7 @@ def mark_judged(
     share = min(1.0, max(0.0, float(verdict.share)))
 
     def told(sentence: str, **pieces: str) -> Sentence:
-        """A sentence, then what follows from the student's own answers."""
+        """Return a sentence, then what follows from the student's own answers."""
         message = say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
         amounts = {} if told_with else verdict.found
         amount_words = {f"found{n}": amount(variant, q, v) for n, (q, v) in enumerate(amounts.items())}

@@ -25,7 +25,7 @@ SHEETS = 64  #: ways at most to read one student's answers to the parts of one j
 
 
 def judges_of(variant: KeySource) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The judges of a variant, each with the ids of its parts."""
+    """Yield the judges of a variant, each with the ids of its parts."""
     names = dict.fromkeys(part.judge for part in variant.parts if part.judge)
     for name in names:
         yield name, tuple(part.id for part in variant.parts if part.judge == name)
@@ -65,7 +65,7 @@ def judged(
 
 
 def _needs(variant: KeySource, name: str) -> list[str]:
-    """The quantities that a judge takes."""
+    """Return the quantities that a judge takes."""
     first, *needs = _parameters(variant.exercise.solution.judge(name))
     if first != "answers":
         raise BadCourse(
@@ -98,7 +98,7 @@ def best_judged(
     own_answers: Mapping[str, float],
     wrong: Collection[str],
 ) -> dict[str, Verdict]:
-    """The verdicts of a judge on what was read.
+    """Return the verdicts of a judge on what was read.
 
     Where answers may honestly be read in several ways, those are taken that together earn most. Where some
     quantity that a student has answered before is ``wrong``, the answers may follow from the student's ``own_answers``.

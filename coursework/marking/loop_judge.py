@@ -97,7 +97,7 @@ class LoopJudge:
         self.finding = lru_cache(maxsize=4096)(self._finding)
 
     def _found_poses(self, exercise: CourseExercise) -> _Points:
-        """The first variants of the exercise, solved."""
+        """Return the first variants of the exercise, solved."""
         variants = exercise.variants(range(_VARIANTS))
         names = [n for n in exercise.spec.given if n in exercise.quantity_names]
         given = {n: np.array([v.given[n] for v in variants]) for n in names}
@@ -265,7 +265,7 @@ class LoopJudge:
     # ------------------------------------------------------------------ what is missed
 
     def _missed(self, equation: Equation) -> Finding:
-        """The first kind of fault that explains an equation, with every name that it may be about."""
+        """Return the first kind of fault that explains an equation, with every name that it may be about."""
         usual = float(np.median(np.abs(self._near.gap(equation)[self._poses.count :])))
         if not 0 < usual < math.inf:
             return Finding(0)
@@ -389,7 +389,7 @@ def _rank(rows: np.ndarray) -> int:
 
 
 def judge_of(exercise: CourseExercise, part: Part) -> LoopJudge:
-    """The judge of a part about a loop; parts of one loop, order and set of symbols share it."""
+    """Return the judge of a part about a loop; parts of one loop, order and set of symbols share it."""
     _, order = part.loop_form
     key = part.loop, order, part.variables
     judges = _judges.setdefault(exercise, {})

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def half_widths_off(variant: Variant, part: Part, answer: Any) -> float | None:
-    """The distance of an answer from the reference in accepted half-widths: right up to 1.
+    """Return the distance of an answer from the reference in accepted half-widths: right up to 1.
 
     None of what has no such distance: an answer that is not read, or a part that is judged exactly, with others or by a person.
     """

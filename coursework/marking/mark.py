@@ -50,7 +50,7 @@ class Mark(NamedTuple):
 
     @classmethod
     def received(cls, sent: tuple[Any, ...]) -> Mark:
-        """The mark of what was :meth:`sent`."""
+        """Return the mark of what was :meth:`sent`."""
         return cls._make((*sent[:-2], (RecordedSentence(*sent[-2:]),)))
 
 
@@ -90,7 +90,7 @@ def made_mark(
     variant: Variant, part: Part, reading: Reading, verdict: str, share: float, read_as: str,
     message: Sentence, matches: tuple[str, ...] = (),
 ) -> Mark:  # fmt: skip
-    """The mark of an answer that earns a share of its part's points."""
+    """Return the mark of an answer that earns a share of its part's points."""
     points = float(part.points)
     return Mark(
         part.id,

@@ -156,7 +156,7 @@ def _follows(key: Key, part: Part, reading: Reading, before: EarlierAnswers) -> 
 def _mark_exchanged(
     variant: Variant, key: Key, part: Part, exchange: Exchange, marks: Mapping[str, Mark]
 ) -> Mark:
-    """The mark of an answer that stands in the box of another: the exchange is paid for where it is first met."""
+    """Return the mark of an answer that stands in the box of another: the exchange is paid for where it is first met."""
     other, reading = exchange.part, exchange.reading
     read_as, read = shown_as(variant, other, reading, exchange.place)
     mark_of = partial(made_mark, variant, part, reading)

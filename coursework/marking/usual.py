@@ -47,7 +47,7 @@ class Fit(NamedTuple):
 def usual_errors_that_fit(
     key: Key, part: Part, reading: Reading, judged_by: Part, right: Collection[str], answered: Collection[str]
 ) -> list[Fit]:
-    """The usual errors that give an answer, of several that give the same value the first.
+    """Return the usual errors that give an answer, of several that give the same value the first.
 
     None that is made in a quantity which was answered: what follows from that answer is another matter. None that
     would have changed an answer that is ``right``.
@@ -76,7 +76,7 @@ def usual_errors_that_fit(
 def own_errors_that_fit(
     key: Key, part: Part, reading: Reading, judged_by: Part, own_answers: Mapping[str, Any]
 ) -> list[Fit]:
-    """The usual errors in a quantity's own formula that give an answer from a student's ``own_answers`` earlier ones."""
+    """Return the usual errors in a quantity's own formula that give an answer from a student's ``own_answers`` earlier ones."""
     if not part.sort.is_scalar or part.judge:
         return []
     errors, values = key.usual_ways_from(judged_by.quantity, own_answers)
@@ -94,7 +94,7 @@ def _near(
     *,
     is_own: bool = False,
 ) -> list[Fit]:
-    """The errors near whose values an answer is, of those that may be; of several that give one value the first.
+    """Return the errors near whose values an answer is, of those that may be; of several that give one value the first.
 
     What is computed from a student's own written answers is moved by their rounding.
     """

@@ -22,7 +22,7 @@ _WHOLE = re.compile(r"^\s*([0-9]+)[.,]0+\s*$")  #: what a table makes of a whole
 
 
 def read_choice(text: Any, choices: Choices, letters: Letters = MappingProxyType({})) -> Reading:
-    """The key of a choice, given by its key, a label of any language, its head or beginning, or the number there.
+    """Return the key of a choice, given by its key, a label of any language, its head or beginning, or the number there.
 
     ``choices`` maps each key to its labels, ``letters`` to the letter that the sheet printed, in the order printed: then
     the letter, the place and a ticked one among others are read too, and what says two things is not read.
@@ -73,7 +73,7 @@ _CALL = re.compile(
 
 
 def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:
-    """The choices that a text may mean on a sheet that prints letters, all that it says taken together."""
+    """Return the choices that a text may mean on a sheet that prints letters, all that it says taken together."""
     text = _without_answer(_ticked(text))
     keys = _said_with_letters(text, choices, letters)
     if not keys or is_verbatim(text, choices):
@@ -85,7 +85,7 @@ def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:
 
 
 def _letters_of_remark(remark: str) -> list[str]:
-    """The letters that a remark in brackets speaks of: alone, at its end, ``not c``, or as its subject, ``c is wrong``."""
+    """Return the letters that a remark in brackets speaks of: alone, at its end, ``not c``, or as its subject, ``c is wrong``."""
     match = _LETTER_IN_REMARK.fullmatch(remark.strip())
     return [letter for letter in match.groups() if letter] if match else []
 
@@ -137,7 +137,7 @@ def _answer_words() -> re.Pattern[str]:
 
 
 def _without_answer(text: str) -> str:
-    """A letter or a number without what says that it is the answer: ``réponse b``, ``it is 2``."""
+    """Return a letter or a number without what says that it is the answer: ``réponse b``, ``it is 2``."""
     rest = _answer_words().sub("", text, count=1).strip()
     return rest if any(form.fullmatch(rest) for form in (_ALONE, _PLACE, _BEFORE)) else text.strip()
 
@@ -148,7 +148,7 @@ _PLACE = re.compile(r"[(\[#]?\s*(?:n\s*°\s*)?(?P<number>[0-9]{1,2})\s*[)\].:]?"
 
 
 def _by_place(text: str, choices: Choices, letters: Letters) -> list[str]:
-    """The choice at a place: ``2``. Where labels begin with numbers, a number is one of these, or it is two things."""
+    """Return the choice at a place: ``2``. Where labels begin with numbers, a number is one of these, or it is two things."""
     match = _PLACE.fullmatch(text)
     if match is None:
         return []

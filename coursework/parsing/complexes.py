@@ -31,7 +31,7 @@ _BRACKETED = re.compile(r"[(\[]\s*([^()\[\]]*[∠<°][^()\[\]]*)\s*[)\]]\s*(.*)"
 
 
 def read_complex(answer: Any, unit: str) -> Reading:
-    """A complex number in ``unit``; the values are Python's complex numbers.
+    """Return a complex number in ``unit``; the values are Python's complex numbers.
 
     Sums ``3+4i``, ``3 + j4``, exponentials ``5 e^{i 53.13°}``, moduli with their angles ``5∠53,1°``, and
     ``(5 ; 53.13°)``, where the unit of the second tells that it is an angle. After ``∠`` an angle without a unit is in
@@ -60,7 +60,7 @@ def _from_number(answer: complex) -> Reading:
 
 
 def spelled(value: complex, digits: int = 7) -> str:
-    """A complex number as it is echoed: ``3 + 4i``, ``3 − 4i``, ``-2i``, ``5``."""
+    """Return a complex number as it is echoed: ``3 + 4i``, ``3 − 4i``, ``-2i``, ``5``."""
     real, imaginary = f"{value.real:.{digits}g}", f"{abs(value.imag):.{digits}g}"
     below = value.imag < 0
     if float(imaginary) == 0:
@@ -86,7 +86,7 @@ def _read(plain: str, text: Any, target: Unit) -> Reading:
 
 
 def _polar(plain: str, target: Unit) -> tuple[complex, str, bool] | None:
-    """The value of a modulus and an angle, its echo, whether a unit is written; nothing where it is none."""
+    """Return the value of a modulus and an angle, its echo, whether a unit is written; nothing where it is none."""
     unit = ""
     if match := _BRACKETED.fullmatch(plain):
         plain, unit = (match[1], match[2]) if ";" not in match[1] else (plain, "")
@@ -124,7 +124,7 @@ def _first(amounts: list[Amount]) -> Amount:
 
 
 def _formula(plain: str, text: Any, target: Unit) -> Reading:
-    """A sum, a product or an exponential, with or without a unit behind it; the longest unit that leaves a
+    """Return a sum, a product or an exponential, with or without a unit behind it; the longest unit that leaves a
     formula is taken."""
     first: Unreadable | None = None
     starts = [
@@ -150,13 +150,13 @@ def _formula(plain: str, text: Any, target: Unit) -> Reading:
 
 
 def _without(unit: str, formula: str) -> str:
-    """A formula without the unit that stands behind its other terms as well: ``3 V + 4i V``."""
+    """Return a formula without the unit that stands behind its other terms as well: ``3 V + 4i V``."""
     pattern = re.escape(unit.strip())
     return re.sub(rf"(?<=[0-9ij)])\s*{pattern}(?=\s*[-+])", "", formula) if pattern else formula
 
 
 def _value(formula: str) -> complex:
-    """The value of a formula with ``i`` or ``j``.
+    """Return the value of a formula with ``i`` or ``j``.
 
     Raises
     ------

@@ -76,7 +76,7 @@ WORD = re.compile(r"[\[(]?(?:[^\W\d_]|[°%])")
 
 
 def _decimal_texts(number: str) -> tuple[str, ...]:
-    """The honest readings of written digits, each with a point: ``1,234`` -> ``1.234``, ``1234``."""
+    """Return the honest readings of written digits, each with a point: ``1,234`` -> ``1.234``, ``1234``."""
     if _TWO_WAYS.fullmatch(number):
         return number.replace(",", "."), number.replace(",", "")
     number = number.replace(" ", "").replace("'", "")
@@ -91,7 +91,7 @@ _ALONE = re.compile(r"(?:^|(?<=[\s*/.\[])|(?<=(?<!\^)\())1(?![0-9.,])(?!\s*/\s*[
 
 
 def _rest_unit(rest: str) -> Unit | None:
-    """The unit after a number: ``mm``, ``*m/s``, ``/s``, ``[mm]``. A 1 is another number, but in ``1/s``."""
+    """Return the unit after a number: ``mm``, ``*m/s``, ``/s``, ``[mm]``. A 1 is another number, but in ``1/s``."""
     if _ALONE.search(rest) or not _SAYS_UNIT.search(rest):
         return None
     if rest[0] == "*":
@@ -100,7 +100,7 @@ def _rest_unit(rest: str) -> Unit | None:
 
 
 def in_unit(value: Fraction | float, unit: Unit, target: Unit) -> float:
-    """The value converted and rounded once, or the reason why it is not."""
+    """Return the value converted and rounded once, or the reason why it is not."""
     if not same_dimension(unit, target):
         if meant_otherwise(unit, target):
             raise Stop("unknown_unit", unit.text)  # somebody looks: it is no unit of another kind
@@ -122,7 +122,7 @@ def _float(digits: str) -> float:
 
 
 def literal(text: str, target: Unit, thousands: bool = True) -> list[Amount] | None:
-    """A number written in digits with its unit, or ``None`` when the text is something else."""
+    """Return a number written in digits with its unit, or ``None`` when the text is something else."""
     match = LITERAL.fullmatch(text)
     if match is None:
         return None
@@ -162,7 +162,7 @@ def _sexagesimal(text: str, target: Unit) -> list[Amount] | None:
 
 
 def _mixed(text: str, target: Unit) -> list[Amount] | None:
-    """A whole number and a proper fraction, ``1 1/2``; ``1 234/5`` is no such number."""
+    """Return a whole number and a proper fraction, ``1 1/2``; ``1 234/5`` is no such number."""
     match = _MIXED.fullmatch(text)
     if match is None or not 0 < int(match["above"]) < int(match["below"]):
         return None
@@ -179,24 +179,24 @@ def short_number(value: float) -> str:
 
 
 def in_digits(text: str, target: Unit, thousands: bool) -> list[Amount] | None:
-    """A number without a formula, or ``None``."""
+    """Return a number without a formula, or ``None``."""
     return _sexagesimal(text, target) or _mixed(text, target) or literal(text, target, thousands)
 
 
 def scientific(text: str, target: Unit) -> list[Amount]:
-    """The first reading of ``3.10^2``, 300 on paper and 9.61 on a keyboard, and of ``3x10-2``, 0.03 or 28."""
+    """Return the first reading of ``3.10^2``, 300 on paper and 9.61 on a keyboard, and of ``3x10-2``, 0.03 or 28."""
     repaired, count = _LOST_POWER.subn(r"\1*10^", text, count=1) if _LOST_POWER.match(text) else (text, 0)
     return (literal(repaired, target) or []) if count else []
 
 
 def flattened(text: str, target: Unit) -> list[Amount]:
-    """The second reading of ``2.739x102``, a power of ten whose exponent is raised no more: 273.9."""
+    """Return the second reading of ``2.739x102``, a power of ten whose exponent is raised no more: 273.9."""
     repaired, count = _FLAT_POWER.subn(r"\1*10^", text, count=1) if _FLAT_POWER.match(text) else (text, 0)
     return (literal(repaired, target) or []) if count else []
 
 
 def plain_value(text: object) -> float:
-    """The value of plain digits; NaN where nothing is written, infinity where more than digits is."""
+    """Return the value of plain digits; NaN where nothing is written, infinity where more than digits is."""
     if isinstance(text, str):
         if len(text) < 40 and (plain := match_plain(text)):
             digits = plain[1]

@@ -47,12 +47,12 @@ class Equation:
             return left - right, np.abs(left) + np.abs(right)
 
     def with_numbers(self, values: Mapping[str, float]) -> Equation:
-        """The equation with numbers in place of some of its symbols."""
+        """Return the equation with numbers in place of some of its symbols."""
         left, right = (Expression(self.text, _with_numbers(s.root, values)) for s in (self.left, self.right))
         return Equation(self.text, left, right)
 
     def in_degrees(self) -> Equation | None:
-        """The equation with numbers that stand for angles taken as degrees: ``sin(theta2 + 90)``, ``cos(90)``.
+        """Return the equation with numbers that stand for angles taken as degrees: ``sin(theta2 + 90)``, ``cos(90)``.
 
         None where no such number is.
         """
@@ -62,7 +62,7 @@ class Equation:
         return Equation(self.text, *(Expression(self.text, root) for root in sides))
 
     def without_inverse(self) -> Equation | None:
-        """An angle that stands alone beside an inverse function, undone: ``x = atan(f)`` as ``tan(x) = f``.
+        """Return an angle that stands alone beside an inverse function, undone: ``x = atan(f)`` as ``tan(x) = f``.
 
         None where neither side is an inverse function, or no symbol stands beside it: ``atan(f) = 0``. Angles that differ by what the function cannot tell satisfy it too.
         """
@@ -114,7 +114,7 @@ def plain_equation(plain: str, variables: Iterable[str], text: str = "") -> Equa
 
 
 def value_or_nan(expression: Expression, values: Mapping[str, np.ndarray]) -> Value:
-    """The value, NaN where there is none."""
+    """Return the value, NaN where there is none."""
     try:
         return expression.evaluate(values)
     except Unreadable:
@@ -130,7 +130,7 @@ _BEHIND = re.compile(r"(?<=\S)\s+\(?(\S+?)\)?$")
 
 
 def _read(plain: str, variables: tuple[str, ...]) -> Equation:
-    """An equation, or what is left of it without a title before it, ``on y: …``, and without a unit behind it."""
+    """Return an equation, or what is left of it without a title before it, ``on y: …``, and without a unit behind it."""
     try:
         return _parsed_once(plain, variables)
     except Unreadable:
@@ -146,7 +146,7 @@ def _read(plain: str, variables: tuple[str, ...]) -> Equation:
 
 
 def read_equation(text: Any, variables: Iterable[str]) -> Reading:
-    """An equation over the given variables; the value is an :class:`~coursework.parsing.equations.Equation`."""
+    """Return an equation over the given variables; the value is an :class:`~coursework.parsing.equations.Equation`."""
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         text = text_of(text)

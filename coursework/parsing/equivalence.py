@@ -15,7 +15,7 @@ from coursework.parsing.trees import Expression, Operation
 
 @lru_cache(maxsize=1024)
 def _points(name: str, count: int) -> np.ndarray:
-    """Fixed scattered values in (0.3, 3), the same for ever for a name. Not to be changed."""
+    """Return fixed scattered values in (0.3, 3), the same for ever for a name. Not to be changed."""
     words = np.frombuffer(hashlib.shake_128(name.encode()).digest(8 * count), dtype="<u8")
     values = 0.3 + 2.7 * (words / 2.0**64)
     values.flags.writeable = False
@@ -110,7 +110,7 @@ def _factors(node: Operation) -> Iterable[Operation]:
 
 
 def _divisors(equation: Equation) -> list[Expression]:
-    """The factors by which an equation divides: each vanishes only where the equation is not defined."""
+    """Return the factors by which an equation divides: each vanishes only where the equation is not defined."""
     divisors: dict[Operation, Expression] = {}
     for node in (*equation.left.root.walk(), *equation.right.root.walk()):
         below: list[Operation] = []
@@ -143,7 +143,7 @@ def _powers(
     values: Mapping[str, np.ndarray],
     rng_points: int,
 ) -> list[int] | None:
-    """The whole powers of the divisors whose product is the ratio of ``a`` to ``b``, if the values allow it.
+    """Return the whole powers of the divisors whose product is the ratio of ``a`` to ``b``, if the values allow it.
 
     A divisor proportional to an earlier one gets the power 0.
     """
@@ -181,7 +181,7 @@ class _SampleLines:
         self.slope = {n: np.zeros(_LINES) if n in fixed else 2 * _both_signs(f"slope of {n}") for n in names}
 
     def along(self, function: _OfValues, line: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """The size of a function at points of lines, infinite where it has none."""
+        """Return the size of a function at points of lines, infinite where it has none."""
         values = {name: start[line] + t * self.slope[name][line] for name, start in self.start.items()}
         size = np.abs(function(values, t.size))
         return np.where(np.isnan(size), np.inf, size)

@@ -264,7 +264,7 @@ class _Parser:
         return self.raised(node, exponent) if exponent else node
 
     def inverse_of(self, name: str) -> str:
-        """The inverse of a function of an angle, as calculators print it: ``sin^-1``, ``cos^(-1)``; nothing where none is written."""
+        """Return the inverse of a function of an angle, as calculators print it: ``sin^-1``, ``cos^(-1)``; nothing where none is written."""
         self.peek()
         match = _MINUS_ONE.match(self.text, self.at)
         if match is None or name not in ("sin", "cos", "tan"):
@@ -292,7 +292,7 @@ class _Parser:
         return tuple(args)
 
     def inside(self, start: int) -> str:
-        """The text of the brackets that open at ``start``, or all that follows if they never close."""
+        """Return the text of the brackets that open at ``start``, or all that follows if they never close."""
         level = 0
         for at in range(start, len(self.text)):
             level += (self.text[at] in _GROUPS) - (self.text[at] in ")]}")
@@ -301,7 +301,7 @@ class _Parser:
         return self.text[start:]
 
     def bare_argument(self, name: str) -> Operation:
-        """The argument of ``cos θ``, ``cos 2θ``, ``sqrt 2``: a factor, with its numeric coefficient."""
+        """Return the argument of ``cos θ``, ``cos 2θ``, ``sqrt 2``: a factor, with its numeric coefficient."""
         argument = self.power()
         if argument.kind != "number" or name == "sqrt":
             return argument
@@ -313,7 +313,7 @@ class _Parser:
 
 
 def _rate(found: re.Match[str], vocabulary: Vocabulary) -> str:
-    """The name of the rate that a quotient of differentials is; itself where there is no such rate."""
+    """Return the name of the rate that a quotient of differentials is; itself where there is no such rate."""
     name = f"{found['name1'] or found['name2']}_{'ddot' if found['second1'] or found['second2'] else 'dot'}"
     return f" {name} " if vocabulary.variable(name) else found[0]
 

@@ -86,7 +86,7 @@ class _Pivot:
 
 
 def compare(answer: Graph, reference: Graph) -> Compared:
-    """The joints of an answer against those of a mechanism with the same names."""
+    """Return the joints of an answer against those of a mechanism with the same names."""
     result = Compared(sum(joint.pairs for joint in reference))
     bodies = set(bodies_of(reference))
     pairs: dict[tuple[str, ...], list[str]] = {}
@@ -220,7 +220,7 @@ def _better(
 
 
 def _by_joints(graph: Graph) -> list[str]:
-    """The bodies, those with most joints first."""
+    """Return the bodies, those with most joints first."""
     counts = Counter(body for joint in graph for body in joint.bodies)
     return sorted(counts, key=lambda body: (-counts[body], natural(body)))
 
@@ -269,7 +269,7 @@ def _alike(mine: _Pairs, theirs: _Pairs, held: Mapping[str, str]) -> Iterator[di
 
 
 def _along(pairs: _Pairs) -> list[str]:
-    """The bodies, each after a neighbour where it has one."""
+    """Return the bodies, each after a neighbour where it has one."""
     order: list[str] = []
     while rest := [body for body in sorted(pairs.kinds, key=natural) if body not in order]:
         order.append(next((b for b in rest if any(o in order for o in pairs.kinds[b])), rest[0]))
@@ -277,7 +277,7 @@ def _along(pairs: _Pairs) -> list[str]:
 
 
 def _spanned(joint: Edge) -> Iterator[list[Edge]]:
-    """The ways to hold k bodies together by k - 1 pairs: k to the power k - 2 of them, by their Prüfer sequences."""
+    """Yield the ways to hold k bodies together by k - 1 pairs: k to the power k - 2 of them, by their Prüfer sequences."""
     bodies = joint.bodies
     for sequence in product(bodies, repeat=len(bodies) - 2):
         degrees = Counter([*bodies, *sequence])
@@ -292,5 +292,5 @@ def _spanned(joint: Edge) -> Iterator[list[Edge]]:
 
 
 def held_names(answer: Graph, reference: Graph) -> dict[str, str]:
-    """The frame, where an answer calls a body so."""
+    """Return the frame, where an answer calls a body so."""
     return {FRAME: bodies_of(reference)[0]} if FRAME in bodies_of(answer) else {}

@@ -26,7 +26,7 @@ def folded(text: str) -> str:
 
 @lru_cache(maxsize=1)
 def _kinds() -> Mapping[str, str]:
-    """The kind of each name that a joint has in any language."""
+    """Return the kind of each name that a joint has in any language."""
     tables = [words(lang)["graph"]["kinds"] for lang in languages()]
     kinds = {folded(kind): kind for table in tables for kind in table}
     return kinds | {folded(name): kind for table in tables for kind, names in table.items() for name in names}
@@ -43,7 +43,7 @@ def _longest() -> int:
 
 
 def kind_named(text: str) -> str | None:
-    """The kind of a name or a letter, if it is one."""
+    """Return the kind of a name or a letter, if it is one."""
     return _LETTERS.get(text.strip().upper()) or _kinds().get(folded(text))
 
 
@@ -90,7 +90,7 @@ def _untupled(match: re.Match[str]) -> str:
 
 
 def tokens_of(text: str, bodies: Collection[str], named: bool) -> Iterator[Token]:
-    """The tokens of a plain text, its filling left out."""
+    """Yield the tokens of a plain text, its filling left out."""
     pieces = [m for m in _PIECE.finditer(text) if not m["rest"]]
     if stray := _PIECE.sub("", text).strip():
         raise Stop("no_joint", stray)
@@ -104,7 +104,7 @@ def tokens_of(text: str, bodies: Collection[str], named: bool) -> Iterator[Token
 def _next_tokens(
     pieces: Sequence[re.Match[str]], index: int, bodies: Collection[str], named: bool
 ) -> tuple[list[Token], int]:
-    """The tokens of the next piece or pieces, and of how many."""
+    """Return the tokens of the next piece or pieces, and of how many."""
     piece = pieces[index]
     sort, text = str(piece.lastgroup), piece[0]
     if piece["times"]:
@@ -149,7 +149,7 @@ def _is_label(pieces: Sequence[re.Match[str]], index: int) -> bool:
 
 
 def _numbered(text: str, is_linked: bool, names: Collection[str]) -> list[Token]:
-    """A body of a number, ``12`` as two bodies where there is none of that number; ``R12`` says its kind as well."""
+    """Return a body of a number, ``12`` as two bodies where there is none of that number; ``R12`` says its kind as well."""
     letters = text.rstrip("0123456789")
     number = text[len(letters) :]
     tokens = []

@@ -49,29 +49,29 @@ def in_order(joints: Iterable[Edge]) -> Graph:
 
 
 def renamed(graph: Graph, names: Mapping[str, str]) -> Graph:
-    """The graph with other names of bodies."""
+    """Return the graph with other names of bodies."""
     return in_order(edge([names.get(b, b) for b in joint.bodies], joint.kind) for joint in graph)
 
 
 @lru_cache(maxsize=2048)
 def graph_of(text: str) -> Graph:
-    """A graph as solutions state it: ``1-2 revolute, 3-4-5 revolute, 1-6 prismatic``."""
+    """Return a graph as solutions state it: ``1-2 revolute, 3-4-5 revolute, 1-6 prismatic``."""
     joints = (word.split() for word in text.split(","))
     return in_order(edge(bodies.split("-"), kind) for bodies, kind in joints)
 
 
 def bodies_of(graph: Graph) -> tuple[str, ...]:
-    """The names of the bodies, in natural order."""
+    """Return the names of the bodies, in natural order."""
     return tuple(sorted({body for joint in graph for body in joint.bodies}, key=natural))
 
 
 def spelled(graph: Graph) -> str:
-    """A graph in letters, as a figure bears them: ``1–2 R, 1–4 P``; kinds that have none by their name."""
+    """Return a graph in letters, as a figure bears them: ``1–2 R, 1–4 P``; kinds that have none by their name."""
     return ", ".join(f"{joint} {LETTER_OF.get(joint.kind, joint.kind)}".strip() for joint in graph)
 
 
 def read_graph(answer: Any, reference: Graph, *, named: bool = True) -> Reading:
-    """The joints that an answer lists; the value is a :data:`Graph`, or two where ``P`` may be a pivot or a slide.
+    """Return the joints that an answer lists; the value is a :data:`Graph`, or two where ``P`` may be a pivot or a slide.
 
     ``1-2 pivot, 2-3 pivot, 1-4 glissière``, ``2/1 R; …``, ``pivot: 1-2, 2-3; slide: 1-4``, ``S1-S2``, ``1 -R- 2``, lines, a
     list of tuples or records; a joint without a kind is read. The bodies of the ``reference`` tell ``12`` from ``1-2``; with
@@ -112,7 +112,7 @@ def _refuse_strangers(
 
 
 def _as_text(answer: Any) -> str:
-    """A list of tuples, of records or of texts, as text, a joint a line."""
+    """Return a list of tuples, of records or of texts, as text, a joint a line."""
     if isinstance(answer, Mapping):
         answer = [answer] if "between" in answer else [*answer.items()]
     if not isinstance(answer, (list, tuple, set, frozenset)):
@@ -196,7 +196,7 @@ def _graph(tokens: Sequence[Token]) -> Graph:
 
 
 def _joints(group: tuple[str, ...], kind: str) -> Iterator[Edge]:
-    """A joint of a group of bodies; one by one along a chain that comes back to a body."""
+    """Yield a joint of a group of bodies; one by one along a chain that comes back to a body."""
     if len(group) == 1:
         raise Stop("lone_body", group[0])
     if len(set(group)) == len(group):
@@ -322,7 +322,7 @@ def _with_kinds_between(
 
 
 def _framed(tokens: list[Token], reference: Graph, named: bool) -> list[Token]:
-    """The frame by the number that the reference gives it; 0 is the frame where no other body is called so.
+    """Return the frame by the number that the reference gives it; 0 is the frame where no other body is called so.
 
     Where bodies have no names, it is called :data:`FRAME`.
     """
@@ -336,7 +336,7 @@ def _framed(tokens: list[Token], reference: Graph, named: bool) -> list[Token]:
 
 
 def _ways(tokens: list[Token]) -> Iterator[list[Token]]:
-    """The tokens; and with P for a pivot where no pivot is said in another way: G is the slide then, or the answer has both
+    """Yield the tokens; and with P for a pivot where no pivot is said in another way: G is the slide then, or the answer has both
     honest readings."""
     kinds = [token for token in tokens if token.sort == "kind"]
     if not any(token.text.upper() == "P" for token in kinds) or any(t.said == "revolute" for t in kinds):

@@ -20,7 +20,7 @@ _LOOSE_COMMA = re.compile(r",(?![0-9])|(?<![0-9]),")
 
 @lru_cache(maxsize=4096)
 def folded(text: str) -> str:
-    """A label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
+    """Return a label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
     text = _PLUS.sub(r"\1", _SIGN.sub(r"\1−", text.strip("$ ")))
     if "=" in text:
         text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
@@ -35,12 +35,12 @@ _AFTER_HEAD = re.compile(r"\s*(?:[(,;]|:\s).*", re.DOTALL)
 
 
 def head(label: str) -> str:
-    """A label as people shorten it: ``isostatic`` of "isostatic, all actions can be computed"."""
+    """Return a label as people shorten it: ``isostatic`` of "isostatic, all actions can be computed"."""
     return _AFTER_HEAD.sub("", label.replace("\u202f", " "))
 
 
 def by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that are called so: by their key, else by a whole label, else by the head of one."""
+    """Return the choices that are called so: by their key, else by a whole label, else by the head of one."""
     plain = folded(text)
     if not plain:
         return []
@@ -70,20 +70,20 @@ _DOTS_BEHIND = str.maketrans({"\u02d9": "\u0307", "\u00a8": "\u0308"})
 
 @lru_cache(maxsize=4096)
 def _squeezed(formula: str) -> str:
-    """A formula without its spaces and bars, Greek letters and dots spelled."""
+    """Return a formula without its spaces and bars, Greek letters and dots spelled."""
     formula = unicodedata.normalize("NFC", formula.strip("$ ").translate(_DOTS_BEHIND))
     return folded(primes_as_dots(spelled_out(formula)).replace("*", " ")).replace(" ", "")
 
 
 @lru_cache(maxsize=4096)
 def _operators(formula: str) -> str:
-    """The signs of product and quotient of a formula, in order."""
+    """Return the signs of product and quotient of a formula, in order."""
     formula = re.sub(r"\\(?:cdot|times)(?![A-Za-z])|[×·⋅]", "*", formula)
     return re.sub(r"[^*/]", "", formula)
 
 
 def _by_value(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices of whose formula this is the right-hand side: ``-1`` where ``w = -1`` is offered."""
+    """Return the choices of whose formula this is the right-hand side: ``-1`` where ``w = -1`` is offered."""
     value = folded(f"= {text.strip('()[] ')}").removeprefix("=").strip()
     keys = [key for key, labels in choices.items() for s in labels if "=" in s and _value_of(s) == value]
     return list(dict.fromkeys(keys)) if value else []
@@ -121,7 +121,7 @@ def _nouns() -> tuple[str, ...]:
 
 @lru_cache(maxsize=4096)
 def _without_noun(text: str) -> str:
-    """A plain label without what all of its kind are called: ``classe III`` is ``iii``, ``rigid joint`` ``rigid``."""
+    """Return a plain label without what all of its kind are called: ``classe III`` is ``iii``, ``rigid joint`` ``rigid``."""
     plain = folded(text)
     for noun in _nouns():
         if plain.startswith(f"{noun} "):
@@ -135,7 +135,7 @@ _SMALL_WORD = 4  #: letters of a word and its space that say too little alone: `
 
 
 def _by_core(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that are called so but for a noun that all of their kind share: ``pivot``."""
+    """Return the choices that are called so but for a noun that all of their kind share: ``pivot``."""
     core = _without_noun(text)
     plain = {key: [head(s) for s in labels if not s.startswith("$")] for key, labels in choices.items()}
     return [key for key, heads in plain.items() if core and any(_without_noun(s) == core for s in heads)]
@@ -155,7 +155,7 @@ def _conjunctions() -> frozenset[str]:
 
 
 def _by_beginning(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices whose label begins so: ``double balancier``, ``cas limite``; a word with a hyphen is one."""
+    """Return the choices whose label begins so: ``double balancier``, ``cas limite``; a word with a hyphen is one."""
     plain = folded(text)
     if " " not in plain:
         return []
@@ -166,7 +166,7 @@ _REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
 
 
 def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that stand before a remark in brackets which neither names another nor is its own: ``oscille (r2 < r1)``."""
+    """Return the choices that stand before a remark in brackets which neither names another nor is its own: ``oscille (r2 < r1)``."""
     match = _REMARK.fullmatch(text)
     if match is None:
         return []
@@ -193,7 +193,7 @@ def _remarks(choices: Mapping[str, Sequence[str]], keys: Sequence[str]) -> str:
 
 @lru_cache(maxsize=4096)
 def _numbered(text: str) -> tuple[int | None, str]:
-    """The number that a label begins with, and what follows: ``deux paires`` is 2, ``paires``."""
+    """Return the number that a label begins with, and what follows: ``deux paires`` is 2, ``paires``."""
     first, _, rest = _without_noun(text).partition(" ")
     return _numerals().get(first), rest
 
@@ -212,7 +212,7 @@ def _is_no_numeral(text: str) -> bool:
 
 
 def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choice whose label begins with this number, however it is written, where the numbers tell choices apart."""
+    """Return the choice whose label begins with this number, however it is written, where the numbers tell choices apart."""
     number, rest = _numbered(text.strip("()[] "))
     if number is None:
         return []
@@ -233,7 +233,7 @@ _MARKED = re.compile(
 
 
 def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that a text may mean, whatever letters a sheet prints; a mark before a label counts where it is a number."""
+    """Return the choices that a text may mean, whatever letters a sheet prints; a mark before a label counts where it is a number."""
     if _is_no_numeral(text):
         return []
     keys = by_label(text, choices)
@@ -247,7 +247,7 @@ def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
 
 
 def _meant(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that a text may mean, its article left out if need be; the surest way to call one first."""
+    """Return the choices that a text may mean, its article left out if need be; the surest way to call one first."""
     stripped = _BEFORE.sub("", text)
     for words_said in dict.fromkeys((text, stripped)):
         keys = by_label(words_said, choices) or _by_core(words_said, choices)
@@ -280,7 +280,7 @@ def names_any(text: str, choices: Mapping[str, Sequence[str]]) -> bool:
 
 
 def numbers_of(labels: Sequence[str]) -> set[int]:
-    """The numbers that labels begin with, and the values that they state: ``two pairs``, ``class II``, ``w = 1``."""
+    """Return the numbers that labels begin with, and the values that they state: ``two pairs``, ``class II``, ``w = 1``."""
     numbers = set()
     for label in labels:
         number, rest = _numbered(head(label))

@@ -31,7 +31,7 @@ _OUTER = re.compile(r"\s*[\[({<|](.*)[\])}>|]\s*([^\[\](){}|]*)", re.S)
 
 
 def read_vector(answer: Any, unit: str, count: int) -> Reading:
-    """The ``count`` entries of a vector, each value an array of shape ``(count,)`` in ``unit``.
+    """Return the ``count`` entries of a vector, each value an array of shape ``(count,)`` in ``unit``.
 
     ``[1, 2, 3]``, ``(1 ; 2 ; 3) mm``, ``1; 2; 3``, entries on lines, a column of LaTeX, or a list, flat or of
     lists of one.
@@ -60,7 +60,7 @@ def _is_column(text: str) -> bool:
 
 
 def read_matrix(answer: Any, unit: str, shape: tuple[int, int]) -> Reading:
-    """The entries of a matrix of a shape, each value an array of that shape in ``unit``.
+    """Return the entries of a matrix of a shape, each value an array of that shape in ``unit``.
 
     ``[[1, 2], [3, 4]]``, ``1 2; 3 4``, rows on lines, ``\\begin{pmatrix} 1 & 2 \\\\ 3 & 4 \\end{pmatrix}``, or a list
     of lists; a unit behind serves for all. A matrix of another shape has ``code`` ``wrong_shape``.
@@ -81,7 +81,7 @@ def _is_missing(answer: Any) -> bool:
 
 
 def _as_text(answer: Any) -> str:
-    """The text of an answer; of a list, its rows in brackets."""
+    """Return the text of an answer; of a list, its rows in brackets."""
     if isinstance(answer, (np.ndarray, np.generic)):
         answer = answer.tolist()
     if isinstance(answer, (list, tuple)):
@@ -99,7 +99,7 @@ def _refused(text: str) -> Reading | None:
 
 
 def _rows(text: str) -> tuple[list[str], str]:
-    """The rows of a text, each its entries as they stand, and what stands behind them all."""
+    """Return the rows of a text, each its entries as they stand, and what stands behind them all."""
     text = unwrapped(text).strip().strip("$").strip()
     text = text[match.end() :] if (match := _NAMED.match(text)) else text
     if _IS_GRID.search(text):
@@ -122,7 +122,7 @@ def _rows(text: str) -> tuple[list[str], str]:
 
 
 def _grid(text: str) -> tuple[list[str], str]:
-    """The rows of LaTeX, their entries parted by semicolons."""
+    """Return the rows of LaTeX, their entries parted by semicolons."""
     ends = list(_GRID_END.finditer(text))
     behind = text[ends[-1].end() :] if ends else ""
     body = _GRID.sub(" ", text[: ends[-1].end()] if ends else text)
@@ -167,7 +167,7 @@ def _stated(text: str, target: Unit) -> Unit:
 
 
 def _row(row: str, unit: str, count: int) -> Reading:
-    """The entries of one row; a row of one entry is a number."""
+    """Return the entries of one row; a row of one entry is a number."""
     if count > 1:
         return read_point(f"({row})", unit, count)
     from coursework.parsing.numbers import read_number
@@ -185,12 +185,12 @@ def _row(row: str, unit: str, count: int) -> Reading:
 
 
 def _flat(echo: str) -> str:
-    """The echo of a column as that of a vector: ``((1); (2)) mm`` is ``(1; 2) mm``."""
+    """Return the echo of a column as that of a vector: ``((1); (2)) mm`` is ``(1; 2) mm``."""
     return re.sub(r"\(([^()]*)\)(?=[;)])", r"\1", echo)
 
 
 def _as_arrays(text: str, reading: Reading, shape: tuple[int, ...]) -> Reading:
-    """The same reading with its values as arrays, and its text as it came."""
+    """Return the same reading with its values as arrays, and its text as it came."""
     values = tuple(np.array(value, dtype=float).reshape(shape) for value in reading.values)
     return Reading(
         text, reading.status, values, reading.read_as, reading.unit_given, reading.code, reading.found

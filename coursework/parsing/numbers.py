@@ -58,7 +58,7 @@ _MAX_PIECES = 8  #: names in the unit behind a formula
 
 
 def without_name(text: str) -> str:
-    """The text without ``rA =``, ``≈``, ``environ``, and without the full stop of a sentence."""
+    """Return the text without ``rA =``, ``≈``, ``environ``, and without the full stop of a sentence."""
     if named := NAME.match(text):
         if says_value(named[0]):
             raise Stop("two_values", text)
@@ -124,7 +124,7 @@ def says_value(name: str) -> bool:
 
 
 def _formula(text: str, target: Unit) -> list[Amount]:
-    """A formula, with or without a unit behind it; the longest unit that leaves a formula is taken."""
+    """Return a formula, with or without a unit behind it; the longest unit that leaves a formula is taken."""
     first: Unreadable | None = None
     for start in [*_unit_starts(text), len(text)]:
         unit_text = text[start:]
@@ -144,7 +144,7 @@ def _formula(text: str, target: Unit) -> list[Amount]:
 
 
 def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target: Unit) -> list[Amount]:
-    """The values of a formula: one, but for ``1/2π``, which is (1/2)π or 1/(2π)."""
+    """Return the values of a formula: one, but for ``1/2π``, which is (1/2)π or 1/(2π)."""
     if expression.other is None and not (unit or target).is_angle:
         expression = _meant(expression)
     if not expression.is_angle and (unit or target).is_angle:
@@ -182,7 +182,7 @@ _PART_OF_PI = math.pi / 12
 
 
 def _meant(expression: Expression) -> Expression:
-    """A formula with the plain numbers in its sines, cosines and tangents as they are meant: in degrees, where they can be nothing
+    """Return a formula with the plain numbers in its sines, cosines and tangents as they are meant: in degrees, where they can be nothing
     else; in radians, where each is a part of pi.
 
     Raises
@@ -210,7 +210,7 @@ def _are_parts_of_pi(angles: Sequence[float]) -> bool:
 
 
 def _of_angle(expression: Expression, unit: Unit | None, unit_text: str, target: Unit) -> Amount:
-    """The one value of a formula of an angle, in the unit that the student chose: by writing it, or by what the formula holds.
+    """Return the one value of a formula of an angle, in the unit that the student chose: by writing it, or by what the formula holds.
 
     A multiple of pi is in radians, what is divided by pi in degrees. A number that is added to an inverse function, or stands
     in a sine, says which it is by its size: beyond two turns of radians it is in degrees, a part of pi is in radians.
@@ -264,7 +264,7 @@ def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
 
 
 def _told_of_angles(node: Operation) -> Iterator[float]:
-    """The numbers of a formula that are angles: added to an inverse function, or the argument of a sine."""
+    """Yield the numbers of a formula that are angles: added to an inverse function, or the argument of a sine."""
     if node.kind == "sum" and node.has_inverse:
         yield from (_value_of(arg) for arg in node.args if not arg.has_inverse)
     if node.kind == "call" and node.name in ("sin", "cos", "tan") and not node.has_inverse:
@@ -285,7 +285,7 @@ _MARGIN = 0.05  #: the share of a number that what is written behind ± may be, 
 
 
 def _without_margin(text: str) -> str:
-    """A number without the margin that is written with it: ``-414,6 ± 0,5 mm``."""
+    """Return a number without the margin that is written with it: ``-414,6 ± 0,5 mm``."""
     match = _PLUS_MINUS.fullmatch(text)
     if match is None:
         return text
@@ -379,7 +379,7 @@ _PAIR = re.compile(
 
 
 def _worked_out(text: str, target: Unit, *, per_one: bool = False) -> list[Amount]:
-    """The readings of a formula that stands alone; ``per_one`` lets ``3/1`` be a ratio."""
+    """Return the readings of a formula that stands alone; ``per_one`` lets ``3/1`` be a ratio."""
     _refuse_ranges(text)
     if not per_one or not _PER_ONE.fullmatch(text):
         _refuse_several(text)
@@ -387,7 +387,7 @@ def _worked_out(text: str, target: Unit, *, per_one: bool = False) -> list[Amoun
 
 
 def _calculated(text: str, target: Unit) -> list[Amount]:
-    """The readings of a formula."""
+    """Return the readings of a formula."""
     _refuse_two_values(text)
     if (total := _sum_of_amounts(text, target)) is not None:
         return [total]
@@ -480,7 +480,7 @@ _EQUALS = re.compile(r"\s*[=≈]+\s*")
 
 
 def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | None:
-    """A number written in ways that agree: ``273.9 (273.92)``, ``180 - 75.4 = 104.6``; ``None`` where it is not.
+    """Return a number written in ways that agree: ``273.9 (273.92)``, ``180 - 75.4 = 104.6``; ``None`` where it is not.
 
     The number before the brackets is meant, or that behind the equals sign.
     """
@@ -502,7 +502,7 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
 
 
 def _checked(number: str, inside: str, unit: str, target: Unit, thousands: bool) -> list[Amount] | None:
-    """A number that what stands in brackets behind it confirms; ``2 (π/3)`` is a product, and ``None``."""
+    """Return a number that what stands in brackets behind it confirms; ``2 (π/3)`` is a product, and ``None``."""
     meant = in_digits(number, target, thousands)
     if meant is None or not any(c in "0123456789π" for c in inside):
         return None
@@ -528,7 +528,7 @@ def _reading_of(text: str, target: Unit, thousands: bool) -> _ReadingWay:
 
 
 def _agreeing(first: _ReadingWay, other: _ReadingWay, target: Unit) -> list[Amount]:
-    """The readings of one way to write a number that the other confirms to the last digit of the shorter.
+    """Return the readings of one way to write a number that the other confirms to the last digit of the shorter.
 
     An angle that does not say its unit may be in radians, where the other says what it is in degrees: then that is meant.
     """
@@ -603,7 +603,7 @@ _LINES = re.compile(
 
 
 def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bool = True) -> Reading:
-    """A number, with or without its unit, in the canonical ``unit``.
+    """Return a number, with or without its unit, in the canonical ``unit``.
 
     Without a unit it is in ``unit``; where ``unit`` is ``deg`` and the formula speaks of radians (``π/3``),
     radians are tried first. An int or float is taken as it is. Unless ``thousands``, the comma of ``1,234`` is
@@ -661,7 +661,7 @@ _COUNTED = re.compile(
 
 
 def read_integer(text: Any) -> Reading:
-    """A whole number, without unit: ``3``, ``3,0``, ``γ = 3``, ``1 ddl``; the values are ints."""
+    """Return a whole number, without unit: ``3``, ``3,0``, ``γ = 3``, ``1 ddl``; the values are ints."""
     text = bare_value(text)
     counted = _COUNTED.sub("", text) if isinstance(text, str) and len(text) < MAX_LENGTH else text
     reading = read_number(counted, "1", proportions=False)

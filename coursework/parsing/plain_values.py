@@ -34,7 +34,7 @@ class Strange:
 
 
 def plain_answer(answer: Any) -> Any:
-    """The answer, of Python's own types alone: numbers, texts, and lists, sets and mappings of them; of
+    """Return the answer, of Python's own types alone: numbers, texts, and lists, sets and mappings of them; of
     NumPy's values, Python's. Anything else is :class:`Strange`, and so is what is nested or filled beyond all measure.
     """
     if type(answer) in _PLAIN:

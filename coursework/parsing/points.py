@@ -45,7 +45,7 @@ def _splits(text: str) -> Iterable[list[str]]:
 
 
 def _coordinates(pieces: Sequence[str], unit: str, target: Unit) -> list[tuple[tuple[float, ...], str, bool]]:
-    """The readings of coordinates, their echo, whether a unit is written; the last one's serves for all."""
+    """Return the readings of coordinates, their echo, whether a unit is written; the last one's serves for all."""
     pieces = [piece.strip() for piece in pieces]
     columns = [read_amounts(piece, target) for piece in pieces]
     units = {column[0].unit for column in columns}
@@ -68,7 +68,7 @@ class _CutInTwo(Stop):
 
 
 def _bare_point(text: str) -> tuple[str, str]:
-    """The coordinates inside brackets, and the unit behind the brackets."""
+    """Return the coordinates inside brackets, and the unit behind the brackets."""
     named = NAME.match(text)
     if named and text.count("=") + text.count(":") == 1:  # A = (1 ; 2), but not x = 1 ; y = 2
         if says_value(named[0]):
@@ -85,7 +85,7 @@ _AXIS = re.compile(
 
 
 def _axis(text: str, count: int) -> tuple[float, ...] | None:
-    """The direction of an axis of coordinates that is named, or ``None``."""
+    """Return the direction of an axis of coordinates that is named, or ``None``."""
     match = _AXIS.fullmatch(text)
     if match is None:
         return None
@@ -109,7 +109,7 @@ _MULTIPLE = re.compile(r"^(?:\\?(?:omega|lambda)|[ωλk])\s*[.*]?\s*(?=\()")  #:
 def _combination(
     text: str, count: int, symbols: Mapping[str, float] | None = None
 ) -> tuple[float, ...] | None:
-    """The vector that a sum of vectors of the base is, ``x_a + 1.36 z``, ``(3x - 4y)/5``, ``(R + r) x``, or ``None``."""
+    """Return the vector that a sum of vectors of the base is, ``x_a + 1.36 z``, ``(3x - 4y)/5``, ``(R + r) x``, or ``None``."""
     names, symbols = tuple("xyz"[:count]), symbols or {}
     bare = _MULTIPLE.sub("", text, count=1)
     spelled = _VECTOR.sub(lambda match: f" {match[1] or match[2]} ", bare)
@@ -175,7 +175,7 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
 
 
 def read_point(text: Any, unit: str, count: int) -> Reading:
-    """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an axis is a direction.
+    """Return the ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an axis is a direction.
 
     ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)_a``, ``x = 1; y = 2``, or a list; a direction also as a sum,
     ``x_a + 1.36 z``. A unit
@@ -193,7 +193,7 @@ def read_point(text: Any, unit: str, count: int) -> Reading:
 def worked_out(
     text: Any, unit: str, count: int, symbols: Mapping[str, tuple[float, str]]
 ) -> tuple[float, ...]:
-    """The coordinates of a vector of formulas, ``(R + 2r, 0, 0)``, ``(R + 2r) x``, in ``unit``.
+    """Return the coordinates of a vector of formulas, ``(R + 2r, 0, 0)``, ``(R + 2r) x``, in ``unit``.
 
     ``symbols`` are those of the statement, each with its value and unit. Nothing where it is no such vector.
     """
@@ -214,7 +214,7 @@ def worked_out(
 
 
 def _in_unit_of(target: Unit, value: float, own: Unit) -> float:
-    """A given value in the units of length and angle that a formula for a target counts in."""
+    """Return a given value in the units of length and angle that a formula for a target counts in."""
     if own.is_angle:
         return value * own.factor
     if target.dimension == RATIO:
@@ -224,7 +224,7 @@ def _in_unit_of(target: Unit, value: float, own: Unit) -> float:
 
 
 def _values(pieces: Sequence[str], symbols: Mapping[str, float]) -> tuple[float, ...]:
-    """The values of formulas, and of numbers beside them; nothing where none is a formula."""
+    """Return the values of formulas, and of numbers beside them; nothing where none is a formula."""
     formulas = [plain_expression(piece.strip(), symbols) for piece in pieces]
     values = [formula.evaluate(symbols) for formula in formulas]
     is_real = all(isinstance(value, float) and math.isfinite(value) for value in values)

@@ -78,7 +78,7 @@ def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> FormulaValue
 
 
 def _columns(tree: FormulaRow, numbers: Sequence[Num], halves: Sequence[float]) -> list[np.ndarray]:
-    """The coordinates that a tree gives: as printed, then with each number moved up, and down."""
+    """Return the coordinates that a tree gives: as printed, then with each number moved up, and down."""
     with np.errstate(all="ignore"):
         value = Evaluation(numbers, halves).of(tree)
         coordinates = value if isinstance(value, tuple) else (value,)
@@ -86,7 +86,7 @@ def _columns(tree: FormulaRow, numbers: Sequence[Num], halves: Sequence[float]) 
 
 
 def _width(column: np.ndarray, is_angle: bool) -> float:
-    """The larger move of each number's two, added up over the numbers."""
+    """Return the larger move of each number's two, added up over the numbers."""
     exists = np.isfinite(column)
     if not exists.all():
         return math.inf if exists.any() else 0.0
@@ -97,7 +97,7 @@ def _width(column: np.ndarray, is_angle: bool) -> float:
 
 
 def _numbers(node: Any) -> list[Num]:
-    """The numbers of a tree."""
+    """Return the numbers of a tree."""
     if isinstance(node, Num):
         return [node]
     if isinstance(node, tuple):
@@ -216,11 +216,11 @@ class Evaluation:
         return self.power(self.of(base), above)
 
     def called(self, name: str, arguments: Sequence[Any]) -> Any:
-        """A function of its arguments."""
+        """Return a function of its arguments."""
         return _FUNCTIONS[name](*arguments)
 
     def power(self, value: Any, exponent: Node) -> Any:
-        """A whole exponent is exact: a negative number has no other power."""
+        """Return a power; a whole exponent is exact, since a negative number has no other power."""
         times = np.ravel(self.of(exponent))
         return value ** (times[0] if times[0] == np.rint(times[0]) else times)
 
@@ -234,7 +234,7 @@ class _FormulaLine:
         self.at = 0
 
     def value(self) -> Any:
-        """A number, or a tuple where semicolons part several."""
+        """Return a number, or a tuple where semicolons part several."""
         values = [self._sum()]
         while self._taken(_SEMICOLON):
             values.append(self._sum())
@@ -303,7 +303,7 @@ class _FormulaLine:
         return value
 
     def _function(self, name: str) -> Any:
-        """A function of what stands in the brackets after it, or of the one factor that follows."""
+        """Return a function of what stands in the brackets after it, or of the one factor that follows."""
         if name not in _FUNCTIONS:
             raise NotEvaluable(f"{name} has no value")
         argument = self._factor()
@@ -328,7 +328,7 @@ def _is_factor(item: Node) -> bool:
 
 
 def _piece_text(node: Node) -> str:
-    """A piece of a formula as a reader names it."""
+    """Return a piece of a formula as a reader names it."""
     match node:
         case Symbol(text=text) | Name(text=text) | FormulaText(text=text):
             return text

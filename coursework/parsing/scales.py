@@ -20,7 +20,7 @@ def is_of_paper(unit: str) -> bool:
 
 
 def restated(text: str, unit: str) -> tuple[str, ...]:
-    """The texts to be read in place of a scale: ``100 mm/cm`` for ``1 cm = 100 mm``, or the text as it is.
+    """Return the texts to be read in place of a scale: ``100 mm/cm`` for ``1 cm = 100 mm``, or the text as it is.
 
     A ratio of lengths has two honest readings, ``1:2`` or ``1/2`` is 2 mm for one of paper, or half of one.
     """

@@ -19,7 +19,7 @@ _SEPARATOR = re.compile(r"\s*[,;+&\n|]\s*(?:(?:and|et)\s+)?|\s+(?:and|et|y|und|e
 
 
 def read_choices(answer: Any, choices: Mapping[str, Sequence[str]]) -> Reading:
-    """The cases named by an answer; the value is a ``frozenset`` of keys.
+    """Return the cases named by an answer; the value is a ``frozenset`` of keys.
 
     ``a, c``, ``a and c``, labels of any language, lines that begin with ``[x]`` or ``[ ]``, a list, ``none``.
     ``choices`` maps each key to its labels.
@@ -41,13 +41,13 @@ def read_choices(answer: Any, choices: Mapping[str, Sequence[str]]) -> Reading:
 
 
 def _squeezed(text: str) -> str:
-    """The text without blank lines, and one space for several: patterns would try each of them."""
+    """Return the text without blank lines, and one space for several: patterns would try each of them."""
     lines = (" ".join(line.split()) for line in text.splitlines())
     return "\n".join(line for line in lines if line)
 
 
 def _keys(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | str:
-    """The keys that a text names, or the piece that names none."""
+    """Return the keys that a text names, or the piece that names none."""
     text = text.strip().strip("[]{}") if "[" not in text.strip()[1:] else text
     if (ticked := _ticked(text)) is not None:
         pieces = ticked
@@ -65,7 +65,7 @@ def _keys(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | s
 
 
 def _ticked(text: str) -> list[str] | None:
-    """The ticked lines of a list with boxes; nothing where it is none."""
+    """Return the ticked lines of a list with boxes; nothing where it is none."""
     lines = [_TICKED.match(line) for line in text.splitlines() if line.strip()]
     if not lines or None in lines:
         return None
@@ -80,7 +80,7 @@ def _none_words() -> tuple[str, ...]:
 
 
 def _split(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | str:
-    """The cases of a text, whose labels may themselves hold commas: the longest piece that is one is taken."""
+    """Return the cases of a text, whose labels may themselves hold commas: the longest piece that is one is taken."""
     reading = read_choice(text.strip(" \"'."), choices) if len(text) <= _longest(choices) else None
     if reading is not None and reading.status == "read":
         return frozenset(reading.values)
@@ -104,7 +104,7 @@ def _longest(choices: Mapping[str, Sequence[str]]) -> int:
 def _pieces(
     text: str, ends: Sequence[tuple[int, int]], choices: Mapping[str, Sequence[str]]
 ) -> Iterator[tuple[str | None, int]]:
-    """The keys of a text from left to right, each with where it starts; None where a piece is no case."""
+    """Yield the keys of a text from left to right, each with where it starts; None where a piece is no case."""
     start, longest = 0, _longest(choices)
     while start < len(text):
         cuts = [(len(text), len(text)), *((a, b) for a, b in reversed(ends) if a >= start)]

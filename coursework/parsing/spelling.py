@@ -10,7 +10,7 @@ MAX_FOUND = 60  #: characters of a text that a message quotes
 
 
 def shorten(text: str) -> str:
-    """A piece of text short enough for a message."""
+    """Return a piece of text short enough for a message."""
     return text if len(text) <= MAX_FOUND else text[: MAX_FOUND - 1] + "…"
 
 
@@ -36,7 +36,7 @@ _QUOTES = {'"': '"', "'": "'", "«": "»", "“": "”", "„": "“", "‘": "�
 
 
 def unwrapped(text: str) -> str:
-    """A text without what a program put around it: entities of HTML, quotation marks, the ' of a spreadsheet."""
+    """Return a text without what a program put around it: entities of HTML, quotation marks, the ' of a spreadsheet."""
     text = unescape(text).strip() if "&" in text else text.strip()
     if text[:1] in _QUOTES:
         if len(text) > 1 and text[-1] == _QUOTES[text[0]]:
@@ -72,7 +72,7 @@ _TABLE = _Characters({ord(odd): plain for plain, odds in _ALIKE.items() for odd 
 
 
 def tidy(text: str) -> str:
-    """The text with one spelling for each kind of space, sign, digit, dot and quote; ``²`` is ``^(2)``."""
+    """Return the text with one spelling for each kind of space, sign, digit, dot and quote; ``²`` is ``^(2)``."""
     if text.isascii() and text.isprintable():
         return text.strip()
     text = _BROKEN_POWER.sub("⁻", unicodedata.normalize("NFC", text))
@@ -99,7 +99,7 @@ _LATEX = (
 
 
 def without_latex(text: str) -> str:
-    """A tidy text with the commonest LaTeX spelled plainly; fractions and roots are left to the parser."""
+    """Return a tidy text with the commonest LaTeX spelled plainly; fractions and roots are left to the parser."""
     if "\\" in text or "$" in text or "{" in text or "^" in text:
         for pattern, plain in _LATEX:
             text = pattern.sub(plain, text)
@@ -107,12 +107,12 @@ def without_latex(text: str) -> str:
 
 
 def plain_spelling(text: str) -> str:
-    """A text as the parsers take it: tidy, its commonest LaTeX spelled plainly. Once made plain, a text is handed on."""
+    """Return a text as the parsers take it: tidy, its commonest LaTeX spelled plainly. Once made plain, a text is handed on."""
     return without_latex(tidy(text))
 
 
 def as_typed(piece: str, text: str) -> str:
-    """The piece of a text that is spelled so when it is plain, as it was typed: ``s²`` for ``s^(2)``; else the piece itself."""
+    """Return the piece of a text that is spelled so when it is plain, as it was typed: ``s²`` for ``s^(2)``; else the piece itself."""
     if not piece or piece in text or len(text) > _MAX_SEARCHED:
         return piece
     for start in range(len(text)):
@@ -151,7 +151,7 @@ def _greek(char: str) -> str:
 
 
 def spelled_out(text: str) -> str:
-    """A text in which every name is ASCII: ``ψ̇``, ``\\dot\\psi`` -> ``psi_dot``, ``θ_{2}`` -> ``theta_2``."""
+    """Return a text in which every name is ASCII: ``ψ̇``, ``\\dot\\psi`` -> ``psi_dot``, ``θ_{2}`` -> ``theta_2``."""
     text = _DOTS.sub(lambda m: f"{m[2] or m[3]}_{m[1]}", text)
     text = _SUBSCRIPT.sub(r"_\1", text)
     text = _COMMAND.sub(r" \1", text)
@@ -161,5 +161,5 @@ def spelled_out(text: str) -> str:
 
 
 def primes_as_dots(text: str) -> str:
-    """A text with ASCII names in which ``phi'`` and ``r1\"`` are ``phi_dot`` and ``r1_ddot``."""
+    """Return a text with ASCII names in which ``phi'`` and ``r1\"`` are ``phi_dot`` and ``r1_ddot``."""
     return _PRIMES.sub(lambda m: m[1] + ("_dot" if m[2] == "'" else "_ddot"), text)

@@ -48,7 +48,7 @@ def refers_elsewhere(text: str) -> bool:
 
 
 def _either(category: str) -> str:
-    """The words of every language as a pattern, their spaces of any length, with accents and without."""
+    """Return the words of every language as a pattern, their spaces of any length, with accents and without."""
     phrases = {
         w for lang in languages() for word in words(lang)["answers"][category] for w in (word, folded(word))
     }
@@ -67,7 +67,7 @@ def _sense(category: str) -> re.Pattern[str]:
 
 
 def _number_before(category: str, text: str) -> str:
-    """The number that stands before words for a sense; nothing where none does."""
+    """Return the number that stands before words for a sense; nothing where none does."""
     match = _sense(category).search(text) if len(text) <= _LONGEST else None
     number = text[: match.start()].strip(" ,;(") if match else ""
     return number if re.match(r"[+-]?\s*[0-9]", number) else ""
@@ -83,7 +83,7 @@ def number_words() -> dict[str, int]:
 
 
 def with_signs(text: str) -> str:
-    """A number with digits and a sign in place of words: ``moins 18,32``, ``cinq``, ``à peu près 15``.
+    """Return a number with digits and a sign in place of words: ``moins 18,32``, ``cinq``, ``à peu près 15``.
 
     A sense in words gives the sign of a number that has none.
 
@@ -124,5 +124,5 @@ def _root() -> re.Pattern[str]:
 
 
 def with_roots(text: str) -> str:
-    """A formula with a radical sign in place of the word: ``racine(2)``, ``square root of 2``."""
+    """Return a formula with a radical sign in place of the word: ``racine(2)``, ``square root of 2``."""
     return _root().sub("√", text)

@@ -60,7 +60,7 @@ class _Cells(NamedTuple):
 
 
 def read_torsor(answer: Any, form: TorsorForm, units: tuple[str, str], count: int) -> Reading:
-    """The components of a torsor in ``units``, those of its resultant and of its moment, as arrays of shape ``(count,)``.
+    """Return the components of a torsor in ``units``, those of its resultant and of its moment, as arrays of shape ``(count,)``.
 
     ``count`` is 6, resultant before moment, or 3 for a plane one in the order of ``form.plane``. A unit stands in a
     cell, behind a column for all of it, or behind the brackets, where it goes to the column that it fits.
@@ -83,7 +83,7 @@ def read_torsor(answer: Any, form: TorsorForm, units: tuple[str, str], count: in
 
 
 def read_pattern(answer: Any, form: TorsorForm) -> Reading:
-    """The components that an answer says may differ from zero: a ``frozenset`` of names of ``form``.
+    """Return the components that an answer says may differ from zero: a ``frozenset`` of names of ``form``.
 
     A table as that of :func:`read_torsor`, with 0 where nothing can be and a symbol, ``*``, a number or ``free`` where something
     may; a dash stands where a plane torsor says nothing. Or the names alone, ``wz, vx``; ``0`` for none. Other words are not read,
@@ -117,7 +117,7 @@ def _read_cells(answer: Any, read: Callable[[str], Reading]) -> Reading:
 
 
 def _as_text(answer: Any) -> str:
-    """The text of an answer; lists in brackets, a mapping by its names."""
+    """Return the text of an answer; lists in brackets, a mapping by its names."""
     if isinstance(answer, (np.ndarray, np.generic)):
         answer = answer.tolist()
     if answer is None:
@@ -156,7 +156,7 @@ _COMMA_OF_ROWS = re.compile(r",\s+|\s+,|,(?=[^\W\d_])")
 
 
 def _cells(text: str, form: TorsorForm, *, plane: bool, symbols: bool) -> _Cells:
-    """The cells of a text, whichever way it is laid out."""
+    """Return the cells of a text, whichever way it is laid out."""
     inside, behind = _opened(_laid_out(text))
     groups = _groups(inside, form) or _columns(inside)
     if groups is not None and len(groups) == 2:
@@ -176,7 +176,7 @@ def _cells(text: str, form: TorsorForm, *, plane: bool, symbols: bool) -> _Cells
 
 
 def _counted_cells(cells: Sequence[str | None], form: TorsorForm, *, plane: bool) -> tuple[str | None, ...]:
-    """The cells that count: in the plane, those that a plane torsor has."""
+    """Return the cells that count: in the plane, those that a plane torsor has."""
     return tuple(cell if index in form.plane or not plane else None for index, cell in enumerate(cells))
 
 
@@ -238,12 +238,12 @@ def _groups(text: str, form: TorsorForm) -> list[str] | None:
 
 
 def _columns(text: str) -> list[str] | None:
-    """The two columns on either side of the only bar."""
+    """Return the two columns on either side of the only bar."""
     return text.split("|") if text.count("|") == 1 else None
 
 
 def _of_rows(rows: Sequence[str], *, plane: bool, symbols: bool) -> list[str] | None:
-    """The cells of rows: two of three, three of two, one of six or six of one; three alone in the plane."""
+    """Return the cells of rows: two of three, three of two, one of six or six of one; three alone in the plane."""
     if len(rows) == 1:
         return _entries(rows[0], (6, 3) if plane else (6,), symbols=symbols)
     for wanted in {2: (3,), 3: (2, 1) if plane else (2,), 6: (1,)}.get(len(rows), ()):
@@ -259,7 +259,7 @@ def _of_rows(rows: Sequence[str], *, plane: bool, symbols: bool) -> list[str] | 
 
 
 def _entries(text: str, counts: Sequence[int], *, symbols: bool) -> list[str] | None:
-    """A row or a column cut into one of the counts of cells, the likeliest cut first."""
+    """Return a row or a column cut into one of the counts of cells, the likeliest cut first."""
     text = text.strip(" \n")
     if (bare := _GROUP.fullmatch(text)) and counts != (1,):
         text = bare[1]
@@ -303,7 +303,7 @@ def _merged(tokens: Sequence[str], *, signs: bool) -> list[str]:
 
 
 def _by_name(cells: Sequence[str | None], form: TorsorForm) -> list[str | None]:
-    """The cells at the places that they name, where each of them names one: ``wz = 5``."""
+    """Return the cells at the places that they name, where each of them names one: ``wz = 5``."""
     named = [cell.partition("=")[0] if cell and "=" in cell else "" for cell in cells]
     places = [component_place(name, form) if name else None for name in named]
     placed = [index for index in places if index is not None]
@@ -317,7 +317,7 @@ def _by_name(cells: Sequence[str | None], form: TorsorForm) -> list[str | None]:
 
 
 def component_place(text: str, form: TorsorForm) -> int | None:
-    """The place of the component that a text names, ``ω_z``, ``\\omega_z``, ``M``, ``Mz``; nothing where it names none."""
+    """Return the place of the component that a text names, ``ω_z``, ``\\omega_z``, ``M``, ``Mz``; nothing where it names none."""
     spelled = spelled_out(plain_spelling(text))
     if not re.fullmatch(r"[^{}]*(?:\{[^{}]*\}[^{}]*)*", spelled):
         return None
@@ -335,7 +335,7 @@ def component_place(text: str, form: TorsorForm) -> int | None:
 
 
 def _units_behind(text: str, units: tuple[str, str]) -> tuple[str, str]:
-    """The units behind the brackets, each for the column of its kind; ``SI`` for both."""
+    """Return the units behind the brackets, each for the column of its kind; ``SI`` for both."""
     text = plain_spelling(text).strip(" ()[]{}.")
     if text.upper() in ("SI", "S.I", "USI"):
         return units[0], units[1].replace("mm", "m")
@@ -353,7 +353,7 @@ def _units_behind(text: str, units: tuple[str, str]) -> tuple[str, str]:
 
 
 def _column(cells: Sequence[str | None], stated: str, unit: str) -> Reading | None:
-    """The cells of one column that there are, in its unit."""
+    """Return the cells of one column that there are, in its unit."""
     filled = [cell for cell in cells if cell is not None]
     if not filled:
         return None
@@ -421,7 +421,7 @@ _DASHES = ("", "-", "--", ".", "/")
 
 
 def _named_components(text: str, form: TorsorForm) -> set[str] | None:
-    """The components of a list of names alone; nothing where it is something else."""
+    """Return the components of a list of names alone; nothing where it is something else."""
     plain = tidy(unwrapped(text)).strip().strip("{}[]()$.").strip()
     if _NONE.fullmatch(plain) or (not plain and re.fullmatch(r"\\?\{\s*\\?\}", text.strip())):
         return set()
@@ -434,7 +434,7 @@ def _named_components(text: str, form: TorsorForm) -> set[str] | None:
 
 
 def _marked(text: str, form: TorsorForm) -> set[str]:
-    """The components of a table that hold something else than 0."""
+    """Return the components of a table that hold something else than 0."""
     try:
         (cells, behind), plane = _cells(text, form, plane=False, symbols=True), False
     except Stop:
@@ -469,7 +469,7 @@ def _is_mark(cell: str) -> bool:
 
 
 def _plain_symbols(cell: str) -> str:
-    """A cell with its Greek letters spelled, indices and LaTeX's commands of form left out."""
+    """Return a cell with its Greek letters spelled, indices and LaTeX's commands of form left out."""
     cell = re.sub(r"\\(?:mathrm|mathit|text|vec|overrightarrow|dot|cdot|times)(?![A-Za-z])", " ", cell)
     return re.sub(r"_\{[^{}]*\}|_\w+", " ", spelled_out(cell))
 

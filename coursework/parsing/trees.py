@@ -123,7 +123,7 @@ def compute(node: Operation, values: Mapping[str, object]) -> Any:
 
 
 def without_idle(node: Operation) -> Operation:
-    """A tree without what does nothing: ``+ 0``, ``· 1``, ``/ 1``, ``^ 1``, signs and bars; what is times 0 is 0."""
+    """Return a tree without what does nothing: ``+ 0``, ``· 1``, ``/ 1``, ``^ 1``, signs and bars; what is times 0 is 0."""
     args = tuple(map(without_idle, node.args))
     if node.kind in ("neg", "degree") or (node.kind, node.name) == ("call", "abs"):
         return args[0]
@@ -151,7 +151,7 @@ def _is_number(node: Operation, value: float) -> bool:
 
 
 def numbers_in_degrees(node: Operation) -> Operation:
-    """A tree in which plain numbers under a sine, a cosine, a tangent or ``e^(i …)`` are degrees, alone or added."""
+    """Return a tree in which plain numbers under a sine, a cosine, a tangent or ``e^(i …)`` are degrees, alone or added."""
     args = tuple(map(numbers_in_degrees, node.args))
     if node.kind == "call" and node.name in ("sin", "cos", "tan"):
         args = (_angle_in_degrees(args[0]),)
@@ -163,7 +163,7 @@ def numbers_in_degrees(node: Operation) -> Operation:
 
 
 def _angle_in_degrees(node: Operation) -> Operation:
-    """An angle whose plain numbers are degrees; what is said in terms of pi is in radians."""
+    """Return an angle whose plain numbers are degrees; what is said in terms of pi is in radians."""
     if node.kind in ("sum", "neg"):
         return replace(node, args=tuple(map(_angle_in_degrees, node.args)))
     is_plain = node.constant and not (node.angle or node.speaks_of_pi or node.has_inverse)
@@ -171,7 +171,7 @@ def _angle_in_degrees(node: Operation) -> Operation:
 
 
 def _exponent_in_degrees(node: Operation) -> Operation:
-    """An exponent of e in which plain numbers beside the imaginary unit are degrees: ``i*90``, ``i(theta2 + 90)``."""
+    """Return an exponent of e in which plain numbers beside the imaginary unit are degrees: ``i*90``, ``i(theta2 + 90)``."""
     if node.kind in ("sum", "neg"):
         return replace(node, args=tuple(map(_exponent_in_degrees, node.args)))
     if node.kind != "product" or sum(arg == _IMAGINARY for arg in node.args) != 1:
@@ -188,7 +188,7 @@ _IMAGINARY = Operation("constant", "i")
 
 
 def bare_angles(node: Operation) -> Iterable[float]:
-    """The plain numbers that :func:`numbers_in_degrees` takes for degrees."""
+    """Return the plain numbers that :func:`numbers_in_degrees` takes for degrees."""
     if node.kind == "call" and node.name in ("sin", "cos", "tan"):
         yield from _bare_terms(node.args[0])
     for arg in node.args:
@@ -208,7 +208,7 @@ _A_RADIAN = math.degrees(1.0)
 
 
 def _calculated_in_degrees(node: Operation) -> Operation:
-    """A tree whose trigonometric functions take degrees, and whose inverse ones give them unless converted by hand."""
+    """Return a tree whose trigonometric functions take degrees, and whose inverse ones give them unless converted by hand."""
     args = tuple(map(_calculated_in_degrees, node.args))
     if node.kind == "call" and node.name in ("sin", "cos", "tan"):
         return replace(node, args=(Operation("degree", args=args),))
@@ -273,7 +273,7 @@ class Expression:
         return Expression(self.text, _calculated_in_degrees(self.root))
 
     def evaluate(self, values: Mapping[str, object] | None = None) -> Any:
-        """The value, of the shape to which the values broadcast; angles in radians.
+        """Return the value, of the shape to which the values broadcast; angles in radians.
 
         Raises
         ------

@@ -93,7 +93,7 @@ def _unit(ratio: str | int | Fraction, pi: int = 0, **powers: int) -> Unit:
 
 
 def _scale_of(zero: str, ratio: str = "1") -> Unit:
-    """A scale of temperatures that begins at so many K."""
+    """Return a scale of temperatures that begins at so many K."""
     return Unit("", Fraction(ratio), 0, _dimension(temperature=1), Fraction(zero))
 
 
@@ -178,7 +178,7 @@ def _scaled(unit: Unit, decades: int) -> Unit:
 
 
 def _symbol(name: str) -> Unit | None:
-    """A symbol with its prefix; a symbol as it stands comes before a prefix (``min`` is no milli-inch)."""
+    """Return a symbol with its prefix; a symbol as it stands comes before a prefix (``min`` is no milli-inch)."""
     if name in _PLAIN:
         return _PLAIN[name]
     for size in range(3):
@@ -189,7 +189,7 @@ def _symbol(name: str) -> Unit | None:
 
 
 def _word(name: str) -> Unit | None:
-    """A unit spelled out, ``millimètres``."""
+    """Return a unit spelled out, ``millimètres``."""
     low = name.lower().translate(_ACCENTS)
     if len(low) < 4:
         return None
@@ -206,7 +206,7 @@ _ANY_CAPITALS = ("rad", "rd", "deg", "grad", "gon", "rev", "tr", "rpm", "min", "
 
 
 def _capitals(name: str) -> Unit | None:
-    """A symbol in other capitals, ``RPM``, or with a plural s, ``revs``."""
+    """Return a symbol in other capitals, ``RPM``, or with a plural s, ``revs``."""
     low = name.lower()
     for symbol in (low, low.removesuffix("s")):
         if symbol in _ANY_CAPITALS:
@@ -224,7 +224,7 @@ def _moment(name: str) -> Unit | None:
 
 
 def _product(a: Unit, b: Unit, power: int) -> Unit:
-    """``a * b**power``."""
+    """Return ``a * b**power``."""
     dimension = tuple(p + power * q for p, q in zip(a.dimension, b.dimension, strict=True))
     return Unit("", a.ratio * b.ratio**power, a.pi + power * b.pi, dimension)
 
@@ -321,7 +321,7 @@ def _chain(tokens: list[tuple[str, int]], text: str, depth: int = 0) -> Unit:
 
 @lru_cache(maxsize=4096)
 def _analyse(text: str) -> tuple[Unit | None, str]:
-    """The unit of a text, or the piece that is not understood."""
+    """Return the unit of a text, or the piece that is not understood."""
     return _analyse_plain(plain_spelling(text) if len(text) <= _MAX_LENGTH else text, text)
 
 
@@ -347,7 +347,7 @@ def _analyse_plain(plain: str, text: str) -> tuple[Unit | None, str]:
 
 
 def find_unit(text: str) -> Unit | None:
-    """The unit that a text names, or ``None``."""
+    """Return the unit that a text names, or ``None``."""
     return _analyse(text)[0]
 
 
@@ -357,7 +357,7 @@ def plain_unit(plain: str) -> Unit | None:
 
 
 def parse_unit(text: str) -> Unit:
-    """The unit that a text names: ``rad.s-1``, ``N·m``, ``mm/s²``, ``tr/min``; ``1`` is a ratio.
+    """Return the unit that a text names: ``rad.s-1``, ``N·m``, ``mm/s²``, ``tr/min``; ``1`` is a ratio.
 
     A product may be written ``. · * × -`` or a space, a power ``^2 ² 2``, a quotient ``/`` or ``per``. Case matters, save in
     ``RPM`` and the like. A quotient binds from left to right, ``mm/s/mm`` is ``(mm/s)/mm``.
@@ -431,7 +431,7 @@ def _scale(source: Unit, target: Unit) -> tuple[Fraction, int]:
 
 
 def convert(value: Any, from_unit: str | Unit, to_unit: str | Unit) -> Any:
-    """A value, or an array of values, in another unit of the same dimension.
+    """Return a value, or an array of values, in another unit of the same dimension.
 
     A temperature is one in another scale, from its own zero. A power of ten costs one rounding at most. A unit without angle, where the other has one, is in radians.
 
@@ -458,7 +458,7 @@ def convert(value: Any, from_unit: str | Unit, to_unit: str | Unit) -> Any:
 
 
 def _on_scale(value: Any, source: Unit, target: Unit) -> Any:
-    """A temperature on another scale; exact where the value is."""
+    """Return a temperature on another scale; exact where the value is."""
     assert source.zero is not None
     assert target.zero is not None
     ratio, shift = source.ratio / target.ratio, (source.zero - target.zero) / target.ratio
@@ -468,7 +468,7 @@ def _on_scale(value: Any, source: Unit, target: Unit) -> Any:
 
 
 def describe(unit: Unit) -> str:
-    """A unit's dimension in words: ``length/time^2``."""
+    """Return a unit's dimension in words: ``length/time^2``."""
     pairs = list(zip(DIMENSIONS, unit.dimension, strict=True))
     above = [n if p == 1 else f"{n}^{p}" for n, p in pairs if p > 0]
     below = [n if p == -1 else f"{n}^{-p}" for n, p in pairs if p < 0]

@@ -34,7 +34,7 @@ class Unreadable(CourseworkError, ValueError):
 
 
 def _atan2(y: Value, x: Value) -> Value:
-    """The angle of a point of the plane; there is none for complex coordinates."""
+    """Return the angle of a point of the plane; there is none for complex coordinates."""
     if np.iscomplexobj(y) or np.iscomplexobj(x):
         return np.real(y + x) * math.nan
     return np.arctan2(y, x)
@@ -95,7 +95,7 @@ class Vocabulary:
         }
 
     def variable(self, run: str) -> str | None:
-        """The variable of a spelling: its own, that of a rate by its dots, ``theta2_dot`` for ``omega2``, or in other capitals."""
+        """Return the variable of a spelling: its own, that of a rate by its dots, ``theta2_dot`` for ``omega2``, or in other capitals."""
         key = _key(run)
         if (name := self.variables.get(key)) is not None:
             return name
@@ -122,7 +122,7 @@ class Vocabulary:
         return ("degree", "deg") if low in _DEGREE_WORDS else None
 
     def first(self, run: str) -> tuple[int, str, str] | None:
-        """The first name of a run of letters such as ``r2cos``: its length, kind and canonical name."""
+        """Return the first name of a run of letters such as ``r2cos``: its length, kind and canonical name."""
         dead: set[int] = set()
 
         def fits(start: int) -> bool:

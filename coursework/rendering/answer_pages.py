@@ -54,7 +54,7 @@ def queries() -> dict[str, Callable[..., Any]]:
 
 
 def _mm(length: float | Box | Sequence[Any]) -> str:
-    """A length, a box or a point, or several of them, as Typst's numbers."""
+    """Return a length, a box or a point, or several of them, as Typst's numbers."""
     if isinstance(length, (int, float)):
         return f"{length:.3f}".rstrip("0").rstrip(".")
     if isinstance(length, Box):
@@ -63,7 +63,7 @@ def _mm(length: float | Box | Sequence[Any]) -> str:
 
 
 def _drawn_on(sheet: Handout) -> int:
-    """The answer page that holds the paper which an exercise is drawn on."""
+    """Return the answer page that holds the paper which an exercise is drawn on."""
     return next(
         page.number
         for page in sheet.answer_pages
@@ -79,7 +79,7 @@ def _span(boxes: Sequence[Box]) -> Box:
 
 
 def _cells(field: AnswerField) -> tuple[Box, ...]:
-    """The boxes of a row that are filled in one by one."""
+    """Return the boxes of a row that are filled in one by one."""
     signs = (field.sign, *field.digits, *field.decimals, field.power_sign, *field.power)
     return (*(box for box in signs if box), *(box for _, box in field.ticks))
 
@@ -90,7 +90,7 @@ def _ticked(field: AnswerField) -> Iterator[tuple[str, Box]]:
 
 
 def _captions(page: AnswerPage) -> Iterator[tuple[str, float, float, float]]:
-    """The words above the columns of a page's boxes: name, place and width."""
+    """Yield the words above the columns of a page's boxes: name, place and width."""
     rows = [field for field in page.fields if field.what == "number"]
     if page.captions is None:
         return

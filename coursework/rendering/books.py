@@ -26,7 +26,7 @@ _TALL = 78  #: mm that a drawing of a lesson takes at most
 
 
 def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apart: bool = False) -> str:
-    """The Typst source of a book; ``apart``: of its solutions alone."""
+    """Return the Typst source of a book; ``apart``: of its solutions alone."""
     env = pdf.environment_of(tuple(folders), book.lang)
     names = _of_book(book) | {"paper": paper, "apart": apart, "tall": _TALL}
     names |= {
@@ -83,7 +83,7 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
 
 
 def _with_kind(piece: Piece) -> dict[str, Any]:
-    """A piece with the word by which the templates tell it."""
+    """Return a piece with the word by which the templates tell it."""
     return {"kind": type(piece).__name__.removesuffix("Piece").lower(), "piece": piece}
 
 
@@ -102,7 +102,7 @@ class BookPage:
 def pages(
     folders: Sequence[Path], book: Book, paper: str = "a4", *, solutions: bool = True
 ) -> dict[str, Callable[[], str]]:
-    """The pages of a book by their files, each a function that makes it: contents, lessons, exercises, the index, and solutions
+    """Return the pages of a book by their files, each a function that makes it: contents, lessons, exercises, the index, and solutions
     where they are wanted. Each stands alone; those of exercises run the one script that keeps answers."""
     env = html.environment_of(tuple(folders), book.lang)
     book_pages = list(_pages(book))

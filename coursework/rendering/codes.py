@@ -14,7 +14,7 @@ CORRECTION = "Q"  #: a quarter of a code may be lost
 
 @lru_cache(maxsize=256)
 def qr_svg(text: str) -> str:
-    """A text as a QR code without its rim, an SVG of one unit a module.
+    """Return a text as a QR code without its rim, an SVG of one unit a module.
 
     Raises
     ------

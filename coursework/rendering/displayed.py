@@ -32,7 +32,7 @@ class DisplayedConstruction(Construction):
 
 @lru_cache(maxsize=16)
 def displayed_polygons(variant: Variant) -> tuple[DisplayedConstruction, ...]:
-    """The polygons that the solution of a variant states, drawn to scale.
+    """Return the polygons that the solution of a variant states, drawn to scale.
 
     Raises
     ------

@@ -29,7 +29,7 @@ def environment(
     filters: Mapping[str, Callable[..., str]],
     marks: Mapping[str, Any] | None = None,
 ) -> Environment:
-    """An environment for one back end and one language.
+    """Return an environment for one back end and one language.
 
     ``text`` escapes plain text. ``filters`` make text of the back end; the views' own filters
     (``points``, ``verdict``, ...) make plain text, escaped like any other. ``marks`` are what opens and

@@ -33,7 +33,7 @@ def context(
     *,
     numbered: bool = True,
 ) -> dict[str, object]:
-    """The names that the template of a feedback sheet sees, the body of its worked solution among them.
+    """Return the names that the template of a feedback sheet sees, the body of its worked solution among them.
 
     ``end`` is that of the templates' names, and ``write`` renders one; the rest is as for :func:`views.context`.
     """
@@ -59,7 +59,7 @@ class Meaning(NamedTuple):
 
 
 def kind_of(verdict: str) -> str:
-    """A verdict without what names its mistake; ``otherwise`` for one that no words are known of."""
+    """Return a verdict without what names its mistake; ``otherwise`` for one that no words are known of."""
     kind, _, name = verdict.partition(":")
     if kind == "slip" and name in (*KINDS, *TAKEN):
         kind = "usual"
@@ -67,7 +67,7 @@ def kind_of(verdict: str) -> str:
 
 
 def verdict_word(verdict: str, lang: str) -> str:
-    """A verdict in a student's words; what follows its colon names a mistake and is not shown."""
+    """Return a verdict in a student's words; what follows its colon names a mistake and is not shown."""
     return str(words(lang)["feedback"]["verdicts"][kind_of(verdict)])
 
 
@@ -148,7 +148,7 @@ def hint(line: FeedbackLine, lang: str, prefix: str = "") -> str:
 
 
 def right_answer(line: FeedbackLine) -> str:
-    """The right answer as Markdown, beside one that has not all its points."""
+    """Return the right answer as Markdown, beside one that has not all its points."""
     return line.right if line.points < line.out_of else ""
 
 
@@ -161,7 +161,7 @@ _SPELLED_ALIKE = str.maketrans({",": ".", "\N{MINUS SIGN}": "-"})
 
 
 def _plainly(text: str) -> str:
-    """A text without what differs by habit alone: spaces, the decimal sign, the sign of minus, brackets round it."""
+    """Return a text without what differs by habit alone: spaces, the decimal sign, the sign of minus, brackets round it."""
     return "".join(text.split()).translate(_SPELLED_ALIKE).strip("()")
 
 
@@ -186,7 +186,7 @@ _PIECE = re.compile(r"\$\$?[^$]*\$\$?|`[^`]*`|(?P<end>[.?!…](?=\s|\Z)|\n\s*\n)
 
 
 def question_heading(line: FeedbackLine) -> str:
-    """The first sentence of a question, Markdown; with its symbol where that is not in it."""
+    """Return the first sentence of a question, Markdown; with its symbol where that is not in it."""
     prompt, symbol, end = line.question.prompt.strip(), line.question.symbol, 0
     for piece in _PIECE.finditer(prompt):
         end = piece.end()

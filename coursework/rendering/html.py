@@ -25,7 +25,7 @@ from coursework.sheets.sheet import FeedbackSheet
 
 
 def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
-    """The whole page."""
+    """Return the whole page."""
     handout = views.handout_of(sheet)
     env = environment_of(tuple(folders), handout.lang)
     names = (
@@ -59,7 +59,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
 
 
 def _script(env: Environment, name: str) -> Markup:
-    """A script among the templates, as it stands in a page."""
+    """Return a script among the templates, as it stands in a page."""
     if env.loader is None:
         raise BadCourse(f"no template {name!r}")
     return Markup("\n" + env.loader.get_source(env, name)[0])
@@ -71,22 +71,22 @@ def script_digest(env: Environment, name: str) -> str:
 
 
 def construction(folders: Sequence[Path], drawn: Construction) -> str:
-    """A polygon as a piece of a page."""
+    """Return a polygon as a piece of a page."""
     names = {"polygons": (drawn,), "words": words(drawn.lang), "level": 2}
     return render(environment_of(tuple(folders), drawn.lang), "_polygons.html.j2", names)
 
 
 def _drawing(figure: Figure | Picture | Beginning, alt: str) -> str:
-    """The figure as an image inside the page, its letters as outlines: it looks the same everywhere."""
+    """Return the figure as an image inside the page, its letters as outlines: it looks the same everywhere."""
     return svg_image(figure.outlined_svg(), alt)
 
 
 def svg_image(svg: str, alt: str) -> str:
-    """A drawing as an image inside the page."""
+    """Return a drawing as an image inside the page."""
     data = base64.b64encode(svg.encode()).decode()
     return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}">'
 
 
 def _css_string(text: str) -> str:
-    """A text in a style sheet, each of its characters by number: none ends the string, or the style sheet."""
+    """Return a text in a style sheet, each of its characters by number: none ends the string, or the style sheet."""
     return '"' + "".join(f"\\{ord(char):06x}" for char in text) + '"'

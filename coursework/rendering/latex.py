@@ -32,7 +32,7 @@ BABEL = {"fr": "french", "en": "english"}
 def source(
     folders: Sequence[Path], sheet: views.Sheet, paper: str, figure_file: str, polygons_file: str
 ) -> str:
-    """The LaTeX source of one sheet; beside it are the PDF of its figure and that of its polygons."""
+    """Return the LaTeX source of one sheet; beside it are the PDF of its figure and that of its polygons."""
     lang = views.handout_of(sheet).lang
     names = {
         "paper": paper,
@@ -64,7 +64,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
 
 
 def _width(figure: Figure | Picture, room: float, tall: float) -> str:
-    """The width of a figure in mm: its own, for which it is laid out, or less where the room does not do."""
+    """Return the width of a figure in mm: its own, for which it is laid out, or less where the room does not do."""
     wide, high = figure.size_mm
     return f"{wide * min(1.0, room / wide, tall / high):.1f}"
 

@@ -20,7 +20,7 @@ from coursework.scenes.animation import Animation
 
 
 def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> str:
-    """The whole page, in the variant's language."""
+    """Return the whole page, in the variant's language."""
     variant = animation.variant
     names = {
         "lang": variant.lang,
@@ -34,7 +34,7 @@ def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> st
 
 
 def context(animation: Animation, *, is_described: bool = True) -> dict[str, Any]:
-    """The names that ``_motion_body.html.j2`` sees; the numbers beside the drawing only where they are to be ``is_described``."""
+    """Return the names that ``_motion_body.html.j2`` sees; the numbers beside the drawing only where they are to be ``is_described``."""
     variant = animation.variant
     lang = variant.lang
     drawing = animation.drawing(animation.available)
@@ -80,7 +80,7 @@ def _numbers(track: MotionTrack) -> dict[str, Any]:
 
 
 def _svg(tracks: Sequence[MotionTrack], size: tuple[float, float], first: int, animation: Animation) -> str:
-    """The first instant; what moves is numbered in order, and says what switches it on."""
+    """Return the first instant; what moves is numbered in order, and says what switches it on."""
     width, height = (f"{x:.6g}" for x in size)
     lines, moving = [], 0
     for track in tracks:

@@ -40,7 +40,7 @@ _FENCE = re.compile(
 
 
 def notebook(folders: Sequence[Path], handout: Handout, *, collected: bool = False) -> str:
-    """The notebook to hand in, as JSON text, valid nbformat 4.5; the same text for the same handout.
+    """Return the notebook to hand in, as JSON text, valid nbformat 4.5; the same text for the same handout.
 
     It holds the statement, the data and a cell for the answers: nothing in it checks them. One that a platform has
     ``collected`` asks for no name and is not sent back.
@@ -49,7 +49,7 @@ def notebook(folders: Sequence[Path], handout: Handout, *, collected: bool = Fal
 
 
 def study(folders: Sequence[Path], sheet: StudySheet) -> str:
-    """The self-study notebook, as JSON text, valid nbformat 4.5; the same text for the same sheet."""
+    """Return the self-study notebook, as JSON text, valid nbformat 4.5; the same text for the same sheet."""
     return _of_handout(folders, sheet.handout, "study.md.j2", {"study": sheet})
 
 
@@ -74,7 +74,7 @@ def _of_handout(folders: Sequence[Path], handout: Handout, template: str, more: 
 
 
 def paper(folders: Sequence[Path], handed: Paper, *, collected: bool = False) -> str:
-    """The notebook of a paper, as JSON text, valid nbformat 4.5: an answers cell an exercise, which says whose it is.
+    """Return the notebook of a paper, as JSON text, valid nbformat 4.5: an answers cell an exercise, which says whose it is.
     ``collected`` is as for :func:`notebook`."""
     env = _environment(tuple(folders), handed.heading.lang)
     more = ({"collected": True},) * len(handed.handouts) if collected else ()
@@ -115,7 +115,7 @@ def feedback(folders: Sequence[Path], feedback_sheet: FeedbackSheet | FeedbackPa
 
 
 def _exercise(sheet: Handout, body: str, number: int) -> list[dict[str, Any]]:
-    """The cells of an exercise of a paper."""
+    """Return the cells of an exercise of a paper."""
     cells = list(_cells(body, f"{number} {sheet.exercise} {sheet.version} {sheet.seed} {sheet.student}"))
     for cell in cells:
         _attach_figure(cell, sheet)
@@ -137,7 +137,7 @@ def lesson(
     install: str,
     pictures: Mapping[str, Mapping[str, str]],
 ) -> str:
-    """The notebook of a lesson: its Markdown as it is, its fences as code cells; before the first that imports the package, one that
+    """Return the notebook of a lesson: its Markdown as it is, its fences as code cells; before the first that imports the package, one that
     says how to install it where it is missing. ``pictures``, by name and type in base64, are attached to the cells that show them."""
     env = _environment(tuple(folders), lang)
     names = {"words": words(lang), "package": DISTRIBUTION, "install": install}
@@ -201,7 +201,7 @@ def _cell(identity: str, kind: str, tags: tuple[str, ...], source: str) -> dict[
 
 
 def _attach_figure(cell: dict[str, Any], sheet: Handout | AnswerSheet, before: str = "") -> None:
-    """The figures that a cell shows, by name: ``before`` it what tells those of several exercises apart."""
+    """Attach the figures that a cell shows, by name; ``before`` tells those of several exercises apart."""
     figures = {f"{before}{FIGURE}": views.figure_of(sheet)}
     figures |= {
         f"{before}{MORE.format(k)}": drawing

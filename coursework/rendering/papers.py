@@ -40,7 +40,7 @@ Body: TypeAlias = Callable[[str, Names], str]  #: renders a template with these 
 
 
 def sheets_of(paper: AnyPaper) -> tuple[views.Sheet, ...]:
-    """The sheets of its exercises, in order; right answers that are kept back are not in them."""
+    """Return the sheets of its exercises, in order; right answers that are kept back are not in them."""
     if isinstance(paper, Paper):
         return paper.handouts
     if isinstance(paper, FeedbackPaper) and not paper.answers:
@@ -59,7 +59,7 @@ def points_of(paper: AnyPaper) -> float:
 
 
 def context(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] = ()) -> dict[str, Any]:
-    """The names that a paper's template sees.
+    """Return the names that a paper's template sees.
 
     ``end`` is that of the templates' names, ``typ.j2``; ``files`` are names that each exercise's template sees besides.
     """
@@ -129,7 +129,7 @@ def _heading_of(paper: AnyPaper, number: int, title: str) -> str:
 
 
 def _start_mm(sheet: views.Sheet) -> int:
-    """The room that an exercise takes up to its first question: it begins where a page has so much left."""
+    """Return the room that an exercise takes up to its first question: it begins where a page has so much left."""
     if isinstance(sheet, FeedbackSheet):
         return 45
     handout, figure = views.handout_of(sheet), views.figure_of(sheet)
@@ -140,7 +140,7 @@ def _start_mm(sheet: views.Sheet) -> int:
 
 
 def title(paper: AnyPaper) -> str:
-    """The document's title: the paper's, and what it is when it is not the student's to fill in."""
+    """Return the document's title: the paper's, and what it is when it is not the student's to fill in."""
     heading, kind = paper.heading, _KINDS[type(paper)]
     return heading.title if kind == "sheet" else f"{heading.title} – {words(heading.lang)[kind]['title']}"
 
@@ -154,7 +154,7 @@ def variants(paper: AnyPaper) -> str:
 
 
 def _number(text: str, lang: str) -> str:
-    """A plain number as the language prints it; anything else as it is."""
+    """Return a plain number as the language prints it; anything else as it is."""
     return localise(text, lang) if re.fullmatch(r"-?\d+(\.\d+)?", text) else text
 
 
@@ -162,7 +162,7 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def logo_svg(logo: Logo) -> str:
-    """A logo as SVG: its own, or one that holds the pixels.
+    """Return a logo as SVG: its own, or one that holds the pixels.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def logo_svg(logo: Logo) -> str:
 
 @lru_cache(maxsize=8)
 def _harmless(svg: str) -> str:
-    """The same picture, as an exercise may bring it."""
+    """Return the same picture, as an exercise may bring it."""
     try:
         Picture(svg.encode()).size_mm  # noqa: B018  what cannot be shown is refused here
     except BadCourse as fault:
@@ -201,7 +201,7 @@ def _text(data: bytes) -> str:
 
 
 def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
-    """A paper as one web page that fetches nothing; that of a student to fill in runs the one script that keeps answers."""
+    """Return a paper as one web page that fetches nothing; that of a student to fill in runs the one script that keeps answers."""
     heading = paper.heading
     env = html.environment_of(tuple(folders), heading.lang)
     names = context(paper, "html.j2", partial(render, env))
@@ -222,7 +222,7 @@ def tex(
     figures: Sequence[str],
     polygons: Sequence[str] = (),
 ) -> str:
-    """The LaTeX source of a paper; beside it are the PDF of each exercise's figure and that of its polygons."""
+    """Return the LaTeX source of a paper; beside it are the PDF of each exercise's figure and that of its polygons."""
     env, lang = latex.environment_of(tuple(folders), paper.heading.lang), paper.heading.lang
     drawn = polygons or ["polygons.pdf"] * len(figures)
     files = [
@@ -237,7 +237,7 @@ def tex(
 
 
 def typst_source(folders: Sequence[Path], papers: Sequence[AnyPaper], size: str = "a4") -> str:
-    """The Typst source of one document that holds these papers, each from an odd page on."""
+    """Return the Typst source of one document that holds these papers, each from an odd page on."""
     contexts = []
     for paper in papers:
         env = pdf.environment_of(tuple(folders), paper.heading.lang)

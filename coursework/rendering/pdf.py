@@ -30,7 +30,7 @@ _FORGETTING = 40  #: documents, a third of a millisecond each
 
 
 def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = "a4") -> str:
-    """The Typst source of one document that holds these sheets, each from an odd page on.
+    """Return the Typst source of one document that holds these sheets, each from an odd page on.
 
     Feedback is read on a screen: its sheets follow one another without a blank page.
     """
@@ -51,7 +51,7 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
 
 
 def _context(folders: Sequence[Path], sheet: views.Sheet) -> dict[str, Any]:
-    """The names that a sheet's template sees."""
+    """Return the names that a sheet's template sees."""
     env = environment_of(tuple(folders), views.handout_of(sheet).lang)
     if isinstance(sheet, FeedbackSheet):
         return feedback.context(sheet, "typ.j2", partial(render, env))
@@ -65,18 +65,18 @@ def _context(folders: Sequence[Path], sheet: views.Sheet) -> dict[str, Any]:
 
 
 def fonts_of(folders: Sequence[Path]) -> tuple[str, ...]:
-    """The folders of fonts that a course brings, ``fonts`` in its templates: for letters that the typesetter's own fonts
+    """Return the folders of fonts that a course brings, ``fonts`` in its templates: for letters that the typesetter's own fonts
     lack. The system's fonts are never asked, so that a sheet is the same everywhere."""
     return tuple(str(folder / "fonts") for folder in folders if (folder / "fonts").is_dir())
 
 
 def drawn(typst_source: str, folders: Sequence[Path]) -> str:
-    """The source with a square for each character that no font at hand draws."""
+    """Return the source with a square for each character that no font at hand draws."""
     return markup.drawable(typst_source, partial(_has_glyph, fonts_of(folders)))
 
 
 def undrawn(text: str, folders: Sequence[Path]) -> list[str]:
-    """The characters of a text that no font at hand draws, each once."""
+    """Return the characters of a text that no font at hand draws, each once."""
     return markup.undrawn(text, partial(_has_glyph, fonts_of(folders)))
 
 
@@ -97,7 +97,7 @@ def _has_glyph(fonts: tuple[str, ...], char: str) -> bool:
 
 
 def _compiler(fonts: tuple[str, ...]) -> Any:
-    """A compiler serves one thread, and is kept: fonts are read once."""
+    """Return the compiler of this thread, which is kept since it reads the fonts once."""
     import typst
 
     compilers = _LOCAL.__dict__.setdefault("compilers", {})
@@ -111,7 +111,7 @@ _PIECE_START, _PIECE_END = "//(\n", "\n//)\n"
 
 
 def files(typst_source: str) -> dict[str, bytes]:
-    """A source cut into files: ``main.typ``, the definitions, and the pieces that main includes.
+    """Return a source cut into files: ``main.typ``, the definitions, and the pieces that main includes.
 
     What the typesetter remembers of a layout holds for one place in one file: of one file, nothing would be
     remembered below the first place where two sheets differ.
@@ -133,7 +133,7 @@ def files(typst_source: str) -> dict[str, bytes]:
 
 
 def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
-    """The tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source and fonts.
+    """Return the tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source and fonts.
 
     ``folders`` of templates bring fonts of their own; a character that no font draws is a square.
 
@@ -146,7 +146,7 @@ def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
 def compile_booklet(
     typst_source: str, folders: Sequence[Path] = ()
 ) -> tuple[bytes, tuple[tuple[int, int], ...]]:
-    """The PDF of a source of several sheets, and the first and last page of each.
+    """Return the PDF of a source of several sheets, and the first and last page of each.
 
     Raises BadStatement as :func:`compile_pdf` does.
     """
@@ -168,7 +168,7 @@ def compile_booklet(
 
 
 def _written(compiler: Any, sources: Mapping[str, bytes]) -> bytes:
-    """The tagged PDF that a compiler makes of files by name."""
+    """Return the tagged PDF that a compiler makes of files by name."""
     return compiler.compile(input=sources, format="pdf", pdf_standards=["a-2a", "ua-1"], timestamp=0)
 
 
@@ -202,7 +202,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
 
 
 def _drawing(figure: Figure | Picture | Beginning, alt: str, room: tuple[float, float] | None = None) -> str:
-    """The figure inside the source, which so stands alone: an SVG without letters, its size, and the letters; and by
+    """Return the figure inside the source, which so stands alone: an SVG without letters, its size, and the letters; and by
     how much it is made smaller for a room of so many mm that it was not laid out for."""
     width, height = figure.size_mm
     listed = json.dumps([_letters(letter, width) for letter in figure.letters()], ensure_ascii=False)
@@ -213,7 +213,7 @@ def _drawing(figure: Figure | Picture | Beginning, alt: str, room: tuple[float, 
 
 
 def _letters(label: Letters, width: float) -> tuple[object, ...]:
-    """A label for the typesetter, mm: the middle of its baseline from the middle of the upper edge, and its runs,
+    """Return a label for the typesetter, mm: the middle of its baseline from the middle of the upper edge, and its runs,
     each with its size, how far it stands below the baseline, and how far it goes back to where it starts."""
     runs = [
         (run.text, run.italic, *(round(x * SIZE, 2) for x in (run.size, -run.rise, run.back)))

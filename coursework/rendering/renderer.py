@@ -38,17 +38,17 @@ class Renderer:
         self.paper = paper
 
     def on(self, paper: str) -> Renderer:
-        """The same renderer for another paper."""
+        """Return the same renderer for another paper."""
         return Renderer(self.template_folders, paper)
 
     def typst(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
-        """The Typst source of a sheet; it stands alone."""
+        """Return the Typst source of a sheet; it stands alone."""
         from coursework.rendering import pdf
 
         return pdf.drawn(pdf.source(self.template_folders, [sheet], self.paper), self.template_folders)
 
     def pdf(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> bytes:
-        """A sheet as a tagged PDF."""
+        """Return a sheet as a tagged PDF."""
         return self.booklet_pdf([sheet])
 
     def booklet_pdf(self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]) -> bytes:
@@ -60,7 +60,7 @@ class Renderer:
     def booklet(
         self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]
     ) -> tuple[bytes, tuple[tuple[int, int], ...]]:
-        """The PDF of :meth:`booklet_pdf`, and the first and last page of each sheet in it, from 1 on."""
+        """Return the PDF of :meth:`booklet_pdf`, and the first and last page of each sheet in it, from 1 on."""
         from coursework.rendering import pdf
 
         return pdf.compile_booklet(
@@ -68,20 +68,20 @@ class Renderer:
         )
 
     def undrawn(self, text: str) -> list[str]:
-        """The characters of a text that no font of a PDF draws: they are printed as squares."""
+        """Return the characters of a text that no font of a PDF draws: they are printed as squares."""
         from coursework.rendering import pdf
 
         return pdf.undrawn(text, self.template_folders)
 
     def html(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
-        """A sheet as one web page that fetches nothing. A handout's runs one script, which keeps the answers typed in it
+        """Return a sheet as one web page that fetches nothing. A handout's runs one script, which keeps the answers typed in it
         and hands them in as a file; any other runs none."""
         from coursework.rendering import html
 
         return html.page(self.template_folders, sheet, self.paper)
 
     def tex(self, sheet: Handout | AnswerSheet, figure: str, polygons: str = "polygons.pdf") -> str:
-        """A sheet as LaTeX source for pdflatex.
+        """Return a sheet as LaTeX source for pdflatex.
 
         ``figure`` names the PDF file beside it that holds the figure of :meth:`figure_pdf`, if any, and
         ``polygons`` that of :meth:`polygons_pdf`.
@@ -91,7 +91,7 @@ class Renderer:
         return latex.source(self.template_folders, sheet, self.paper, figure, polygons)
 
     def figure_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
-        """The figure that a sheet shows, as a PDF of its own, several on a page each; nothing when it shows none."""
+        """Return the figure that a sheet shows, as a PDF of its own, several on a page each; nothing when it shows none."""
         from coursework.rendering import views
 
         figure, more = views.figure_of(sheet), [drawing for drawing, _ in views.more_figures(sheet)]
@@ -104,7 +104,7 @@ class Renderer:
         return pages([(drawing.svg(), drawing.size_mm[0]) for drawing in (figure, *more)])
 
     def polygons_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
-        """The drawings of a solution's polygons, one a page of its own size; nothing when it has none."""
+        """Return the drawings of a solution's polygons, one a page of its own size; nothing when it has none."""
         from coursework.rendering import views
 
         drawings = views.polygon_drawings(sheet)
@@ -115,7 +115,7 @@ class Renderer:
         return pages([(figure.svg(), figure.size_mm[0]) for figure in drawings])
 
     def paper_pdf(self, paper: AnyPaper) -> bytes:
-        """A paper, its solutions or its feedback as a tagged PDF."""
+        """Return a paper, its solutions or its feedback as a tagged PDF."""
         from coursework.rendering import papers, pdf
 
         return pdf.compile_pdf(
@@ -132,20 +132,20 @@ class Renderer:
         )
 
     def book_pdf(self, book: Book, *, apart: bool = False) -> bytes:
-        """A book as a tagged PDF with contents and index; ``apart``: its solutions alone."""
+        """Return a book as a tagged PDF with contents and index; ``apart``: its solutions alone."""
         from coursework.rendering import books, pdf
 
         source = books.typst_source(self.template_folders, book, self.paper, apart=apart)
         return pdf.compile_pdf(source, self.template_folders)
 
     def book_pages(self, book: Book, *, solutions: bool = True) -> Mapping[str, Callable[[], str]]:
-        """A book as pages by their files, each a function that makes it; they fetch nothing and lead to one another."""
+        """Return a book as pages by their files, each a function that makes it; they fetch nothing and lead to one another."""
         from coursework.rendering import books
 
         return books.pages(self.template_folders, book, self.paper, solutions=solutions)
 
     def paper_html(self, paper: AnyPaper) -> str:
-        """A paper, its solutions or its feedback as one web page that fetches nothing; the student's own runs the one
+        """Return a paper, its solutions or its feedback as one web page that fetches nothing; the student's own runs the one
         script that keeps answers."""
         from coursework.rendering import papers
 
@@ -154,7 +154,7 @@ class Renderer:
     def paper_tex(
         self, paper: Paper | SolutionPaper, figures: Sequence[str], polygons: Sequence[str] = ()
     ) -> str:
-        """A paper or its solutions as LaTeX source for pdflatex.
+        """Return a paper or its solutions as LaTeX source for pdflatex.
 
         ``figures`` names the PDF file of each exercise's figure, ``polygons`` that of its polygons.
         """
@@ -163,7 +163,7 @@ class Renderer:
         return papers.tex(self.template_folders, paper, self.paper, figures, polygons)
 
     def paper_notebook(self, paper: Paper, *, collected: bool = False) -> str:
-        """A paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that checks;
+        """Return a paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that checks;
         ``collected`` by a platform that knows whose it is."""
         from coursework.rendering import notebook
 
@@ -176,20 +176,20 @@ class Renderer:
         return notebook.feedback(self.template_folders, sheet)
 
     def construction_html(self, construction: Construction) -> str:
-        """A polygon, its equations, table and steps, as a piece of a web page."""
+        """Return a polygon, its equations, table and steps, as a piece of a web page."""
         from coursework.rendering import html
 
         return html.construction(self.template_folders, construction)
 
     def notebook(self, handout: Handout, *, collected: bool = False) -> str:
-        """A handout as a notebook to hand in (JSON, nbformat 4.5): nothing in it checks an answer; ``collected`` by a
+        """Return a handout as a notebook to hand in (JSON, nbformat 4.5): nothing in it checks an answer; ``collected`` by a
         platform that knows whose it is."""
         from coursework.rendering import notebook
 
         return notebook.notebook(self.template_folders, handout, collected=collected)
 
     def study(self, sheet: StudySheet) -> str:
-        """A self-study notebook (JSON, nbformat 4.5)."""
+        """Return a self-study notebook (JSON, nbformat 4.5)."""
         from coursework.rendering import notebook
 
         return notebook.study(self.template_folders, sheet)
@@ -197,20 +197,20 @@ class Renderer:
     def lesson(
         self, name: str, text: str, lang: str, install: str, pictures: Mapping[str, Mapping[str, str]]
     ) -> str:
-        """A lesson's Markdown as a notebook (JSON, nbformat 4.5); ``install`` is the command that installs what it runs,
+        """Return a lesson's Markdown as a notebook (JSON, nbformat 4.5); ``install`` is the command that installs what it runs,
         ``pictures`` are attached to the cells that show them."""
         from coursework.rendering import notebook
 
         return notebook.lesson(self.template_folders, name, text, lang, install, pictures)
 
     def report_html(self, report: ReportContent) -> str:
-        """A report as one web page that fetches nothing and runs no script."""
+        """Return a report as one web page that fetches nothing and runs no script."""
         from coursework.rendering import reports
 
         return reports.page(self.template_folders, report, self.paper)
 
     def report_pdf(self, report: ReportContent) -> bytes:
-        """A report as a tagged PDF."""
+        """Return a report as a tagged PDF."""
         from coursework.rendering import pdf, reports
 
         return pdf.compile_pdf(
@@ -218,25 +218,25 @@ class Renderer:
         )
 
     def motion_html(self, animation: Animation) -> str:
-        """A mechanism in motion as one web page that fetches nothing; its one script is in the page."""
+        """Return a mechanism in motion as one web page that fetches nothing; its one script is in the page."""
         from coursework.rendering import motion_page
 
         return motion_page.page(self.template_folders, animation, self.paper)
 
     def terminal(self, handout: Handout) -> str:
-        """A handout as plain text."""
+        """Return a handout as plain text."""
         from coursework.rendering import terminal
 
         return terminal.statement(handout)
 
 
 def renderer_of(folder: Folder) -> Renderer:
-    """Renders a course's sheets."""
+    """Return the renderer of a course's sheets."""
     return _renderer(folder.template_folders)
 
 
 def builtin_renderer() -> Renderer:
-    """Renders through the templates that the package brings."""
+    """Return a renderer with the templates of the package."""
     return _renderer((builtin_root() / "templates",))
 
 

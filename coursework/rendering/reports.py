@@ -17,13 +17,13 @@ from coursework.sheets.report import Chart, ReportContent
 
 
 def page(folders: Sequence[Path], report: ReportContent, paper: str = "a4") -> str:
-    """A web page that fetches nothing and runs no script."""
+    """Return a web page that fetches nothing and runs no script."""
     env = html.environment_of(tuple(folders), report.lang)
     return render(env, "report.html.j2", _names(report) | {"chart": _image, "paper": paper})
 
 
 def source(folders: Sequence[Path], report: ReportContent, paper: str = "a4") -> str:
-    """The Typst source; it stands alone."""
+    """Return the Typst source; it stands alone."""
     env = pdf.environment_of(tuple(folders), report.lang)
     body = Markup(render(env, "report.typ.j2", _names(report) | {"chart": _drawn}))
     return render(env, "_page.typ.j2", _names(report) | {"bodies": [body], "paper": paper})

@@ -14,7 +14,7 @@ WIDTH = 88
 
 
 def statement(handout: Handout) -> str:
-    """The statement, the given data and the questions as lines of at most 88 characters."""
+    """Return the statement, the given data and the questions as lines of at most 88 characters."""
     lang = handout.lang
     sheet_words = words(lang)["sheet"]
     code = views.variant_code(handout)

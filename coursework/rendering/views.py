@@ -59,7 +59,7 @@ def handout_of(sheet: Sheet) -> Handout:
 
 
 def context(sheet: Sheet, index: int = 0, *, numbered: bool = True) -> dict[str, object]:
-    """The names that a page's template sees; ``index`` is that of the exercise in a paper, 0 where it stands alone, and
+    """Return the names that a page's template sees; ``index`` is that of the exercise in a paper, 0 where it stands alone, and
     its questions have it before their numbers where they are ``numbered``."""
     handout = handout_of(sheet)
     prefix = f"{index}." if index and numbered else ""
@@ -96,13 +96,13 @@ def variant_code(handout: Handout) -> str:
 
 
 def figure_of(sheet: Sheet) -> Figure | Picture | None:
-    """The figure a sheet shows, laid out for its room: a solution's own, else the handout's."""
+    """Return the figure a sheet shows, laid out for its room: a solution's own, else the handout's."""
     figure = _figure_of(sheet)
     return figure and figure.fitted(*room(sheet))
 
 
 def more_figures(sheet: Sheet) -> tuple[tuple[Figure | Picture, str], ...]:
-    """The figures besides the first, laid out for the width of a page, each with what it shows."""
+    """Return the figures besides the first, laid out for the width of a page, each with what it shows."""
     return tuple((figure.fitted(*ROOM_ALONE), alt) for figure, alt in handout_of(sheet).more_figures)
 
 
@@ -146,7 +146,7 @@ def _data_width(handout: Handout) -> str:
 
 
 def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
-    """The drawings of a solution's polygons in the order in which it shows them: steps, then the whole."""
+    """Return the drawings of a solution's polygons in the order in which it shows them: steps, then the whole."""
     stated = sheet.polygons if isinstance(sheet, AnswerSheet) else ()
     drawings: list[Figure | Beginning] = []
     for polygon in stated:
@@ -155,7 +155,7 @@ def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
 
 
 def title(sheet: Sheet) -> str:
-    """The document's title: the exercise's, and what this sheet is when it is not the student's."""
+    """Return the document's title: the exercise's, and what this sheet is when it is not the student's."""
     handout = handout_of(sheet)
     kind = TEMPLATES[type(sheet)]
     return handout.title if kind == "sheet" else f"{handout.title} – {words(handout.lang)[kind]['title']}"
@@ -173,7 +173,7 @@ def points_number(points: float, lang: str) -> str:
 
 
 def renumbered(text: str, lang: str, prefix: str) -> str:
-    """The questions that a sentence names by their numbers, with what stands before these in a paper."""
+    """Return the questions that a sentence names by their numbers, with what stands before these in a paper."""
     if not prefix:
         return text
     noun, marking = words(lang)["sheet"]["question"], words(lang)["marking"]
@@ -187,7 +187,7 @@ def given_formula(given: GivenValue) -> str:
 
 
 def given_words(given: GivenValue, lang: str) -> str:
-    """A given case as Markdown: ``Mode : ouvert`` where its symbol is a word, ``$B$ : à gauche`` else."""
+    """Return a given case as Markdown: ``Mode : ouvert`` where its symbol is a word, ``$B$ : à gauche`` else."""
     word = re.fullmatch(r"\\(?:text|mathrm)\{([^{}]+)\}", given.symbol)
     name = word[1].capitalize() if word else f"${given.symbol}$"
     return f"{name}{words(lang)['sheet']['colon']} {given.value}"
@@ -198,7 +198,7 @@ def value_formula(given: GivenValue) -> str:
 
 
 def tolerances(questions: Sequence[Question], lang: str, prefix: str = "") -> tuple[tuple[str, str], ...]:
-    """The margins in words, each with the questions it holds for; none named when all share one.
+    """Return the margins in words, each with the questions it holds for; none named when all share one.
 
     ``prefix`` stands before the number of a question: ``2.`` in the second exercise of a paper.
     """
@@ -248,7 +248,7 @@ def worked(solution: AnswerSheet, lang: str, prefix: str = "") -> tuple[tuple[An
 
 
 def _below(question: Question, step: Step, lang: str, prefix: str) -> Step:
-    """A step as it stands below its question, whose number it need not say."""
+    """Return a step as it stands below its question, whose number it need not say."""
     heading = rf"\*{words(lang)['sheet']['question']['one']} {question.number}\.\*\s*"
     text = re.sub(rf"^{heading}", "", step.words, flags=re.IGNORECASE)
     return replace(step, words=renumbered(text, lang, prefix))
@@ -317,7 +317,7 @@ _LINE = 85  #: characters of a formula written out that a printed line holds
 
 @lru_cache(maxsize=256)
 def _broken(member: str) -> tuple[str, ...]:
-    """A member of a chain as lines of an aligned formula, cut before its signs where it is too wide."""
+    """Return a member of a chain as lines of an aligned formula, cut before its signs where it is too wide."""
     terms = _terms(member)
     width = len(to_line(member, "en"))
     count = min(len(terms), -(-width // _LINE))
@@ -330,7 +330,7 @@ def _broken(member: str) -> tuple[str, ...]:
 
 
 def _terms(latex: str) -> list[str]:
-    """The terms of a sum, each with the sign before it; what brackets hold is one with its term."""
+    """Return the terms of a sum, each with the sign before it; what brackets hold is one with its term."""
     terms, depth, before = [""], 0, ""
     for token in tokens(latex):
         depth += (token in ("{", "(", r"\left")) - (token in ("}", ")", r"\right"))
@@ -381,7 +381,7 @@ POLYGON_MM = {"name": 24, "direction": 22, "length": 59, "segment": 31, "paper":
 
 
 def summary_row(answer: Answer, lang: str) -> str:
-    """The height of a row of a solution's summary."""
+    """Return the height of a row of a solution's summary."""
     question, wide = answer.question, SUMMARY_MM
     named = f"${question.symbol}$" if question.symbol else quantity_words(question, lang)
     margin = margin_words(answer, lang)
@@ -389,13 +389,13 @@ def summary_row(answer: Answer, lang: str) -> str:
 
 
 def polygon_row(row: SideRow, lang: str) -> str:
-    """The height of a row of a polygon's table."""
+    """Return the height of a row of a polygon's table."""
     cells = {name: getattr(row, name) for name in ("name", "direction", "length", "segment")}
     return _row(lang, *((f"${tex}$", POLYGON_MM[name]) for name, tex in cells.items() if tex))
 
 
 def _row(lang: str, *cells: tuple[str, float]) -> str:
-    """The height of a row of cells, each of Markdown and so many mm wide: where all are surely on one line it is
+    """Return the height of a row of cells, each of Markdown and so many mm wide: where all are surely on one line it is
     told, since the typesetter would set the row twice to find it."""
     if not all(_is_low(text) and _surely_fits(text, wide, lang) for text, wide in cells):
         return "auto"
@@ -426,7 +426,7 @@ def _surely_fits(markdown: str, wide: float, lang: str) -> bool:
 
 
 def offered(question: Question) -> tuple[tuple[str, str], ...]:
-    """The choices as a sheet prints them: letter and label; the letter is empty on a sheet issued without."""
+    """Return the choices as a sheet prints them: letter and label; the letter is empty on a sheet issued without."""
     letters = question.letters or ("",) * len(question.choices)
     return tuple((letter, label) for letter, (_, label) in zip(letters, question.choices, strict=True))
 
@@ -449,12 +449,12 @@ def columns(question: Question, lang: str) -> int:
 
 
 def column_of(question: Question, lang: str) -> str:
-    """The share of a line that a column of choices takes."""
+    """Return the share of a line that a column of choices takes."""
     return f"{0.97 / columns(question, lang):.2f}"
 
 
 def python_name(name: str) -> str:
-    """A quantity's public name as a Python variable: the same, unless Python keeps the word for itself."""
+    """Return a quantity's public name as a Python variable: the same, unless Python keeps the word for itself."""
     return name + "_" if keyword.iskeyword(name) else name
 
 

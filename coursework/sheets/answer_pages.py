@@ -152,7 +152,7 @@ class AnswerPage:
 def paper_code(
     assignment: str, student: str, sitting: int, records: Sequence[Mapping[str, Any]], paper: str = "a4"
 ) -> str:
-    """The code of a paper, of 13 letters and digits: the same from ``issued.json`` as when it was built.
+    """Return the code of a paper, of 13 letters and digits: the same from ``issued.json`` as when it was built.
 
     ``assignment`` is its name, empty where exercises are handed out by themselves; ``records`` are the paper's. The code
     tells nothing of who and what, and is another on another size of paper.
@@ -170,7 +170,7 @@ def code_text(code: str, number: int, pages: int) -> str:
 def answer_pages(
     variants: Sequence[Answerable], lang: str = "en", paper: str = "a4", code: str = ""
 ) -> tuple[AnswerPage, ...]:
-    """The answer pages of one paper, whose exercises are these variants in order.
+    """Return the answer pages of one paper, whose exercises are these variants in order.
 
     ``lang`` is that of the units that are printed; it moves nothing. ``code`` is the paper's: :func:`paper_code`.
 
@@ -275,7 +275,7 @@ def _row_of_boxes(blank: AnswerField, width: float, has_decimals: bool) -> Answe
 
 
 def _row_box(width: float, height: float) -> Box:
-    """A row as wide as the page's content, a little less high than its room: neighbours do not touch."""
+    """Return a row as wide as the page's content, a little less high than its room: neighbours do not touch."""
     return Box(LEFT, 0.25, width - 2 * LEFT, height - 0.5)
 
 
@@ -343,7 +343,7 @@ class _Page:
     captions: float | None = None  #: their height on the page, once they stand
 
     def strip(self, row: AnswerField) -> float:
-        """The room for captions that a row still needs above it."""
+        """Return the room for captions that a row still needs above it."""
         return _CAPTIONS if row.what == "number" and self.captions is None else 0.0
 
     def put(self, row: AnswerField, height: float) -> None:
@@ -364,11 +364,11 @@ class _PageLayout:
         self._waiting: int | None = None  #: the exercise whose heading stands before the next row
 
     def head(self, index: int) -> None:
-        """The heading of an exercise, which stands with its first row."""
+        """Add the heading of an exercise, which stands with its first row."""
         self._waiting = index
 
     def add(self, block: _Block) -> None:
-        """A block on this page, or on the next where it does not fit; a long one is cut between rows."""
+        """Add a block to this page, or to the next where it does not fit; a long one is cut between rows."""
         above = 0.0 if self._waiting is None else _HEAD
         (first, height), room = block.rows[0], self._end - _TOP - above - _CAPTIONS
         if len(block.rows) == 1 and height > room:
@@ -437,7 +437,7 @@ class _PageLayout:
 
 
 def _lowered(row: AnswerField, by: float) -> AnswerField:
-    """A row, and all its boxes, farther down the page."""
+    """Return a row, and all its boxes, farther down the page."""
 
     def one(box: Box | None) -> Box | None:
         return None if box is None else box.lower(by)

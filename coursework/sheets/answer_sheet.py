@@ -37,7 +37,7 @@ _SAME = 1e-9  #: of a value, by which two ways to compute it may differ
 
 
 def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) -> AnswerSheet:
-    """The handout with its answers and worked solution.
+    """Return the handout with its answers and worked solution.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
 
 
 def _models(variant: Variant, text: RenderedText) -> Iterator[Step]:
-    """The model answers of the questions that a person marks: sections of the solution's text."""
+    """Yield the model answers of the questions that a person marks: sections of the solution's text."""
     for part in variant.parts:
         if part.sort.is_open and (section := text.sections.get(part.id)) is not None:
             model = f"{question_called(variant, part)} {section.text}"
@@ -78,7 +78,7 @@ def _symbol(variant: Variant, name: str) -> str:
 
 
 def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step, ...]:
-    """The quantities that are not given, in order."""
+    """Return the quantities that are not given, in order."""
     units = variant.exercise.units
     named = {**values, **variant.existing(_named_besides(variant, values))}
     kinds = {n: kind_of(v, units.get(n, "1")) for n, v in named.items()}
@@ -139,7 +139,7 @@ def _step(
 
 
 def _remarks(variant: Variant, values: Mapping[str, Any], text: Any) -> dict[str, list[Remark]]:
-    """The known mistakes by the step that they stand at: the first of their targets that they change.
+    """Return the known mistakes by the step that they stand at: the first of their targets that they change.
 
     One that is about what is given stands at the first step that it changes. One that changes nothing in this
     variant is none, and is left out.
@@ -182,7 +182,7 @@ def _wrong_text(variant: Variant, name: str, wrong: Any) -> str:
 
 
 def _words_of(variant: Variant, name: str, value: Any, reason: str) -> str:
-    """The words of a step: which question it answers; of a choice, the case after its reason."""
+    """Return the words of a step: which question it answers; of a choice, the case after its reason."""
     number = next((n for n, p in enumerate(variant.parts, start=1) if p.quantity == name), 0)
     if not number:
         return reason
@@ -230,7 +230,7 @@ def _symbols(variant: Variant) -> dict[str, str]:
 
 
 def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
-    """The reference answer of a part, rounded for print, as Markdown; of one that a person marks, that it is so."""
+    """Return the reference answer of a part, rounded for print, as Markdown; of one that a person marks, that it is so."""
     if part.sort.is_open:
         return engine_words(variant.lang)["solution"]["by_hand"]
     value = values[part.quantity]

@@ -23,7 +23,7 @@ def solution_figure(variant: Variant) -> Figure | None:
 
 
 def _quantities(variant: Variant, function: Any) -> dict[str, Any]:
-    """The quantities of a variant's solution, and those besides that a function of the solution needs."""
+    """Return the quantities of a variant's solution, and those besides that a function of the solution needs."""
     values = dict(variant.walk)
     more = tuple(n for n in graph_of(function).node(function.__name__).arguments if n not in values)
     return {**values, **variant.quantities(more)}
@@ -31,7 +31,7 @@ def _quantities(variant: Variant, function: Any) -> dict[str, Any]:
 
 @lru_cache(maxsize=16)  # a variant is rendered in every format before the next
 def stated_polygons(variant: Variant) -> tuple[Construction, ...]:
-    """The polygons that the solution states, less those in which nothing moves.
+    """Return the polygons that the solution states, less those in which nothing moves.
 
     Raises
     ------

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def needs(variant: Variant, quantity: str) -> tuple[str, ...]:
-    """The quantities that a quantity's textbook formula takes, hidden ones seen through."""
+    """Return the quantities that a quantity's textbook formula takes, hidden ones seen through."""
     graph = variant.exercise.solution.graph
     names: dict[str, None] = {}
 
@@ -78,5 +78,5 @@ def _question_words(variant: Variant, name: str, question: str) -> str:
 
 
 def _symbol(variant: Variant, name: str) -> str:
-    """A quantity's symbol as Markdown."""
+    """Return a quantity's symbol as Markdown."""
     return f"${variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)}$"

@@ -126,7 +126,7 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
 
 
 def tolerance_words(part: Part, lang: str) -> str:
-    """The accepted margin as a student reads it; empty for what is judged exactly."""
+    """Return the accepted margin as a student reads it; empty for what is judged exactly."""
     if part.is_exact or not (part.atol or part.rtol):
         return ""
     table = engine_words(lang)["accepted"]

@@ -42,7 +42,7 @@ def placed_points(variant: Variant) -> dict[str, np.ndarray]:
 def _moved(
     values: dict[str, np.ndarray], drawings: list[list[str]], width: float, height: float
 ) -> dict[str, np.ndarray]:
-    """The points of drawings, one below the other in a box."""
+    """Return the points of drawings, one below the other in a box."""
     moved: dict[str, np.ndarray] = {}
     share = height / max(len(drawings), 1)
     for index, points in enumerate(reversed(drawings)):

@@ -12,7 +12,7 @@ def stiffnesses_differ(k1, k2):
 
 
 def _spring(start, end, coils=6, width=6.0):
-    """A zigzag between two straight ends."""
+    """Return a zigzag between two straight ends."""
     lead = (end - start) / 6
     run = (end - start - 2 * lead) / (4 * coils)
     turns = [start + lead + run * (2 * k + 1) + 1j * width * (-1) ** k for k in range(2 * coils)]
