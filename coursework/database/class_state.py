@@ -43,6 +43,7 @@ from coursework.gradebook.waiting import (
 )
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import namesakes
+from coursework.messages import localised
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,11 @@ class UnplacedRow:
     def waits(self) -> bool:
         """Return True if a person must still look at the row."""
         return self.became is None
+
+    @property
+    def reason(self) -> str:
+        """Reason of the rejection, in the language of the current messages."""
+        return localised(self.row.reason)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from coursework.database.class_state import ClassState
 from coursework.database.instructor_queries import Stamp, students_since
 from coursework.database.permissions import Permission
 from coursework.gradebook.book import Result
@@ -16,7 +17,7 @@ from coursework.issuing.students import folded
 from coursework.language.numbers import localise
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_cache import CachedClass, assignment_of, class_now, class_page_of
+from coursework.site.desk.class_cache import assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import sign_of
 from coursework.site.frame.requests import Request, Response, Route
 
@@ -59,7 +60,7 @@ class ClassRow:
         return -(-self.late // 60)
 
 
-def rows(now: CachedClass) -> list[ClassRow]:
+def rows(now: ClassState) -> list[ClassRow]:
     """Return a row for every student of the class, in the order of the roster."""
     counted: dict[str, dict[tuple[str, str], Cell]] = {}
     for sheet, graded in now.graded.items():
@@ -71,7 +72,7 @@ def rows(now: CachedClass) -> list[ClassRow]:
     ]
 
 
-def _cells(now: CachedClass, machine: Graded, graded: Graded) -> dict[tuple[str, str], Cell]:
+def _cells(now: ClassState, machine: Graded, graded: Graded) -> dict[tuple[str, str], Cell]:
     return {
         (graded.exercise, part): Cell(
             sign_of(mark), mark.points, mark.verdict, _by_hand(machine.lines[part], mark)
@@ -85,12 +86,12 @@ def _by_hand(before: Mark, now: Mark) -> bool:
 
 
 def _row(
-    now: CachedClass, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
+    now: ClassState, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
 ) -> ClassRow:
     columns = own_columns(now.issued, student)
     titles = (now.issued.assignment or {}).get("identity") or ()
     identity = " ".join(filter(None, (columns.get(folded(str(title)), "") for title in titles)))
-    submitted = now.received.get(student)
+    submitted = now.site_submissions.get(student)
     tries = (
         submitted.attempts
         if submitted
@@ -166,7 +167,7 @@ def _matches(row: ClassRow, sought: str) -> bool:
     return folded(sought) in folded(f"{row.student} {row.identity}") if sought else True
 
 
-def _sorting(now: CachedClass, sort: str) -> Callable[[ClassRow], Any]:
+def _sorting(now: ClassState, sort: str) -> Callable[[ClassRow], Any]:
     """Return the sort key of an order; students without a value are last."""
     by: dict[str, Callable[[ClassRow], Any]] = {
         "name": lambda row: folded(row.student),
@@ -181,7 +182,7 @@ def _sorting(now: CachedClass, sort: str) -> Callable[[ClassRow], Any]:
     return by.get(sort, lambda row: row.order)
 
 
-def _means(now: CachedClass, table_rows: Sequence[ClassRow]) -> list[str]:
+def _means(now: ClassState, table_rows: Sequence[ClassRow]) -> list[str]:
     """Return the mean of each question over the students who submitted, in percent of its points."""
     most: dict[tuple[str, str], float] = {}
     for (name, _), record in now.issued.records.items():

@@ -13,6 +13,7 @@ from typing import Any
 
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.audit import note
+from coursework.database.class_state import ClassState
 from coursework.database.instructor_queries import decisions_of
 from coursework.database.marking import mark_submission
 from coursework.database.permissions import Permission
@@ -30,7 +31,7 @@ from coursework.gradebook.submissions import find, read_file
 from coursework.issuing.issued import COLUMNS
 from coursework.issuing.roster import roster_and_notes
 from coursework.messages import Message, as_message, localised
-from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
@@ -241,23 +242,23 @@ def _spreadsheet(request: Request) -> Spreadsheet:
     return SPREADSHEETS.get(decimal, SPREADSHEETS["point"])
 
 
-def _marks(request: Request, now: CachedClass) -> bytes:
+def _marks(request: Request, now: ClassState) -> bytes:
     submitted = any(graded.submitted for graded in now.graded.values())
     rows = (row for graded in now.graded.values() for row in marks_rows(graded))
     return csv_file(rows, marks_columns(now.issued, submitted=submitted), _spreadsheet(request))
 
 
-def _summary(request: Request, now: CachedClass) -> bytes:
+def _summary(request: Request, now: ClassState) -> bytes:
     return csv_file(
         summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)), _spreadsheet(request)
     )
 
 
-def _rejected(request: Request, now: CachedClass) -> bytes:
+def _rejected(request: Request, now: ClassState) -> bytes:
     return csv_file(rejected_rows(now.book.rejected), REJECTED_COLUMNS, _spreadsheet(request))
 
 
-def _decided(request: Request, now: CachedClass) -> bytes:
+def _decided(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
         decisions = decisions_of(connection, now.about.id)
     rows = (
@@ -270,14 +271,14 @@ def _decided(request: Request, now: CachedClass) -> bytes:
     )
 
 
-def _issued(request: Request, now: CachedClass) -> bytes:
+def _issued(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
         # The secret would reveal future papers, so only a publisher receives it.
         may_draw = request.user.may(Permission.ASSIGNMENTS_PUBLISH, now.about.id, "")
         return json_text(issued_content(connection, now.about.id, secret=may_draw)).encode()
 
 
-def _answers(request: Request, now: CachedClass) -> bytes:
+def _answers(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
         rows = [row for row in rows_of(connection, now.about.id) if isinstance(row, AnswerRow)]
     columns = (*COLUMNS, "sitting", "submitted", "source")
@@ -291,7 +292,7 @@ def _origin(row: AnswerRow) -> dict[str, str]:
     return {"sitting": str(row.origin.sitting or ""), "submitted": row.origin.submitted}
 
 
-def _submissions(request: Request, now: CachedClass) -> bytes:
+def _submissions(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
         rows = [
             {**submission._asdict(), "came": submission.received_at}
@@ -301,7 +302,7 @@ def _submissions(request: Request, now: CachedClass) -> bytes:
 
 
 #: Makers of the tables, by file name.
-_TABLES: Mapping[str, Callable[[Request, CachedClass], bytes]] = {
+_TABLES: Mapping[str, Callable[[Request, ClassState], bytes]] = {
     "marks.csv": _marks,
     "summary.csv": _summary,
     "rejected.csv": _rejected,
@@ -357,7 +358,7 @@ def feedback(request: Request) -> Response:
     )
 
 
-def _book_of_student(now: CachedClass, student: str) -> Any:
+def _book_of_student(now: ClassState, student: str) -> Any:
     """Return the current gradebook, set to write the feedback of one student alone."""
     from copy import copy
 

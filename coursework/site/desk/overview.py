@@ -8,11 +8,12 @@ from pathlib import PurePath
 
 from coursework.database.assignments import put_issued
 from coursework.database.audit import note
+from coursework.database.class_state import ClassState
 from coursework.database.instructor_queries import listed_assignments
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput, CourseworkError
 from coursework.issuing.issued import Issued
-from coursework.site.desk.class_cache import CachedClass, assignment_of, assignment_title, by_whom, class_now
+from coursework.site.desk.class_cache import assignment_of, assignment_title, by_whom, class_now
 from coursework.site.desk.question_cards import moment, question_card
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.clock import Leap, last_leap
@@ -73,7 +74,7 @@ def _tile(request: Request, number: int) -> Tile:
         return Tile(number, assignment_title(about, request.lang), about.name, 0, 0, 0, "", False, str(fault))
 
 
-def _counted(request: Request, now: CachedClass) -> Tile:
+def _counted(request: Request, now: ClassState) -> Tile:
     about = now.about
     last = moment(about.last, request.lang) if about.last else ""
     return Tile(

@@ -7,12 +7,13 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
 from coursework.gradebook.waiting import written
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.renderer import renderer_of
-from coursework.site.desk.class_cache import CachedClass, assignment_of, class_now, class_page_of
+from coursework.site.desk.class_cache import assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import question_card, sign_of
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.statistics.captions import Names
@@ -24,7 +25,7 @@ _EXAMPLES = 8  #: students named with an answer
 _ANSWERS = 60  #: answers listed
 
 
-def statistics_of(now: CachedClass) -> Statistics:
+def statistics_of(now: ClassState) -> Statistics:
     """Return the current statistics of the class."""
     marks = marks_of_class(now.graded.values(), now.results, len(now.book.rejected))
     return measure(marks, sheet_order(now.course, now.issued.exercises))
@@ -107,7 +108,7 @@ def question(request: Request) -> Response:
     )  # fmt: skip
 
 
-def _answers(request: Request, now: CachedClass, exercise: str, part: str) -> list[DistinctAnswer]:
+def _answers(request: Request, now: ClassState, exercise: str, part: str) -> list[DistinctAnswer]:
     by_text: dict[tuple[str, str], list[tuple[str, Mark]]] = {}
     for graded in now.graded.values():
         mark = graded.lines.get(part) if graded.exercise == exercise else None

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from coursework.database.audit import note
+from coursework.database.class_state import ClassState, OpenGroup, UnplacedRow
 from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, DecidedAnswer, decide
 from coursework.database.instructor_queries import (
     NumberedDecision,
@@ -22,15 +23,7 @@ from coursework.errors import BadInput
 from coursework.gradebook.accepted import points_of
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
 from coursework.language.numbers import localise, significant
-from coursework.site.desk.class_cache import (
-    CachedClass,
-    RejectedRow,
-    WaitingGroup,
-    assignment_of,
-    by_whom,
-    class_now,
-    class_page_of,
-)
+from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import QuestionCard, decided_words, question_card, raw_texts, steps
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 
@@ -75,10 +68,10 @@ class QueueItem:
     part: str
     count: int
     group: AnswerGroup | None = None
-    row: RejectedRow | None = None
+    row: UnplacedRow | None = None
 
 
-def items(now: CachedClass, filters: Filters) -> list[QueueItem]:
+def items(now: ClassState, filters: Filters) -> list[QueueItem]:
     """Return the waiting cards that the filters select, in order."""
     cards = [
         QueueItem(
@@ -130,7 +123,7 @@ class QueueCard:
         return tuple((piece[1], piece[2]) for piece in matches if piece)
 
 
-def card_of(request: Request, now: CachedClass, item: QueueItem) -> QueueCard:
+def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:
     """Return the card of a group, decided or not."""
     assert item.group is not None
     group = item.group
@@ -146,7 +139,7 @@ def card_of(request: Request, now: CachedClass, item: QueueItem) -> QueueCard:
     )  # fmt: skip
 
 
-def _alike(now: CachedClass, group: AnswerGroup) -> list[WaitingGroup]:
+def _alike(now: ClassState, group: AnswerGroup) -> list[OpenGroup]:
     """Return the groups of other questions that wait because of the same unreadable text."""
     if group.why != "unreadable":
         return []
@@ -203,11 +196,11 @@ def watch(request: Request) -> Response:
     return request.render("_desk_told", told=message)
 
 
-def _around(now: CachedClass, filters: Filters) -> list[QueueItem]:
+def _around(now: ClassState, filters: Filters) -> list[QueueItem]:
     return items(now, filters)
 
 
-def _after(before: Sequence[str], name: str, now: CachedClass, filters: Filters) -> str:
+def _after(before: Sequence[str], name: str, now: ClassState, filters: Filters) -> str:
     """Return the card after another in the previous order; the same card if some of its answers still wait."""
     left = {candidate.id for candidate in items(now, filters)}
     if name in before:
@@ -217,7 +210,7 @@ def _after(before: Sequence[str], name: str, now: CachedClass, filters: Filters)
 
 
 def card_response(
-    request: Request, now: CachedClass, filters: Filters, at: str, message: str = ""
+    request: Request, now: ClassState, filters: Filters, at: str, message: str = ""
 ) -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
     waiting_items = items(now, filters)
@@ -252,7 +245,7 @@ def card_response(
     return class_page_of(request, now, "site_desk_queue", "queue", **names)
 
 
-def _closed(now: CachedClass, name: str) -> QueueItem | None:
+def _closed(now: ClassState, name: str) -> QueueItem | None:
     """Return a decided card, to be shown again."""
     group = next((candidate for candidate in now.groups if candidate.id == name), None)
     if group is None:
@@ -260,7 +253,7 @@ def _closed(now: CachedClass, name: str) -> QueueItem | None:
     return QueueItem(group.id, group.why, group.exercise, group.part, len(group.members), group)
 
 
-def _already_decided_message(request: Request, now: CachedClass, name: str) -> str:
+def _already_decided_message(request: Request, now: ClassState, name: str) -> str:
     item = _closed(now, name)
     if item is None or item.group is None:
         return str(request.words["queue"]["anew"])
@@ -271,26 +264,26 @@ def _already_decided_message(request: Request, now: CachedClass, name: str) -> s
     )
 
 
-def _counts(now: CachedClass) -> list[tuple[str, int]]:
+def _counts(now: ClassState) -> list[tuple[str, int]]:
     """Return the number of waiting cards, by reason."""
     counts = Counter(entry.why for entry in now.open.values())
     counts[REJECTED] = sum(entry.waits for entry in now.named)
     return [(why, counts[why]) for why in (*WHY, REJECTED) if counts[why]]
 
 
-def _done(now: CachedClass) -> int:
+def _done(now: ClassState) -> int:
     """Return the number of decided answers."""
     return sum(now.is_decided(answer) for group in now.groups for answer in group.members)
 
 
-def _can_undo(request: Request, now: CachedClass) -> bool:
+def _can_undo(request: Request, now: ClassState) -> bool:
     if not now.stamp.decisions[0]:
         return False
     with request.site.store.reading() as connection:
         return bool(undoable(connection, now.about.id, by_whom(request)))
 
 
-def _by_question(now: CachedClass, filters: Filters) -> list[tuple[str, str, str, int]]:
+def _by_question(now: ClassState, filters: Filters) -> list[tuple[str, str, str, int]]:
     """Return the questions with waiting cards: number, exercise, part, cards."""
     waiting_items = items(now, replace(filters, exercise="", part=""))
     counts = Counter(
@@ -304,7 +297,7 @@ def _by_question(now: CachedClass, filters: Filters) -> list[tuple[str, str, str
 # ------------------------------------------------------------------------ deciding
 
 
-def _decide(request: Request, now: CachedClass, group: AnswerGroup, asked_for: str) -> str:
+def _decide(request: Request, now: ClassState, group: AnswerGroup, asked_for: str) -> str:
     """Store the decision on the answers that nobody else has decided on meanwhile; return the message."""
     kind, points = _requested_decision(asked_for, request, group)
     members = list(_chosen(request, now, group))
@@ -350,7 +343,7 @@ def _key(answer: AnswerToReview) -> tuple[str, str, str, str]:
     return answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part
 
 
-def _chosen(request: Request, now: CachedClass, group: AnswerGroup) -> Sequence[AnswerToReview]:
+def _chosen(request: Request, now: ClassState, group: AnswerGroup) -> Sequence[AnswerToReview]:
     """Return the answers that a decision covers: all waiting ones with the same text, or the first alone; for
     a decided card, all of it."""
     waits = now.open[group.id].members if group.id in now.open else group.members
@@ -406,7 +399,7 @@ def _decided_meanwhile(
     return decisions
 
 
-def _undone(request: Request, now: CachedClass, filters: Filters) -> Response:
+def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
     """Withdraw the last decision and return its card."""
     texts = request.words["queue"]
     with request.site.store.begin() as connection:

@@ -9,12 +9,13 @@ from typing import Any, NamedTuple
 
 from coursework.course.course import Course
 from coursework.database.audit import note
+from coursework.database.class_state import ClassState
 from coursework.database.marking import Change, MarkedNow, mark_new, would_change
 from coursework.database.permissions import Permission
 from coursework.database.states import exercise_state
 from coursework.language.numbers import localise
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
 from coursework.site.frame.requests import Request, Response, Route
 from coursework.site.frame.settings import Site
 from coursework.system.tables import SPREADSHEETS, csv_file
@@ -56,7 +57,7 @@ def regrade(request: Request) -> Response:
     )  # fmt: skip
 
 
-def _current_course(site: Site, now: CachedClass) -> Course[Any]:
+def _current_course(site: Site, now: ClassState) -> Course[Any]:
     """Return the course with its current files; the open one if no issued exercise has changed."""
     course, fresh = site.course, site.reopened()
     same = fresh.folder.rules == course.folder.rules and all(
@@ -65,7 +66,7 @@ def _current_course(site: Site, now: CachedClass) -> Course[Any]:
     return course if same else fresh
 
 
-def _row(request: Request, now: CachedClass, change: Change) -> ChangeRow:
+def _row(request: Request, now: ClassState, change: Change) -> ChangeRow:
     before, after = (
         verdict_word(v, request.lang) if v else "" for v in (change.verdict_before, change.verdict_now)
     )
@@ -75,7 +76,7 @@ def _row(request: Request, now: CachedClass, change: Change) -> ChangeRow:
     return ChangeRow(change.student, number, change.answer, before, after, points_before, points_now, is_less)
 
 
-def _questions(request: Request, now: CachedClass, result: MarkedNow) -> list[tuple[str, int, int, str]]:
+def _questions(request: Request, now: ClassState, result: MarkedNow) -> list[tuple[str, int, int, str]]:
     """Return for each question its number, the number of marks that rise and fall, and the total change of
     points."""
     gains_by_question: dict[tuple[str, str], list[float]] = {}

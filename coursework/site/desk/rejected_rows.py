@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from coursework.database.audit import note
+from coursework.database.class_state import ClassState, UnplacedRow
 from coursework.database.instructor_queries import Placing, drop_placing, put_placing
 from coursework.database.marking import mark_submission
 from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission
 from coursework.errors import BadInput
 from coursework.gradebook.rows import AnswerRow, RowOrigin
-from coursework.site.desk.class_cache import CachedClass, RejectedRow, assignment_of, by_whom, class_now
+from coursework.site.desk.class_cache import assignment_of, by_whom, class_now
 from coursework.site.desk.files import files_page
 from coursework.site.desk.queue import Filters, card_response
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
@@ -33,7 +34,7 @@ def rejected(request: Request) -> Response:
     return files_page(request, [message])
 
 
-def _decided(request: Request, now: CachedClass, row: RejectedRow) -> str:
+def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
     """Apply the action of a form to a rejected row; return the message.
 
     Raises
@@ -93,7 +94,7 @@ def _decided(request: Request, now: CachedClass, row: RejectedRow) -> str:
     return str(texts["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
 
 
-def _answer(request: Request, now: CachedClass, row: RejectedRow) -> AnswerRow:
+def _answer(request: Request, now: ClassState, row: UnplacedRow) -> AnswerRow:
     """Return the answer that a person assigns to a rejected row."""
     texts, issued = request.words["files"], now.issued
     student = issued.student(request.form.text("student"))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from coursework.database.audit import note
+from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
 from coursework.database.scans import TypedRow, name_scanned, picture_scanned, put_typed
 from coursework.errors import BadInput
@@ -19,7 +20,7 @@ from coursework.scanning.queue import place_of_card
 from coursework.scanning.sources import ENDINGS
 from coursework.scanning.typed import NAME, PAGE
 from coursework.site.desk import scan_jobs
-from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.class_scans import ClassScans, class_scans, hand_over
 from coursework.site.desk.files import file_name
 from coursework.site.frame.budgets import DESK_FILES
@@ -60,7 +61,7 @@ def scans_page(request: Request, message: str = "") -> Response:
     )  # fmt: skip
 
 
-def _sent(request: Request, now: CachedClass) -> str:
+def _sent(request: Request, now: ClassState) -> str:
     """Start to read the uploaded files.
 
     Raises
@@ -86,7 +87,7 @@ def _by_names(sent: list[Upload]) -> dict[str, bytes]:
     return files
 
 
-def _absent(now: CachedClass, scans: ClassScans) -> list[str]:
+def _absent(now: ClassState, scans: ClassScans) -> list[str]:
     """Return the students with a paper of which no page was scanned."""
     met = set(scans.gathered.whose.values())
     return [student for student in now.issued.students if student not in met]
@@ -131,7 +132,7 @@ def _answer(request: Request, card: AnswerCard) -> str:
     return text
 
 
-def _typed(request: Request, now: CachedClass, scans: ClassScans, card: AnswerCard, answer: str) -> str:
+def _typed(request: Request, now: ClassState, scans: ClassScans, card: AnswerCard, answer: str) -> str:
     """Store the typed answer; return the message."""
     student, exercise, seed, part, coordinate = place_of_card(card)
     row = TypedRow(
@@ -162,7 +163,7 @@ def _numbers(scans: ClassScans, code: str) -> list[str]:
 
 
 def _card_response(
-    request: Request, now: CachedClass, scans: ClassScans, at: str, message: str = ""
+    request: Request, now: ClassState, scans: ClassScans, at: str, message: str = ""
 ) -> Response:
     """Return the requested card, or else the first; if there is none, a message."""
     cards = scans.cards
@@ -183,7 +184,7 @@ def _card_response(
     return class_page_of(request, now, "site_desk_scan_queue", "scans", **names)
 
 
-def _scan_card(request: Request, now: CachedClass, scans: ClassScans, card: AnswerCard) -> ScanCard:
+def _scan_card(request: Request, now: ClassState, scans: ClassScans, card: AnswerCard) -> ScanCard:
     texts = words(request.lang, "scan")["waits"]
     base = f"/desk/{now.about.id}/scans"
     pages = tuple(f"{base}/picture?page={name}" for name in card.pages)

@@ -13,6 +13,7 @@ from itertools import groupby
 from typing import Any
 
 from coursework.database.audit import note
+from coursework.database.class_state import ClassState
 from coursework.database.decisions import (
     ACCEPTED,
     GIVEN,
@@ -33,7 +34,7 @@ from coursework.gradebook.scale import mark_of
 from coursework.issuing.students import folded
 from coursework.language.numbers import localise
 from coursework.marking.mark import Mark
-from coursework.site.desk.class_cache import CachedClass, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import (
     QuestionCard,
     decided_words,
@@ -113,7 +114,7 @@ def student_page(request: Request) -> Response:
     )  # fmt: skip
 
 
-def _student(request: Request, now: CachedClass) -> str:
+def _student(request: Request, now: ClassState) -> str:
     query = request.form.text("name") if request.is_post else request.query_params.get("name", "")
     if query in now.results:
         return query
@@ -123,14 +124,14 @@ def _student(request: Request, now: CachedClass) -> str:
     return student
 
 
-def _columns(now: CachedClass, student: str) -> list[tuple[str, str]]:
+def _columns(now: ClassState, student: str) -> list[tuple[str, str]]:
     columns = own_columns(now.issued, student)
     titles = {folded(title): title for title in now.issued.columns.get(student, {})}
     return [(titles.get(key, key), value) for key, value in columns.items() if value]
 
 
 def _sheet(
-    request: Request, now: CachedClass, sheet_key: Any, happened: dict[tuple[str, str], list[HistoryEvent]]
+    request: Request, now: ClassState, sheet_key: Any, happened: dict[tuple[str, str], list[HistoryEvent]]
 ) -> StudentSheet:
     machine, graded = now.machine[sheet_key], now.graded[sheet_key]
     lines = [
@@ -143,7 +144,7 @@ def _sheet(
 
 def _line(
     request: Request,
-    now: CachedClass,
+    now: ClassState,
     machine: Graded,
     graded: Graded,
     part: str,
@@ -191,7 +192,7 @@ def _practised(request: Request, name: str, variants: int, last: datetime | None
     return PracticeSummary(exercise.title(lang), variants, moment(last, request.lang) if last else "")
 
 
-def _decided(request: Request, now: CachedClass, student: str) -> str:
+def _decided(request: Request, now: ClassState, student: str) -> str:
     """Decide on one answer, or withdraw the decision.
 
     Raises

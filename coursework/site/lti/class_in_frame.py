@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection, select
 
+from coursework.database.class_state import ClassState
 from coursework.database.instructor_queries import people_of
 from coursework.database.publication import CHARGE, Publication
 from coursework.database.tables import identity
@@ -14,7 +15,6 @@ from coursework.language.words import words
 from coursework.lti.host import LTIRequest
 from coursework.lti.storage import Waiting
 from coursework.site.desk import class_page
-from coursework.site.desk.class_cache import CachedClass
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import moment_text
 from coursework.site.lti.scores import assignment_state, marked_in, number_text
@@ -34,7 +34,7 @@ class LaunchClassRow(NamedTuple):
 
 
 def class_rows(
-    connection: Connection, site: Site, now: CachedClass, visit: LTIRequest, here: set[str]
+    connection: Connection, site: Site, now: ClassState, visit: LTIRequest, here: set[str]
 ) -> list[LaunchClassRow]:
     """Return the students of the platform's course, in the order of the desk's table.
 
@@ -98,7 +98,7 @@ def _score_state(waiting: Waiting | None, subject: str, lang: str) -> str:
     )
 
 
-def rules_rows(visit: LTIRequest, now: CachedClass, publication: Publication | None) -> list[tuple[str, str]]:
+def rules_rows(visit: LTIRequest, now: ClassState, publication: Publication | None) -> list[tuple[str, str]]:
     """Return the rules with which the assignment is published, each with its label."""
     link, site_texts = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
     if publication is None:

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection
 
 from coursework.database.assignments import issued_of, names
+from coursework.database.class_state import ClassState
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
 from coursework.database.identities import person_linked_to
@@ -34,7 +35,7 @@ from coursework.lti.link_settings import LinkSettings
 from coursework.lti.refusal import LTIRefusal
 from coursework.lti.storage import Score, Storage
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_cache import CachedClass, class_now
+from coursework.site.desk.class_cache import class_now
 from coursework.site.frame.settings import Site
 from coursework.site.papers.assignment_state import AssignmentState
 from coursework.site.papers.submission import pass_dates
@@ -61,7 +62,7 @@ class Marked(NamedTuple):
         return round(self.result.points * (1 - state.assignment.own_publication.charged(late)), 9)
 
 
-def marked_in(now: CachedClass, student: str) -> Marked | None:
+def marked_in(now: ClassState, student: str) -> Marked | None:
     """Return the marks of a student from the state of the class; None before the first submission."""
     sheets = [graded for graded in now.graded.values() if graded.student == student]
     return _marked(now.issued, now.results.get(student), sheets, now.decisions)
@@ -94,7 +95,7 @@ def _marked(
     return Marked(issued, result, counted, waits)
 
 
-def score_of(site: Site, launch: Launch, now: CachedClass | None = None) -> Score | None:
+def score_of(site: Site, launch: Launch, now: ClassState | None = None) -> Score | None:
     """Return the score of a launch's person; None before the marks are released."""
     number, lang = assignment_number(site, launch), lang_of(site, launch)
     if number is None:
@@ -203,7 +204,7 @@ class ScoreWatch:
         rules = replace(publication, reached=None).as_json()
         return f"{stamped} {passed} {sorted(rules.items())} {len(more)}"
 
-    def _queue_score(self, launch: Launch, now: CachedClass) -> bool:
+    def _queue_score(self, launch: Launch, now: ClassState) -> bool:
         score = score_of(self._site, launch, now)
         return score is not None and self._storage.put_score(launch, score)
 
