@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from coursework.course.builtin import builtin_root
 from coursework.errors import BadCourse, BadInput, CourseworkError
 from coursework.language.words import languages, no_language
+from coursework.messages import Message
 from coursework.system.distribution import pip_install
 
 if TYPE_CHECKING:
@@ -66,7 +67,9 @@ class Folder:
     @property
     def label(self) -> str:
         """Return the name of the course in messages."""
-        return "the built-in course" if self.root == builtin_root().resolve() else f"course {self.root.name}"
+        if self.root == builtin_root().resolve():
+            return Message("the built-in course")
+        return Message("course {name}", name=self.root.name)
 
     # -------------------------------------------------------------------- files
 

@@ -53,7 +53,9 @@ class Accepted:
                 self._headings = [
                     Message("{file}, line 1: {problem}", file=path, problem=wrong) for wrong in _misspelt(row)
                 ]
-            acceptance = _acceptance(f"{path}, line {number}", number, row, more)
+            acceptance = _acceptance(
+                Message("{file}, line {line}", file=path, line=number), number, row, more
+            )
             self.lines.append(acceptance)
             self._by_place.setdefault(_key(*acceptance.answer_id), []).append(acceptance)
 

@@ -26,6 +26,7 @@ from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
+from coursework.messages import Message
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
 _NEEDED = tuple(c for c in MARKS_COLUMNS if c not in ("read_as", "feedback"))
@@ -83,7 +84,7 @@ class EditedMarks:
     def _rows(self) -> Iterator[AnswerRow]:
         met: dict[tuple[str, ...], str] = {}
         for number, row in _table(self.path):
-            location = f"{self.path}, line {number}"
+            location = Message("{file}, line {line}", file=self.path, line=number)
             sitting = row.get(SITTING, "")
             named = folded(row["student"]), row["exercise"], row["seed"], row["part"], sitting
             if named in met:

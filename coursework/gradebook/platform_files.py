@@ -47,7 +47,9 @@ def read_table(
     try:
         reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
         records = [
-            (f"{source}, line {reader.line_num}", cells) for cells in reader if any(c.strip() for c in cells)
+            (Message("{file}, line {line}", file=source, line=reader.line_num), cells)
+            for cells in reader
+            if any(c.strip() for c in cells)
         ]
     except csv.Error as fault:
         yield Rejected(source, Message("not CSV: {problem}", problem=fault))
@@ -74,7 +76,7 @@ def read_records(
         return iter([Rejected(source, fault)]) if fault else None
     rows = (
         (
-            f"{source}, item {number}",
+            Message("{file}, item {item}", file=source, item=number),
             [name_in(item.get(title)) for title in header],
         )
         for number, item in enumerate(items, start=1)

@@ -15,6 +15,7 @@ from coursework.issuing.students import folded
 from coursework.language.words import words
 from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
+from coursework.messages import Message
 
 TO_MARK = "to_mark"  #: the verdict of an answer that waits
 TO_MARK_COLUMNS = ("student", "exercise", "seed", "part", "answer", "points", "out_of", "reason")
@@ -50,7 +51,7 @@ class ToMark:
         self._used: set[tuple[str, ...]] = set()
         for number, row in enumerate(rows_of(path) if path.exists() else (), start=2):
             _check_columns(path, row)
-            location = f"{path}, line {number}"
+            location = Message("{file}, line {line}", file=path, line=number)
             points = points_of(row["points"], location)
             if points is not None:
                 named = tuple(row[c] for c in ("student", "exercise", "seed", "part"))
