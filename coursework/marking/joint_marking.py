@@ -58,7 +58,9 @@ def mark_judged(
 
     if verdict.slip:
         slip = f"slip:{verdict.slip}"
-        return mark_of(slip, key.rules.share(verdict.slip), read_as, told(f"slip_{verdict.slip}"), (slip,))
+        is_scale_alone = verdict.slip == "not_drawn" and is_scale(part)
+        sentence = "scale_alone" if is_scale_alone else f"slip_{verdict.slip}"
+        return mark_of(slip, key.rules.share(verdict.slip), read_as, told(sentence), (slip,))
     is_followed = judgement.followed or verdict.follows
     if (
         share == 1.0
@@ -66,7 +68,7 @@ def mark_judged(
         and part.sort.is_scalar
         and not _has_work(part, key, reading.values[judgement.reading], before)
     ):
-        return mark_of("wrong", 0.0, read_as, told(part.sort.wrong))
+        return mark_of("wrong", 0.0, read_as, told(_unexplained(variant, part)))
     if share == 1.0:
         kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
         return mark_of(kind, share, read_as, told(kind))
@@ -96,7 +98,13 @@ def mark_judged(
         about = either_symbol(variant, judgement.about, both=judgement.slip == "frame_missing")
         message = told(f"slip_{judgement.slip}", about=about)
         return mark_of(matches[0], key.rules.share(judgement.slip), read_as, message, matches)
-    return mark_of("wrong", share, read_as, told(part.sort.wrong))
+    return mark_of("wrong", share, read_as, told(_unexplained(variant, part)))
+
+
+def _unexplained(variant: Variant, part: Part) -> str:
+    """Return the key of the sentence for an answer that nothing explains: one that is drawn has no relation to start from."""
+    is_drawn = any(p.kind == "point" and p.judge == part.judge for p in variant.parts)
+    return "wrong_drawn" if is_drawn and part.sort.wrong == "wrong" else part.sort.wrong
 
 
 def _has_work(part: Part, key: Key, value: Any, before: EarlierAnswers) -> bool:

@@ -286,3 +286,24 @@ def test_a_sheet_that_a_judge_cannot_judge_costs_itself_alone(course, tmp_path, 
     rejected = list(csv.DictReader((out / "marks" / "rejected.csv").read_text("utf-8-sig").splitlines()))
     assert [m["student"] for m in marks] == ["Ada", "Ada", "Cy", "Cy"]
     assert [r["student"] for r in rejected] == ["Bo"] * 3
+
+
+def test_a_number_without_its_drawing_is_sent_to_the_drawing():
+    """In every exercise with a drawing: an unexplained number is told no relation, a scale is called no right answer."""
+    wrong, scales, tried = [], [], 0
+    for name in COURSE.names:
+        drawn = {p.judge for p in COURSE[name].spec.parts if p.kind == "point" and p.judge}
+        if not drawn:
+            continue
+        (variant,) = COURSE[name].variants([0], "en", ["all"])
+        points = [p.id for p in variant.parts if p.kind == "point" and p.judge]
+        dots = {point: f"({3 * n + 5}; {n * n + 7})" for n, point in enumerate(points)}
+        for part in (p for p in variant.parts if p.judge in drawn and p.kind == "number"):
+            tried += 1
+            mark = variant.grade({part.id: "7.654321"})[part.id]
+            together = variant.grade(dots | {part.id: "7.654321"})[part.id]
+            wrong += [(name, part.id)] if "relation" in mark.feedback + together.feedback else []
+            is_scale = mark.verdict == "slip:not_drawn" and part.unit.endswith("/mm")
+            scales += [(name, part.id)] if is_scale and "possible scale" not in mark.feedback else []
+    assert (wrong, scales) == ([], [])
+    assert tried
