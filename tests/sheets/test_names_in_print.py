@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from sweeps import whole_course
 
 import coursework
+from coursework.rendering.views import quantity_words
 from coursework.sheets.sheet import AnswerSheet
 
 COURSE = coursework.open_course()
@@ -31,6 +32,10 @@ def _printed(sheet: AnswerSheet) -> Iterator[tuple[str, str]]:
         yield (
             f"question {question.id}",
             " ".join([question.prompt, question.unit, question.hint, question.rule, question.tolerance]),
+        )
+        yield (
+            f"entry {question.id}",
+            (question.symbol and f"${question.symbol}$") or quantity_words(question, handout.lang),
         )
         yield from ((f"choice of {question.id}", label) for _, label in question.choices)
         yield f"answer {question.id}", f"{answer.text} {answer.margin}"
