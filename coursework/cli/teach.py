@@ -30,7 +30,6 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted, unknown
-from coursework.messages import Message
 from coursework.system.limits import MOST_SEED
 
 if TYPE_CHECKING:
@@ -108,12 +107,12 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
     """Notebooks that somebody may have written in are not replaced unasked."""
     there = [] if overwrite else [path for path in paths if path.exists()]
     if there:
-        more = Message(" and {count} more", count=len(there) - 1) if len(there) > 1 else ""
-        raise BadInput(
-            "there is {path}{more} already, which may hold what somebody wrote; choose another --out, or --overwrite to replace",
-            path=there[0],
-            more=more,
+        template = (
+            "{path} exists already, and may hold what somebody wrote; choose another --out, or --overwrite to replace"
+            if len(there) == 1
+            else "{path} and {count} more exist already, and may hold what somebody wrote; choose another --out, or --overwrite to replace"
         )
+        raise BadInput(template, path=there[0], count=len(there) - 1)
 
 
 # --------------------------------------------------------------------- notebook

@@ -201,7 +201,9 @@ def worked_out(
         text = "[" + " ; ".join(map(text_of, text[: count + 1])) + "]"
     if not isinstance(text, str) or len(text) > MAX_LENGTH:
         return ()
-    plain, target = NAME.sub("", plain_spelling(unwrapped(text)).rstrip(" .;,"), count=1), parse_unit(unit)
+    plain, target = plain_spelling(unwrapped(text)).rstrip(" .;,"), parse_unit(unit)
+    if (title := NAME.match(plain)) and ":" not in title[0]:  # a colon is no equals sign: "lambda x: x"
+        plain = plain[title.end() :]
     values = {name: _in_unit_of(target, value, parse_unit(own)) for name, (value, own) in symbols.items()}
     try:
         inside, behind = _bare_point(plain)

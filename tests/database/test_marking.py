@@ -29,7 +29,7 @@ from coursework.rendering.renderer import renderer_of
 
 SOLUTION = "solutions/crank_pin.py"
 #: Imported beside the engine; they carry marks, and make none.
-CARRIES = {f"gradebook/{name}.py" for name in ("doubtful", "graded", "placing", "rows")} | {
+CARRIES = {f"gradebook/{name}.py" for name in ("conflicting_sheets", "graded_sheet", "placing", "rows")} | {
     f"issuing/{name}.py" for name in ("identity", "issued", "students")
 }
 
@@ -203,6 +203,7 @@ def test_the_engine_is_all_that_a_mark_is_computed_by(course):
     root = Path(coursework.__file__).parent
     files = {Path(line).relative_to(root) for line in done.stdout.split("\n") if line}
     places = [Path(one) for one in ENGINE]
+    assert [place for place in places if not (root / place).exists()] == []
     outside = {f.as_posix() for f in files if not any(p == f or p in f.parents for p in places)}
     assert {f for f in outside if f.rpartition("/")[2] != "__init__.py"} <= CARRIES
 

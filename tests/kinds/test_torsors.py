@@ -23,6 +23,8 @@ IN_PLANE = np.array([10.0, 20.0, 5.0])
 class Asking:
     """What a kind asks of a variant."""
 
+    stated = {}  # noqa: RUF012
+
     def __init__(self, reference):
         self.value = reference
 

@@ -38,6 +38,8 @@ def every_kind(tmp_path_factory):
 class Asking:
     """What a kind asks of a variant, of a reference alone."""
 
+    stated = {}  # noqa: RUF012
+
     def __init__(self, reference):
         self.value = reference
 
