@@ -426,7 +426,9 @@ def test_who_took_much_of_a_processor_by_a_link_waits_and_still_hands_in(linked)
     for lang, said in (("en", "asked too often"), ("fr", "Trop de demandes")):
         reply = visitor.browser.get(path, headers={"accept-language": lang})
         assert (reply.status_code, said in reply.text) == (429, True)
-        assert 1 <= int(reply.headers["retry-after"]) <= 30
+        assert (
+            1 <= int(reply.headers["retry-after"]) <= 600
+        )  # with what the opening itself took of a processor
     assert other.browser.get(theirs).status_code == 200
     assert visitor.hand_in(path, page, linked.right("Ada Byron")).status_code == 303
     linked.lti.state.processor.spend((who, True), PROCESSOR[0])
