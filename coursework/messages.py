@@ -7,7 +7,6 @@ template without a translation is printed in English.
 from __future__ import annotations
 
 import re
-import string
 import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -18,19 +17,12 @@ from typing import Any
 
 CATALOGUES = Path(__file__).parent / "language" / "messages"
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
-_default = "en"
-_language: ContextVar[str | None] = ContextVar("language of messages", default=None)
+_language: ContextVar[str] = ContextVar("language of messages", default="en")
 
 
 def language_of_messages() -> str:
     """Return the language in which messages are printed now."""
-    return _language.get() or _default
-
-
-def set_language_of_messages(lang: str) -> None:
-    """Set the language of the messages of this process, wherever :func:`messages_in` sets no other."""
-    global _default
-    _default = lang
+    return _language.get()
 
 
 @contextmanager
@@ -110,7 +102,7 @@ def _filled(template: str, values: Mapping[str, Any], lang: str) -> str:
     if not values:
         return text
     translated = {n: localised(v, lang) if _is_translated(v) else v for n, v in values.items()}
-    return string.Formatter().vformat(text, (), translated)
+    return text.format(**translated)
 
 
 def _is_translated(value: object) -> bool:

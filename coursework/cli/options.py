@@ -43,7 +43,7 @@ def tell_lack_of_charts() -> bool:
 
 
 def complain(message: str) -> int:
-    click.echo(f"coursework: {' '.join(localised(message).split())}", err=True)
+    click.echo(f"coursework: {' '.join(message.split())}", err=True)
     return BAD
 
 

@@ -529,17 +529,14 @@ class _AssignmentReader:
         ids = [*(part.id for part in self.course[name].spec.parts), USUAL, ALL]
         for part_id in parts:
             if part_id not in ids:
-                raise self.refused(
-                    "parts",
-                    Message(
-                        "{name} has no part {part}{near}",
-                        name=name,
-                        part=_short(part_id),
-                        near=nearest(part_id, ids),
-                    ),
-                    number,
-                )
+                raise self._unknown_part("parts", number, name, part_id, ids)
         return tuple(parts)
+
+    def _unknown_part(self, key: str, number: int, name: str, part: Any, ids: Sequence[str]) -> BadInput:
+        message = Message(
+            "{name} has no part {part}{near}", name=name, part=_short(part), near=nearest(part, ids)
+        )
+        return self.refused(key, message, number)
 
     def _points(self, number: int, name: str, value: Any) -> float | Mapping[str, float] | None:
         if value is None:
@@ -549,16 +546,7 @@ class _AssignmentReader:
         ids = [part.id for part in self.course[name].spec.parts]
         for part in value:
             if part not in ids:
-                raise self.refused(
-                    "points",
-                    Message(
-                        "{name} has no part {part}{near}",
-                        name=name,
-                        part=_short(part),
-                        near=nearest(part, ids),
-                    ),
-                    number,
-                )
+                raise self._unknown_part("points", number, name, part, ids)
         return {str(part): self._number(number, points) for part, points in value.items()}
 
     def _number(self, number: int, value: Any) -> float:
