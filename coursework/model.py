@@ -437,8 +437,7 @@ class Exercise:
         The optional effects that the exercise's own parts call for, and a request that names none.
     kept_by_solution
         Whether further conditions, those on answers, stand beside the solution, as ``KEEP`` and ``HELPERS`` of
-        ``_NAME_keep.py``, which the solution imports so that it goes where the solution goes. A
-        course without solutions then draws the seeds alone that ``NAME.draws`` records beside the exercise.
+        ``_NAME_keep.py``, which the solution imports so that it goes where the solution goes.
     drawing_mm
         Width and height of the box of millimetre paper that a printed sheet offers to draw in, whole
         centimetres; none unless told.

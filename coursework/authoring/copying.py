@@ -110,8 +110,6 @@ class _Copy:
     def _own(self, kind: str) -> Iterator[Path]:
         """Yield the files that bear the name of the exercise, texts in the wanted languages only."""
         for path in own_files(self.source, kind, self.name):
-            if path.suffix == ".draws" and self.renamed != self.name:
-                continue  # another name draws otherwise
             text = _TEXT.fullmatch(path.name)
             if text is None or text[1] in self.langs:
                 yield path

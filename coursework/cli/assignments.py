@@ -169,8 +169,7 @@ def build_assignment(
         "as it was issued" if is_unchanged or again else "to give away, issued.json and answers.csv to keep"
     )
     click.echo(f"{counted(count, 'paper')} in {out}: {counted(len(wanted), 'file')}, {description}")
-    if course.folder.has_solutions:
-        click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
+    click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
     if with_nbgrader:
         click.echo(
             f"a course of nbgrader: {out / 'nbgrader'}; how to go on stands there, in {assignment.name}.md"

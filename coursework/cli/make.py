@@ -41,7 +41,6 @@ from coursework.system.limits import MOST_VARIANTS
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
-    from coursework.issuing.issued import Issued
     from coursework.issuing.roster import Student
 
 
@@ -73,13 +72,6 @@ if TYPE_CHECKING:
     f"Unless told, {UNLESS_TOLD}.",
 )
 @parts_option
-@click.option(
-    "--issued",
-    "again_of",
-    type=FilePath(path_type=Path, dir_okay=False, exists=True),
-    help="Write the sheets of an issued.json once more, as they were issued; no exercises, variants or roster then. "
-    "A students' copy of a course writes no others.",
-)
 @click.option("--practice", is_flag=True, help="Self-study notebooks, which check answers.")
 @click.option(
     "--paper",
@@ -135,7 +127,6 @@ def build(
     formats: Sequence[str],
     langs: Sequence[str],
     parts: str,
-    again_of: Path | None,
     practice: bool,
     paper: str,
     booklet: bool,
@@ -167,16 +158,10 @@ def build(
 
     if roster and count:
         raise BadInput("--variants and --roster exclude each other: a roster has one variant a student")
-    if again_of and (exercises or roster or count or parts or context.params["seed"]):
-        raise BadInput(
-            "--issued {again_of} says what was issued: name no exercises, seed, parts, variants or roster beside it",
-            again_of=again_of,
-        )
     if scan:
         check_scan(formats, booklet=booklet)
     course = opened(context)
-    issued = None if again_of is None else _issued(again_of)
-    names = exercise_names(course, exercises if issued is None else issued.exercises)
+    names = exercise_names(course, exercises)
     writes(context, out)
     notes: list[str] = []
     students = read_roster(roster, notes.append, columns) if roster else []
@@ -205,24 +190,15 @@ def build(
         polygons=polygons,
         decimal=decimal,
         overwrite=overwrite,
-        issued=issued,
-        issued_langs=() if _is_untold(context, "langs") else langs,
         store=keeping(context, db, name or out.resolve().name, course.folder.root.name),
     )
     if roster:
         print_notes([for_practice(langs[0])])
     away = "handouts/ to give away, " if set(formats) - {"nbgrader"} else ""
     click.echo(f"{counted(written, 'file')} in {out}: {away}issued.json and answers.csv to keep")
-    if course.folder.has_solutions:
-        click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
+    click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
     if "nbgrader" in formats:
         click.echo(f"a course of nbgrader: {out / 'nbgrader'}; how to go on stands there, in {names[0]}.md")
-
-
-def _issued(path: Path) -> Issued:
-    from coursework.issuing.issued import Issued
-
-    return Issued.read(path)
 
 
 def _is_untold(context: click.Context, option: str) -> bool:
@@ -247,25 +223,19 @@ def build_files(
     polygons: bool = True,
     decimal: str = "point",
     overwrite: bool = False,
-    issued: Issued | None = None,
-    issued_langs: Sequence[str] = (),
     store: Callable[[Mapping[str, Any]], None] = lambda content: None,
 ) -> int:
-    """Issue and write a build, or one of what was ``issued``; gives how many files were written. ``store`` is handed what ``issued.json`` says, before
+    """Issue and write a build; return how many files were written. ``store`` is handed what ``issued.json`` says, before
     anything is written."""
     from coursework.issuing import build as building
     from coursework.issuing.issued import issued_content
-    from coursework.issuing.issued_again import issued_again
     from coursework.issuing.issuing import issue
     from coursework.issuing.letters import unprinted_names
     from coursework.rendering.renderer import renderer_of
     from coursework.system.tables import SPREADSHEETS, json_text
     from coursework.system.writing import write_tree
 
-    if issued is None:
-        issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
-    else:
-        issues = issued_again(course, issued, issued_langs)
+    issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
     content = issued_content(issues)
     text = json_text(content)
     before = out / "issued.json"

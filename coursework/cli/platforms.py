@@ -241,8 +241,6 @@ def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student])
 def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], out: Path) -> DrawnPool:
     from coursework.platforms.pools import of_assignment, of_exercises
 
-    if not course.folder.has_solutions:
-        raise BadInput("{label} has no solutions: a platform is told the answers", label=course.folder.label)
     count = wanted.variants or len(students)
     if not is_assignment(wanted.exercises):
         names = exercise_names(course, wanted.exercises)

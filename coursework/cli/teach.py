@@ -247,14 +247,6 @@ def workbook(
     _check_language(lang)
     wanted = _numbers(chapters)
     writes(context, out)
-    if not course.folder.has_solutions:
-        solutions = "none"
-        print_notes(
-            [
-                f"{course.folder.label} has no solutions/: the book has no solutions, no self-study notebooks, and other "
-                "variants than that of the full course"
-            ]
-        )
     with progress_bar("reading", pieces_of(course)) as advance:
         book = bound(course, lang, seed, chapters=wanted, solved=solutions == "end", advance=advance)
     written = list(files(course, book, formats, paper=paper, apart=solutions == "apart"))

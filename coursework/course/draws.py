@@ -174,33 +174,6 @@ def draw(
     raise _starved(name, exercise, seeds[pending[0]], secret)
 
 
-def nth_candidate(name: str, exercise: Exercise, seed: int, index: int) -> dict[str, float | str]:
-    """Return the given values of a candidate of a seed, by its place among them."""
-    words = _words(name, exercise.version, seed, index // BLOCK, len(exercise.given))
-    return {n: v[index % BLOCK].item() for n, v in candidates(exercise, words).items()}
-
-
-def places(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[int]:
-    """For each seed, the place among its candidates of the one that :func:`draw` draws.
-
-    Raises
-    ------
-    Starved
-        As :func:`draw`.
-    """
-    indices = []
-    for seed in seeds:
-        for block in range(MAX_BLOCKS):
-            words = _words(name, exercise.version, seed, block, len(exercise.given))
-            good, _ = accepted(exercise, candidates(exercise, words))
-            if good.any():
-                indices.append(block * BLOCK + int(good.argmax()))
-                break
-        else:
-            raise _starved(name, exercise, seed)
-    return indices
-
-
 def _starved(name: str, exercise: Exercise, seed: int, secret: Secret | None = None) -> Starved:
     """Return the error for a seed without a variant: it names the constraints that refuse most of its
     draws."""

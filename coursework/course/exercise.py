@@ -85,17 +85,16 @@ class CourseExercise(Generic[V]):
         Raises
         ------
         NoSolution
-            The course folder has none: it looks like a students' copy.
+            The course has none of this exercise.
         """
         from coursework.solution import Solution
 
         if self.folder.home("solutions", self.name) is None:
-            template = (
-                "no solution of {name!r} in {folder}: it lacks {name}.py"
-                if self.folder.has_solutions
-                else "no solution of {name!r} in {folder}: it looks like a students' copy"
+            raise NoSolution(
+                "no solution of {name!r} in {folder}: it lacks {name}.py",
+                name=self.name,
+                folder=self.folder.label,
             )
-            raise NoSolution(template, name=self.name, folder=self.folder.label)
         source = self.folder.source("solutions", self.name)
         return Solution.of(self.name, self.folder.module("solutions", self.name), source)
 
@@ -210,8 +209,8 @@ class CourseExercise(Generic[V]):
 
     @property
     def film(self) -> Film | None:
-        """The animation that the solution states in a picture of its own; none where the course has no solutions."""
-        return self.solution.film if self.folder.has_solutions else None
+        """The animation that the solution states in a picture of its own."""
+        return self.solution.film
 
     @property
     def is_animated(self) -> bool:
@@ -293,7 +292,7 @@ class CourseExercise(Generic[V]):
             if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
                 raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
         seeds = [int(seed) for seed in seeds]
-        drawn = self._drawn(seeds, secret)
+        drawn = draws.draw(self.name, self.drawing, seeds, secret)
         return [
             self._variant(self, seed, given, lang, chosen, None, self._orders(seed, secret))
             for seed, given in zip(seeds, drawn, strict=True)
@@ -324,33 +323,6 @@ class CourseExercise(Generic[V]):
         spec = replace(self.spec, keep=(*self.spec.keep, *retained), helpers=helpers)
         draws.check_conditions(self.name, spec)
         return spec
-
-    def _drawn(self, seeds: Sequence[int], secret: Secret | None) -> list[dict[str, float | str]]:
-        """Return the given values of seeds; without the solution that keeps them, of those that are recorded."""
-        if not self.spec.kept_by_solution or self.folder.home("solutions", self.name) is not None:
-            return draws.draw(self.name, self.drawing, seeds, secret)
-        if secret is not None:
-            raise NoSolution(
-                "{name}: the variants that an assignment draws depend on answers, which a students' copy does not hold",
-                name=self.name,
-            )
-        for seed in seeds:
-            if seed >= len(self._recorded):
-                raise NoSolution(
-                    "{name}: the variant of seed {seed} depends on answers, which a students' copy does not hold; it knows "
-                    "the seeds below {count}, and any sheet by its record: exercise.from_record(record)",
-                    name=self.name,
-                    seed=seed,
-                    count=len(self._recorded),
-                )
-        return [draws.nth_candidate(self.name, self.spec, seed, self._recorded[seed]) for seed in seeds]
-
-    @cached_property
-    def _recorded(self) -> tuple[int, ...]:
-        """For each seed, which of its candidates is the variant, as ``NAME.draws`` records it."""
-        home = self.folder.home("exercises", self.name)
-        path = None if home is None else home.with_name(f"{self.name}.draws")
-        return tuple(map(int, path.read_text("ascii").split())) if path and path.is_file() else ()
 
     def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
         """Parts by id, in the order of the exercise; None for the usual ones.

@@ -154,11 +154,6 @@ class Folder:
         folders = dict.fromkeys([self.root / "templates", builtin_root() / "templates"])
         return tuple(f for f in folders if f.is_dir())
 
-    @property
-    def has_solutions(self) -> bool:
-        """False for a students' copy."""
-        return (self.root / "solutions").is_dir()
-
     # ----------------------------------------------------------------- settings
 
     @property

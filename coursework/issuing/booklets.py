@@ -61,8 +61,7 @@ def bound(
     wanted = [(booklet, Future[Pages]()) for booklet in booklets]
     for booklet, pages in wanted:
         yield File(Path("handouts") / f"{booklet.name}.pdf", partial(_printed, booklet, pages))
-        if course.folder.has_solutions:
-            yield File(Path("instructor") / f"{booklet.name}.solutions.pdf", booklet.print_solutions)
+        yield File(Path("instructor") / f"{booklet.name}.solutions.pdf", booklet.print_solutions)
 
     def table() -> bytes:
         rows = (row for booklet, pages in wanted for row in booklet.rows(pages.result()))

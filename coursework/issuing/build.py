@@ -46,7 +46,7 @@ def files(
     ``practice`` makes the notebooks self-study notebooks, which check answers with the installed package. ``paper`` is
     ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
     language. Without ``polygons`` the worked solutions leave out the drawn velocity and acceleration polygons.
-    The tables are written for the ``spreadsheet``. With ``scan`` the PDFs have answer pages that a scanner reads. A students' copy of the course gives the handouts alone.
+    The tables are written for the ``spreadsheet``. With ``scan`` the PDFs have answer pages that a scanner reads.
     """
     renderer = renderer_of(course.folder).on(paper)
     for issue in issues:
@@ -73,8 +73,7 @@ def tables(
     content = issued_content(issues, assignment, secret)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
-    if course.folder.has_solutions:
-        yield from key_files(issues, spreadsheet)
+    yield from key_files(issues, spreadsheet)
 
 
 def key_files(issues: Sequence[Issue], spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> Iterator[File]:
@@ -112,11 +111,11 @@ def _sheets(
         yield rendered(for_student, ".ipynb", renderer.notebook, handout)
     if "tex" in formats:
         yield from _tex(renderer, for_student, ".tex", "figure", handout)
-    if course.folder.has_solutions and "pdf" in formats:
+    if "pdf" in formats:
         yield rendered(for_staff, ".solution.pdf", renderer.pdf, solution)
-    if course.folder.has_solutions and "html" in formats:
+    if "html" in formats:
         yield rendered(for_staff, ".solution.html", renderer.html, solution)
-    if course.folder.has_solutions and "tex" in formats:
+    if "tex" in formats:
         drawn = polygons and variant.exercise.solution.polygons is not None
         yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution, polygons=drawn)
 

@@ -16,7 +16,7 @@ from coursework.course.course import Course
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
-from coursework.errors import BadInput, NoSolution, Starved, counted, unknown
+from coursework.errors import BadInput, Starved, counted, unknown
 from coursework.issuing.flaws import try_judges
 from coursework.issuing.protection import valid_variants
 from coursework.issuing.roster import Student
@@ -56,12 +56,9 @@ def distinct_variants(
 
     Raises
     ------
-    NoSolution
-        The course folder is a students' copy, which cannot find the variants that mark badly.
     Starved
         Too few variants exist or were found; the message gives the number and the most frequent flaws.
     """
-    _check_can_tell(exercise)
     by_values: dict[tuple, V] = {}
     refused = Counter() if refused is None else refused
     seed = first_seed
@@ -105,17 +102,6 @@ def _passed_over(refused: Counter[str]) -> str:
         return ""
     flaws = ", ".join(f"{flaw} ({number}×)" for flaw, number in refused.most_common(3))
     return Message("; passed over as {flaws}", flaws=flaws)
-
-
-def _check_can_tell(exercise: CourseExercise[Any]) -> None:
-    """Raise for a students' copy: it would issue variants that the full course skips, and so different
-    ones."""
-    if not exercise.folder.has_solutions:
-        raise NoSolution(
-            "{exercise}: {course} has no solutions/, as a students' copy, and cannot tell which variants the full course passes over; 'coursework build --issued issued.json' writes the sheets of what was issued: ask the teacher for that file, or for the sheets",
-            exercise=exercise.name,
-            course=exercise.folder.label,
-        )
 
 
 def _that_ask(variants: Sequence[V], fits: Callable[[V], bool] | None) -> list[V]:
@@ -166,12 +152,9 @@ def drawn_by(
 
     Raises
     ------
-    NoSolution
-        As :func:`distinct_variants`.
     Starved
         No variant worth issuing was found for somebody.
     """
-    _check_can_tell(exercise)
     used_values = set() if used_values is None else used_values
     issued_values = {} if issued_values is None else issued_values
     variants: dict[str, V] = {}
@@ -268,8 +251,6 @@ def issue(
         A part that none of the exercises has.
     Starved
         An exercise has not enough different variants.
-    NoSolution
-        The course folder is a students' copy.
     BadInput
         An exercise has no text in one of the languages.
     """

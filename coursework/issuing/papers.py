@@ -177,11 +177,11 @@ def _paper(
         yield rendered(for_student, ".ipynb", renderer.paper_notebook, paper)
     if "tex" in formats:
         yield from _tex(renderer, issued_paper, lang, for_student, solved=False)
-    if course.folder.has_solutions and "pdf" in formats:
+    if "pdf" in formats:
         yield rendered(for_staff, ".solution.pdf", renderer.paper_pdf, solution)
-    if course.folder.has_solutions and "html" in formats:
+    if "html" in formats:
         yield rendered(for_staff, ".solution.html", renderer.paper_html, solution)
-    if course.folder.has_solutions and "tex" in formats:
+    if "tex" in formats:
         yield from _tex(renderer, issued_paper, lang, for_staff, solved=True)
 
 

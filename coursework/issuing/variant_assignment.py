@@ -257,7 +257,7 @@ class _Assigner:
         left = [person for person in dict.fromkeys(missing.values()) if person not in drawn]
         drawn |= self._drawn(exercise, asked_exercise, left, by_sitting.values()) if left else {}
         by_sitting |= {k: drawn[person] for k, person in missing.items()}
-        if self.course.folder.has_solutions and by_sitting:
+        if by_sitting:
             try_judges(by_sitting[0].key)
         return [by_sitting[k] for k in range(len(sittings))]
 

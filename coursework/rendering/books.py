@@ -53,9 +53,8 @@ def _exercise(env: Environment, exercise: BookExercise, end: str) -> dict[str, A
     """Return the variables for the template of an exercise: its body, and that of its solution."""
     names = views.context(exercise.handout, 1, numbered=False)
     names["body"] = Markup(render(env, f"_sheet_body.{end}", names))
-    if exercise.solution is not None:
-        solved = views.context(exercise.solution, 1, numbered=False)
-        names["solution_body"] = Markup(render(env, f"_solution_body.{end}", solved))
+    solved = views.context(exercise.solution, 1, numbered=False)
+    names["solution_body"] = Markup(render(env, f"_solution_body.{end}", solved))
     return names
 
 
@@ -119,10 +118,7 @@ def pages(
         writers[page.file] = partial(_page, env, book, page, shared | around)
     if solutions:
         for exercise in book.exercises:
-            if exercise.solution is not None:
-                writers[f"solutions/{exercise.handout.exercise}.html"] = partial(
-                    _solution, env, exercise, shared
-                )
+            writers[f"solutions/{exercise.handout.exercise}.html"] = partial(_solution, env, exercise, shared)
     return writers
 
 
@@ -140,7 +136,6 @@ def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
 
 
 def _solution(env: Environment, exercise: BookExercise, names: Mapping[str, Any]) -> str:
-    assert exercise.solution is not None  # only those that have one are asked for
     variables = views.context(exercise.solution) | {"one": exercise, "title": views.title(exercise.solution)}
     return render(env, "book_solution.html.j2", {**names, **variables})
 

@@ -82,8 +82,6 @@ class Animation(Reel):
     def points(self) -> Mapping[str, Moving]:
         """Points that the solution states, over the instants."""
         exercise = self.variant.exercise
-        if not exercise.folder.has_solutions:
-            return {}
         if exercise.solution.motion is None:
             return self._of_mechanism if exercise.solution.mechanism is not None else {}
         result = self._stated("motion", exercise.solution.motion, self._with_driver_at(self.angles))

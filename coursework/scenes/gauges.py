@@ -34,13 +34,11 @@ class Gauge:
 
 
 def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
-    """Return the quantities of the effects over the instants; none in a course without solutions.
+    """Return the quantities of the effects over the instants.
 
     ``vectors`` are those of the points, each with its name and effect.
     """
     exercise = reel.variant.exercise
-    if not exercise.folder.has_solutions:
-        return ()
     effects_of: dict[str, list[str]] = {}
     for effect in EFFECTS:
         for name in _measured(reel, effect):

@@ -47,7 +47,7 @@ def example_variant(variant: Variant, base: int, level: int) -> Variant:
 
 def has_example(variant: Variant) -> bool:
     """Return whether the solution has something to leave blank."""
-    return variant.exercise.folder.has_solutions and bool(blanks(variant, 1))
+    return bool(blanks(variant, 1))
 
 
 def blanks(variant: Variant, level: int, *, in_lesson: bool = False) -> tuple[Part, ...]:

@@ -88,8 +88,6 @@ def before_answers(variant: Variant) -> tuple[Prediction, ...]:
 
 
 def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
-    if not exercise.folder.has_solutions:
-        return None
     if part.sort.prediction == "guess":
         differs = part.choices and _differs_among(exercise, part.id, part.quantity)
         return Prediction(part.id, part.quantity, "guess", choices=part.choices) if differs else None
@@ -182,11 +180,10 @@ def _sample(exercise: CourseExercise) -> Mapping[str, np.ndarray]:
 
 
 def moving(variant: Variant) -> tuple[Part, ...]:
-    """Return the parts whose number depends on the driver's angle; none without a driver or without
-    solutions."""
+    """Return the parts whose number depends on the driver's angle; none without a driver."""
     exercise = variant.exercise
     driver = exercise.spec.driver
-    if driver is None or driver.angle not in variant.used or not exercise.folder.has_solutions:
+    if driver is None or driver.angle not in variant.used:
         return ()
     reached = exercise.solution.graph.textbook.descendants((driver.angle,))
     numbers = (p for p in variant.parts if p.sort.is_number)

@@ -40,7 +40,7 @@ def marked_answers(
 def mark_what_came_unmarked(course: Course[Any], file: ProgressStore) -> None:
     """Mark the stored answers without a verdict, with the date of the answer.
 
-    An earlier version, or a course without solutions, stored them.
+    An earlier version stored them.
     """
     last = {(e["exercise"], e["seed"], e["part"]): e for e in file.progress if e["what"] == ANSWER}
     unmarked: dict[tuple[str, int], list[Entry]] = {}
@@ -48,8 +48,6 @@ def mark_what_came_unmarked(course: Course[Any], file: ProgressStore) -> None:
         if "verdict" not in item and exercise in course:
             unmarked.setdefault((exercise, seed), []).append(item)
     for (exercise, seed), result in unmarked.items():
-        if not course.folder.has_solutions:
-            continue
         variant = course[exercise].variant(seed)
         answers = {e["part"]: e.get("answer") for e in result if e["part"] in variant.part_ids}
         try:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 from coursework.course.answer_keys import answer_keys
 from coursework.course.course import Course
 from coursework.course.variant import Variant
-from coursework.errors import BadCourse, NoSolution, Starved, UnknownName, WrongValue
+from coursework.errors import BadCourse, Starved, UnknownName, WrongValue
 from coursework.language.words import words
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import NotebookDisplay, SvgPicture
@@ -169,10 +169,8 @@ class StudySession:
         try:
             moving = DisplayedAnimation(self.variant, effects)
         except BadCourse:
-            return self._display(self._missing() or self._texts["no_motion"])
+            return self._display(self._texts["no_motion"])
         except WrongValue:
-            if missing := self._missing():
-                return self._display(missing)
             displayed = ", ".join(dict.fromkeys(("position", *DisplayedAnimation(self.variant).available)))
             raise refusals.refused(self.variant.lang, "no_effect", names=displayed) from None
         if not effects:
@@ -337,9 +335,6 @@ class StudySession:
             No dictionary.
         """
         given, strange = self._arguments_of("check", "question", answers, named, self.variant.part_ids)
-        if missing := self._missing():
-            self._store.add(self.variant.seed, "answers", given)
-            return self._display(*strange, missing, self._trouble)
         checked = self._attempt.check(given)
         marking, now = checked.marking, checked.answers
         lines, unanswered = [], []
@@ -396,8 +391,6 @@ class StudySession:
         BadInput
             A step that is no whole number.
         """
-        if missing := self._missing():
-            return self._display(missing)
         if question == "":
             return self._display(self._which("hint", self._texts["hint"]["which"]))
         name = self._named(question)
@@ -430,8 +423,6 @@ class StudySession:
         UnknownName
             No such question, and no such quantity on the way to one.
         """
-        if missing := self._missing():
-            return self._display(missing)
         if question == "":
             return self._display(self._which("reveal", self._texts["which_reveal"]))
         name = self._named(question)
@@ -457,8 +448,6 @@ class StudySession:
         UnknownName
             A question that does not move with the driver.
         """
-        if missing := self._missing():
-            return self._display(missing)
         parts = {p.id: p for p in predictions.moving(self.variant)}
         if not parts:
             return self._display(self._texts["no_plot"])
@@ -549,8 +538,6 @@ class StudySession:
         ]
         last = min(max(seen, default=0) + 1, LEVELS)
         level = last if level is None else refusals.counted(self.variant.lang, "level", level, LEVELS)
-        if missing := self._missing():
-            return self._display(missing)
         if not has_example(self.variant.exercise.variant(self._base, self.variant.lang)):
             return self._display(self._texts["example"]["none"])
         try:
@@ -592,8 +579,6 @@ class StudySession:
     def progress(self) -> NotebookDisplay:
         """Return the variants begun with their results; then the other exercises, the skills lost, and those
         recovered since."""
-        if missing := self._missing():
-            return self._display(missing)
         self._store.file.refresh()
         mark_what_came_unmarked(self._course, self._store.file)
         lines, lang = [], self.variant.lang
@@ -631,14 +616,6 @@ class StudySession:
     def _name(self) -> str:
         """Variable that holds this session in the notebook."""
         return self._variable or ("study" if self.variant.seed == self._base else "again")
-
-    def _missing(self) -> str:
-        """Return the message for a course folder without a solution of this exercise; empty when it has one."""
-        try:
-            self.variant.exercise.solution  # noqa: B018
-        except NoSolution:
-            return self._texts["no_solutions"]
-        return ""
 
     @property
     def _trouble(self) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from coursework.course.builtin import builtin_root
 from coursework.course.lessons import taught_by
-from coursework.errors import NoSolution, Starved
+from coursework.errors import Starved
 from coursework.issuing.issuing import distinct_variants
 from coursework.selfstudy import predictions
 from coursework.selfstudy.examples import has_example
@@ -62,7 +62,7 @@ def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -
 def _fresh_questions(variant: Variant) -> tuple[Question, ...]:
     try:
         return handout(fresh_variants(variant.exercise, variant.seed, 1, variant.lang)[0]).questions
-    except (NoSolution, Starved):
+    except Starved:
         return ()
 
 

@@ -23,8 +23,6 @@ def theory(exercise: CourseExercise[Any]) -> frozenset[str]:
     None in an exercise with such parts alone. A question that only some variants ask is excluded, since it
     rotates; one that is judged together with others is asked with them.
     """
-    if not exercise.folder.has_solutions:
-        return frozenset()
     requested = exercise.variants(_SAMPLE)
     always = [p for p in requested[0].parts if all(p.id in v.part_ids for v in requested)]
     same = frozenset(p.id for p in always if p.id in unchanging(exercise) and not p.judge)

@@ -84,11 +84,11 @@ class LessonText:
 
 @dataclass(frozen=True)
 class BookExercise:
-    """An exercise of a book: the variant that the book prints, and its solution where the book has them."""
+    """An exercise of a book: the variant that the book prints, and its solution."""
 
     number: str  #: 2.3: the third exercise of the second chapter
     handout: Handout
-    solution: AnswerSheet | None
+    solution: AnswerSheet
     lessons: tuple[tuple[str, str], ...] = ()  #: names and titles of the lessons that teach it
 
 

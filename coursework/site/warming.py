@@ -51,5 +51,4 @@ def _is_of_pages(name: str) -> bool:
 
 
 def _solved(site: Site, exercise: str) -> None:
-    if site.course.folder.has_solutions:
-        theory(site.course[exercise])
+    theory(site.course[exercise])

@@ -126,7 +126,7 @@ class Names:
             variants = exercise.variants((0, 1), self._lang) if exercise else []
             return [v.solution_text.sections for v in variants]
         except CourseworkError:
-            return []  # a course without solutions, or without this text, has no words for mistakes
+            return []  # a course without this text has no words for mistakes
 
 
 def shortened(text: str, most: int = SHORT) -> str:

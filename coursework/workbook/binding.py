@@ -112,10 +112,7 @@ def _chapter(
 
 
 def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant:
-    """Return the first valid variant for a book; in a students' copy, which cannot validate, that of the
-    seed."""
-    if not exercise.folder.has_solutions:
-        return exercise.variant(seed, lang)
+    """Return the first valid variant for a book."""
     return distinct_variants(exercise, _FAR + _APART * seed, 1, lang)[0]
 
 
@@ -123,5 +120,4 @@ def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str
     exercise = course[name]
     variant = _variant(exercise, lang, seed)
     taught = tuple((item.name, item.title) for item in taught_by(course.folder, name, lang))
-    solution = answer_sheet(variant) if course.folder.has_solutions else None
-    return BookExercise(number, handout(variant), solution, taught)
+    return BookExercise(number, handout(variant), answer_sheet(variant), taught)

@@ -67,13 +67,11 @@ def _encoded(make: Callable[[], str]) -> bytes:
 
 def _notebooks(course: Course[Any], book: Book) -> Iterator[File]:
     folder = Path("notebooks")
-    # Who studies alone asks the solutions.
-    exercises = book.exercises if course.folder.has_solutions else ()
-    there = {*(item.name for item in book.lessons), *(item.handout.exercise for item in exercises)}
+    there = {*(item.name for item in book.lessons), *(item.handout.exercise for item in book.exercises)}
     for lesson in book.lessons:
         make = partial(lesson_notebook, course, lesson.name, book.lang, there)
         yield File(folder / notebook_name(lesson.name, book.lang), partial(_encoded, make))
-    for item in exercises:
+    for item in book.exercises:
         make = partial(_study, course, item.handout.exercise, item.handout.seed, book.lang, there)
         yield File(folder / notebook_name(item.handout.exercise, book.lang), partial(_encoded, make))
     wheel = course.folder.wheel

@@ -51,13 +51,6 @@ def test_an_instructors_exercise_takes_part_as_it_is(own_course):
     assert line.places > 3
 
 
-def test_a_students_copy_is_told_in_one_line(own_course, capsys):
-    shutil.rmtree(own_course / "solutions")
-    for arguments in ([], ["slotted_mechanism"], ["--paper"]):
-        assert run(["--course", str(own_course), "accuracy", *arguments]) == 2
-        assert "students' copy" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     ("right", "wrong", "equation"),
     [

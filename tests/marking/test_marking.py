@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tables import each_row
 
-from coursework.errors import NoSolution, UnknownName, WrongValue
+from coursework.errors import UnknownName, WrongValue
 from coursework.marking import marking
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
@@ -206,16 +206,6 @@ def test_what_a_cell_computes_is_marked_and_quoted_as_a_number(slotted, wrap):
     assert (mark.verdict, mark.answer) == ("wrong", "238.4")
     assert "238,4" in mark.feedback
     assert "np" not in mark.feedback
-
-
-def test_a_students_copy_cannot_mark(course, tmp_path):
-    import shutil
-
-    import coursework
-
-    shutil.copytree(course.folder.root / "exercises", tmp_path / "exercises")
-    with pytest.raises(NoSolution):
-        coursework.open_course(tmp_path)["slotted_mechanism"].variant(1).grade({"rA": "3"})
 
 
 # ----------------------------------------------------------------------- distance

@@ -14,7 +14,6 @@ import coursework
 from coursework.authoring import checks
 from coursework.authoring.check_report import CheckReport
 from coursework.course.draws import BLOCK, acceptance
-from coursework.errors import NoSolution
 from coursework.language.words import languages
 from coursework.rendering.renderer import renderer_of
 
@@ -170,29 +169,6 @@ def test_a_record_gives_back_its_variant(name):
         assert {k: np.asarray(v).tolist() for k, v in again.solution().items()} == {
             k: np.asarray(v).tolist() for k, v in key.reference.items()
         }
-
-
-@every_exercise
-@every_language
-def test_handouts_render_identically_without_solutions(name, lang, students_copy):
-    here, there = COURSE[name].variant(5, lang), students_copy[name].variant(5, lang)
-    assert there.record == here.record
-    for render in ("html", "notebook", "typst"):
-        assert getattr(renderer_of(students_copy.folder), render)(there.handout("A")) == getattr(
-            renderer_of(COURSE.folder), render
-        )(here.handout("A"))
-    with pytest.raises(NoSolution, match="students' copy"):
-        there.solution()
-
-
-@pytest.fixture(scope="module")
-def students_copy(tmp_path_factory):
-    import shutil
-
-    root = tmp_path_factory.mktemp("students")
-    for kind in ("exercises", "templates"):
-        shutil.copytree(COURSE.folder.root / kind, root / kind, ignore=shutil.ignore_patterns("__pycache__"))
-    return coursework.open_course(root)
 
 
 #: In a sheet's source: a drawing, its size, and where its letters stand.

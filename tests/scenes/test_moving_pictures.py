@@ -174,23 +174,6 @@ def test_an_element_that_is_not_always_there_is_left_out():
     assert len(drawing(frames).tracks) == 1
 
 
-def test_a_students_copy_moves_without_solutions(small_course):
-    import shutil
-
-    source = small_course / "exercises" / "crank_pin.py"
-    text = source.read_text("utf-8")
-    assert "driver" not in text
-    text = text.replace("import Exercise", "import Driver, Exercise")
-    text = re.sub(r"figure=figure,", 'figure=figure, driver=Driver("theta"),', text)
-    source.write_text(text, "utf-8")
-    shutil.rmtree(small_course / "solutions")
-    moved = coursework.open_course(small_course)["crank_pin"].variant(0).animation()
-    assert moved.points == {}
-    assert moved.readings == ()
-    assert "<animate" in moved.svg()
-    assert "motion-data" in moved.html()
-
-
 def test_the_command_writes_both_files(tmp_path, capsys):
     assert (
         run(

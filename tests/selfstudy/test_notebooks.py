@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import json
 import re
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -147,24 +146,6 @@ def test_the_command_writes_a_notebook_for_every_exercise_of_a_course_of_ones_ow
         coursework.study("crank_pin", course="small")
     for place in (small_course, str(small_course)):
         assert coursework.study("crank_pin", course=place, folder=out).variant.exercise.name == "crank_pin"
-
-
-def test_a_students_copy_says_that_its_solutions_are_missing(small_course, monkeypatch):
-    shutil.rmtree(small_course / "solutions")
-    monkeypatch.chdir(small_course.parent)
-    variant = coursework.open_course(small_course)["crank_pin"].variant(0, "en")
-    shown = run_cells(code_cells(renderer_of(variant.exercise.folder).study(variant.study_sheet())))
-    session = coursework.study("crank_pin", lang="en", course="small", folder=small_course)
-    for said in (
-        session.check({"x": "1"}),
-        session.hint("x"),
-        session.reveal("x"),
-        session.plot(),
-        session.motion(),
-    ):
-        assert "solutions are not in this copy" in str(said)
-    assert session.answers == {"x": "1"}
-    assert any("solutions are not in this copy" in text for text in shown)
 
 
 def test_a_notebook_of_another_version_is_refused(here):

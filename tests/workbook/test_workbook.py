@@ -6,7 +6,6 @@ import base64
 import json
 import os
 import re
-import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -580,17 +579,3 @@ def test_the_lesson_of_the_documentation_passes_its_check(tmp_path, capsys):
     (lessons / "pins.en.md").write_text(lesson, "utf-8")
     (lessons / "pins.py").write_text(module, "utf-8")
     assert run(["--course", str(mine), "lesson", "--check"]) == 0, capsys.readouterr()
-
-
-def test_a_students_copy_is_bound_without_solutions(folder, tmp_path, capsys):
-    shutil.rmtree(folder / "solutions")
-    path = folder / "exercises/lessons/rods.en.md"
-    path.write_text(re.sub(r"```python\n.*?```", "", path.read_text("utf-8"), flags=re.DOTALL), "utf-8")
-    out = tmp_path / "book"
-    asked = ["workbook", "--lang", "en", "--solutions", "apart", "--out", str(out)]
-    assert run(["--course", str(folder), *asked]) == 0
-    assert "course small has no solutions/" in "".join(capsys.readouterr())
-    found = {str(one.relative_to(out)) for one in out.rglob("*.*") if one.is_file()}
-    assert {"workbook.en.pdf", "pages/crank_pin.html", "notebooks/rods.en.ipynb"} <= found
-    assert not {one for one in found if "solutions" in one or "crank_pin.en.ipynb" in one}
-    assert "crank_pin.en.ipynb" not in (out / "notebooks/rods.en.ipynb").read_text("utf-8")

@@ -14,7 +14,7 @@ from coursework.course.lessons import Lesson, taught_by
 from coursework.database.drafts import DraftBox, drafts
 from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
-from coursework.errors import BadInput, CourseworkError
+from coursework.errors import CourseworkError
 from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.markup import markdown
@@ -77,8 +77,6 @@ class Worksheet:
             raise HTTPException("page", 404)
         if not request.user.may(Permission.PRACTICE_ANY) and not site.pool.holds(exercise, int(seed)):
             raise HTTPException("own", 404)
-        if not site.course.folder.has_solutions:
-            raise BadInput(words(request.lang)["study"]["no_solutions"])
         self.exercise, self.seed = exercise, int(seed)
         progress = PersonProgress(site.store, request.user.id, site.clock, exercise)
         self.store = ExerciseStore(progress, exercise)

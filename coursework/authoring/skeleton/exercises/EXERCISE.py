@@ -1,7 +1,7 @@
 """A crank pin: where it is, and how fast it moves.
 
 What is given and how it varies, what a good variant must satisfy, the picture, the questions.
-No answer here: this half is what students may have.
+The answers are those of the file of the same name in solutions/.
 """
 
 from coursework.degrees import polar
