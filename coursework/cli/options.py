@@ -76,7 +76,7 @@ def needing_extra(ready: Callable[[], None]) -> Callable[[click.Context, click.P
 
 def database_ready() -> None:
     """Refuse a database where its libraries are missing."""
-    libraries(("sqlalchemy", "alembic"), "a database needs", "site")
+    libraries(("sqlalchemy",), "a database needs", "site")
 
 
 def _cluster_ready() -> None:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from coursework.site.frame.settings import Entrance
 
 _LIBRARIES = (
-    "alembic", "argon2", "itsdangerous", "limits", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn",
+    "argon2", "itsdangerous", "limits", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn",
 )  # fmt: skip
 _FILE = "coursework.db"
 _LOOPBACK = "127.0.0.1"

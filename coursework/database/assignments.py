@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from functools import cache
 from typing import Any
 
 from sqlalchemy import BindParameter, ColumnElement, Connection, Select, bindparam, insert, select, update
 
-from coursework.database.outdated import outdate, outdate_all, outdate_rows
 from coursework.database.people import put_people
 from coursework.database.tables import assignment, dealt, variant
 from coursework.errors import BadInput, nearest
@@ -84,33 +83,12 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
         "columns": {s: dict(roster_columns) for s, roster_columns in issued.columns.items()},
         **({} if (secret := secret_of(content)) is None else {"secret": secret.text}),
     }
-    was = _stored_columns(connection, name)
     number, before = _assignment(connection, name, course, values)
     items = [_item(item, position) for position, item in enumerate(content["issued"])]
     variants = _put_variants(connection, number, name, items)
     people = _people(connection, issued) if issued.has_roster and not issued.is_pool else {}
-    changed = _put_dealt(connection, name, before, items, variants, people)
-    if was is None or any(was[key] != values[key] for key in ("stated", "is_pool")) or "" in changed:
-        outdate_all(connection, number)
-    else:
-        roster_columns = values["columns"]
-        changed += [
-            student
-            for student in roster_columns
-            if roster_columns[student] != was["columns"].get(student, roster_columns[student])
-        ]
-        changed += [student for student in roster_columns if student not in was["columns"]]
-        outdate(connection, number, changed)
-        if changed:
-            outdate_rows(connection, number)
+    _put_dealt(connection, name, before, items, variants, people)
     return number
-
-
-def _stored_columns(connection: Connection, name: str) -> dict[str, Any] | None:
-    """Return the stored columns of an assignment by its name; None if there is none."""
-    columns = assignment.c.stated, assignment.c.is_pool, assignment.c.columns
-    row = connection.execute(select(*columns).where(assignment.c.name == name)).first()
-    return None if row is None else dict(row._mapping)
 
 
 def _assignment(
@@ -206,8 +184,8 @@ def _put_dealt(
     items: Sequence[Mapping[str, Any]],
     variants: Mapping[tuple[str, str], int],
     people: Mapping[str, int],
-) -> list[str]:
-    """Add new items, and update the positions of known ones; return the students with a change."""
+) -> None:
+    """Add new items, and update the positions of known ones."""
     given = {place_key[:3]: place_key[3] for place_key in before if place_key[0]}
     placed: dict[_Place, int] = {}
     new = []
@@ -229,7 +207,6 @@ def _put_dealt(
         new.append(
             {**values, "variant_id": variants[place_key[2:4]], "person_id": people.get(item["student"])}
         )
-    changed = [str(row["student"]) for row in new]
     next_position = len(items)
     moved = []
     for place_key, row in before.items():
@@ -237,14 +214,12 @@ def _put_dealt(
             placed[place_key], next_position = next_position, next_position + 1
         if row["place"] != placed[place_key]:
             moved.append({"row": row["id"], "now": placed[place_key]})
-            changed.append(str(place_key[0]))
     if moved:
         connection.execute(
             update(dealt).where(dealt.c.id == bindparam("row")).values(place=bindparam("now")), moved
         )
     if new:
         connection.execute(insert(dealt), new)
-    return changed
 
 
 # ---------------------------------------------------------------------- reading
@@ -264,10 +239,9 @@ def issued_content(
     person_id: int | None = None,
     *,
     student: str | None = None,
-    students: Collection[str] = (),
     secret: bool = False,
 ) -> dict[str, Any]:
-    """Return the content of ``issued.json`` for an assignment; for one person or some students alone, if they
+    """Return the content of ``issued.json`` for an assignment; for one person or one student alone, if they
     are given and were issued something. The ``secret`` is included on request: further draws need it, and
     so does an instructor's complete file.
 
@@ -288,9 +262,6 @@ def issued_content(
             columns = {name: student_columns for name, student_columns in columns.items() if name in theirs}
     elif student is not None:
         items = _items(connection, number, dealt.c.student == student)
-    elif students and about.has_roster and not about.is_pool:
-        columns = {name: student_columns for name, student_columns in columns.items() if name in students}
-        items = _items(connection, number, dealt.c.student.in_(list(students)))
     return {
         "format": ISSUED_FORMAT,
         "roster": about.has_roster,
@@ -350,8 +321,7 @@ def issued_of(
     person_id: int | None = None,
     *,
     student: str | None = None,
-    students: Collection[str] = (),
 ) -> Issued:
     """Return the issued variants to mark against, of one person alone if given."""
-    content = issued_content(connection, number, person_id, student=student, students=students)
+    content = issued_content(connection, number, person_id, student=student)
     return Issued(content, f"assignment {number} of the database")

@@ -1,37 +1,25 @@
-"""Current state of a class, or of some of its students: sheets, marks, totals, answers that wait for a
-person. The instructor's pages read aggregates instead (:mod:`coursework.database.aggregates`), which are
-computed from this."""
+"""Current state of a class: sheets, marks, totals, answers that wait for a person."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
-from typing import Any
-
-from sqlalchemy import Connection
 
 from coursework.course.course import Course
-from coursework.database.assignments import issued_of
-from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
 from coursework.database.instructor_queries import (
     AssignmentOverview,
     Placing,
     SiteSubmissions,
     Stamp,
-    placings,
-    site_submissions_of,
-    stamp,
 )
-from coursework.database.publication import late_penalties
-from coursework.database.submissions import rows_of
 from coursework.errors import closest
-from coursework.gradebook.book import Gradebook, Result, Sitting, Total, results
+from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rejecting
 from coursework.gradebook.graded_sheet import Graded
-from coursework.gradebook.placing import SheetKey, Sheets, placed_sheets
+from coursework.gradebook.placing import SheetKey, Sheets
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.waiting import (
     SHOWN_ON_REQUEST,
@@ -39,7 +27,6 @@ from coursework.gradebook.waiting import (
     AnswerToReview,
     Measure,
     groups,
-    measures,
 )
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import namesakes
@@ -79,31 +66,9 @@ class OpenGroup:
         return self.group.why
 
 
-@dataclass(frozen=True)
-class Facts:
-    """Exercises that occur in the answers of a class, in full or part by part; they affect the points of each
-    student."""
-
-    exercises: tuple[str, ...] = ()
-    complete: frozenset[str] = frozenset()
-    apart: Mapping[str, frozenset[str]] = field(default_factory=dict)
-
-    def as_json(self) -> dict[str, Any]:
-        apart = {name: sorted(parts) for name, parts in sorted(self.apart.items())}
-        return {"exercises": sorted(self.exercises), "whole": sorted(self.complete), "apart": apart}
-
-    def add_to(self, book: Gradebook) -> None:
-        """Add the facts to the gradebook of some students."""
-        for name in self.exercises:
-            book.exercises.setdefault(name, Total())
-        book.complete.update(self.complete)
-        for name, parts in self.apart.items():
-            book.apart.setdefault(name, set()).update(parts)
-
-
 @dataclass
 class ClassState:
-    """Class of an assignment, or some students of it, at one stamp."""
+    """Class of an assignment at one stamp."""
 
     course: Course
     about: AssignmentOverview
@@ -111,7 +76,6 @@ class ClassState:
     stamp: Stamp
     machine: Mapping[SheetKey, Graded]  #: as the marking gave them
     numbers: Mapping[SheetKey, int]  #: of the markings
-    firsts: Mapping[SheetKey, int]  #: first markings of the sheets
     measured: Mapping[int, Measure]  #: by marking
     sheets: Sheets
     faults: Mapping[SheetKey, str]
@@ -119,8 +83,6 @@ class ClassState:
     placings: Mapping[str, Placing]
     site_submissions: Mapping[str, SiteSubmissions]
     charged: Mapping[Sitting, float]  #: penalties of late submissions, as shares of the points
-    facts: Facts | None = None  #: of the whole class, where this is a part of it
-    is_part: bool = False  #: some students alone; the received rows are not read
 
     @cached_property
     def is_marked(self) -> bool:
@@ -134,18 +96,12 @@ class ClassState:
 
     @cached_property
     def book(self) -> Gradebook:
-        """Gradebook of the class, or of its part."""
+        """Gradebook of the class."""
         sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected), list(self.sheets.warnings))
         book = Gradebook(
             self.issued, self.sheets.rows_in, self.sheets.blanks, sheets.rejected, sheets.warnings
         )
         book.charged = self.charged
-        if self.facts is not None:
-            self.facts.add_to(book)
-        if self.is_part:
-            for graded in self.graded.values():
-                book.add(graded)
-            return book
         both: dict[SheetKey, Graded | str] = {**self.graded, **self.faults}
         for graded in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
             book.add(graded)
@@ -296,80 +252,3 @@ def row_id(row: Rejected) -> str:
     """Return the digest that identifies a rejected row."""
     text = "\0".join((row.source, *(f"{k}={v}" for k, v in sorted(row.row.items()))))
     return sha256(text.encode("utf-8", "backslashreplace")).hexdigest()[:32]
-
-
-# ------------------------------------------------------------------------ reading
-
-
-def read_class(connection: Connection, course: Course, about: AssignmentOverview) -> ClassState:
-    """Read a whole class: for the export of a table, never for a page.
-
-    Raises
-    ------
-    CourseworkError
-        The course cannot mark what was issued.
-    """
-    issued = issued_of(connection, about.id)
-    sheets = placed_sheets(course, issued, rows_of(connection, about.id))
-    return _read(connection, course, about, issued, sheets, None)
-
-
-def read_students(
-    connection: Connection,
-    course: Course,
-    about: AssignmentOverview,
-    students: Collection[str],
-    rejected: Sequence[Rejected] = (),
-    facts: Facts | None = None,
-) -> ClassState:
-    """Read some students of a class; ``rejected`` are their rows that could not be placed or marked.
-
-    Raises
-    ------
-    CourseworkError
-        The course cannot mark what was issued.
-    """
-    issued = issued_of(connection, about.id, students=students)
-    issued.students = tuple(student for student in issued.students if student in students)
-    return _read(connection, course, about, issued, Sheets(rejected=list(rejected)), students, facts)
-
-
-def read_rows(
-    connection: Connection, course: Course, about: AssignmentOverview
-) -> tuple[tuple[str, Rejected, str, str], ...]:
-    """Return the rows that could not be placed or marked: digest, row, student, and similar name.
-
-    Raises
-    ------
-    CourseworkError
-        The course cannot mark what was issued.
-    """
-    issued = issued_of(connection, about.id)
-    sheets = placed_sheets(course, issued, rows_of(connection, about.id))
-    faults = {sheet: last.fault for sheet, last in last_markings(connection, about.id).items() if last.fault}
-    list(rejecting(sheets, ((p, why) for p, why in faults.items() if p in sheets.sheets)))
-    return tuple((row_id(row), row, *named_by(issued, row)) for row in sheets.rejected)
-
-
-def _read(
-    connection: Connection,
-    course: Course,
-    about: AssignmentOverview,
-    issued: Issued,
-    sheets: Sheets,
-    students: Collection[str] | None,
-    facts: Facts | None = None,
-) -> ClassState:
-    last = last_markings(connection, about.id, students)
-    marks = dict(machine_marks(issued, last.values(), lines_of(connection, last.values())))
-    machine = {sheet: result for sheet, result in marks.items() if not isinstance(result, str)}
-    numbers = {sheet: last[sheet].id for sheet in machine}
-    measured = dict(zip(numbers.values(), measures(course, issued, list(machine.values())), strict=True))
-    faults = {sheet: result for sheet, result in marks.items() if isinstance(result, str)}
-    firsts = {sheet: last[sheet].first for sheet in machine}
-    return ClassState(
-        course, about, issued, stamp(connection, about.id), machine, numbers, firsts, measured, sheets,
-        faults if students is None else {}, Decisions.read(connection, about.id, students),
-        placings(connection, about.id) if students is None else {}, site_submissions_of(connection, about.id, students),
-        late_penalties(connection, about.id, students), facts, students is not None,
-    )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Select, func, select
@@ -42,30 +42,25 @@ class LastMarking(NamedTuple):
     apart: bool
     submitted: str
     fault: str  #: why it could not be marked
-    first: int = 0  #: its first marking, by which sheets are ordered; where that is asked for
-
-
-#: One student by name, several, or with None all.
-Whom = str | Collection[str] | None
 
 
 def last_markings(
-    connection: Connection, assignment_id: int, student: Whom = None
+    connection: Connection, assignment_id: int, student: str | None = None
 ) -> dict[SheetKey, LastMarking]:
     """Return the last marking of each sheet, in the order of the first marking of each; including sheets
     without any current answer."""
     last = _last(assignment_id, student).subquery()
-    query = select(marking, last.c.first).join(last, marking.c.id == last.c.last).order_by(last.c.first)
+    query = select(marking).join(last, marking.c.id == last.c.last).order_by(last.c.first)
     rows = connection.execute(query)
-    return {sheet.key: sheet for sheet in (_last_marking(row)._replace(first=row.first) for row in rows)}
+    return {sheet.key: sheet for sheet in map(_last_marking, rows)}
 
 
-def _last(assignment_id: int, student: Whom) -> Select[Any]:
+def _last(assignment_id: int, student: str | None) -> Select[Any]:
     first, last = func.min(marking.c.id).label("first"), func.max(marking.c.id).label("last")
     query = select(first, last).where(marking.c.assignment_id == assignment_id).group_by(*_SHEET)
     if student is None:
         return query
-    return query.where(marking.c.student.in_([student] if isinstance(student, str) else list(student)))
+    return query.where(marking.c.student == student)
 
 
 def _last_marking(row: Any) -> LastMarking:

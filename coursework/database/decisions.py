@@ -3,14 +3,13 @@ answer counts."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, insert, or_, select
+from sqlalchemy import Connection, Select, insert, select
 
-from coursework.database.outdated import outdate
-from coursework.database.tables import decision, mark, marking, student_total, variant
+from coursework.database.tables import decision, mark, marking, variant
 from coursework.errors import BadInput, UnknownName, nearest
 from coursework.gradebook.accepted import accepted_mark, check_points
 from coursework.gradebook.graded_sheet import Graded
@@ -87,7 +86,6 @@ def decide(
             insert(decision),
             [{**decided._asdict(), "seed": str(decided.seed), **values} for decided in places],
         )
-        outdate(connection, assignment_id, (decided.student for decided in places))
 
 
 def _check(
@@ -128,23 +126,14 @@ class Decisions:
             self._of.setdefault((folded(student), exercise, part), []).append(decided)
 
     @staticmethod
-    def read(
-        connection: Connection, assignment_id: int, student: str | Collection[str] | None = None
-    ) -> Decisions:
-        """Return the decisions on an assignment in their order; of one student or of several, if given."""
+    def read(connection: Connection, assignment_id: int, student: str | None = None) -> Decisions:
+        """Return the decisions on an assignment in their order; of one student, if given."""
         query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
-        if student is not None:
-            names = [student] if isinstance(student, str) else list(student)
-            # A file may spell a name differently: names that are no student's are compared after folding.
-            is_student = select(student_total.c.id).where(
-                student_total.c.assignment_id == assignment_id, student_total.c.student == decision.c.student
-            )
-            query = query.where(or_(decision.c.student.in_(names), ~is_student.exists()))
-        folded_names = None if student is None else frozenset(map(folded, names))
+        # A file may spell a name differently, so the names are compared here, after folding.
         return Decisions(
             (row.student, row.exercise, row.part, _decision(row))
             for row in connection.execute(query)
-            if folded_names is None or folded(row.student) in folded_names
+            if student is None or folded(row.student) == folded(student)
         )
 
     def on(self, student: str, exercise: str, part: str) -> Sequence[Decision]:

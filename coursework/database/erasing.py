@@ -13,29 +13,23 @@ from typing import Any
 
 from sqlalchemy import Connection, Table, delete, select, update
 
-from coursework.database.outdated import outdate_rows
-from coursework.database.personal_data import PersonIdentifiers, conditions, identifiers_of, ids_of
+from coursework.database.personal_data import PersonIdentifiers, conditions, identifiers_of
 from coursework.database.tables import (
     answer,
-    answer_now,
     assignment,
     audit,
     decision,
     delivery,
     extension,
     marking,
-    outdated,
     placing,
     rejected,
     scanned,
     seen,
-    student_total,
     typed,
-    unplaced,
     worksheet,
 )
 
-_CHUNK = 5000  #: rows that are taken away at once
 STRUCK = "…"  #: replaces a name
 _SHORTEST = (
     3  #: characters of what is struck out of the texts of others: a shorter word says of nobody who it is
@@ -72,25 +66,12 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
     if known_as is None:
         return {}
     gone = {}
-    _drop_aggregates(connection, known_as)
     for name, (table, theirs) in conditions(connection, known_as).items():
         gone[name] = connection.execute(delete(table).where(theirs)).rowcount
     theirs = audit.c.actor == number
     connection.execute(update(audit).where(theirs).values(actor=None, address=None))
     _strike(connection, known_as)
     return gone
-
-
-def _drop_aggregates(connection: Connection, known_as: PersonIdentifiers) -> None:
-    """Delete the aggregates of a person, and all rows without a sheet, which may name the person; the latter
-    are computed again."""
-    connection.execute(delete(unplaced))
-    for table in (answer_now, student_total, outdated):
-        theirs = ids_of(connection, table, known_as)
-        for start in range(0, len(theirs), _CHUNK):
-            connection.execute(delete(table).where(table.c.id.in_(theirs[start : start + _CHUNK])))
-    for number in connection.execute(select(assignment.c.id)).scalars().all():
-        outdate_rows(connection, number)
 
 
 def _strike(connection: Connection, known_as: PersonIdentifiers) -> None:

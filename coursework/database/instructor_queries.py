@@ -219,18 +219,14 @@ class SiteSubmissions(NamedTuple):
     late: int  #: seconds, of the last one
 
 
-def site_submissions_of(
-    connection: Connection, assignment_id: int, students: Collection[str] | None = None
-) -> dict[str, SiteSubmissions]:
-    """Return the submissions on the site, by the student's name as issued; of some students alone, if given."""
-    names = {person: name for name, person in people_of(connection, assignment_id, students).items()}
+def site_submissions_of(connection: Connection, assignment_id: int) -> dict[str, SiteSubmissions]:
+    """Return the submissions on the site, by the student's name as issued."""
+    names = {person: name for name, person in people_of(connection, assignment_id).items()}
     query = (
         select(delivery.c.person_id, delivery.c.came, delivery.c.late)
         .where(delivery.c.assignment_id == assignment_id, delivery.c.person_id.is_not(None))
         .order_by(delivery.c.id)
     )
-    if students is not None:
-        query = query.where(delivery.c.person_id.in_(list(names)))
     met: dict[str, SiteSubmissions] = {}
     for person, received_at, late in connection.execute(query):
         if (name := names.get(person)) is not None:
@@ -267,19 +263,14 @@ def students_since(connection: Connection, assignment_id: int, before: Stamp) ->
     return students
 
 
-def people_of(
-    connection: Connection, assignment_id: int, students: Collection[str] | None = None
-) -> dict[str, int]:
-    """Return the person's id of each student of an assignment, by the name as issued; of some students alone,
-    if given."""
+def people_of(connection: Connection, assignment_id: int) -> dict[str, int]:
+    """Return the person's id of each student of an assignment, by the name as issued."""
     query = (
         select(dealt.c.student, dealt.c.person_id)
         .join(variant)
         .where(variant.c.assignment_id == assignment_id, dealt.c.person_id.is_not(None))
         .distinct()
     )
-    if students is not None:
-        query = query.where(dealt.c.student.in_(list(students)))
     return {row.student: row.person_id for row in connection.execute(query)}
 
 

@@ -13,7 +13,6 @@ from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.current_marks import LastMarking, last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
-from coursework.database.outdated import outdate, outdate_rows
 from coursework.database.states import exercise_state, sheet_state
 from coursework.database.store import Store
 from coursework.database.submissions import rows_of
@@ -176,13 +175,6 @@ class Work:
             ]
             for first in range(0, len(lines), _CHUNK):
                 connection.execute(insert(mark), lines[first : first + _CHUNK])
-        outdate(connection, self.assignment_id, [row["student"] for row in rows])
-        if any(isinstance(self.now[sheet], str) or self.was_at_fault(sheet) for sheet in free) or gone:
-            outdate_rows(connection, self.assignment_id)
-
-    def was_at_fault(self, sheet: SheetKey) -> bool:
-        """Return True if the last marking of a sheet failed."""
-        return sheet in self.last and bool(self.last[sheet].fault)
 
 
 # ---------------------------------------------------------------------- marking

@@ -8,7 +8,7 @@ set back neither reopens an assignment nor withdraws what was released.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import datetime, timedelta
 from enum import Enum
@@ -18,7 +18,6 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Select, bindparam, func, insert, select, update
 
-from coursework.database.outdated import outdate_all, outdate_person
 from coursework.database.tables import assignment, dealt, delivery, extension, variant
 
 #: Release of marks and feedback, and of right answers and worked solutions.
@@ -215,8 +214,6 @@ def published(connection: Connection, number: int) -> Publication | None:
 def publish(connection: Connection, number: int, publication: Publication | None) -> None:
     """Publish an assignment; with None, withdraw its publication. Submissions remain."""
     stored = None if publication is None else publication.as_json()
-    if _charging(published(connection, number)) != _charging(publication):
-        outdate_all(connection, number)
     connection.execute(update(assignment).where(assignment.c.id == number).values(published=stored))
 
 
@@ -230,29 +227,16 @@ def is_over(connection: Connection, number: int, clock: datetime) -> bool:
     return ends is not None and ends < current.now(clock)
 
 
-def _charging(publication: Publication | None) -> tuple[object, ...]:
-    """Return the rules that affect the penalty of late submissions."""
-    if publication is None or publication.late != CHARGE:
-        return ()
-    return publication.closes, publication.late_until, publication.late_percent
-
-
-def late_penalties(
-    connection: Connection, number: int, students: Collection[str] | None = None
-) -> dict[tuple[str, int], float]:
+def late_penalties(connection: Connection, number: int) -> dict[tuple[str, int], float]:
     """Return the penalties of late submissions as shares of the points, by student and attempt; a submission
-    that an extension or a later closing date covers is no longer late. Some students alone, if given."""
+    that an extension or a later closing date covers is no longer late."""
     publication = published(connection, number)
     if publication is None or publication.late != CHARGE:
         return {}
     theirs = extensions(connection, number)
     late = select(delivery).where(delivery.c.assignment_id == number, delivery.c.late > 0)
     names = select(dealt.c.person_id, dealt.c.student).join(variant).where(variant.c.assignment_id == number)
-    if students is not None:
-        names = names.where(dealt.c.student.in_(list(students)))
     student_names = {row.person_id: row.student for row in connection.execute(names)}
-    if students is not None:
-        late = late.where(delivery.c.person_id.in_(list(student_names)))
     shares = {}
     for row in connection.execute(late):
         extended = publication.extended(theirs.get(row.person_id))
@@ -267,7 +251,6 @@ def extend(connection: Connection, number: int, person: int, more: Extension) ->
     """Add an extension for a person; the last one counts."""
     row = {"assignment_id": number, "person_id": person, **more._asdict()}
     connection.execute(insert(extension).values(row))
-    outdate_person(connection, number, person)
 
 
 def extensions(connection: Connection, number: int) -> dict[int, Extension]:
@@ -361,5 +344,3 @@ def set_counting_attempt(connection: Connection, number: int, counts: str) -> No
     }
     if values:
         connection.execute(update(assignment).where(assignment.c.id == number).values(values))
-        if counts != (row.stated or {}).get("sittings"):
-            outdate_all(connection, number)

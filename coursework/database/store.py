@@ -1,4 +1,4 @@
-"""Open database: its tables migrated to this version, its faults reported in one line."""
+"""Open database: its tables completed for this version, its faults reported in one line."""
 
 from __future__ import annotations
 
@@ -9,21 +9,16 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from alembic import command
-from alembic.config import Config
-from alembic.runtime.migration import MigrationContext
-from alembic.script import ScriptDirectory
-from alembic.util.exc import CommandError
 from sqlalchemy import Connection, Engine, Table, create_engine, event, make_url
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError, DatabaseError, DBAPIError, NoSuchModuleError, OperationalError
 from sqlalchemy.exc import TimeoutError as NoConnection
 
+from coursework.database.schema import complete_tables, later_version
 from coursework.errors import BadInput
 from coursework.messages import Message
 from coursework.system.sqlite_files import scrub
 
-_MIGRATIONS = Path(__file__).parent / "migrations"
 _READS = "coursework_reads"  #: said of a connection that writes nothing
 CONNECTIONS = (
     20  #: of one process at most: four of them leave a PostgreSQL of the usual settings, 100, some for others
@@ -66,7 +61,7 @@ class Store:
             event.listen(self.engine, "connect", _sqlite_settings)
             event.listen(self.engine, "begin", _begin_writing)
         try:
-            self._migrate()
+            self._complete_tables()
         except BadInput:
             self.close()
             raise
@@ -142,25 +137,18 @@ class Store:
         """Close all connections."""
         self.engine.dispose()
 
-    def _migrate(self) -> None:
-        """Migrate the tables to the latest version that this package knows."""
-        scripts = ScriptDirectory(str(_MIGRATIONS))
+    def _complete_tables(self) -> None:
+        """Make the tables those of this version."""
         try:
             with self.engine.begin() as connection:
                 _one_at_a_time(connection)
-                revision = MigrationContext.configure(connection).get_current_revision()
-                if revision == scripts.get_current_head():
-                    return
-                config = Config()
-                config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
-                config.attributes["connection"] = connection
-                command.upgrade(config, "head")
-        except CommandError as fault:
-            raise BadInput(
-                "{database} was written by a later version of coursework ({problem}): update the package",
-                database=_without_password(self.url),
-                problem=fault,
-            ) from fault
+                if version := later_version(connection):
+                    raise BadInput(
+                        "{database} was written by a later version of coursework ({problem}): update the package",
+                        database=_without_password(self.url),
+                        problem=version,
+                    )
+                complete_tables(connection)
         except DBAPIError as fault:
             raise BadInput(
                 "{database} cannot be opened: {cause}",

@@ -30,7 +30,6 @@ from sqlalchemy import (
 )
 
 from coursework.database.assignments import issued_of
-from coursework.database.outdated import outdate, outdate_rows
 from coursework.database.store import insert_unless_there
 from coursework.database.tables import answer, dealt, delivery, marking, rejected, seen, variant
 from coursework.gradebook.placing import UnplacedError, student_of
@@ -89,15 +88,10 @@ def insert_submission(
         earlier = submission_alike(connection, assignment_id, digest)
         if replaces:
             _replace(connection, assignment_id, earlier.id, source, received_at)
-            outdate_rows(connection, assignment_id)
         return earlier
     _put_rows(connection, number_added, came_rows)
     if replaces:
         _replace(connection, assignment_id, number_added, source, received_at)
-    if person_id is None:
-        outdate_rows(connection, assignment_id)
-    else:
-        outdate(connection, assignment_id, [row.student for row in came_rows if isinstance(row, AnswerRow)])
     return Submission(number_added, True, source, number, receipt, late, received_at)
 
 

@@ -14,7 +14,6 @@ from typing import Any
 
 from sqlalchemy import (
     JSON,
-    BigInteger,
     Boolean,
     Column,
     DateTime,
@@ -496,116 +495,6 @@ audit = Table(
     Column("actor", Integer),  #: id of the person who did it; none for commands and platforms
     Column("subject", Integer, index=True),  #: id of the person concerned
     Column("address", String(64)),  #: network address of the actor
-)
-
-# --------------------------------------------------------------------- aggregates
-# The following tables are computed from those above (:mod:`coursework.database.aggregates`), so that an instructor's page
-# reads few rows and not a whole class. Dumps omit them.
-
-_DERIVED = {"derived": True}
-
-#: Outdated aggregates, noted in the transaction that changed their sources: those of a student, of ``everybody``, or the
-#: ``rows`` that could not be placed.
-outdated = Table(
-    "outdated",
-    METADATA,
-    _key(),
-    _of("assignment", index=True),
-    Column("kind", String(16), nullable=False),
-    Column("student", SafeText, nullable=False, default=""),
-    info=_DERIVED,
-)
-
-#: Student of a class, with the sitting that counts, as in ``summary.csv``.
-student_total = Table(
-    "student_total",
-    METADATA,
-    _key(),
-    _of("assignment"),
-    Column("student", SafeText, nullable=False),
-    Column("search", SafeText, nullable=False),  #: folded name and identity
-    Column("identity", SafeText, nullable=False, default=""),
-    Column("place", BigInteger, nullable=False),  #: in the class
-    Column("sitting", Integer, nullable=False),
-    Column("points", Double, nullable=False),
-    Column("out_of", Double, nullable=False),
-    Column("charged", Double, nullable=False, default=0.0),  #: penalty for late submission, in points
-    Column("mark", SafeText, nullable=False, default=""),
-    Column("tries", Integer, nullable=False, default=0),
-    Column("late", Integer, nullable=False, default=0),  #: seconds
-    Column("waits", Integer, nullable=False, default=0),  #: counting answers that wait for a person
-    Column("handed_in", Boolean, nullable=False, default=False),
-    Column("answered", Boolean, nullable=False, default=False),  #: a sheet of the student is marked
-    Column("verdicts", Json, nullable=False, default=dict),
-    Column("by_exercise", Json, nullable=False, default=dict),
-    UniqueConstraint("assignment_id", "student"),
-    Index("ix_student_total_place", "assignment_id", "place"),
-    info=_DERIVED,
-)
-
-#: Current answer of a class, with the last marking and the decisions; its texts are in its row of ``mark``.
-answer_now = Table(
-    "answer_now",
-    METADATA,
-    _key(),
-    _of("assignment"),
-    Column("marking", Integer, nullable=False),
-    Column(
-        "first", Integer, nullable=False
-    ),  #: first marking of its sheet: the order in which sheets were received
-    Column("place", Integer, nullable=False),  #: on its sheet
-    Column("student", SafeText, nullable=False),
-    Column("exercise", SafeText, nullable=False),
-    Column("seed", SafeText, nullable=False),
-    Column("sitting", Integer, nullable=False),
-    Column("part", SafeText, nullable=False),
-    Column("verdict", SafeText, nullable=False),
-    Column("points", Double, nullable=False),
-    Column("out_of", Double, nullable=False),
-    Column("by_hand", Boolean, nullable=False),
-    Column("counts", Boolean, nullable=False),  #: its sitting counts
-    Column("is_cell", Boolean, nullable=False),  #: it is in the class table
-    Column("is_listed", Boolean, nullable=False),  #: it is a line of ``marks.csv``
-    Column("is_shown", Boolean, nullable=False),  #: it has an answer, in a sitting that is shown
-    Column("wrote", String(16), nullable=False),  #: digest of the answer in one spelling
-    Column("why", String(16)),  #: reason for a review (:data:`coursework.gradebook.waiting.WHY`)
-    Column("card", String(16)),  #: of the queue: equal for equal answers
-    Column("decided", Boolean, nullable=False),
-    Index("ix_answer_now_student", "assignment_id", "student"),
-    Index("ix_answer_now_question", "assignment_id", "exercise", "part"),
-    Index("ix_answer_now_card", "assignment_id", "card"),
-    info=_DERIVED,
-)
-
-#: Row that could not be placed or marked; ``placing`` states what a person did with it.
-unplaced = Table(
-    "unplaced",
-    METADATA,
-    _key(),
-    _of("assignment", index=True),
-    Column("row", String(64), nullable=False),  #: digest, as in ``placing``
-    Column("student", SafeText, nullable=False, default=""),  #: as issued; empty for a stranger
-    Column("near", SafeText, nullable=False, default=""),  #: name that is similar to a stranger's
-    Column("source", SafeText, nullable=False),
-    Column("reason", SafeText, nullable=False),
-    Column("said", Json, nullable=False, default=dict),
-    info=_DERIVED,
-)
-
-#: Totals of an assignment.
-assignment_total = Table(
-    "assignment_total",
-    METADATA,
-    _key(),
-    _of("assignment"),
-    Column("students", Integer, nullable=False, default=0),
-    Column("handed_in", Integer, nullable=False, default=0),
-    Column("answered", Integer, nullable=False, default=0),
-    Column("waiting", Integer, nullable=False, default=0),  #: answers and rows that wait for a person
-    Column("facts", Json, nullable=False, default=dict),  #: facts that affect the points of all
-    Column("version", Integer, nullable=False, default=0),  #: number of computations
-    UniqueConstraint("assignment_id"),
-    info=_DERIVED,
 )
 
 for _table in METADATA.tables.values():  # an id is never used again after its row was erased

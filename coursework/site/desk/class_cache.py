@@ -126,9 +126,8 @@ def _read(
     new = [sheet for sheet in machine if numbers[sheet] not in cached.measured]
     cached.measured.update(_measured(course, issued, [machine[p] for p in new], [numbers[p] for p in new]))
     faults = {sheet: marking for sheet, marking in outcomes.items() if isinstance(marking, str)}
-    firsts = {sheet: last[sheet].first for sheet in machine}
     return ClassState(
-        course, about, issued, at, machine, numbers, firsts, cached.measured, sheets, faults, decisions,
+        course, about, issued, at, machine, numbers, cached.measured, sheets, faults, decisions,
         placed_by_hand, site_submissions_of(connection, about.id), charged,
     )  # fmt: skip
 

@@ -1,0 +1,62 @@
+"""Tables of a database as this version needs them: made, or completed where an earlier version wrote the
+database. While no version is released, :mod:`coursework.database.tables` alone states them."""
+
+from __future__ import annotations
+
+from sqlalchemy import Column, Connection, Inspector, MetaData, String, Table, insert, inspect, select, update
+from sqlalchemy.schema import CreateColumn
+
+from coursework.database.promoting import promote_first
+from coursework.database.tables import METADATA
+
+VERSION = "0010"  #: raised when tables change in another way than by tables and columns that may be empty
+_VERSION_TABLE = Table("alembic_version", MetaData(), Column("version_num", String(32), primary_key=True))
+_ADMINISTRATORS = "0006"  #: first version with administrators
+#: Tables of earlier versions that repeated what the others contain.
+_DROPPED = ("answer_now", "student_total", "assignment_total", "unplaced", "outdated")
+
+
+def later_version(connection: Connection) -> str | None:
+    """Return the version of a database that a later version of this package wrote; None for any other."""
+    version = _version_of(connection)
+    return version if version is not None and version > VERSION else None
+
+
+def complete_tables(connection: Connection) -> None:
+    """Create the missing tables, columns and indexes; drop tables that no version reads any more."""
+    before = _version_of(connection)
+    inspector = inspect(connection)
+    stored = inspector.get_multi_columns()
+    METADATA.create_all(connection)
+    for table in METADATA.sorted_tables:
+        names = {column["name"] for column in stored.get((None, table.name), ())}
+        lacking = [column for column in table.c if names and column.name not in names]
+        for column in lacking:
+            definition = CreateColumn(column).compile(dialect=connection.dialect)
+            connection.exec_driver_sql(f"ALTER TABLE {table.name} ADD COLUMN {definition}")
+        if lacking:
+            _create_indexes(connection, inspector, table)
+    if before == VERSION:
+        return
+    for name in _DROPPED:
+        connection.exec_driver_sql(f"DROP TABLE IF EXISTS {name}")
+    if before is None:
+        _VERSION_TABLE.create(connection)
+        connection.execute(insert(_VERSION_TABLE).values(version_num=VERSION))
+        return
+    connection.execute(update(_VERSION_TABLE).values(version_num=VERSION))
+    if before < _ADMINISTRATORS:
+        promote_first(connection)
+
+
+def _version_of(connection: Connection) -> str | None:
+    if not inspect(connection).has_table(_VERSION_TABLE.name):
+        return None
+    return connection.execute(select(_VERSION_TABLE.c.version_num)).scalar()
+
+
+def _create_indexes(connection: Connection, inspector: Inspector, table: Table) -> None:
+    stored = {index["name"] for index in inspector.get_indexes(table.name)}
+    for index in table.indexes:
+        if index.name not in stored:
+            index.create(connection)
