@@ -280,9 +280,16 @@ class Variant:
 
     @property
     def stated(self) -> dict[str, tuple[float, str]]:
-        """The numbers that the statement gives by their names, each with its unit."""
-        units = self.exercise.units
-        return {n: (v, units[n]) for n, v in self.given.items() if not isinstance(v, str)}
+        """The numbers that the statement gives by their names, each with its unit.
+
+        Neither a case, which has no symbol, nor the number of a drawn mechanism, which no student sees.
+        """
+        units, listed = self.exercise.units, self.exercise.spec.given
+        return {
+            n: (v, units[n])
+            for n, v in self.given.items()
+            if not isinstance(v, str) and listed[n].is_listed(self.part_ids)
+        }
 
     def reference(self, quantity: str) -> Any:
         """Return the right value of an asked quantity."""

@@ -31,6 +31,9 @@ from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.markup.markdown import plain_line
 from coursework.messages import Message
+from coursework.model import Part
+from coursework.quantities.usual_errors import ALL_DEGREES
+from coursework.rendering.feedback import kind_of
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.answer_sheet import answer_sheet, answer_text
 from coursework.sheets.following import follows_from
@@ -80,7 +83,7 @@ def _line(variant: Variant, question: Question, line: Mark, right: str) -> Feedb
     follows."""
     values = localised(line.read_as, variant.lang), line.verdict, line.points, line.out_of, line.says
     part = next(p for p in variant.parts if p.id == question.id)
-    lost = line.points < line.out_of and line.verdict not in _NOT_ABOUT_IT and not part.sort.is_open
+    lost = line.points < line.out_of and _is_looked_for(part, line.verdict)
     return FeedbackLine(
         question,
         line.answer,
@@ -89,6 +92,17 @@ def _line(variant: Variant, question: Question, line: Mark, right: str) -> Feedb
         hint=follows_from(variant, part.quantity) if lost else "",
         read=_with_formulas(question, line.read_as, variant.lang),
     )
+
+
+def _is_looked_for(part: Part, verdict: str) -> bool:
+    """Return whether it helps to hear from what a quantity follows.
+
+    Not where the message lists it, as it does for a wrong number; not where only the form of the answer is wrong, nor for
+    what is drawn or chosen freely and judged with other answers.
+    """
+    if part.sort.is_open or part.judge or verdict in _NOT_ABOUT_IT:
+        return False
+    return kind_of(verdict) != "slip" and (verdict != "wrong" or part.sort.wrong != "wrong")
 
 
 def _with_formulas(question: Question, read_as: str, lang: str) -> str:
@@ -114,7 +128,7 @@ def _right_answers(variant: Variant) -> dict[str, str]:
 _ADVISED = 3  #: places that are pointed at
 _WAIT = ("unreadable", "to_mark")  #: verdicts that are not the last word
 #: Verdicts of answers that do not show how their quantity was looked for.
-_NOT_ABOUT_IT = (*_WAIT, "wrong_unit", "missing_unit", "follow_through", "accepted")
+_NOT_ABOUT_IT = (*_WAIT, "wrong_unit", "missing_unit", "follow_through", "accepted", f"slip:{ALL_DEGREES}")
 
 
 def feedback_paper(

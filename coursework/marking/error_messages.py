@@ -185,23 +185,24 @@ def _unexplained_message(variant: Variant, part: Part, read: str, before: Earlie
     if part.sort.wrong not in ("wrong", "wrong_place", "wrong_count") or not parts:
         return say(variant, part, part.sort.wrong, read=read)
     to_mend = [p for p in parts if p.quantity not in before.right]
-    states = [
-        table["depends_on"][before.state(p)].format(f"${symbol(variant, p.quantity)}$")
-        for p in to_mend or parts
+    states: dict[str, list[str]] = {}
+    for p in to_mend or parts:
+        states.setdefault(before.state(p), []).append(f"${symbol(variant, p.quantity)}$")
+    groups = [
+        (table["depends_on_many"] if len(symbols) > 1 else table["depends_on"])[state].format(
+            listed(symbols, variant.lang)
+        )
+        for state, symbols in states.items()
     ]
     sentence = "wrong_from" if to_mend else "wrong_from_right"
-    return say(variant, part, sentence, read=read, list=listed(states, variant.lang))
+    return say(variant, part, sentence, read=read, list=listed(groups, variant.lang))
 
 
 def _given_above(variant: Variant, quantity: str) -> list[str]:
     """Return the symbols of the given quantities that one is computed from; none of so many that a list tells nothing."""
     graph = variant.exercise.solution.graph.textbook
     above = graph.ancestors((quantity,)) if quantity in graph.names else frozenset()
-    given = [
-        name
-        for name, value in variant.given.items()
-        if name in above and name != quantity and not isinstance(value, str)
-    ]
+    given = [name for name in variant.stated if name in above and name != quantity]
     return [f"${symbol(variant, name)}$" for name in given] if len(given) <= _LISTED else []
 
 

@@ -79,7 +79,7 @@ def part_name(variant: Variant, part: Part) -> str:
 def echo(text: str, lang: str) -> str:
     """Return the text that was read, shortened, as the language writes numbers; safe inside Markdown."""
     shortened_text = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
-    if "=" in shortened_text:
+    if "=" in text:
         return "`" + "".join(c for c in shortened_text if c.isprintable() and c not in "`$") + "`"
     return _harmless(localised(shortened_text, lang))
 

@@ -11,7 +11,7 @@ from coursework.course.answer_key import Key
 from coursework.errors import CourseworkError
 from coursework.language.words import words
 from coursework.marking.diagnosis import EarlierAnswers, mistakes_that_fit
-from coursework.marking.feedback import Sentence, amount, echo, either_symbol, part_name, questions, say
+from coursework.marking.feedback import Sentence, amount, echo, either_symbol, questions, say
 from coursework.marking.judges import Verdict, judged
 from coursework.marking.mark import Mark, made_mark
 from coursework.model import Part
@@ -80,7 +80,7 @@ def mark_judged(
         share = share if verdict.mistake and share else key.price(mistakes[0])
 
         if told_with and verdict.mistake:
-            message = told("told_with", first=part_name(variant, told_with))
+            message = told("told_with", first=questions(variant, [told_with.id], "and"))
         else:
             message = told("mistake", says=variant.told(mistakes[0]))
         return mark_of(matches[0], share, read_as, message, matches)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
@@ -63,6 +64,8 @@ def kind_of(verdict: str) -> str:
     kind, _, name = verdict.partition(":")
     if kind == "slip" and name in (*KINDS, *TAKEN):
         kind = "usual"
+    elif name == "not_drawn":
+        kind = name
     return kind if kind in words("en")["feedback"]["verdicts"] else "otherwise"
 
 
@@ -103,7 +106,7 @@ def legend(sheets: Iterable[FeedbackSheet], lang: str) -> tuple[Meaning, ...]:
 
 
 _ORDER = (
-    "correct", "accepted", "follow_through", "partial", "missing_unit", "slip", "mistake", "usual", "wrong_unit",
+    "correct", "accepted", "follow_through", "partial", "missing_unit", "slip", "not_drawn", "mistake", "usual", "wrong_unit",
     "wrong", "otherwise", "unreadable", "to_mark", "missing",
 )  # fmt: skip
 
@@ -154,15 +157,26 @@ def right_answer(line: FeedbackLine) -> str:
 
 def read_otherwise(line: FeedbackLine) -> str:
     """Return the text that was read in an answer, where it differs from the answer."""
-    return "" if _plainly(line.read_as) == _plainly(line.answer) else line.read_as
+    read, answer = line.read_as, line.answer
+    if _plainly(read) == _plainly(answer) or _entries(read) == _entries(answer):
+        return ""
+    label = _LETTER.sub("", read)
+    return "" if label != read and _plainly(label).casefold() == _plainly(answer).casefold() else read
 
 
-_SPELLED_ALIKE = str.maketrans({",": ".", "\N{MINUS SIGN}": "-"})
+_SPELLED_ALIKE = str.maketrans({",": ".", "\N{MINUS SIGN}": "-", "*": "·", "’": "'", "\N{EN DASH}": "-"})
+_LETTER = re.compile(r"[a-z]\) ")  #: before the label of a choice
+_BETWEEN = re.compile(r"[\s;|{}()]+|,(?=\s)")  #: entries of a list
 
 
 def _plainly(text: str) -> str:
     """Return a text without what differs by habit alone: spaces, the decimal sign, the sign of minus, brackets round it."""
     return "".join(text.split()).translate(_SPELLED_ALIKE).strip("()")
+
+
+def _entries(text: str) -> list[str]:
+    """Return the entries of a list, however they are separated."""
+    return [piece.translate(_SPELLED_ALIKE) for piece in _BETWEEN.split(text) if piece]
 
 
 def is_brief(line: FeedbackLine, lang: str, prefix: str = "") -> bool:
@@ -181,19 +195,29 @@ def is_long(line: FeedbackLine) -> bool:
     return len(line.answer) > _LONG or line.answer.count("\n") > _LONG / 60
 
 
-#: The end of a prompt's first sentence: what a question is called beside its answer.
+#: A prompt piece by piece, with the ends of its sentences.
 _PIECE = re.compile(r"\$\$?[^$]*\$\$?|`[^`]*`|(?P<end>[.?!…](?=\s|\Z)|\n\s*\n)|.", re.DOTALL)
 
 
 def question_heading(line: FeedbackLine) -> str:
-    """Return the first sentence of a question, Markdown; with its symbol where that is not in it."""
-    prompt, symbol, end = line.question.prompt.strip(), line.question.symbol, 0
-    for piece in _PIECE.finditer(prompt):
-        end = piece.end()
-        if piece["end"]:
-            break
-    first = prompt[:end].strip()
-    return first if not symbol or _bare(symbol) in _bare(first) else f"{first} (${symbol}$)"
+    """Return what a question is called beside its answer, Markdown.
+
+    The first sentence with its symbol; where it has none, all up to the sentence that asks; else the first sentence, and
+    the symbol behind it.
+    """
+    symbol, sentences = _bare(line.question.symbol), _sentences(line.question.prompt)
+    if symbol:
+        named = (sentence for sentence in sentences if symbol in _bare(sentence))
+        return next(named, f"{sentences[0]} (${line.question.symbol}$)")
+    asking = (k for k, sentence in enumerate(sentences, start=1) if sentence.endswith(("?", ":")))
+    return " ".join(sentences[: next(asking, 1)])
+
+
+def _sentences(prompt: str) -> list[str]:
+    ends = [piece.end() for piece in _PIECE.finditer(prompt) if piece["end"]]
+    cuts = [0, *ends, len(prompt)]
+    found = (prompt[start:end].strip() for start, end in itertools.pairwise(cuts))
+    return [sentence for sentence in found if sentence] or [""]
 
 
 def _bare(latex: str) -> str:
@@ -215,7 +239,12 @@ def lesson_words(lesson: Lesson, lang: str) -> str:
     next_words = words(lang)["feedback"]["next"]
     if not lesson.sections:
         return str(next_words["lesson"]).format(lesson.title)
-    named = [quoted(section, lang) for section in lesson.sections]
+    named = [quoted(_unbroken_number(section), lang) for section in lesson.sections]
     return str(next_words["section" if len(named) == 1 else "sections"]).format(
         lesson.title, listed(named, lang)
     )
+
+
+def _unbroken_number(section: str) -> str:
+    """Return the title of a section, which no line's end parts from its number."""
+    return re.sub(r"^(\d+\.) ", "\\1\N{NO-BREAK SPACE}", section)

@@ -55,11 +55,12 @@ def follows_from(variant: Variant, quantity: str) -> str:
     """Return the quantities from which a quantity follows, as Markdown: given ones by symbol, asked ones by
     question.
 
-    Nothing where it takes none of these, or so many that a list of them says nothing.
+    What is given as a case, such as an assembly mode, has no symbol and is left out. Nothing where it takes none of these,
+    or so many that a list of them says nothing.
     """
     numbers = {part.quantity: number for number, part in enumerate(variant.parts, start=1)}
     needed = _on_the_sheet(variant, quantity, numbers)
-    given = [_symbol(variant, name) for name in needed if name in variant.given]
+    given = [_symbol(variant, name) for name in variant.stated if name in needed]
     before = [(name, numbers[name]) for name in needed if name in numbers and name not in variant.given]
     if not 0 < len(given) + len(before) <= _MOST:
         return ""
@@ -79,4 +80,4 @@ def _question_words(variant: Variant, name: str, question: str) -> str:
 
 def _symbol(variant: Variant, name: str) -> str:
     """Return a quantity's symbol as Markdown."""
-    return f"${variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)}$"
+    return f"${variant.exercise.symbol(name)}$"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import json
+import re
 import shutil
 import subprocess
 from collections import Counter
@@ -15,6 +16,7 @@ from small_assignment import issue, write
 
 import coursework
 from coursework.cli import run
+from coursework.course.exercise import ALL
 from coursework.course.lessons import lesson_title, taught_by
 from coursework.errors import BadCourse, BadInput
 from coursework.gradebook.class_marking import marked
@@ -32,6 +34,8 @@ from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.marking.marking import mark
 from coursework.rendering.renderer import renderer_of
+from coursework.sheets.following import follows_from
+from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Lesson
 
 COURSE = coursework.open_course()
@@ -165,10 +169,12 @@ def test_who_lost_points_is_told_another_variant_and_the_lesson_and_who_lost_non
 
 
 def test_what_is_told_to_look_at_is_what_the_quantity_follows_from(tmp_path, issued_file):
-    rows = answers("Ada", NAMES[0], 5, rA="1 mm", theta4="1 °")
+    rows = answers("Ada", NAMES[0], 5, rA="1 mm", theta4="")
     sheet = marked_paper(tmp_path, issued_file(), rows).sheets[0]
     lines = {line.question.id: line for line in sheet.lines}
-    assert r"$r_1$, $r_2$, $\theta_1$ and $\theta_2$ (given)" in lines["theta4"].hint
+    assert r"$r_1$, $\theta_1$, $r_2$ and $\theta_2$ (given)" in lines["theta4"].hint
+    assert lines["rA"].hint == ""  # its message lists them
+    assert r"$r_1$, $\theta_1$, $r_2$ and $\theta_2$" in lines["rA"].says
     solution = COURSE[NAMES[0]].variant(5, "en", PARTS).solution()
     assert not any(f"{value:.4g}" in line.hint for value in solution.values() for line in sheet.lines)
     right, blank = marked_paper(tmp_path, issued_file(), answers("Ada", NAMES[0], 5)).sheets
@@ -177,6 +183,17 @@ def test_what_is_told_to_look_at_is_what_the_quantity_follows_from(tmp_path, iss
         ""
     }  # nothing was tried: the lesson and the variant say more
     assert blank.practice is not None
+
+
+def test_what_is_told_to_look_at_is_printed_on_the_sheet():
+    """No case by its name in the code, and no number by which a mechanism was drawn."""
+    for variant in (COURSE[name].variant(3, "en", (ALL,)) for name in COURSE.names):
+        sheet = handout(variant)
+        seen = {given.symbol for given in sheet.given if given.is_number}
+        seen |= {COURSE[sheet.exercise].symbol(part.quantity) for part in variant.parts}
+        for part in (part for part in variant.parts if not part.sort.is_open):
+            told = follows_from(variant, part.quantity)
+            assert {*re.findall(r"\$([^$]+)\$", told)} <= seen, (sheet.exercise, part.id, told)
 
 
 @pytest.mark.parametrize("name", COURSE.names)

@@ -68,7 +68,7 @@ def test_what_nothing_explains_is_told_what_it_is_computed_from():
     answers = {"rA": right["rA"], "theta4": right["theta4"], "omega4": 7.123 * right["omega4"]}
     mark = variant.grade(answers)["omega4"]
     assert mark.verdict == "wrong"
-    assert "r_A (right)" in mark.feedback
+    assert "r_A and θ₄ (right)" in mark.feedback
     assert "the relation between them" in mark.feedback
     wrong = variant.grade({**answers, "rA": 1.23 * right["rA"]})["omega4"]
     assert "not yet right" in wrong.feedback

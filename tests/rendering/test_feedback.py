@@ -258,10 +258,12 @@ def test_a_sign_tells_the_share_of_the_points_and_none_is_told_by_colour_alone()
         ("The angle $x. y$ of A? Then more.", "", "The angle $x. y$ of A?"),
         ("Write `a. b` so", "q", "Write `a. b` so ($q$)"),
         ("Speed $\\dot\\phi$.", "\\dot{\\phi}", "Speed $\\dot\\phi$."),
+        ("Draw it. The angle $\\alpha$, measured.", "\\alpha", "The angle $\\alpha$, measured."),
+        ("The crank drives. The linkage is:", "", "The crank drives. The linkage is:"),
         ("At 2.5 s it is:\n\nmore", "", "At 2.5 s it is:"),
     ],
 )
-def test_a_question_is_called_by_its_first_sentence(prompt, symbol, shown):
+def test_a_question_is_called_by_the_sentence_that_asks(prompt, symbol, shown):
     line = feedback_sheet("en").lines[0]
     assert (
         feedback.question_heading(
@@ -277,6 +279,12 @@ def test_a_question_is_called_by_its_first_sentence(prompt, symbol, shown):
         ("60.5", "60,5", ""),
         ("-3", "−3", ""),
         ("1;2", "(1; 2)", ""),
+        ("wy vx", "wy, vx", ""),
+        ("{1 2 3 | 4 5 6}", "{1; 2; 3} {4; 5; 6}", ""),
+        ("1,2", "1; 2", "1; 2"),
+        ("12 N*m", "12 N·m", ""),
+        ("Une rotation", "b) une rotation", ""),
+        ("b", "b) une rotation", "b) une rotation"),
         ("0,32 m", "320 mm", "320 mm"),
         ("x", "", ""),
     ],
@@ -306,7 +314,7 @@ def test_what_to_try_next_is_told_in_every_format(lang):
     command = "coursework notebook slotted_mechanism --seed 57"
     for text in RENDERER.html(sheet), RENDERER.paper_html(whole):
         assert f"{command} --lang {lang}" in text
-        assert "8. Coriolis" in text
+        assert "8.\N{NO-BREAK SPACE}Coriolis" in text
     for pages in RENDERER.pdf(sheet), RENDERER.paper_pdf(whole):  # nobody types a command that is on paper
         text = " ".join("".join(page_texts(pages)).split())
         assert "coursework" not in text
