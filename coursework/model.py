@@ -8,7 +8,7 @@
             "theta1": fixed(90, unit="deg"),
             "mode": chosen("open", "crossed"),
         },
-        keep=(crank_turns,),
+        constraints=(crank_turns,),
         parts=(Part("rA", unit="mm"), Part("theta4", unit="deg", kind="angle", points=2)),
         figure=figure,
     )
@@ -25,6 +25,8 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from numbers import Real
 from typing import Any
+
+import numpy as np
 
 from coursework.errors import BadCourse, WrongValue, nearest
 from coursework.kinds.kind import Kind, kind_of
@@ -405,6 +407,45 @@ class Driver:
         return self.jack.length if self.jack else self.angle
 
 
+def clearly_apart(value: Any, right: Any, tolerance: Any, least: float = 2.0, most: float = 0.25) -> Any:
+    """Return where a value lies ``least`` tolerances and more from the right one, or ``most`` and less; so where nobody
+    can doubt whether it is right. What does not exist is clearly wrong."""
+    return _is_clear(abs(value - right) / tolerance, least, most)
+
+
+def _is_clear(gap: Any, least: float, most: float) -> Any:
+    return ~((gap > most) & (gap < least))
+
+
+@dataclass(frozen=True)
+class Detectable:
+    """Constraint: a named mistake of the solution makes of each of some quantities what is :func:`clearly_apart`."""
+
+    mistake: str
+    quantities: tuple[str, ...]
+    least: float
+    most: float
+
+    @property
+    def __name__(self) -> str:
+        return f"{self.mistake}_is_detectable"
+
+    def holds(self, part: Part, wrong: Any, right: Any) -> Any:
+        """Return where the mistake shows clearly in the answers to a part."""
+        gap = abs(wrong - right)
+        if turn := part.sort.turn:
+            gap = np.minimum(gap % turn, -gap % turn)
+        return _is_clear(gap / np.maximum(part.atol, part.rtol * abs(right)), self.least, self.most)
+
+
+def detectable(mistake: str, *quantities: str, least: float = 2.0, most: float = 0.25) -> Detectable:
+    """Return the constraint that a mistake of the solution shows clearly in some quantities, or not at all.
+
+    The tolerance of a quantity is that of the part that asks it.
+    """
+    return Detectable(mistake, quantities, least, most)
+
+
 @dataclass(frozen=True)
 class Exercise:
     r"""Exercise without its answers.
@@ -415,11 +456,12 @@ class Exercise:
         The given quantities, in the order they are drawn and printed.
     parts
         The questions, in order.
-    keep
-        Conditions a variant must satisfy: functions of given quantities (and of ``helpers``) to
-        booleans, on arrays; a name says what it wants, since refusals are counted by it.
+    constraints
+        What a variant must satisfy: functions of quantities to booleans, on arrays; a name says what it wants, since
+        refusals are counted by it. A quantity is given, or computed by a helper or by the solution. That a named
+        mistake shows in the answers is :func:`detectable`.
     helpers
-        Functions that several conditions share; their names are quantities to the conditions.
+        Functions that the figure and the constraints share; their names are quantities to them.
     figure
         A function of given quantities (and of ``helpers``) to a :class:`~coursework.figures.Figure`, a
         :class:`~coursework.figures.Picture` of a file beside the exercise, or a tuple of them.
@@ -445,7 +487,7 @@ class Exercise:
 
     given: Mapping[str, GivenSpec]
     parts: Sequence[Part]
-    keep: Sequence[Callable[..., Any]] = ()
+    constraints: Sequence[Callable[..., Any] | Detectable] = ()
     helpers: Sequence[Callable[..., Any]] = ()
     figure: Callable[..., Any] | None = None
     tells: Callable[..., Mapping[str, Any]] | None = None

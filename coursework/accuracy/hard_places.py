@@ -21,7 +21,6 @@ import numpy as np
 from coursework.accuracy.closure import Closure
 from coursework.accuracy.followed import Arithmetic, Followed, NotFollowed, of_arrays
 from coursework.accuracy.reference import twinned
-from coursework.course import draws
 from coursework.course.exercise import CourseExercise
 from coursework.errors import CourseworkError
 from coursework.quantities.graph import Graph
@@ -172,7 +171,7 @@ class Terrain:
     @cached_property
     def _drawn(self) -> dict[str, tuple[float, float]]:
         """Least and largest drawn value of each quantity, without regard to constraints."""
-        values = draws.first_candidates(self.exercise.name, self.exercise.spec, 512)
+        values = self.exercise.drawing.first_candidates(512)
         return {n: (float(np.nanmin(values[n])), float(np.nanmax(values[n]))) for n in self.names}
 
     @cached_property

@@ -30,7 +30,6 @@ from coursework.authoring.check_penalties import check_prices
 from coursework.authoring.check_report import RESIDUAL, CheckReport
 from coursework.authoring.check_units import check_units
 from coursework.authoring.check_usual import check_usual_errors
-from coursework.course import draws
 from coursework.course.answer_key import Key, exists
 from coursework.course.course import Course, opened
 from coursework.course.exercise import ALL, CourseExercise, refuse_complex
@@ -135,7 +134,7 @@ def _check_one(course: Course[Any], name: str, variants: int) -> CheckReport:
 
 
 def _check_variants(exercise: CourseExercise, count: int, report: CheckReport) -> None:
-    report.acceptance = draws.acceptance(exercise.name, exercise.drawing)[0]
+    report.acceptance = exercise.drawing.acceptance()
     lang = exercise.languages[0]
     try:
         drawn = distinct_variants(exercise, 0, count, lang, report.refused, (ALL,))

@@ -12,17 +12,21 @@ import hashlib
 import inspect
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coursework.course.secrecy import Secret
 from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
-from coursework.model import Bound, Exercise, GivenSpec
+from coursework.model import Bound, Detectable, Exercise, GivenSpec, Part
 from coursework.quantities.graph import Graph
+
+if TYPE_CHECKING:
+    from coursework.solution import Solution
 
 BLOCK = 16  #: candidates a block; part of the stream's definition
 MAX_BLOCKS = 256  #: a seed that finds nothing in BLOCK · MAX_BLOCKS candidates starves
@@ -102,129 +106,6 @@ def _draw_one(spec: GivenSpec, words: np.ndarray, drawn: Mapping[str, np.ndarray
     return np.where(count > 0, grid.value(k), np.nan)
 
 
-def candidates(exercise: Exercise, words: np.ndarray) -> dict[str, np.ndarray]:
-    """Given quantities from raw bits of shape (n, number of given quantities)."""
-    drawn: dict[str, np.ndarray] = {}
-    for column, (name, spec) in enumerate(exercise.given.items()):
-        drawn[name] = _draw_one(spec, words[:, column], drawn)
-    return drawn
-
-
-def conditions(exercise: Exercise) -> tuple[Graph, tuple[str, ...]]:
-    """Return the conditions of an exercise as a graph, and their names."""
-    functions: dict[str, Callable] = {f.__name__: f for f in (*exercise.helpers, *exercise.keep)}
-    return Graph(functions), tuple(f.__name__ for f in exercise.keep)
-
-
-def accepted(exercise: Exercise, drawn: Mapping[str, np.ndarray]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return which candidates are variants, and for each constraint which candidates it refuses.
-
-    Shapes ``(n,)``. A candidate with an empty range is refused as ``range of NAME is empty``, of the first such.
-    """
-    size = len(next(iter(drawn.values())))
-    refused = {}
-    empty = np.zeros(size, dtype=bool)
-    for name, values in drawn.items():
-        if values.dtype.kind == "f" and (here := np.isnan(values) & ~empty).any():
-            refused[f"range of {name} is empty"] = here
-            empty |= here
-    graph, names = conditions(exercise)
-    usable = {n: drawn[n] for n in drawn if n in graph.leaves}
-    for name, answer in graph.evaluate(names, usable).items():
-        refused[name] = ~np.broadcast_to(np.asarray(answer, dtype=bool), (size,))
-    good = np.ones(size, dtype=bool)
-    for mask in refused.values():
-        good &= ~mask
-    return good, refused
-
-
-def draw(
-    name: str, exercise: Exercise, seeds: Sequence[int], secret: Secret | None = None
-) -> list[dict[str, float | str]]:
-    """Return the given values of each seed's variant, in canonical units; with a secret, of each code of an assignment.
-
-    Raises
-    ------
-    Starved
-        Some seed finds no variant in its bounded draws; the message names the condition that refuses most.
-    """
-    draws: list[dict[str, float | str] | None] = [None] * len(seeds)
-    pending = np.arange(len(seeds))
-    width = len(exercise.given)
-    for block in range(MAX_BLOCKS):
-        # A block of candidates for each pending seed; few at a time, so that memory stays flat.
-        still = []
-        for chunk in _chunks(pending, 4096):
-            words = np.concatenate(
-                [_words(name, exercise.version, seeds[i], block, width, secret) for i in chunk]
-            )
-            drawn = candidates(exercise, words)
-            good, _ = accepted(exercise, drawn)
-            good = good.reshape(len(chunk), BLOCK)
-            first = good.argmax(axis=1)
-            hit = good.any(axis=1)
-            rows = np.flatnonzero(hit) * BLOCK + first[hit]
-            columns = {n: values[rows].tolist() for n, values in drawn.items()}
-            for position, i in enumerate(chunk[hit]):
-                draws[i] = {n: column[position] for n, column in columns.items()}
-            still.append(chunk[~hit])
-        pending = np.concatenate(still) if still else pending[:0]
-        if not len(pending):
-            return draws  # type: ignore[return-value]  # none is left out
-    raise _starved(name, exercise, seeds[pending[0]], secret)
-
-
-def _starved(name: str, exercise: Exercise, seed: int, secret: Secret | None = None) -> Starved:
-    """Return the error for a seed without a variant: it names the constraints that refuse most of its
-    draws."""
-    width = len(exercise.given)
-    words = np.concatenate(
-        [_words(name, exercise.version, seed, b, width, secret) for b in range(MAX_BLOCKS)]
-    )
-    _, refused = accepted(exercise, candidates(exercise, words))
-    refusals = Counter({condition: int(mask.sum()) for condition, mask in refused.items()})
-    worst = ", ".join(f"{condition} ({count} times)" for condition, count in refusals.most_common(3) if count)
-    return Starved(
-        f"{name}: seed {seed} found no variant in {len(words)} draws; refused by {worst}; "
-        "widen a range or relax the condition"
-    )
-
-
-def _chunks(indices: np.ndarray, size: int) -> Iterator[np.ndarray]:
-    for start in range(0, len(indices), size):
-        yield indices[start : start + size]
-
-
-def acceptance(name: str, exercise: Exercise, count: int = 4096) -> tuple[float, dict[str, float]]:
-    """Share of candidates that are variants, and the share that each condition refuses."""
-    good, refused = accepted(exercise, first_candidates(name, exercise, count))
-    return float(good.mean()), {condition: float(mask.mean()) for condition, mask in refused.items()}
-
-
-def first_candidates(name: str, exercise: Exercise, count: int) -> dict[str, np.ndarray]:
-    """Return the first candidates of the first seeds, at least so many, whether or not they are variants."""
-    seeds = range(math.ceil(count / BLOCK))
-    words = np.concatenate([_words(name, exercise.version, s, 0, len(exercise.given)) for s in seeds])
-    return candidates(exercise, words)
-
-
-def population(exercise: Exercise, limit: int = 200_000) -> int | None:
-    """Return the number of distinct variants, by trying every combination; None beyond ``limit``
-    combinations."""
-    combinations: list[dict[str, float | str]] = [{}]
-    for name, spec in exercise.given.items():
-        grown = []
-        for partial in combinations:
-            grown += [{**partial, name: value} for value in _all_values(spec, partial)]
-            if len(grown) > limit:
-                return None
-        combinations = grown
-    if not combinations:
-        return 0
-    drawn = {n: np.array([c[n] for c in combinations]) for n in exercise.given}
-    return int(accepted(exercise, drawn)[0].sum())
-
-
 def _all_values(spec: GivenSpec, partial: Mapping[str, Any]) -> list[float | str]:
     if spec.is_choice:
         return list(spec.choices)
@@ -236,20 +117,209 @@ def _all_values(spec: GivenSpec, partial: Mapping[str, Any]) -> list[float | str
     return [float(grid.value(np.int64(k))) for k in range(low, high + 1) if k or not spec.nonzero]
 
 
-def check_conditions(name: str, exercise: Exercise) -> None:
-    """Fail early when a condition needs what is not given.
+def _empty_ranges(drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return which candidates have an empty range, by ``range of NAME is empty``, of the first such."""
+    refused: dict[str, np.ndarray] = {}
+    empty = np.zeros(len(next(iter(drawn.values()))), dtype=bool)
+    for name, values in drawn.items():
+        if values.dtype.kind == "f" and (here := np.isnan(values) & ~empty).any():
+            refused[f"range of {name} is empty"] = here
+            empty |= here
+    return refused
 
-    Raises
-    ------
-    BadCourse
-        Says which condition and what it needs.
+
+class Drawing:
+    """Draws of an exercise: its given quantities, and its constraints joined with what computes the quantities that
+    they need.
+
+    A constraint of given quantities and helpers alone is evaluated first; only the candidates that satisfy all such
+    are passed to the graph of the reference solution, which computes the quantities that the other constraints name, and
+    no others.
+
+    Parameters
+    ----------
+    name
+        The name of the exercise, which keys the stream.
+    spec
+        The exercise.
+    solution
+        A function that returns the reference solution; called only where a constraint needs it.
     """
-    graph, names = conditions(exercise)
-    try:
-        graph.plan(names, exercise.given)
-    except MissingQuantity as fault:
-        names_known = {*exercise.given, *graph.quantities} - {*names}
-        near = nearest(fault.names[0], names_known)
-        raise BadCourse(f"{name}: a condition cannot be evaluated: {fault.needed}{near}") from fault
-    except CourseworkError as fault:
-        raise BadCourse(f"{name}: a condition cannot be evaluated: {fault}") from fault
+
+    def __init__(self, name: str, spec: Exercise, solution: Callable[[], Solution] | None = None):
+        self.name = name
+        self.spec = spec
+        self._solution = solution
+        helpers = {f.__name__: f for f in spec.helpers}
+        stated = {f.__name__: f for f in spec.constraints if not isinstance(f, Detectable)}
+        own = Graph({**helpers, **stated})
+        known = frozenset(spec.given)
+        self._direct = tuple(n for n in stated if own.ancestors((n,)) <= known | own.names)
+        self._direct_graph = Graph({**helpers, **{n: stated[n] for n in self._direct}})
+        self._computed = {n: f for n, f in stated.items() if n not in self._direct}
+        self._detectable = tuple(f for f in spec.constraints if isinstance(f, Detectable))
+        if solution is None:
+            self._check(own, tuple(stated))
+
+    def _check(self, graph: Graph, names: Sequence[str]) -> None:
+        """Refuse constraints that need what is neither given nor computed."""
+        try:
+            graph.plan(names, self.spec.given)
+        except MissingQuantity as fault:
+            near = nearest(fault.names[0], {*self.spec.given, *graph.quantities} - {*names})
+            raise BadCourse(f"{self.name}: a constraint cannot be evaluated: {fault.needed}{near}") from fault
+        except CourseworkError as fault:
+            raise BadCourse(f"{self.name}: a constraint cannot be evaluated: {fault}") from fault
+
+    # -------------------------------------------------------------- constraints
+
+    @cached_property
+    def _graph(self) -> Graph:
+        """The reference quantities with the helpers and the constraints that need them.
+
+        Raises
+        ------
+        BadCourse
+            Says which constraint needs something unknown, and what.
+        """
+        assert self._solution is not None, "without a solution every constraint was checked"
+        graph = self._solution().graph
+        twice = graph.names & self._computed.keys()
+        if twice:
+            raise BadCourse(
+                f"{self.name}: {min(twice)} is a constraint and a quantity; rename the constraint"
+            )
+        # A helper that bears the name of a quantity says it of the figure; the constraints take the reference.
+        helpers = {f.__name__: f for f in self.spec.helpers if f.__name__ not in graph.names}
+        graph = graph.with_functions({**helpers, **self._computed})
+        self._check(graph, tuple(self._computed))
+        return graph
+
+    def refused(self, drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return for each constraint which candidates it refuses, shape ``(n,)``.
+
+        A candidate with an empty range is refused as ``range of NAME is empty``.
+        """
+        return _empty_ranges(drawn) | self._refused_directly(drawn) | self._refused_by_answers(drawn)
+
+    def accepted(self, drawn: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return which candidates are variants, shape ``(n,)``."""
+        size = len(next(iter(drawn.values())))
+        good = np.ones(size, dtype=bool)
+        for mask in (_empty_ranges(drawn) | self._refused_directly(drawn)).values():
+            good &= ~mask
+        if (self._computed or self._detectable) and good.any():
+            rows = np.flatnonzero(good)
+            for mask in self._refused_by_answers({n: values[rows] for n, values in drawn.items()}).values():
+                good[rows] &= ~mask
+        return good
+
+    def _refused_directly(self, drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        graph = self._direct_graph
+        values = graph.evaluate(self._direct, {n: v for n, v in drawn.items() if n in graph.leaves})
+        return _refusals(values, drawn)
+
+    def _refused_by_answers(self, drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        if not self._computed and not self._detectable:
+            return {}
+        graph, solution = self._graph, self._solution()  # type: ignore[misc]  # the graph is made of it
+        effects = self.spec.effects
+        known = {n: v for n, v in drawn.items() if n in graph.leaves or n in graph.quantities}
+        requested = dict.fromkeys(q for constraint in self._detectable for q in constraint.quantities)
+        found = graph.everything((*self._computed, *requested), known, effects)
+        answers = {name: found[name] for name in self._computed}
+        right = {n: v for n, v in found.items() if n in solution.graph.names}
+        for constraint in self._detectable:
+            mistaken = solution.mistaken(constraint.mistake)
+            wrong = mistaken.evaluate(constraint.quantities, known, effects, right)
+            with np.errstate(all="ignore"):
+                holds = [constraint.holds(self._part_of(n), value, found[n]) for n, value in wrong.items()]
+            answers[constraint.__name__] = np.all(np.broadcast_arrays(*holds), axis=0)
+        return _refusals(answers, drawn)
+
+    def _part_of(self, quantity: str) -> Part:
+        """Return the part that asks a quantity; one with the usual tolerance where none does."""
+        part = next((p for p in self.spec.parts if p.quantity == quantity), None)
+        return part or Part(quantity, unit=self._solution().units.get(quantity, "1"))  # type: ignore[misc]
+
+    # -------------------------------------------------------------------- draws
+
+    def candidates(self, words: np.ndarray) -> dict[str, np.ndarray]:
+        """Return given quantities from raw bits of shape (n, number of given quantities)."""
+        drawn: dict[str, np.ndarray] = {}
+        for column, (name, spec) in enumerate(self.spec.given.items()):
+            drawn[name] = _draw_one(spec, words[:, column], drawn)
+        return drawn
+
+    def _block(self, seed: int, block: int, secret: Secret | None = None) -> np.ndarray:
+        return _words(self.name, self.spec.version, seed, block, len(self.spec.given), secret)
+
+    def draw(self, seeds: Sequence[int], secret: Secret | None = None) -> list[dict[str, float | str]]:
+        """Return the given values of each seed's variant, in canonical units; with a secret, of each code of an assignment.
+
+        Raises
+        ------
+        Starved
+            Some seed finds no variant in its bounded draws; the message names the constraint that refuses most.
+        """
+        draws: list[dict[str, float | str] | None] = [None] * len(seeds)
+        pending = np.arange(len(seeds))
+        for block in range(MAX_BLOCKS):
+            # A block of candidates for each pending seed; few at a time, so that memory stays flat.
+            still = []
+            for start in range(0, len(pending), 4096):
+                chunk = pending[start : start + 4096]
+                drawn = self.candidates(np.concatenate([self._block(seeds[i], block, secret) for i in chunk]))
+                good = self.accepted(drawn).reshape(len(chunk), BLOCK)
+                first = good.argmax(axis=1)
+                hit = good.any(axis=1)
+                rows = np.flatnonzero(hit) * BLOCK + first[hit]
+                columns = {n: values[rows].tolist() for n, values in drawn.items()}
+                for position, i in enumerate(chunk[hit]):
+                    draws[i] = {n: column[position] for n, column in columns.items()}
+                still.append(chunk[~hit])
+            pending = np.concatenate(still) if still else pending[:0]
+            if not len(pending):
+                return draws  # type: ignore[return-value]  # none is left out
+        raise self._starved(seeds[pending[0]], secret)
+
+    def _starved(self, seed: int, secret: Secret | None) -> Starved:
+        """Return the error for a seed without a variant: it names the constraints that refuse most of its
+        draws."""
+        words = np.concatenate([self._block(seed, block, secret) for block in range(MAX_BLOCKS)])
+        refused = self.refused(self.candidates(words))
+        refusals = Counter({constraint: int(mask.sum()) for constraint, mask in refused.items()})
+        worst = ", ".join(f"{name} ({count} times)" for name, count in refusals.most_common(3) if count)
+        return Starved(
+            f"{self.name}: seed {seed} found no variant in {len(words)} draws; refused by {worst}; "
+            "widen a range or relax the constraint"
+        )
+
+    def acceptance(self, count: int = 4096) -> float:
+        """Return the share of candidates that are variants."""
+        return float(self.accepted(self.first_candidates(count)).mean())
+
+    def first_candidates(self, count: int) -> dict[str, np.ndarray]:
+        """Return the first candidates of the first seeds, at least so many, whether or not they are variants."""
+        seeds = range(math.ceil(count / BLOCK))
+        return self.candidates(np.concatenate([self._block(seed, 0) for seed in seeds]))
+
+    def population(self, limit: int = 200_000) -> int | None:
+        """Return the number of distinct variants, by trying every combination; None beyond ``limit``
+        combinations."""
+        combinations: list[dict[str, float | str]] = [{}]
+        for name, spec in self.spec.given.items():
+            grown = []
+            for partial in combinations:
+                grown += [{**partial, name: value} for value in _all_values(spec, partial)]
+                if len(grown) > limit:
+                    return None
+            combinations = grown
+        if not combinations:
+            return 0
+        return int(self.accepted({n: np.array([c[n] for c in combinations]) for n in self.spec.given}).sum())
+
+
+def _refusals(answers: Mapping[str, Any], drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    size = len(next(iter(drawn.values())))
+    return {name: ~np.broadcast_to(np.asarray(a, dtype=bool), (size,)) for name, a in answers.items()}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from coursework.course import draws
+from coursework.course.draws import Drawing
 from coursework.course.folder import Folder
 from coursework.course.lettering import printed_order
 from coursework.course.records import Records
@@ -62,7 +62,6 @@ class CourseExercise(Generic[V]):
             raise BadCourse(f"{folder.source('exercises', name)} states no EXERCISE = Exercise(…)")
         self.spec: Exercise = spec
         self.texts = ExerciseTexts(folder, name)
-        draws.check_conditions(name, spec)
 
     def __repr__(self) -> str:
         return f"<exercise {self.name}>"
@@ -273,7 +272,7 @@ class CourseExercise(Generic[V]):
         UnknownName
             A part that the exercise does not have.
         Starved
-            The conditions refuse every draw.
+            The constraints refuse every draw.
         """
         return self.variants([seed], lang, parts, secret)[0]
 
@@ -292,7 +291,7 @@ class CourseExercise(Generic[V]):
             if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
                 raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
         seeds = [int(seed) for seed in seeds]
-        drawn = draws.draw(self.name, self.drawing, seeds, secret)
+        drawn = self.drawing.draw(seeds, secret)
         return [
             self._variant(self, seed, given, lang, chosen, None, self._orders(seed, secret))
             for seed, given in zip(seeds, drawn, strict=True)
@@ -305,24 +304,17 @@ class CourseExercise(Generic[V]):
         return {p.id: printed_order(self.name, code, p, secret) for p in self.spec.parts if p.choices}
 
     @cached_property
-    def drawing(self) -> Exercise:
-        """The exercise with every condition on its variants: those on answers stand with the solution.
-
-        Raises
-        ------
-        BadCourse
-            Nothing beside the solution states them.
-        """
+    def drawing(self) -> Drawing:
+        """The draws of the exercise's variants."""
         if not self.spec.kept_by_solution:
-            return self.spec
+            return Drawing(self.name, self.spec, lambda: self.solution)
         module = self.folder.keep_module(self.name)
         retained = getattr(module, "KEEP", ())
         if not retained:
             raise BadCourse(f"_{self.name}_keep.py states no KEEP, which {self.name} says that it is kept by")
         helpers = (*self.spec.helpers, *getattr(module, "HELPERS", ()))
-        spec = replace(self.spec, keep=(*self.spec.keep, *retained), helpers=helpers)
-        draws.check_conditions(self.name, spec)
-        return spec
+        spec = replace(self.spec, constraints=(*self.spec.constraints, *retained), helpers=helpers)
+        return Drawing(self.name, spec, lambda: self.solution)
 
     def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
         """Parts by id, in the order of the exercise; None for the usual ones.

@@ -9,7 +9,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol, Self, TypeVar
 
-from coursework.course import draws
 from coursework.course.answer_key import Key
 from coursework.course.asked import KeySource
 from coursework.course.course import Course
@@ -80,7 +79,7 @@ def distinct_variants(
                 break
         seed = batch.stop
     if len(by_values) < count:
-        exist = draws.population(exercise.drawing)
+        exist = exercise.drawing.population()
         reason = (
             Message("{count} found", count=len(by_values))
             if exist is None or refused

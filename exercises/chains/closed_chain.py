@@ -59,7 +59,7 @@ EXERCISE = Exercise(
         **{f"{axis}{k}": coordinate() for k in (2, 3, 4) for axis in "xyz"},
     },
     helpers=(),
-    keep=(no_body_passes_through_another_joint,),
+    constraints=(no_body_passes_through_another_joint,),
     parts=(
         Part("gamma", kind="integer", points=1, by_request=True),  # one loop, always
         Part("Nc", kind="integer", points=1),

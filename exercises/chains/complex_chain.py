@@ -103,7 +103,7 @@ EXERCISE = Exercise(
         "yE": _hidden(-20, 20),
     },
     helpers=(),
-    keep=(four_bar_is_off_its_dead_points,),
+    constraints=(four_bar_is_off_its_dead_points,),
     parts=(
         Part("n", kind="integer", points=1),
         Part("gamma", kind="integer", points=1),

@@ -90,7 +90,7 @@ EXERCISE = Exercise(
         "omega1": drawn(-30, 30, unit="rad/s", nonzero=True),
     },
     helpers=(across,),
-    keep=(
+    constraints=(
         axis_offset_is_visible,
         crank_off_the_axes,
         fork_leans_visibly,

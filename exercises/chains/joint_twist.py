@@ -75,7 +75,7 @@ EXERCISE = Exercise(
         "omega2": drawn(-20, 20, step=1, unit="rad/s"),
         **{f"{letter}{k}": _force() for k in (1, 2) for letter in "XYZ"},
     },
-    keep=(the_point_matters, both_leave_something_or_the_first_is_a_hinge, the_forces_are_some),
+    constraints=(the_point_matters, both_leave_something_or_the_first_is_a_hinge, the_forces_are_some),
     parts=(
         Part("twist_1", kind="twist_pattern", points=1),
         Part("twist_1_at_2", kind="twist_pattern", points=2),

@@ -53,7 +53,7 @@ def figure(*given):
 
 EXERCISE = Exercise(
     given=several_joints(SOFT),
-    keep=(moves,),
+    constraints=(moves,),
     parts=(
         Part("Ns", kind="integer", points=1),
         Part("rs", kind="integer", points=2),

@@ -125,7 +125,7 @@ EXERCISE = Exercise(
         "y4": drawn(-20, 0, step=20, unit="mm", shown=False),
     },
     helpers=(),
-    keep=(all_joints_move_in_the_plane, one_joint_at_most_is_free, few_freedoms_in_space),
+    constraints=(all_joints_move_in_the_plane, one_joint_at_most_is_free, few_freedoms_in_space),
     parts=(
         *(Part(f"planar_{k}", kind="choice", choices=PLANAR, points=1) for k in (1, 2, 3, 4)),
         Part("gamma", kind="integer", points=1, by_request=True),  # one loop, always

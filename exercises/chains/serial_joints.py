@@ -97,7 +97,7 @@ def figure(*given):
 
 EXERCISE = Exercise(
     given=several_joints(STIFF),
-    keep=(longer_rows_have_few_freedoms, longer_rows_seldom_have_six, equivalents_are_mixed),
+    constraints=(longer_rows_have_few_freedoms, longer_rows_seldom_have_six, equivalents_are_mixed),
     parts=(
         Part("Nc", kind="integer", points=1),
         *in_turn(

@@ -122,7 +122,7 @@ EXERCISE = Exercise(
         "arrangement": drawn(1, 24, default=1, shown=False),
     },
     helpers=(bars, P, curves),
-    keep=(
+    constraints=(
         crank_turns,
         transmission_angle_from_30_to_150,
         crank_off_the_frame,

@@ -44,7 +44,7 @@ EXERCISE = Exercise(
         "mode": chosen("open", "crossed"),
     },
     helpers=(bars,),
-    keep=(
+    constraints=(
         crank_turns,
         transmission_angle_from_30_to_150,
         crank_off_the_frame,

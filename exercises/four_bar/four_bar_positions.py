@@ -38,7 +38,7 @@ EXERCISE = Exercise(
         "r4": drawn(50, 220, step=5, unit="mm"),
         "theta2": drawn(-175, 180, step=5, unit="deg"),
     },
-    keep=(crank_off_the_axes, a_keeps_its_size),
+    constraints=(crank_off_the_axes, a_keeps_its_size),
     parts=(
         Part(
             "linkage_type",

@@ -88,7 +88,7 @@ EXERCISE = Exercise(
         "M": drawn(10, 60, step=5, unit="N*m"),
     },
     helpers=(bars,),
-    keep=(
+    constraints=(
         crank_turns,
         transmission_angle_from_30_to_150,
         crank_off_the_frame,

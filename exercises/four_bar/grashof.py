@@ -28,7 +28,7 @@ def figure(r1, r2, r3, r4):
 
 EXERCISE = Exercise(
     given={name: drawn(40, 250, step=5, unit="mm") for name in ("r1", "r2", "r3", "r4")},
-    keep=(triple_rockers_are_rare,),
+    constraints=(triple_rockers_are_rare,),
     parts=(
         Part("s_plus_l", unit="mm", points=1, rtol=0, atol=0.5),
         Part("p_plus_q", unit="mm", points=1, rtol=0, atol=0.5),

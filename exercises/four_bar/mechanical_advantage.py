@@ -44,7 +44,7 @@ EXERCISE = Exercise(
         "F_e": drawn(50, 500, step=10, unit="N"),
     },
     helpers=(bars,),
-    keep=(crank_turns, transmission_angle_from_30_to_150, crank_off_the_frame, crank_turns_visibly),
+    constraints=(crank_turns, transmission_angle_from_30_to_150, crank_off_the_frame, crank_turns_visibly),
     parts=(
         Part("omega4", unit="rad/s", points=2),
         Part("mechanical_advantage", points=2),

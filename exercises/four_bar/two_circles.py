@@ -34,7 +34,7 @@ EXERCISE = Exercise(
         "r4": drawn(50, 220, step=5, unit="mm"),
         "theta2": drawn(-175, 180, step=5, unit="deg"),
     },
-    keep=(crank_off_the_axes,),
+    constraints=(crank_off_the_axes,),
     parts=(
         of_drawing("kl", "mm/mm"),
         of_drawing("p", kind="point"),

@@ -107,7 +107,7 @@ EXERCISE = Exercise(
         "psi_dot": drawn(-150, 150, unit="rad/s", nonzero=True),
         "psi_ddot": drawn(-100, 100, unit="rad/s^2", default=0, shown=("a_O3_y",)),
     },
-    keep=(input_turns_visibly, input_accelerates_visibly, acceleration_unlike_velocity),
+    constraints=(input_turns_visibly, input_accelerates_visibly, acceleration_unlike_velocity),
     parts=(
         *in_turn(
             1,

@@ -65,7 +65,7 @@ EXERCISE = Exercise(
         "omega1": drawn(-20, 20, unit="rad/s"),
     },
     helpers=(arm,),
-    keep=(guide_turns_fully, crank_off_the_axes, crank_turns_visibly, equiprojectivity_tells),
+    constraints=(guide_turns_fully, crank_off_the_axes, crank_turns_visibly, equiprojectivity_tells),
     parts=(
         _read("kv", "mm/s/mm"),
         _vector("v10"),

@@ -74,7 +74,7 @@ EXERCISE = Exercise(
         "omega1": drawn(-20, 20, unit="rad/s"),
     },
     helpers=(arm,),
-    keep=(guide_turns_fully, crank_off_the_axes, crank_turns_visibly),
+    constraints=(guide_turns_fully, crank_off_the_axes, crank_turns_visibly),
     parts=(
         *in_turn(
             3,

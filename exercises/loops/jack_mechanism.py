@@ -119,7 +119,7 @@ EXERCISE = Exercise(
         "eta": drawn(15, 40, unit="deg"),
     },
     helpers=(foot, theta4, tilts),
-    keep=(
+    constraints=(
         jack_is_one_stage,
         body_lies_low_on_the_closed_jack,
         body_tips_far,

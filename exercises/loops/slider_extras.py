@@ -108,7 +108,7 @@ EXERCISE = Exercise(
         "mode": chosen("open", "crossed"),
     },
     helpers=(pin_A, pin_B, pin_P),
-    keep=(crank_across_the_frame, coefficient_c_not_small),
+    constraints=(crank_across_the_frame, coefficient_c_not_small),
     parts=(
         *in_turn(1, ("r2", "theta2", "omega2"), *(Part(i, kind="integer") for i in ("mobility", "cycles"))),
         *_equations("loop_1"),

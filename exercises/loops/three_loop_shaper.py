@@ -146,7 +146,7 @@ EXERCISE = Exercise(
         "mode": chosen("open", "crossed"),
     },
     helpers=(frame, crank, pose, turn),
-    keep=(
+    constraints=(
         crank_turns,
         angle_at_B_from_30_to_150,
         block_stays_on_its_bar,

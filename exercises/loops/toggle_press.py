@@ -141,7 +141,7 @@ EXERCISE = Exercise(
         "F": drawn(5000, 40000, step=500, unit="N"),
     },
     helpers=(crank_pivot, B, A, C, theta2),
-    keep=(
+    constraints=(
         crank_turns,
         crank_and_coupler_make_an_angle,
         coupler_is_not_square_to_the_crank,

@@ -157,7 +157,7 @@ EXERCISE = Exercise(
         "mode_2": chosen("open", "crossed"),
     },
     helpers=(frame, crank, bars, reach_of_D),
-    keep=(
+    constraints=(
         plate_is_bent,
         crank_turns,
         angle_at_B_from_30_to_150,

@@ -32,7 +32,7 @@ def tells(r1, r2, r3, r4, theta2, omega2, mode):
 EXERCISE = Exercise(
     given=FOUR_BAR,
     helpers=(bars, rates),
-    keep=(crank_turns_visibly, lines_cross_clearly),
+    constraints=(crank_turns_visibly, lines_cross_clearly),
     parts=(
         *known("known_BA_n", "known_BA_t", "known_B_n", "known_B_t"),
         of_drawing("ka", "mm/s^2/mm"),

@@ -29,7 +29,7 @@ def tells(r1, r2, r3, r4, r5, theta2, omega2, mode):
 EXERCISE = Exercise(
     given={**GIVEN, "omega2": drawn(4, 20, unit="rad/s")},
     helpers=HELPERS,
-    keep=(crank_off_the_axes,),
+    constraints=(crank_off_the_axes,),
     parts=(
         *known("known_BA_n", "known_BA_t", "known_B_n", "known_C"),
         of_drawing("ka", "mm/s^2/mm"),

@@ -30,7 +30,7 @@ def tells(r1, r2, theta2, omega2):
 EXERCISE = Exercise(
     given=SLOTTED,
     helpers=(guided,),
-    keep=(crank_turns_visibly,),
+    constraints=(crank_turns_visibly,),
     parts=(
         *known("known_c", "known_s", "known_n", "known_t"),
         of_drawing("ka", "mm/s^2/mm"),

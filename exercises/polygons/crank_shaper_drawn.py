@@ -102,7 +102,7 @@ EXERCISE = Exercise(
         "omega2": drawn(-12, 12, unit="rad/s"),
     },
     helpers=(guided, ram),
-    keep=(
+    constraints=(
         crank_turns_visibly,
         crank_off_the_axes,
         lever_swings_and_carries_P,

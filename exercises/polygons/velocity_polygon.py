@@ -23,7 +23,7 @@ def tells(r1, r2, r3, r4, theta2, mode):
 EXERCISE = Exercise(
     given=FOUR_BAR,
     helpers=(bars,),
-    keep=(crank_turns_visibly, lines_cross_clearly),
+    constraints=(crank_turns_visibly, lines_cross_clearly),
     parts=(
         *known("known_A", "known_BA", "known_B"),
         of_drawing("kv", "mm/s/mm"),

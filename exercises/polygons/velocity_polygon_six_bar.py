@@ -19,7 +19,7 @@ def tells(r1, r2, r3, r4, r5, theta2, mode):
 EXERCISE = Exercise(
     given=GIVEN,
     helpers=HELPERS,
-    keep=(crank_turns_visibly, crank_off_the_axes, crank_not_square_to_the_coupler),
+    constraints=(crank_turns_visibly, crank_off_the_axes, crank_not_square_to_the_coupler),
     parts=(
         *known("known_A", "known_BA", "known_B", "known_CB", "known_C", count=3),
         of_drawing("kv", "mm/s/mm"),

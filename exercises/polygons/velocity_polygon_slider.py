@@ -24,7 +24,7 @@ EXERCISE = Exercise(
     version=3,
     given=SLIDER_CRANK,
     helpers=(rod,),
-    keep=(crank_turns_visibly, offset_is_none_or_visible, rod_reaches_all_turn),
+    constraints=(crank_turns_visibly, offset_is_none_or_visible, rod_reaches_all_turn),
     parts=(
         *known("known_A", "known_BA", "known_B"),
         of_drawing("kv", "mm/s/mm"),

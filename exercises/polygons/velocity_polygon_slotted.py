@@ -28,7 +28,7 @@ def tells(r1, r2, theta2):
 EXERCISE = Exercise(
     given=SLOTTED,
     helpers=(guided,),
-    keep=(crank_turns_visibly, guide_is_unlike_the_crank),
+    constraints=(crank_turns_visibly, guide_is_unlike_the_crank),
     parts=(
         *known("known_A", "known_B", "known_BA"),
         of_drawing("kv", "mm/s/mm"),

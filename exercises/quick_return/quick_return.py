@@ -193,7 +193,7 @@ EXERCISE = Exercise(
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
     helpers=(B, A, theta2, C, OB_at_the_ends, rocker_at_the_ends, unequal_halves, greatest_rise),
-    keep=(
+    constraints=(
         crank_is_the_shortest,
         crank_turns,
         transmission_angle_from_30_to_150,

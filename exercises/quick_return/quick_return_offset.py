@@ -80,7 +80,7 @@ EXERCISE = Exercise(
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
     helpers=(rod, unequal_halves),
-    keep=(offset_is_visible, crank_turns_with_room, strokes_last_unlike, crank_off_the_axes),
+    constraints=(offset_is_visible, crank_turns_with_room, strokes_last_unlike, crank_off_the_axes),
     parts=(
         Part("xC", unit="mm", points=1),
         Part("v_C", unit="mm/s", points=2),

@@ -87,7 +87,7 @@ EXERCISE = Exercise(
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
     helpers=(arm, P, C, lowest_P),
-    keep=(
+    constraints=(
         rod_reaches_with_room,
         rod_never_in_line_with_the_guide,
         pins_can_be_told_apart_on_paper,

@@ -85,7 +85,7 @@ EXERCISE = Exercise(
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
     helpers=(arm, P, C),
-    keep=(
+    constraints=(
         pivots_can_be_told_apart_on_paper,
         pins_can_be_told_apart_on_paper,
         rod_reaches_with_room,

@@ -63,7 +63,7 @@ EXERCISE = Exercise(
         "delta": drawn(0.03, 0.08, step=0.005),
     },
     helpers=(arm, P, C, lowest_P),
-    keep=(
+    constraints=(
         rod_reaches_with_room,
         rod_never_in_line_with_the_guide,
         pins_can_be_told_apart_on_paper,

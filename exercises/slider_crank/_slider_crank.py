@@ -19,3 +19,7 @@ def largest_offset(r2):
 
 def offset_is_none_or_visible(e, r2):
     return (e == 0) | (abs(e) >= 0.1 * r2)
+
+
+def rod_turns_visibly(omega3, r3, r2, omega2):
+    return r3 * abs(omega3) > 0.1 * r2 * abs(omega2)

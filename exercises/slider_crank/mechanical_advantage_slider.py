@@ -15,9 +15,9 @@ from coursework.figures import (
     slider,
     vector,
 )
-from coursework.model import Driver, Exercise, Part, drawn
+from coursework.model import Driver, Exercise, Part, clearly_apart, detectable, drawn
 
-from ._slider_crank import largest_offset, offset_is_none_or_visible, rod
+from ._slider_crank import largest_offset, offset_is_none_or_visible, rod, rod_turns_visibly
 
 
 def crank_turns_visibly(omega2):
@@ -26,6 +26,14 @@ def crank_turns_visibly(omega2):
 
 def crank_off_the_axes(theta2):
     return theta2 % 90 != 0
+
+
+def piston_moves_visibly(r1_dot, r2, omega2):
+    return abs(r1_dot) > 0.15 * r2 * abs(omega2)
+
+
+def speeds_of_rod_and_piston_can_be_told_apart(V_BA, V_s):
+    return clearly_apart(V_BA, V_s, 0.01 * V_s)
 
 
 def figure(rod, r2, e, theta2, omega2):
@@ -57,7 +65,17 @@ EXERCISE = Exercise(
         "Gamma_e": drawn(2, 40, step=0.5, unit="N*m"),
     },
     helpers=(rod,),
-    keep=(crank_turns_visibly, offset_is_none_or_visible, crank_off_the_axes),
+    constraints=(
+        crank_turns_visibly,
+        offset_is_none_or_visible,
+        crank_off_the_axes,
+        rod_turns_visibly,
+        piston_moves_visibly,
+        detectable("advantage_inverse", "mechanical_advantage"),
+        speeds_of_rod_and_piston_can_be_told_apart,
+        detectable("rod_forgotten_in_v", "r1_dot", "V_s"),
+        detectable("one_sign_wrong", "r1_dot", "V_s"),
+    ),
     parts=(
         Part("r1_dot", unit="mm/s", points=2),
         Part("mechanical_advantage", points=2),
@@ -67,5 +85,4 @@ EXERCISE = Exercise(
     figure=figure,
     symbols={"mechanical_advantage": r"\lambda", "Gamma_e": r"\Gamma_e"},
     driver=Driver("theta2", "omega2", output="r1_dot"),
-    kept_by_solution=True,
 )

@@ -4,9 +4,9 @@ import numpy as np
 
 from coursework.degrees import polar
 from coursework.figures import Figure, angle_mark, dimension, ground_pivot, line, link, pin, rail, slider
-from coursework.model import Driver, Exercise, Part, drawn, fixed, loop_equations
+from coursework.model import Driver, Exercise, Part, detectable, drawn, fixed, loop_equations
 
-from ._slider_crank import largest_offset, offset_is_none_or_visible, rod
+from ._slider_crank import largest_offset, offset_is_none_or_visible, rod, rod_turns_visibly
 
 
 def velocity_scale(r2, omega2):
@@ -31,6 +31,18 @@ def crank_turns(omega2):
 
 def rod_leans_visibly(rod):
     return abs(rod.imag) > 0.03 * abs(rod)
+
+
+def piston_moves_visibly(r1_dot, r2, omega2):
+    return abs(r1_dot) > 0.1 * r2 * abs(omega2)
+
+
+def rod_accelerates_visibly(alpha3, r3, r2, omega2):
+    return r3 * abs(alpha3) > 0.1 * r2 * omega2**2
+
+
+def piston_accelerates_visibly(r1_ddot, r2, omega2):
+    return abs(r1_ddot) > 0.15 * r2 * omega2**2
 
 
 def asks_drawing(alpha2):
@@ -81,7 +93,18 @@ EXERCISE = Exercise(
         ),
     },
     helpers=(rod,),
-    keep=(crank_turns, offset_is_none_or_visible, rod_leans_visibly),
+    constraints=(
+        crank_turns,
+        offset_is_none_or_visible,
+        rod_leans_visibly,
+        rod_turns_visibly,
+        piston_moves_visibly,
+        rod_accelerates_visibly,
+        piston_accelerates_visibly,
+        detectable("theta3_sign", "alpha3", "bb_t", "r1_ddot", "pa_b"),
+        detectable("rod_forgotten_in_v", "r1_dot", "pv_b"),
+        detectable("rod_normal_missing", "r1_ddot", "pa_b"),
+    ),
     parts=(
         Part("theta3", unit="deg", kind="angle", points=1),
         Part("r1", unit="mm", points=1),
@@ -116,5 +139,4 @@ EXERCISE = Exercise(
         "pa_b": "p_a b",
     },
     driver=Driver("theta2", "omega2", "alpha2", output="r1_dot"),
-    kept_by_solution=True,
 )

@@ -57,7 +57,7 @@ EXERCISE = Exercise(
             chosen("C3_C3", "C4_P4", "C3_C4", "C3_P4", shown=("relative_motion",)), default="C3_C4"
         ),
     },
-    keep=(guide_turns_visibly, block_slides_visibly),
+    constraints=(guide_turns_visibly, block_slides_visibly),
     parts=(
         Part("a_coriolis", unit="mm/s^2", points=2),
         Part("direction", unit="deg", kind="angle", points=2),

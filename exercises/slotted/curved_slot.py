@@ -79,7 +79,7 @@ EXERCISE = Exercise(
         "mode": chosen("open", "crossed"),
     },
     helpers=(bars, ends),
-    keep=(crank_turns, slot_is_less_than_half_a_circle, crank_off_the_frame, crank_turns_visibly),
+    constraints=(crank_turns, slot_is_less_than_half_a_circle, crank_off_the_frame, crank_turns_visibly),
     parts=(
         Part("theta3", unit="deg", kind="angle", points=1),
         Part("theta4", unit="deg", kind="angle", points=1),

@@ -108,7 +108,7 @@ EXERCISE = Exercise(
         "omega": drawn(-60, 60, unit="rad/s", nonzero=True),
     },
     helpers=(rising, law, least),
-    keep=(
+    constraints=(
         cam_is_in_its_rise,
         cam_is_tightest_elsewhere,
         cam_bulges_all_around,

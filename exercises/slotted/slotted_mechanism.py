@@ -61,7 +61,7 @@ EXERCISE = Exercise(
         "alpha2": drawn(-20, 20, unit="rad/s^2", default=0),
     },
     helpers=(arm,),
-    keep=(crank_unlike_frame, block_away_from_O4, block_slides_visibly, crank_off_the_axes),
+    constraints=(crank_unlike_frame, block_away_from_O4, block_slides_visibly, crank_off_the_axes),
     parts=(
         Part("rA", unit="mm", points=1),
         Part("theta4", unit="deg", kind="angle", points=1),

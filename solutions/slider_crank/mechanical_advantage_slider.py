@@ -14,8 +14,6 @@ from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import Moving, given, mistake, stable
 
-from ._mechanical_advantage_slider_keep import *
-
 UNITS = {
     "p": "mm",
     "q": "mm",

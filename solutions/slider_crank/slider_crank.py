@@ -23,8 +23,6 @@ from coursework.polygons import (
 )
 from coursework.solution import formula, given, mistake, stable
 
-from ._slider_crank_keep import *
-
 UNITS = {"p": "mm", "q": "mm"}
 LOOPS = {
     "loop_1": (

@@ -29,8 +29,6 @@ from coursework.polygons import (
 )
 from coursework.solution import formula, given, mistake, stable
 
-from ._slider_crank_torque_keep import *
-
 GRAVITY = 9.81  #: m/s^2, along -y
 
 UNITS = {

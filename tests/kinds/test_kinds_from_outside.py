@@ -66,7 +66,7 @@ def lengths_differ(r1, r2):
 
 EXERCISE = Exercise(
     given={"r1": drawn(50, 200, step=5, unit="mm"), "r2": drawn(50, 200, step=5, unit="mm")},
-    keep=(lengths_differ,),
+    constraints=(lengths_differ,),
     parts=(Part("reach", unit="mm", kind="interval", points=2),),
 )
 '''

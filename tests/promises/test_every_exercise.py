@@ -13,7 +13,7 @@ from sweeps import slow
 import coursework
 from coursework.authoring import checks
 from coursework.authoring.check_report import CheckReport
-from coursework.course.draws import BLOCK, acceptance
+from coursework.course.draws import BLOCK
 from coursework.language.words import languages
 from coursework.rendering.renderer import renderer_of
 
@@ -133,7 +133,7 @@ def test_a_request_computes_what_it_needs_and_nothing_else(name):
 
 @every_exercise
 def test_at_least_one_draw_in_ten_is_a_variant(name):
-    assert acceptance(name, COURSE[name].spec, 4096)[0] > 0.1
+    assert COURSE[name].drawing.acceptance() > 0.1
 
 
 @every_exercise

@@ -15,7 +15,6 @@ from sweeps import whole_course
 
 import coursework
 from coursework.cli import run
-from coursework.course import draws
 from coursework.course.secrecy import Secret
 from coursework.issuing.assignment import read_assignment
 from coursework.issuing.issued import issued_content
@@ -48,7 +47,7 @@ def papers(content):
 
 def known_by_luck(name):
     """Whether an exercise has so few variants that two draws are often the same."""
-    found = draws.population(COURSE[name].drawing, _LARGE * 20)
+    found = COURSE[name].drawing.population(_LARGE * 20)
     return found is not None and found < _LARGE
 
 

@@ -31,7 +31,7 @@ EXERCISE = Exercise(
         "theta": drawn(-175, 180, step=5, unit="deg"),
         "omega": drawn(2, 20, unit="rad/s"),
     },
-    keep=(pin_off_the_axes,),
+    constraints=(pin_off_the_axes,),
     parts=(
         Part("x", unit="mm"),
         Part("y", unit="mm"),

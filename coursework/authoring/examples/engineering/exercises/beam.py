@@ -47,7 +47,7 @@ EXERCISE = Exercise(
         "q": drawn(2, 15, step=0.5, unit="kN/m"),
         "sigma": drawn(100, 235, step=5, unit="MPa"),
     },
-    keep=(load_off_the_middle, both_loads_count),
+    constraints=(load_off_the_middle, both_loads_count),
     parts=(
         Part("R_A", unit="kN", points=2),
         Part("R_B", unit="kN"),

@@ -47,7 +47,7 @@ EXERCISE = Exercise(
         "T_i": drawn(17, 24, step=0.5, unit="degC"),
         "T_e": drawn(-15, 12, step=1, unit="degC"),
     },
-    keep=(heat_flows_out, neither_layer_negligible),
+    constraints=(heat_flows_out, neither_layer_negligible),
     parts=(
         Part("R_th", unit="K/W", points=2),
         Part("Phi", unit="W", points=2),

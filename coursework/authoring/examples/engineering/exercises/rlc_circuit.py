@@ -68,7 +68,7 @@ EXERCISE = Exercise(
         "L": drawn(5, 200, step=5, unit="mH"),
         "C": drawn(0.5, 50, step=0.5, unit="µF"),
     },
-    keep=(off_resonance, resistance_counts, capacitor_clearly_above_or_below),
+    constraints=(off_resonance, resistance_counts, capacitor_clearly_above_or_below),
     helpers=(reactance, impedance),
     parts=(
         Part("Z", unit="ohm", kind="complex", points=2),

@@ -44,7 +44,7 @@ EXERCISE = Exercise(
         "F1": drawn(20, 100, step=5, unit="N"),
         "F2": drawn(20, 100, step=5, unit="N"),
     },
-    keep=(stiffnesses_differ,),
+    constraints=(stiffnesses_differ,),
     parts=(
         Part("k", unit="N/mm", kind="vector", points=2),
         Part("K", unit="N/mm", kind="matrix", points=3),
