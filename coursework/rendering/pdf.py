@@ -108,6 +108,7 @@ def _compiler(fonts: tuple[str, ...]) -> Any:
 
 _DEFINITIONS_END = "\n//=\n"
 _PIECE_START, _PIECE_END = "//(\n", "\n//)\n"
+_EMPTY = "//)\n"  #: where a piece starts with its end
 
 
 def files(typst_source: str) -> dict[str, bytes]:
@@ -124,6 +125,9 @@ def files(typst_source: str) -> dict[str, bytes]:
     first, *marked = rest.split(_PIECE_START)
     main = [opening, first]
     for figure in marked:
+        if figure.startswith(_EMPTY):
+            main.append(figure.removeprefix(_EMPTY))
+            continue
         piece, _, after = figure.partition(_PIECE_END)
         name = f"{len(sources)}.typ"
         sources[name] = (opening + piece).encode()

@@ -12,6 +12,7 @@ from rendering_samples import answer_sheet, feedback_sheet, handout, many_given
 
 from coursework.course.builtin import builtin_root
 from coursework.course.texts import TextSection
+from coursework.rendering import pdf
 from coursework.rendering.renderer import Renderer, renderer_of
 
 TEMPLATES = builtin_root() / "templates"
@@ -69,6 +70,13 @@ def test_words_of_a_margin_are_not_spread_over_their_narrow_column():
     margins = [line for line in text.split("\n") if line.startswith("  [*")]
     assert margins
     assert all("par(justify: false)[" in line for line in margins)
+
+
+def test_an_empty_piece_of_a_sheet_leaves_the_next_its_own():
+    """A theory question has neither figure nor data."""
+    cut = pdf.files("#let a = 1\n//=\n#[\n//(\n//)\n#a\n//(\nwords\n//)\n]")
+    assert cut["main.typ"].endswith(b'#[\n#a\n#include "1.typ"\n]')
+    assert cut["1.typ"].endswith(b"\nwords")
 
 
 def test_threads_share_a_renderer():
