@@ -30,6 +30,7 @@ from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
 if TYPE_CHECKING:
     from coursework.course.texts import RenderedText
     from coursework.course.variant import Variant
+    from coursework.polygons.construction import Construction
 
 
 PRINTED_DIGITS = 5  #: significant digits of a value in a worked solution
@@ -54,8 +55,20 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
     figure = solution_figure(variant)
     caption = text.sections.get("figure") if figure is not None else None
     alt = " ".join(caption.text.split()) if caption else ""
-    drawn = stated_polygons(variant) if polygons else ()
+    drawn = _needed_polygons(variant) if polygons else ()
     return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, drawn)
+
+
+def _needed_polygons(variant: Variant) -> tuple[Construction, ...]:
+    """Return the polygons of velocities where the asked answers need some, and of accelerations where they need those."""
+    units = (variant.exercise.units.get(name, "1") for name in variant.walk if name not in variant.given)
+    needed = max(map(_derivations, units), default=0)
+    return tuple(p for p in stated_polygons(variant) if _derivations(p.polygon.unit) <= needed)
+
+
+def _derivations(unit: str) -> int:
+    """Return how often a quantity of a unit is differentiated with respect to time: 0, 1, 2."""
+    return 2 if "s^2" in unit else int("/s" in unit)
 
 
 def _models(variant: Variant, text: RenderedText) -> Iterator[Step]:

@@ -51,6 +51,15 @@ def test_a_solution_shows_every_polygon_in_black_and_white_in_every_back_end(nam
     assert variant.polygons()[0].opening not in renderer_of(COURSE.folder).html(handout)
 
 
+@pytest.mark.parametrize(
+    ("parts", "kinds"),
+    [(("theta3",), []), (("theta3", "omega3"), ["velocity"]), (("alpha3",), ["velocity", "acceleration"])],
+)
+def test_a_solution_shows_the_polygons_that_its_questions_need(parts, kinds):
+    sheet = COURSE["slider_crank"].variant(3, "en", parts).answer_sheet()
+    assert [drawn.polygon.kind for drawn in sheet.polygons] == kinds
+
+
 def test_the_pages_of_the_drawings_are_of_their_own_size():
     sheet = variants("slotted_mechanism")[0].answer_sheet()
     made = renderer_of(COURSE.folder).polygons_pdf(sheet)
