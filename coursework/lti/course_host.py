@@ -373,7 +373,7 @@ class CourseHost:
             files.insert(0, ("roster.csv", texts["roster_file"]))
         return LTIResponse(
             self.pages.page(
-                "lti_class",
+                "platform/lti_class",
                 lang,
                 {
                     "title": visit.launch.link_title or self._title(wanted, lang),

@@ -52,18 +52,22 @@ class LTIPages:
         """Return a sheet with input fields for the answers; ``alone`` for a single exercise without a paper."""
         if alone:
             return self.page(
-                "lti_sheet", paper.heading.lang, {**views.context(paper.handouts[0]), **_formed(form)}
+                "platform/lti_sheet",
+                paper.heading.lang,
+                {**views.context(paper.handouts[0]), **_formed(form)},
             )
-        return self.page("lti_paper", paper.heading.lang, {**self._paper(paper, form), **_formed(form)})
+        return self.page(
+            "platform/lti_paper", paper.heading.lang, {**self._paper(paper, form), **_formed(form)}
+        )
 
     def feedback(self, paper: FeedbackPaper, form: SheetForm, *, alone: bool) -> str:
         """Return the feedback page of a submission."""
         env = environment_of(self._folders, paper.heading.lang)
         if alone:
             names = feedback.context(paper.sheets[0], "html.j2", partial(render, env))
-            return self.page("lti_feedback", paper.heading.lang, {**names, **_formed(form)})
+            return self.page("platform/lti_feedback", paper.heading.lang, {**names, **_formed(form)})
         return self.page(
-            "lti_paper_feedback", paper.heading.lang, {**self._paper(paper, form), **_formed(form)}
+            "platform/lti_paper_feedback", paper.heading.lang, {**self._paper(paper, form), **_formed(form)}
         )
 
     def _paper(self, paper: Paper | FeedbackPaper, form: SheetForm) -> dict[str, Any]:

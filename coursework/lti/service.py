@@ -253,7 +253,7 @@ class _Service:
         }
         after = {"Retry-After": str(fault.wait)} if fault.wait else None
         return Response(
-            self.pages.page("lti_message", lang, names), fault.status, after, media_type="text/html"
+            self.pages.page("platform/lti_message", lang, names), fault.status, after, media_type="text/html"
         )
 
     async def no_page(self, request: Request, fault: HTTPException) -> Response:
@@ -442,7 +442,7 @@ class _Service:
             "with_line": launch.picking.with_line,
             "offer_groups": deep_linking.matching_offers(offer_groups, sought),
         }
-        return Response(self.pages.page("lti_pick", visit.lang, names), media_type="text/html")
+        return Response(self.pages.page("platform/lti_pick", visit.lang, names), media_type="text/html")
 
     def _sent_back(self, visit: LTIRequest, items: Sequence[dict[str, Any]], request: Request) -> Response:
         """Return a page that sends the instructor and the chosen links back to the platform."""
@@ -455,7 +455,7 @@ class _Service:
             else "many"
         ]
         request.state.forms = [origin(launch.picking.return_url)]
-        request.state.scripts = [self.pages.digest("_lti_return.js")]
+        request.state.scripts = [self.pages.digest("platform/_lti_return.js")]
         names = {
             "title": texts["return_title"],
             "message": ready.format(len(items)),
@@ -465,7 +465,7 @@ class _Service:
             ),
             "token": deep_linking.response(launch, items, self.keys.signing),
         }
-        return Response(self.pages.page("lti_return", visit.lang, names), media_type="text/html")
+        return Response(self.pages.page("platform/lti_return", visit.lang, names), media_type="text/html")
 
 
 # -------------------------------------------------------------------------- pieces

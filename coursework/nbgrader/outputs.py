@@ -27,7 +27,7 @@ def outputs(course: Course, graded: Graded) -> dict[str, list[Output]]:
     return {
         line.question.id: [
             display_output(
-                render(env, "nbgrader_mark.html.j2", {**names, "line": line}),
+                render(env, "platform/nbgrader_mark.html.j2", {**names, "line": line}),
                 graded.lines[line.question.id].feedback,
             )
         ]

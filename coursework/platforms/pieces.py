@@ -42,7 +42,7 @@ class PagePieces:
         ``named``, its label."""
         names = views.context(item.handout)
         names |= {"label": item.label if named else "", "level": 4}
-        return render(self._env, "_platform_opening.html.j2", names)
+        return render(self._env, "platform/_opening.html.j2", names)
 
     def prompt(self, posed: Posed, *, box: str = "", numbered: bool = True) -> str:
         """Return a question with its ``box`` (HTML), the symbol before it and the unit after it. A collected
@@ -50,7 +50,7 @@ class PagePieces:
         names = {"question": posed.question, "box": box, "numbered": numbered, "words": words(self.lang)}
         names["listed"] = posed.kind == COLLECTED
         names["form"] = self._form(posed.question) if names["listed"] else ""
-        return render(self._env, "_platform_question.html.j2", names)
+        return render(self._env, "platform/_question.html.j2", names)
 
     def _form(self, question: Question) -> str:
         """Return the form of an answer in words."""
@@ -58,15 +58,15 @@ class PagePieces:
 
     def option(self, option: Option) -> str:
         """Return an option with its letter, by which reports name it."""
-        return render(self._env, "_platform_option.html.j2", {"option": option, "words": words(self.lang)})
+        return render(self._env, "platform/_option.html.j2", {"option": option, "words": words(self.lang)})
 
     def style(self) -> str:
         """Return the style sheet of these pieces, for platforms that accept one."""
-        return render(self._env, "_platform_style.css.j2", {})
+        return render(self._env, "platform/_style.css.j2", {})
 
     def inline(self, markdown: str) -> str:
         """Return a line of Markdown as HTML."""
-        return render(self._env, "_platform_line.html.j2", {"line": markdown})
+        return render(self._env, "platform/_line.html.j2", {"line": markdown})
 
     def plain(self, markdown: str) -> str:
         """Return a line of Markdown as plain text."""

@@ -33,7 +33,9 @@ def names(handouts: Sequence[Handout], title: str, student: str, lang: str, writ
     return {
         "scanned": True,
         "statement_code": statement_code(pages),
-        "answer_bodies": [Markup(write("_answer_page.typ.j2", variables | {"page": page})) for page in pages],
+        "answer_bodies": [
+            Markup(write("parts/answer_page.typ.j2", variables | {"page": page})) for page in pages
+        ],
     }
 
 

@@ -36,10 +36,10 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
     }
     names["pieces"] = partial(_typst_pieces, env, book)
     names["exercises_of"] = partial(_own_exercises, book)
-    body = Markup(render(env, "book.typ.j2", names))
+    body = Markup(render(env, "book/book.typ.j2", names))
     # The parts of a paper are those of an exercise in a book.
     return render(
-        env, "_page.typ.j2", names | {"bodies": [body], "printed": True, "heading": {"lang": book.lang}}
+        env, "parts/page.typ.j2", names | {"bodies": [body], "printed": True, "heading": {"lang": book.lang}}
     )
 
 
@@ -52,9 +52,9 @@ def _of_book(book: Book) -> dict[str, Any]:
 def _exercise(env: Environment, exercise: BookExercise, end: str) -> dict[str, Any]:
     """Return the variables for the template of an exercise: its body, and that of its solution."""
     names = views.context(exercise.handout, 1, numbered=False)
-    names["body"] = Markup(render(env, f"_sheet_body.{end}", names))
+    names["body"] = Markup(render(env, f"sheet/_body.{end}", names))
     solved = views.context(exercise.solution, 1, numbered=False)
-    names["solution_body"] = Markup(render(env, f"_solution_body.{end}", solved))
+    names["solution_body"] = Markup(render(env, f"sheet/_solution_body.{end}", solved))
     return names
 
 
@@ -78,7 +78,7 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
         "tall": _TALL,
     }
     names["relinked"] = lambda text: relinked(text, write)
-    return Markup(render(env, "_book_pieces.typ.j2", names))
+    return Markup(render(env, "book/_pieces.typ.j2", names))
 
 
 def _with_kind(piece: Piece) -> dict[str, Any]:
@@ -109,7 +109,7 @@ def pages(
     shared |= {"files": {page.file for page in book_pages}, "before": None, "after": None}
     writers: dict[str, Callable[[], str]] = {"terms.html": partial(_terms, env, book, shared)}
     more = {"title": words(book.lang)["book"]["symbols"]}
-    writers["symbols.html"] = partial(render, env, "book_symbols.html.j2", shared | more)
+    writers["symbols.html"] = partial(render, env, "book/symbols.html.j2", shared | more)
     for index, page in enumerate(book_pages):
         around = {
             "before": book_pages[index - 1] if index else None,
@@ -132,12 +132,12 @@ def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
         for entry, lessons in entries
     ]
     more = {"terms": listed, "title": words(book.lang)["book"]["index"]}
-    return render(env, "book_terms.html.j2", {**names, **more})
+    return render(env, "book/terms.html.j2", {**names, **more})
 
 
 def _solution(env: Environment, exercise: BookExercise, names: Mapping[str, Any]) -> str:
     variables = views.context(exercise.solution) | {"one": exercise, "title": views.title(exercise.solution)}
-    return render(env, "book_solution.html.j2", {**names, **variables})
+    return render(env, "book/solution.html.j2", {**names, **variables})
 
 
 def _pages(book: Book) -> Iterator[BookPage]:
@@ -164,12 +164,12 @@ def _page(env: Environment, book: Book, page: BookPage, names: Mapping[str, Any]
     if isinstance(page.of, LessonText):
         pieces = _html_pieces(env, book, page.of, names)
         more = {"lesson": page.of, "shown": pieces, "own": _own_exercises(book, page.of)}
-        return render(env, "book_lesson.html.j2", {**names, **more})
+        return render(env, "book/lesson.html.j2", {**names, **more})
     if isinstance(page.of, BookExercise):
         sheet = page.of.handout
         more = views.context(sheet) | {"one": page.of, "keeping": keeping([sheet], sheet.student, sheet.lang)}
-        return render(env, "book_exercise.html.j2", {**names, **more})
-    return render(env, "book_contents.html.j2", names)
+        return render(env, "book/exercise.html.j2", {**names, **more})
+    return render(env, "book/contents.html.j2", names)
 
 
 def _own_exercises(book: Book, lesson: LessonText) -> tuple[BookExercise, ...]:
@@ -197,4 +197,4 @@ def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mappin
         "answers": answers,
     }
     variables["relinked"] = lambda text: relinked(text, write)
-    return Markup(render(env, "_book_pieces.html.j2", {**names, **variables}))
+    return Markup(render(env, "book/_pieces.html.j2", {**names, **variables}))

@@ -6,6 +6,7 @@ with a ``#`` or a ``<`` in it prints as itself, in every template, whoever wrote
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -20,6 +21,8 @@ from coursework.markup.formulas import after_number
 from coursework.rendering import feedback, views
 
 Writer = Callable[[str, str], str]
+
+_FOLDER_WORDS = re.compile("^_?(?:(?:book|desk|feedback|motion|paper|platform|scan|sheet|site)_)*")
 
 
 def environment(
@@ -43,6 +46,7 @@ def environment(
     def escaped(value: str) -> Markup:
         return Markup(text(value, lang))
 
+    _check_places(folders)
     env = Environment(
         loader=FileSystemLoader([str(folder) for folder in folders]),
         undefined=StrictUndefined,
@@ -92,6 +96,21 @@ def environment(
         fill=lambda pattern, *parts: pattern.format(*parts),
     )
     return env
+
+
+def _check_places(folders: Sequence[Path]) -> None:
+    """Raise for a course's template beside the folders, where templates had names as ``_sheet_body``: no page reads it there."""
+    for file in (path for folder in folders for path in folder.glob("*.j2")):
+        name = _FOLDER_WORDS.sub("", file.name)
+        found = {
+            path.relative_to(folder).as_posix() for folder in folders for path in folder.glob(f"*/**/*{name}")
+        }
+        if meant := sorted(place for place in found if place.rpartition("/")[2].lstrip("_") == name):
+            raise BadCourse(
+                "{file}: templates have folders, and none is read here; move it to {places}",
+                file=str(file),
+                places=" | ".join(meant),
+            )
 
 
 def _marked(make: Callable[..., str]) -> Callable[..., Markup]:

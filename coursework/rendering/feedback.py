@@ -47,7 +47,7 @@ def context(
         **views.context(sheet, index, numbered=numbered),
         "answer_mm": ANSWER_MM,
         "legend": legend([sheet], sheet.handout.lang),
-        "solution_body": Markup(write(f"_solution_body.{end}", solution)) if solution else "",
+        "solution_body": Markup(write(f"sheet/_solution_body.{end}", solution)) if solution else "",
     }
 
 

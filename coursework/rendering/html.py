@@ -73,7 +73,7 @@ def script_digest(env: Environment, name: str) -> str:
 def construction(folders: Sequence[Path], drawn: Construction) -> str:
     """Return a polygon as a piece of a page."""
     names = {"polygons": (drawn,), "words": words(drawn.lang), "level": 2}
-    return render(environment_of(tuple(folders), drawn.lang), "_polygons.html.j2", names)
+    return render(environment_of(tuple(folders), drawn.lang), "parts/polygons.html.j2", names)
 
 
 def _drawing(figure: Figure | Picture | Beginning, alt: str) -> str:

@@ -30,11 +30,11 @@ def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> st
         "sheet": {"course": variant.exercise.folder.title(variant.lang), "title": animation.title},
         **context(animation),
     }
-    return render(environment_of(tuple(folders), variant.lang), "motion.html.j2", names)
+    return render(environment_of(tuple(folders), variant.lang), "motion/motion.html.j2", names)
 
 
 def context(animation: Animation, *, is_described: bool = True) -> dict[str, Any]:
-    """Return the names that ``_motion_body.html.j2`` sees; the numbers beside the drawing only where they are to be ``is_described``."""
+    """Return the names that ``motion/_body.html.j2`` sees; the numbers beside the drawing only where they are to be ``is_described``."""
     variant = animation.variant
     lang = variant.lang
     drawing = animation.drawing(animation.available)

@@ -45,12 +45,12 @@ def notebook(folders: Sequence[Path], handout: Handout, *, collected: bool = Fal
     It holds the statement, the data and a cell for the answers: nothing in it checks them. One that a platform has
     ``collected`` asks for no name and is not sent back.
     """
-    return _of_handout(folders, handout, "notebook.md.j2", {"collected": True} if collected else {})
+    return _of_handout(folders, handout, "notebook/notebook.md.j2", {"collected": True} if collected else {})
 
 
 def study(folders: Sequence[Path], sheet: StudySheet) -> str:
     """Return the self-study notebook, as JSON text, valid nbformat 4.5; the same text for the same sheet."""
-    return _of_handout(folders, sheet.handout, "study.md.j2", {"study": sheet})
+    return _of_handout(folders, sheet.handout, "notebook/study.md.j2", {"study": sheet})
 
 
 def _of_handout(folders: Sequence[Path], handout: Handout, template: str, more: Mapping[str, object]) -> str:
@@ -80,10 +80,10 @@ def paper(folders: Sequence[Path], handed: Paper, *, collected: bool = False) ->
     more = ({"collected": True},) * len(handed.handouts) if collected else ()
     names = papers.context(handed, "md.j2", partial(render, env), more)
     names |= {"collected": True} if collected else {}
-    cells = list(_cells(render(env, "paper.md.j2", names), f"{names['variants']} head"))
+    cells = list(_cells(render(env, "paper/paper.md.j2", names), f"{names['variants']} head"))
     for sheet, exercise in zip(handed.handouts, names["exercises"], strict=True):
         cells += _exercise(sheet, exercise["body"], exercise["place"])
-    cells += _cells(render(env, "_hand_in.md.j2", names), "hand in")
+    cells += _cells(render(env, "notebook/_hand_in.md.j2", names), "hand in")
     about = [{"exercise": sheet.exercise, "seed": sheet.seed} for sheet in handed.handouts]
     return _json(cells, {"student": handed.heading.student, "sheets": about, "lang": handed.heading.lang})
 
@@ -96,13 +96,17 @@ def feedback(folders: Sequence[Path], feedback_sheet: FeedbackSheet | FeedbackPa
         names = papers.context(feedback_sheet, "md.j2", partial(render, env))
         sheets, template, student = (
             feedback_sheet.sheets,
-            "paper_feedback.md.j2",
+            "paper/feedback.md.j2",
             feedback_sheet.heading.student,
         )
     else:
         env = _environment(tuple(folders), feedback_sheet.handout.lang)
         names = own.context(feedback_sheet, "md.j2", partial(render, env))
-        sheets, template, student = (feedback_sheet,), "feedback.md.j2", feedback_sheet.handout.student
+        sheets, template, student = (
+            (feedback_sheet,),
+            "feedback/feedback.md.j2",
+            feedback_sheet.handout.student,
+        )
     seeds = " ".join(f"{sheet.handout.exercise} {sheet.handout.seed}" for sheet in sheets)
     cells = list(_cells(render(env, template, names), f"feedback {student} {seeds}"))
     for cell in cells:
@@ -141,7 +145,7 @@ def lesson(
     says how to install it where it is missing. ``pictures``, by name and type in base64, are attached to the cells that show them."""
     env = _environment(tuple(folders), lang)
     names = {"words": words(lang), "package": DISTRIBUTION, "install": install}
-    guard = f"```python\n{render(env, '_import.md.j2', names)}\n```\n"
+    guard = f"```python\n{render(env, 'notebook/_import.md.j2', names)}\n```\n"
     first = next((f.start() for f in _FENCE.finditer(text) if "import coursework" in f[2]), None)
     content = text if first is None else f"{text[:first]}{guard}\n{text[first:]}"
     cells = list(_cells(content, f"{name} {lang}"))

@@ -26,8 +26,8 @@ from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
 AnyPaper: TypeAlias = Paper | SolutionPaper | FeedbackPaper
 
 #: The template of each type of paper, and that of an exercise in it.
-TEMPLATES = {Paper: "paper", SolutionPaper: "paper_solution", FeedbackPaper: "paper_feedback"}
-BODIES = {Paper: "_sheet_body", SolutionPaper: "_solution_body", FeedbackPaper: "_feedback_body"}
+TEMPLATES = {Paper: "paper/paper", SolutionPaper: "paper/solution", FeedbackPaper: "paper/feedback"}
+BODIES = {Paper: "sheet/_body", SolutionPaper: "sheet/_solution_body", FeedbackPaper: "feedback/_body"}
 _KINDS = {Paper: "sheet", SolutionPaper: "solution", FeedbackPaper: "feedback"}
 _START_MM = 55  #: that an exercise to fill in needs to begin: what does not fit below stands on the next page
 _LINE = 75  #: characters of a footer that leave room for a student's name
@@ -114,7 +114,7 @@ def exercises_of(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] 
         names["start_mm"] = _start_mm(sheet)
         names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
         if isinstance(paper, SolutionPaper):
-            names["guide"] = Markup(write(f"_guide_rows.{end}", names))
+            names["guide"] = Markup(write(f"parts/guide_rows.{end}", names))
         exercises.append(names)
     return exercises
 
@@ -255,4 +255,4 @@ def typst_source(folders: Sequence[Path], papers: Sequence[AnyPaper], size: str 
         "paper": size,
         "printed": not isinstance(papers[0], FeedbackPaper),
     }
-    return render(pdf.environment_of(tuple(folders), papers[0].heading.lang), "_page.typ.j2", page)
+    return render(pdf.environment_of(tuple(folders), papers[0].heading.lang), "parts/page.typ.j2", page)

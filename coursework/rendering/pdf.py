@@ -47,7 +47,7 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
     page = contexts[0] | {"bodies": bodies, "paper": paper, "printed": printed}
     if any(isinstance(sheet, FeedbackSheet) for sheet in sheets):
         page["answer_mm"] = feedback.ANSWER_MM
-    return render(environment_of(tuple(folders), page["lang"]), "_page.typ.j2", page)
+    return render(environment_of(tuple(folders), page["lang"]), "parts/page.typ.j2", page)
 
 
 def _context(folders: Sequence[Path], sheet: views.Sheet) -> dict[str, Any]:

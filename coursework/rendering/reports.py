@@ -19,14 +19,14 @@ from coursework.sheets.report import Chart, ReportContent
 def page(folders: Sequence[Path], report: ReportContent, paper: str = "a4") -> str:
     """Return a web page that fetches nothing and runs no script."""
     env = html.environment_of(tuple(folders), report.lang)
-    return render(env, "report.html.j2", _names(report) | {"chart": _image, "paper": paper})
+    return render(env, "report/report.html.j2", _names(report) | {"chart": _image, "paper": paper})
 
 
 def source(folders: Sequence[Path], report: ReportContent, paper: str = "a4") -> str:
     """Return the Typst source; it stands alone."""
     env = pdf.environment_of(tuple(folders), report.lang)
-    body = Markup(render(env, "report.typ.j2", _names(report) | {"chart": _drawn}))
-    return render(env, "_page.typ.j2", _names(report) | {"bodies": [body], "paper": paper})
+    body = Markup(render(env, "report/report.typ.j2", _names(report) | {"chart": _drawn}))
+    return render(env, "parts/page.typ.j2", _names(report) | {"bodies": [body], "paper": paper})
 
 
 def _names(report: ReportContent) -> dict[str, object]:

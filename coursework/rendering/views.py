@@ -50,12 +50,16 @@ SHORT_SOLUTION = 3  #: steps at most to an answer that stands with its question 
 LAST_TOGETHER = 4  #: questions at least that a sheet's last page holds, where a page's end parts them
 _BESIDE = 9  #: data at most that stand beside the figure
 
-#: The template of each type of sheet.
-TEMPLATES = {Handout: "sheet", AnswerSheet: "solution", FeedbackSheet: "feedback"}
+#: The template of each type of sheet; its last part is the name by which the template sees the sheet.
+TEMPLATES = {Handout: "sheet/sheet", AnswerSheet: "sheet/solution", FeedbackSheet: "feedback/feedback"}
 
 
 def handout_of(sheet: Sheet) -> Handout:
     return sheet if isinstance(sheet, Handout) else sheet.handout
+
+
+def _kind(sheet: Sheet) -> str:
+    return TEMPLATES[type(sheet)].rpartition("/")[2]
 
 
 def context(sheet: Sheet, index: int = 0, *, numbered: bool = True) -> dict[str, object]:
@@ -65,7 +69,7 @@ def context(sheet: Sheet, index: int = 0, *, numbered: bool = True) -> dict[str,
     prefix = f"{index}." if index and numbered else ""
     return {
         "sheet": handout,
-        TEMPLATES[type(sheet)]: sheet,
+        _kind(sheet): sheet,
         "lang": handout.lang,
         "words": words(handout.lang),
         "title": title(sheet),
@@ -157,7 +161,7 @@ def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
 def title(sheet: Sheet) -> str:
     """Return the document's title: the exercise's, and what this sheet is when it is not the student's."""
     handout = handout_of(sheet)
-    kind = TEMPLATES[type(sheet)]
+    kind = _kind(sheet)
     return handout.title if kind == "sheet" else f"{handout.title} – {words(handout.lang)[kind]['title']}"
 
 

@@ -215,7 +215,7 @@ def page(queue: ScanQueue, content: Mapping[str, Any]) -> str:
     names = {
         "lang": queue.lang, "languages": languages(), "said": words(queue.lang, "scan"), "data": in_script(data), "paper": "a4",
     }  # fmt: skip
-    return render(environment_of(folder.template_folders, queue.lang), "scan_queue.html.j2", names)
+    return render(environment_of(folder.template_folders, queue.lang), "scan/queue.html.j2", names)
 
 
 def _embedded(folder: Path, cards: list[dict[str, Any]]) -> Iterator[tuple[str, str]]:

@@ -54,7 +54,8 @@ def test_an_exercise_may_be_a_folder_with_its_assets(small_course):
 
 
 def test_a_course_overrides_one_template_and_takes_the_others_from_the_built_in_one(small_course, course):
-    template = small_course / "templates" / "sheet.html.j2"
+    template = small_course / "templates" / "sheet" / "sheet.html.j2"
+    template.parent.mkdir()
     template.write_text("<p>{{ sheet.title }}, ours</p>", "utf-8")
     own = coursework.open_course(small_course)
     handout = own["crank_pin"].variant(1).handout()

@@ -161,7 +161,7 @@ def test_a_corrected_solution_is_told_before_it_is_written_and_marks_anew(store,
         ("exercises/_data.toml", True),
         ("exercises/other.py", False),
         ("solutions/_lonely.py", False),
-        ("templates/sheet.html.j2", False),
+        ("templates/sheet/sheet.html.j2", False),
     ],
 )
 def test_a_state_is_of_the_files_that_an_exercise_stands_on(course, tmp_path, file, changes):
@@ -171,9 +171,9 @@ def test_a_state_is_of_the_files_that_an_exercise_stands_on(course, tmp_path, fi
         "solutions/_shared.py",
         "solutions/_lonely.py",
         "exercises/other.py",
-        "templates/sheet.html.j2",
+        "templates/sheet/sheet.html.j2",
     ):
-        (root / name).parent.mkdir(exist_ok=True)
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text("ONE = 1\n", "utf-8")
     (root / "exercises/_data.toml").write_text("a = 1\n", "utf-8")
     for name, line in (

@@ -64,8 +64,8 @@ def test_processes_write_what_threads_write(tmp_path, monkeypatch, count):
 
 
 def test_a_sheet_that_a_process_cannot_make_ends_the_build_with_its_fault(tmp_path, monkeypatch):
-    (tmp_path / "templates").mkdir()
-    (tmp_path / "templates" / "_figure_and_data.typ.j2").write_text("#nonsense", "utf-8")
+    (tmp_path / "templates" / "parts").mkdir(parents=True)
+    (tmp_path / "templates" / "parts" / "figure_and_data.typ.j2").write_text("#nonsense", "utf-8")
     broken = Renderer([tmp_path / "templates", *COURSE.folder.template_folders])
     monkeypatch.setattr(writing, "WORTH_PROCESSES", 1)
     monkeypatch.setattr(building, "renderer_of", lambda folder: broken)

@@ -67,7 +67,8 @@ def test_a_booklet_says_the_pages_of_each_sheet():
 
 
 def test_a_booklet_of_a_broken_template_is_an_error_of_the_course(tmp_path):
-    (tmp_path / "_figure_and_data.typ.j2").write_text("#nonsense", "utf-8")
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "figure_and_data.typ.j2").write_text("#nonsense", "utf-8")
     with pytest.raises(BadStatement, match="nonsense"):
         Renderer([tmp_path, *TEMPLATES]).booklet([handout("en")])
 

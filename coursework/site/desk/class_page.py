@@ -116,7 +116,7 @@ def class_page(request: Request) -> Response:
     sort, sought = request.query_params.get("sort", ""), request.query_params.get("find", "").strip()
     selected = sorted((row for row in table_rows if _matches(row, sought)), key=_sorting(now, sort))
     return class_page_of(
-        request, now, "site_desk_class", "class", rows=selected, all_rows=len(table_rows), sort=sort, sought=sought,
+        request, now, "site/instructor/class", "class", rows=selected, all_rows=len(table_rows), sort=sort, sought=sought,
         handed_in=sum(row.handed_in for row in table_rows), has_mark=bool((now.issued.assignment or {}).get("mark")),
         has_late=any(row.late for row in table_rows), means=_means(now, table_rows), **_words(request),
     )  # fmt: skip
@@ -138,7 +138,7 @@ def news(request: Request) -> Response:
     with request.site.store.reading() as connection:
         changed = students_since(connection, now.about.id, before)
     return request.render(
-        "_desk_news", now=now, rows=[row for row in table_rows if row.student in changed], all_rows=len(table_rows),
+        "site/instructor/_news", now=now, rows=[row for row in table_rows if row.student in changed], all_rows=len(table_rows),
         handed_in=sum(row.handed_in for row in table_rows), has_mark=bool((now.issued.assignment or {}).get("mark")),
         has_late=request.query_params.get("late") == "1" or any(row.late for row in table_rows), **_words(request),
     )  # fmt: skip

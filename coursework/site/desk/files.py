@@ -62,7 +62,7 @@ def files_page(
         if not submission.number
     ]
     return class_page_of(
-        request, now, "site_desk_files", "files", told=list(messages), files=files[::-1][:50], rejected=now.rejected,
+        request, now, "site/instructor/files", "files", told=list(messages), files=files[::-1][:50], rejected=now.rejected,
         platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_TABLES), filled=_filled(request, filled, name),
     )  # fmt: skip
 

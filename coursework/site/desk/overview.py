@@ -42,7 +42,7 @@ def overview(request: Request) -> Response:
         assignments = listed_assignments(connection)
         leap = last_leap(connection, request.received_at)
     return request.render(
-        "site_desk",
+        "site/instructor/desk",
         tiles=[
             _tile(request, about.id)
             for about in assignments

@@ -57,7 +57,7 @@ def questions(request: Request) -> Response:
     return class_page_of(
         request,
         now,
-        "site_desk_questions",
+        "site/instructor/questions",
         "questions",
         listed=listed,
         sort=request.query_params.get("sort", ""),
@@ -100,7 +100,7 @@ def question(request: Request) -> Response:
     only = request.query_params.get("verdict", "")
     answers = _answers(request, now, exercise, part)
     return class_page_of(
-        request, now, "site_desk_question", "questions", exercise=exercise, part=part, own=part_statistics, mistakes=mistakes,
+        request, now, "site/instructor/question", "questions", exercise=exercise, part=part, own=part_statistics, mistakes=mistakes,
         shown=card, number=now.number(exercise, part), only=only,
         answers=[item for item in answers if not only or only in item.matches][:_ANSWERS], count=len(answers),
         waiting=sum((item.group.exercise, item.group.part) == (exercise, part) for item in now.open.values()),

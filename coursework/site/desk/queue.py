@@ -193,7 +193,7 @@ def watch(request: Request) -> Response:
         return Response(status_code=204)
     decision = now.decisions.standing(group.first.sheet, group.first.mark)
     message = request.words["queue"]["taken"].format(decision.by, 1) if decision else ""
-    return request.render("_desk_told", told=message)
+    return request.render("site/instructor/_told", told=message)
 
 
 def _around(now: ClassState, filters: Filters) -> list[QueueItem]:
@@ -241,8 +241,8 @@ def card_response(
         "place_url": f"/desk/{now.about.id}/queue",
     }
     if request.is_fragment:
-        return request.render("_desk_queue_piece", now=now, swapped=True, **names)
-    return class_page_of(request, now, "site_desk_queue", "queue", **names)
+        return request.render("site/instructor/_queue_piece", now=now, swapped=True, **names)
+    return class_page_of(request, now, "site/instructor/queue", "queue", **names)
 
 
 def _closed(now: ClassState, name: str) -> QueueItem | None:

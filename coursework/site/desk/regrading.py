@@ -51,7 +51,7 @@ def regrade(request: Request) -> Response:
     else:
         result = would_change(course, request.site.store, now.about.id)
     return class_page_of(
-        request, now, "site_desk_regrade", "regrade", told=result, done=done, is_new=course is not request.site.course,
+        request, now, "site/instructor/regrade", "regrade", told=result, done=done, is_new=course is not request.site.course,
         rows=[_row(request, now, change) for change in result.changes[:_MOST_ROWS]], questions=_questions(request, now, result),
         students=len({change.student for change in result.changes}),
     )  # fmt: skip

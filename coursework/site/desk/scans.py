@@ -56,7 +56,7 @@ def scans_page(request: Request, message: str = "") -> Response:
         message = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, scans))
     absent = _absent(now, scans)
     return class_page_of(
-        request, now, "site_desk_scans", "scans", told=message, job=job, scans=scans, endings=",".join((*ENDINGS, ".zip")),
+        request, now, "site/instructor/scans", "scans", told=message, job=job, scans=scans, endings=",".join((*ENDINGS, ".zip")),
         absent=absent if scans.pages else [],
     )  # fmt: skip
 
@@ -180,8 +180,8 @@ def _card_response(
         "papers": [(code, p.student) for code, p in scans.papers.papers.items() if p.size == "a4"],
     }
     if request.is_fragment:
-        return request.render("_desk_scan_card", now=now, **names)
-    return class_page_of(request, now, "site_desk_scan_queue", "scans", **names)
+        return request.render("site/instructor/_scan_card", now=now, **names)
+    return class_page_of(request, now, "site/instructor/scan_queue", "scans", **names)
 
 
 def _scan_card(request: Request, now: ClassState, scans: ClassScans, card: AnswerCard) -> ScanCard:

@@ -105,7 +105,7 @@ def student_page(request: Request) -> Response:
     sheets = [_sheet(request, now, sheet, by_place) for sheet in now.machine if sheet[0] == student]
     sheets.sort(key=lambda entry: (-entry.graded.sitting, now.issued.exercises.index(entry.graded.exercise)))
     return class_page_of(
-        request, now, "site_desk_student", "class", student=student, result=result, told=message,
+        request, now, "site/instructor/student", "class", student=student, result=result, told=message,
         mark=localise(mark_of(now.issued, result.counts, result.out_of), request.lang), columns=_columns(now, student),
         tries=[(moment(entry.received_at, request.lang), entry) for entry in tries], known=person or 0,
         sittings=[(n, list(group)) for n, group in groupby(sheets, key=lambda entry: entry.graded.sitting)],

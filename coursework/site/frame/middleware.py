@@ -434,7 +434,7 @@ def _refusal(request: Request, why: HTTPException) -> Response:
     message = str(words(request.lang, "site")["refused"][why.sentence]).format(
         *(localised(part, request.lang) if isinstance(part, Message) else part for part in why.parts)
     )
-    return request.render("site_refused", why.status_code, told=message)
+    return request.render("site/refused", why.status_code, told=message)
 
 
 def _mistaken(fault: BadInput) -> HTTPException:

@@ -22,10 +22,10 @@ KINDS = {
 
 #: Static files made from templates that sheets share, by file name.
 _OF_SHEETS = {
-    "sheet.css": "_page_style.css.j2",
-    "motion.css": "_motion_style.html.j2",
-    "paper.css": "_paper_style.html.j2",
-    "motion.js": "_motion.js",
+    "sheet.css": "parts/page_style.css.j2",
+    "motion.css": "motion/_style.html.j2",
+    "paper.css": "parts/paper_style.html.j2",
+    "motion.js": "motion/motion.js",
 }
 
 

@@ -54,7 +54,7 @@ def connect(request: Request) -> Response:
         _tie(request, issuer, subject, platform)
         return Response(redirect="/account")
     names = {"platform": platform, "name": name or subject, "login": mine.login, "missed": missed}
-    return request.render("site_connect", 422 if missed else 200, **names)
+    return request.render("site/connect", 422 if missed else 200, **names)
 
 
 def _read_token(request: Request) -> tuple[str, str, str]:

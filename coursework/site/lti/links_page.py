@@ -16,7 +16,7 @@ from coursework.site.lti.scores import number_text
 def waiting(request: Request) -> Response:
     """Return the scores that wait to be sent, and the number of those that arrived."""
     if request.site.lti is None:
-        return request.render("site_lti", is_on=False, rows=[], arrived=0)
+        return request.render("site/instructor/lti", is_on=False, rows=[], arrived=0)
     every = list(Storage(request.site.lti).scores().values())
     with request.site.store.reading() as connection:
         names = _names(connection)
@@ -31,7 +31,7 @@ def waiting(request: Request) -> Response:
         for entry in every
         if entry.due is not None
     ]
-    return request.render("site_lti", is_on=True, rows=rows, arrived=len(every) - len(rows))
+    return request.render("site/instructor/lti", is_on=True, rows=rows, arrived=len(every) - len(rows))
 
 
 def _names(connection: Connection) -> dict[str, str]:

@@ -137,7 +137,7 @@ class SiteHost:
         }  # fmt: skip
         if why.sentence == "connect":
             names |= {"connect": str(why.parts[0]), "connect_word": texts["connect"]["title"]}
-        return LTIResponse(self.pages.page("lti_message", visit.lang, names), why.status_code)
+        return LTIResponse(self.pages.page("platform/lti_message", visit.lang, names), why.status_code)
 
     def _student_page(self, visit: LTIRequest, number: int) -> LTIResponse:
         if visit.launch.role is not Role.STUDENT:
@@ -276,7 +276,7 @@ class SiteHost:
             "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": visit.launch.return_url,
             "handed_in": site_request.words["lti"]["handed_in"],
         }  # fmt: skip
-        return LTIResponse(self.pages.page("lti_site_handed_in", visit.lang, names))
+        return LTIResponse(self.pages.page("platform/lti_site_handed_in", visit.lang, names))
 
     def _sent(self, visit: LTIRequest, state: AssignmentState | None = None) -> str:
         """Return the state of the score on its way to the platform."""
@@ -342,7 +342,7 @@ class SiteHost:
             "desk": f"{self._site.url}/desk/{number}", "rules": rules_rows(visit, now, publication), "rows": rows, "missing": missing,
             "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
         }  # fmt: skip
-        return LTIResponse(self.pages.page("lti_site_class", lang, names))
+        return LTIResponse(self.pages.page("platform/lti_site_class", lang, names))
 
 
 def _worth(connection: Connection, number: int) -> float:

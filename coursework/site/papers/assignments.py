@@ -64,7 +64,7 @@ def list_page(request: Request) -> Response:
         states = [state_of(request, item, connection) for item in assignments]
     groups = [(phase.value, [item for item in states if item.phase is phase]) for phase in _ORDER]
     return request.render(
-        "site_assignments", groups=[g for g in groups if g[1]], zone=zone_name(request.received_at)
+        "site/student/assignments", groups=[g for g in groups if g[1]], zone=zone_name(request.received_at)
     )
 
 
@@ -98,7 +98,7 @@ def _paper_response(
     form = draft_attributes(request, f"{state.address}/keep", sheet, contents)
     texts = {name: box.text for name, box in contents.items() if name in paper.fields}
     return request.render(
-        "site_assignment", status, state=state, form=form, versions=form["data-keep-versions"], problem=problem,
+        "site/student/assignment", status, state=state, form=form, versions=form["data-keep-versions"], problem=problem,
         look="", back="", zone=zone_name(request.received_at), paper_head=Markup(pieces.head),
         paper_body=Markup(filled_in(pieces.body, texts)),
     )  # fmt: skip
@@ -156,7 +156,7 @@ def _confirming(
     late = state.assignment.own_publication.late_seconds(state.now)
     charged = state.assignment.own_publication.charged(late)
     return request.render(
-        "site_assignment_read_back", state=state, lines=lines, counts=counts(lines), source=source, notes=notes,
+        "site/student/assignment_read_back", state=state, lines=lines, counts=counts(lines), source=source, notes=notes,
         number=len(state.done) + 1, texts={name: text for name, text in texts.items() if text},
         late=length_text(timedelta(seconds=late), request.lang) if late else "",
         charged=charged_text(charged, request.lang) if charged else "", heading=paper.heading,
@@ -284,7 +284,7 @@ def receipt(request: Request) -> Response:
         for name, box in paper.boxes.items()
     }
     return request.render(
-        "site_assignment_receipt", state=state, row=row, told=content, lines=read_lines(paper, texts),
+        "site/student/assignment_receipt", state=state, row=row, told=content, lines=read_lines(paper, texts),
         came=exact_text(row.received_at, request.lang), zone=zone_name(row.received_at), again=again if again in ("same", "other") else "",
         late=length_text(timedelta(seconds=row.late), request.lang) if row.late else "",
         charged=charged_text(state.assignment.own_publication.charged(row.late), request.lang) if state.assignment.own_publication.charged(row.late) else "",
@@ -316,7 +316,7 @@ def feedback(request: Request) -> Response:
         return Response(redirect=f"{state.address}/receipts/{chosen.receipt}")
     document, notes = feedback_of(request, state, paper, chosen)
     return request.render(
-        "site_assignment_feedback",
+        "site/student/assignment_feedback",
         state=state,
         notes=notes,
         delivery=chosen,

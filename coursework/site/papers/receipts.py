@@ -114,7 +114,7 @@ def verify(request: Request) -> Response:
     if row is not None:
         names |= {"came": exact_text(row.received_at, request.lang), "zone": zone_name(row.received_at)}
         names["late"] = length_text(timedelta(seconds=row.late), request.lang) if row.late else ""
-    return request.render("site_receipt_check", **names)
+    return request.render("site/student/receipt_check", **names)
 
 
 def _is_theirs(request: Request, connection: Connection, row: Any) -> bool:

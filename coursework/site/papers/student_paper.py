@@ -160,7 +160,7 @@ class StudentPaper:
             environment_of(self.course.folder.template_folders, self.lang),
         )
         return PreparedPieces(
-            render(env, "_paper_head.html.j2", names), render(env, "_paper_body.html.j2", names)
+            render(env, "paper/_head.html.j2", names), render(env, "paper/_body.html.j2", names)
         )
 
     def template_names(self, document: Paper | FeedbackPaper) -> dict[str, Any]:

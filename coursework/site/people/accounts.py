@@ -84,7 +84,7 @@ def _sign_in_page(
     request: Request, after: str, login: str = "", missed: bool = False, waits: int = 0
 ) -> Response:
     names = {"after": after, "login": login, "missed": missed, "waits": waits}
-    return request.render("site_sign_in", 401 if missed else 200, **names)
+    return request.render("site/sign_in", 401 if missed else 200, **names)
 
 
 def sign_out(request: Request) -> Response:
@@ -138,7 +138,7 @@ def invitation(request: Request) -> Response:
 
 
 def _invitation_page(request: Request, mine: Any, status: int = 200, **names: Any) -> Response:
-    return request.render("site_invitation", status, mine=mine, shortest=passwords.SHORTEST, **names)
+    return request.render("site/invitation", status, mine=mine, shortest=passwords.SHORTEST, **names)
 
 
 def _chosen(request: Request, mine: Any) -> tuple[str, str]:
@@ -203,7 +203,7 @@ def _account_page(request: Request, mine: Any, status: int = 200, **names: Any) 
         for session in sessions
     ]
     return request.render(
-        "site_account", status, mine=mine, has_password=has_password, sessions=rows, shortest=passwords.SHORTEST,
+        "site/account", status, mine=mine, has_password=has_password, sessions=rows, shortest=passwords.SHORTEST,
         happened=happened, **names,
     )  # fmt: skip
 

@@ -46,7 +46,7 @@ def choose_person(request: Request) -> Response:
         if chosen is None:
             raise HTTPException("own", 404)
         return Response(redirect="/", signed_in=chosen.id)
-    return request.render("site_who", people=persons)
+    return request.render("site/who", people=persons)
 
 
 def choose_language(request: Request) -> Response:

@@ -59,7 +59,7 @@ def everybody(request: Request) -> Response:
         lines = _lines(request, connection)
     may_invite = {role: may(request.user, to_invite(role)) for role in ROLES}
     return request.render(
-        "site_people", lines=lines, added=_count(request.query_params.get("added", "")), may_invite=may_invite,
+        "site/instructor/people", lines=lines, added=_count(request.query_params.get("added", "")), may_invite=may_invite,
         staff_roles=_staff_roles(request), left=bool(request.query_params.get("left")),
     )  # fmt: skip
 
@@ -112,7 +112,7 @@ def _invite(request: Request) -> Response:
         return Response(
             media_type="text/csv; charset=utf-8", content=_as_csv(links), filename="invitations.csv"
         )
-    return request.render("site_links", links=links, days=DAYS)
+    return request.render("site/instructor/links", links=links, days=DAYS)
 
 
 def _link(request: Request, connection: Connection, row: PersonRow) -> InvitationLink:
@@ -201,7 +201,7 @@ def add_staff(request: Request) -> Response:
             raise HTTPException("login_taken", 409, account.login)
         line = PersonRow(person, student.name, login_of(person_by_id(connection, person)), role, "none")
         link = _link(request, connection, line)
-    return request.render("site_links", links=[link], days=DAYS)
+    return request.render("site/instructor/links", links=[link], days=DAYS)
 
 
 # ------------------------------------------------------------------------ a person
@@ -220,7 +220,7 @@ def person_page(request: Request) -> Response:
         ]
         ties = _ties(connection, person.id)
     return request.render(
-        "site_person", line=line, last=last, columns=person.columns or {}, roles=ROLES,
+        "site/instructor/person", line=line, last=last, columns=person.columns or {}, roles=ROLES,
         may_invite=may(request.user, to_invite(line.role)), groups={**groups, **_gone(areas, groups)},
         assignments=assignments, areas=areas, any=_ANY, ties=ties,
     )  # fmt: skip
@@ -262,7 +262,7 @@ def invite_person(request: Request) -> Response:
     with request.site.store.begin() as connection:
         person = somebody(request, connection)
         link = _link(request, connection, _line(request, person, accounts(connection).get(person.id)))
-    return request.render("site_links", links=[link], days=DAYS)
+    return request.render("site/instructor/links", links=[link], days=DAYS)
 
 
 def change_role(request: Request) -> Response:
@@ -292,7 +292,7 @@ def change_role(request: Request) -> Response:
         )
         link = _link(request, connection, line._replace(role=role)) if needs_link else None
     if link is not None:
-        return request.render("site_links", links=[link], days=DAYS, chooses_anew=True)
+        return request.render("site/instructor/links", links=[link], days=DAYS, chooses_anew=True)
     return Response(redirect=f"/desk/people/{line.id}")
 
 

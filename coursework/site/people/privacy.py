@@ -125,7 +125,7 @@ def erase_person(request: Request) -> Response:
     typed = " ".join(request.form.text("name").split())
     if not request.is_post or typed != person.name:
         return request.render(
-            "site_erase",
+            "site/instructor/erase",
             422 if request.is_post else 200,
             one=person,
             kept=counts,
@@ -166,7 +166,9 @@ def audit(request: Request) -> Response:
     rows = [(line, _about(line, names)) for line in lines]
     of = names[subject][0] if subject in names else ""
     more = urlencode({**filters, "before": lines[-1].id}) if len(lines) == _LINES else ""
-    return request.render("site_audit", lines=rows, more=more, asked=filters, kinds=event_kinds, of=of)
+    return request.render(
+        "site/instructor/audit", lines=rows, more=more, asked=filters, kinds=event_kinds, of=of
+    )
 
 
 def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:

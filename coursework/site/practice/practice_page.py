@@ -29,7 +29,7 @@ def course(request: Request) -> Response:
     progress = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
     going = next(begun(request, progress), None)
     return request.render(
-        "site_practice",
+        "site/student/practice",
         title=request.words["practice"]["title"],
         chapters=contents(request, progress),
         going=going,
@@ -133,7 +133,7 @@ def _page(
     names["hinted"] = {**names["hinted"], **(hinted or {})}
     for name in names["came"]:
         names["results"].setdefault(name, None)
-    return request.render("site_practice_sheet", **names, **_after(request, names["summary"]))
+    return request.render("site/student/practice_sheet", **names, **_after(request, names["summary"]))
 
 
 def _pieces(
@@ -143,7 +143,7 @@ def _pieces(
     results = work.results(checked, work.typed)
     summary = work.summary(checked, work.typed)
     return request.render(
-        "site_practice_pieces",
+        "site/student/practice_pieces",
         own=BOX_PREFIX,
         sheet_page=work,
         results={name: results.get(name) for name in parts},
@@ -215,9 +215,9 @@ def solution(request: Request) -> Response:
         return Response(redirect=f"{work.address}/solution")
     names: dict[str, Any] = {"sheet_page": work, "title": work.variant.text.title}
     if not work.attempt.is_example:
-        return request.render("site_practice_sure", **names)
+        return request.render("site/student/practice_sure", **names)
     sheet_ = answer_sheet(work.variant)
-    return request.render("site_practice_solution", **{**views.context(sheet_), **names})
+    return request.render("site/student/practice_solution", **{**views.context(sheet_), **names})
 
 
 def motion(request: Request) -> Response:
@@ -232,7 +232,7 @@ def motion(request: Request) -> Response:
     key = ("motion", work.exercise, work.seed, work.variant.lang, has_numbers)
     names = request.site.cache.get(key, lambda: _motion(work.variant, has_numbers))
     more = {"sheet_page": work, "motion_title": work.variant.text.title, "is_piece": request.is_fragment}
-    return request.render("site_practice_motion", **{**more, "motion": names})
+    return request.render("site/student/practice_motion", **{**more, "motion": names})
 
 
 def _motion(variant: Any, has_numbers: bool) -> dict[str, Any]:

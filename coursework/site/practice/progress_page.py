@@ -26,7 +26,7 @@ def progress(request: Request) -> Response:
     skills = told_skills(request.site.course, store.progress, request.lang, exercise_title)
     begun = [c for c in contents(request, store.progress) if c.begun]
     return request.render(
-        "site_progress",
+        "site/student/progress",
         title=request.words["progress"]["title"],
         chapters=begun,
         entries=len(store.progress),

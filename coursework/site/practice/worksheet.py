@@ -341,8 +341,8 @@ class Worksheet:
             "filled": {
                 BOX_PREFIX + n: _ticked(self.variant, self.parts[n], text) for n, text in contents.items()
             },
-            "before_questions": "_site_practice_before.html.j2",
-            "below_question": "_site_practice_below.html.j2",
+            "before_questions": "site/student/_practice_before.html.j2",
+            "below_question": "site/student/_practice_below.html.j2",
             "sheet_page": self,
             "results": results,
             "reads": {n: self.read_as(n, text) for n, text in contents.items()},

@@ -106,7 +106,10 @@ class _PreviewPages:
             "worked": _clock(content.worked), "words": words(choice.lang),
         }  # fmt: skip
         return Response(
-            self._pages.rendered("site_preview", choice.lang, names), 200, _PAGE_HEADERS, "text/html"
+            self._pages.rendered("site/instructor/preview", choice.lang, names),
+            200,
+            _PAGE_HEADERS,
+            "text/html",
         )
 
     def _view(self, choice: _Choice, about: View) -> View:

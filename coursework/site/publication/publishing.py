@@ -124,7 +124,9 @@ def list_page(request: Request) -> Response:
     with request.site.store.reading() as connection:
         assignments = listed_assignments(connection)
     phases = {item.id: _phase(item.publication, request.received_at) for item in assignments}
-    return request.render("site_publish_list", found=assignments, phases=phases, lang_of=request.lang)
+    return request.render(
+        "site/instructor/publish_list", found=assignments, phases=phases, lang_of=request.lang
+    )
 
 
 def _phase(publication: Publication | None, clock: datetime) -> str:
@@ -150,7 +152,7 @@ def new(request: Request) -> Response:
 def _new_page(request: Request, problem: str = "", status: int = 200) -> Response:
     exercise_groups = new_assignment.exercise_groups(request.site.course, request.lang)
     return request.render(
-        "site_publish_new", status, exercise_groups=exercise_groups, problem=problem, sent=request.form, most_versions=MOST_VERSIONS,
+        "site/instructor/publish_new", status, exercise_groups=exercise_groups, problem=problem, sent=request.form, most_versions=MOST_VERSIONS,
         accounts=len(new_assignment.students_with_accounts(request)),
     )  # fmt: skip
 
@@ -173,7 +175,7 @@ def assigning_page(request: Request) -> Response:
         raise HTTPException("page", 404)
     if job.state == assigning.DONE and not job.messages:
         return Response(redirect=f"/desk/assignments/{job.number}")
-    return request.render("site_publish_dealing", dealing=job)
+    return request.render("site/instructor/publish_dealing", dealing=job)
 
 
 # ------------------------------------------------------------------- one assignment
@@ -197,7 +199,7 @@ def _page(
         more = extensions(connection, listed.id)
         noted = _noted(connection, listed.name)
     return request.render(
-        "site_publish", 422 if faults or problem else 200, one=listed, said_now=publication, faults=faults, problem=problem,
+        "site/instructor/publish", 422 if faults or problem else 200, one=listed, said_now=publication, faults=faults, problem=problem,
         people=people, extensions=more, noted=noted, phase=_phase(listed.publication, request.received_at), zone=zone_name(request.received_at),
         field=field_text, moment=lambda at: "" if at is None else moment_text(at, request.lang),
         exact=lambda at: exact_text(at, request.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
@@ -480,7 +482,7 @@ def _seen(
 ) -> Response:
     pieces = paper.pieces()
     return request.render(
-        "site_assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(request.received_at),
+        "site/student/assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(request.received_at),
         back=f"/desk/assignments/{listed.id}", paper_head=Markup(pieces.head), paper_body=Markup(pieces.body),
     )  # fmt: skip
 
