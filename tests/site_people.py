@@ -1,8 +1,10 @@
 """A site of the built-in course with an instructor and students, and browsers without a browser, each signed in as somebody."""
 
 import re
+from contextlib import contextmanager
 from datetime import UTC, datetime
 
+from sqlalchemy import event
 from starlette.testclient import TestClient
 
 from coursework import open_course
@@ -27,6 +29,35 @@ def signed_in(store, person):
 def seal_of(site, cookie):
     """A CSRF token that goes with a cookie."""
     return Cookies(site.secret).csrf_token(Session(cookie))
+
+
+@contextmanager
+def statements(store):
+    """The statements of the block, in order, with ``CONNECTION`` wherever a connection is taken."""
+    found = []
+
+    def note(connection, cursor, text, *more):
+        found.append(text)
+
+    def take(*more):
+        found.append("CONNECTION")
+
+    event.listen(store.engine, "before_cursor_execute", note)
+    event.listen(store.engine, "checkout", take)
+    try:
+        yield found
+    finally:
+        event.remove(store.engine, "before_cursor_execute", note)
+        event.remove(store.engine, "checkout", take)
+
+
+def count_of(found):
+    """How many statements read or write, and how many transactions write; without a lock of SQLite."""
+    ends = ("BEGIN", "CONNECTION")
+    return (
+        sum(not text.startswith(ends) for text in found),
+        sum(text.startswith("BEGIN IMMEDIATE") for text in found),
+    )
 
 
 class Browser(TestClient):

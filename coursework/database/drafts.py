@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import NamedTuple
 
-from sqlalchemy import Connection, delete, func, insert, select, update
-from sqlalchemy.exc import IntegrityError
+from sqlalchemy import Connection, delete, func, select
 
+from coursework.database.people import lock_person
+from coursework.database.store import put_rows
 from coursework.database.tables import draft
 
 
@@ -18,6 +19,9 @@ class DraftBox(NamedTuple):
 
     text: str
     version: int  #: counts its changes; 0 where nothing was ever written
+
+
+BLANK = DraftBox("", 0)
 
 
 class DraftChange(NamedTuple):
@@ -38,41 +42,38 @@ def drafts(connection: Connection, person: int, sheet: str) -> dict[str, DraftBo
 
 
 def save(
-    connection: Connection, person: int, sheet: str, sent: Mapping[str, DraftChange], at: datetime
-) -> dict[str, DraftBox]:
-    """Store drafts; return the boxes that another page has changed meanwhile, with their current text. These
+    connection: Connection,
+    person: int,
+    sheet: str,
+    sent: Mapping[str, DraftChange],
+    at: datetime,
+    stored: Mapping[str, DraftBox] | None = None,
+) -> tuple[dict[str, DraftBox], dict[str, DraftBox]]:
+    """Store drafts; return all drafts of the sheet, and the boxes that another page has changed meanwhile. These
     are not overwritten.
 
-    An unchanged text is not a change, so that a request sent twice is stored once.
+    An unchanged text is not a change, so that a request sent twice is stored once. ``stored`` are the drafts of
+    the sheet if the caller has read them since it locked the person.
     """
-    stored, others = drafts(connection, person, sheet), {}
-    for box, draft_sent in sent.items():
-        now = stored.get(box, DraftBox("", 0))
-        if now.text == draft_sent.text:
-            continue
-        if draft_sent.over < now.version or not _is_written(
-            connection, (person, sheet, box), draft_sent.text, now, at
-        ):
-            others[box] = drafts(connection, person, sheet)[box]
-    return others
-
-
-def _is_written(
-    connection: Connection, key: tuple[int, str, str], text: str, now: DraftBox, at: datetime
-) -> bool:
-    """Replace the draft of a box; return False if another page was faster."""
-    person, sheet, box = key
-    written = {"text": text, "version": now.version + 1, "changed": at}
-    if now.version:
-        same = (draft.c.person_id == person, draft.c.sheet == sheet, draft.c.box == box)
-        over = update(draft).where(*same, draft.c.version == now.version).values(written)
-        return connection.execute(over).rowcount == 1
-    try:
-        with connection.begin_nested():
-            connection.execute(insert(draft).values(person_id=person, sheet=sheet, box=box, **written))
-    except IntegrityError:
-        return False
-    return True
+    if stored is None:
+        lock_person(connection, person)
+        stored = drafts(connection, person, sheet)
+    changed = {box: new for box, new in sent.items() if stored.get(box, BLANK).text != new.text}
+    others = {box: stored[box] for box, new in changed.items() if new.over < stored.get(box, BLANK).version}
+    written = {
+        box: DraftBox(new.text, stored.get(box, BLANK).version + 1)
+        for box, new in changed.items()
+        if box not in others
+    }
+    if written:
+        key = {"person_id": person, "sheet": sheet, "changed": at}
+        put_rows(
+            connection,
+            draft,
+            [{**key, "box": box, **new._asdict()} for box, new in written.items()],
+            ("person_id", "sheet", "box"),
+        )
+    return {**stored, **written}, others
 
 
 def sheets(connection: Connection, person: int, beginning: str) -> dict[str, datetime]:

@@ -7,9 +7,9 @@ from datetime import datetime
 from typing import NamedTuple
 
 from sqlalchemy import ColumnElement, Connection, delete, insert, literal, select
-from sqlalchemy.dialects import postgresql, sqlite
 
 from coursework.database.jobs import PREPARE
+from coursework.database.store import put_rows
 from coursework.database.tables import UTCDateTime, dealt, job, person, prepared, variant
 
 
@@ -41,11 +41,8 @@ def put_prepared(
     connection: Connection, number: int, person_id: int, lang: str, state: str, pieces: PreparedPieces
 ) -> None:
     """Store a page, in place of that of another state."""
-    make = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
-    now = {"state": state, **pieces._asdict()}
-    added = make(prepared).values(assignment_id=number, person_id=person_id, lang=lang, **now)
-    unique = ["assignment_id", "person_id", "lang"]
-    connection.execute(added.on_conflict_do_update(index_elements=unique, set_=now))
+    row = {"assignment_id": number, "person_id": person_id, "lang": lang, "state": state, **pieces._asdict()}
+    put_rows(connection, prepared, [row], ("assignment_id", "person_id", "lang"))
 
 
 def drop_prepared(connection: Connection, number: int) -> None:

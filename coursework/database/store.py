@@ -173,6 +173,25 @@ def insert_unless_there(
     return None if number is None else int(number)
 
 
+def put_rows(
+    connection: Connection,
+    table: Table,
+    rows: Sequence[Mapping[str, Any]],
+    unique: Sequence[str],
+    *,
+    replaces: bool = True,
+) -> None:
+    """Add rows in one statement; a row with the same ``unique`` columns is replaced, or else stays."""
+    make = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
+    added = make(table)
+    if replaces:
+        new = {name: added.excluded[name] for name in rows[0] if name not in unique}
+        added = added.on_conflict_do_update(index_elements=list(unique), set_=new)
+    else:
+        added = added.on_conflict_do_nothing(index_elements=list(unique))
+    connection.execute(added, [dict(row) for row in rows])
+
+
 def json_of(value: Any) -> str:
     """Return readable JSON in characters that every database can store."""
     text = json.dumps(value, ensure_ascii=False)

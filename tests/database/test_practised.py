@@ -36,9 +36,8 @@ def test_of_two_pages_that_write_at_once_one_is_told(store, somebody):
         def write(text, version=version, told=told, together=together):
             together.wait()
             with store.begin() as connection:
-                told.append(
-                    save(connection, somebody, "practice/x/1", {"rA": DraftChange(text, version)}, AT)
-                )
+                sent = {"rA": DraftChange(text, version)}
+                told.append(save(connection, somebody, "practice/x/1", sent, AT)[1])
 
         threads = [Thread(target=write, args=(f"{version} {k}",)) for k in range(2)]
         for one in threads:

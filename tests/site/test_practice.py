@@ -7,7 +7,7 @@ from html import unescape
 
 import pytest
 from course_of_every_kind import write_course
-from site_people import MAX, TEACHER, ZOE
+from site_people import MAX, TEACHER, ZOE, count_of, statements
 from site_practising import BOX, Practising, right_answer, words_of
 from sqlalchemy import insert
 
@@ -31,6 +31,22 @@ def entries(class_, name=ZOE):
 def test_the_course_stands_in_its_order(class_of_three, course):
     page = class_of_three.browser(ZOE).get("/practice").text
     assert tuple(re.findall(r'<li class="new"><a href="/practice/(\w+)">', page)) == course.folder.in_order
+
+
+def test_a_page_and_a_checked_answer_take_few_statements(zoe, class_of_three):
+    part = next(p for p in zoe.variant.parts if not p.choices)
+    store = class_of_three.site.store
+    zoe.page()
+    form = {"_seal": zoe.seal, "versions": "{}", "check": part.id}
+    with statements(store) as to_show:
+        zoe.page()
+    with statements(store) as to_check:
+        page = zoe.browser.post(zoe.address, data={**form, BOX + part.id: "17"}).text
+    with statements(store) as by_script:
+        zoe.browser.post(zoe.address, data={**form, BOX + part.id: "18"}, headers={"hx-request": "true"})
+    assert zoe.told(page, part.id)
+    assert [e["answer"] for e in entries(class_of_three)] == ["17", "18"]
+    assert [count_of(found) for found in (to_show, to_check, by_script)] == [(3, 0), (5, 1), (3, 1)]
 
 
 # --------------------------------------------------------------------- whose variant

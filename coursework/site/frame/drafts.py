@@ -6,13 +6,14 @@ import json
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
-from coursework.database.drafts import DraftBox, DraftChange, drafts, save
+from sqlalchemy import Connection
+
+from coursework.database.drafts import BLANK, DraftBox, DraftChange, drafts, save
 from coursework.database.people import lock_person
 from coursework.site.frame.requests import FormData, HTTPException, Request, Response
 
 LONGEST = 4000  #: characters of one answer
 _TEXT, _OVER = "text.", "over."
-_BLANK = DraftBox("", 0)
 
 
 def save_drafts(
@@ -35,11 +36,9 @@ def save_drafts(
     """
     sent = sent_boxes(request.form, boxes)
     with request.site.store.begin() as connection:
-        lock_person(connection, request.user.id)
         if not is_open and _is_new(drafts(connection, request.user.id, sheet), sent):
             return json_response({"told": request.words["keeping"]["closed"]}, 409)
-        others = save(connection, request.user.id, sheet, sent, request.received_at)
-        now = drafts(connection, request.user.id, sheet)
+        now, others = save(connection, request.user.id, sheet, sent, request.received_at)
     mine = [name for name in sent if name not in others]
     answer = {
         "versions": {name: now[name].version if name in now else 0 for name in mine},
@@ -50,34 +49,31 @@ def save_drafts(
 
 
 def _is_new(stood: Mapping[str, DraftBox], sent: Mapping[str, DraftChange]) -> bool:
-    return not sent or any(box.text != stood.get(name, _BLANK).text for name, box in sent.items())
+    return not sent or any(box.text != stood.get(name, BLANK).text for name, box in sent.items())
 
 
 def save_form_drafts(
-    request: Request, sheet: str, texts: Mapping[str, str], displayed: Mapping[str, str], versions: str
+    connection: Connection,
+    request: Request,
+    sheet: str,
+    texts: Mapping[str, str],
+    displayed: Callable[[Mapping[str, DraftBox]], Mapping[str, str]],
+    versions: Mapping[str, int],
 ) -> tuple[dict[str, DraftBox], dict[str, DraftBox]]:
-    """Store the drafts of a form without a script: ``texts`` by box, if they differ from those ``displayed`` or a
-    draft exists.
+    """Store the drafts of a form without a script: ``texts`` by box, if they differ from those that the stored
+    drafts ``displayed`` or a draft exists.
 
-    ``versions`` is JSON, as in :func:`draft_attributes`. Return the stored boxes, and those that another page has
-    changed since, which are not overwritten.
-
-    Raises
-    ------
-    HTTPException
-        The versions cannot be read.
+    Return the stored boxes, and those that another page has changed since, which are not overwritten.
     """
-    over = versions_of(versions)
-    with request.site.store.begin() as connection:
-        lock_person(connection, request.user.id)
-        stood = drafts(connection, request.user.id, sheet)
-        sent = {
-            name: DraftChange(text, over.get(name, 0))
-            for name, text in texts.items()
-            if name in stood or text != displayed.get(name, "")
-        }
-        others = save(connection, request.user.id, sheet, sent, request.received_at)
-        return drafts(connection, request.user.id, sheet), others
+    lock_person(connection, request.user.id)
+    stored = drafts(connection, request.user.id, sheet)
+    before = displayed(stored)
+    sent = {
+        name: DraftChange(text, versions.get(name, 0))
+        for name, text in texts.items()
+        if name in stored or text != before.get(name, "")
+    }
+    return save(connection, request.user.id, sheet, sent, request.received_at, stored)
 
 
 def json_response(content: Mapping[str, Any], status: int = 200) -> Response:
@@ -105,7 +101,7 @@ def sent_boxes(form: FormData, boxes: Collection[str]) -> dict[str, DraftChange]
 
 
 def versions_of(text: str) -> dict[str, int]:
-    """Return the versions of boxes stated in a form without a script.
+    """Return the versions of boxes stated in a form without a script, as JSON (:func:`draft_attributes`).
 
     Raises
     ------

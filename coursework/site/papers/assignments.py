@@ -24,7 +24,7 @@ from coursework.gradebook.submissions import read_rows
 from coursework.issuing.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, read_apart
-from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts
+from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts, versions_of
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
 from coursework.site.frame.times import exact_text, length_text, zone_name
 from coursework.site.papers import receipts, submission
@@ -130,9 +130,10 @@ def _save_form(
     request: Request, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str]
 ) -> dict[str, DraftBox]:
     """Store the drafts of a form without a script as well; return the boxes for this page."""
-    now, _ = save_form_drafts(
-        request, sheet_of(state.assignment, paper), texts, {}, request.form.text("_versions")
-    )
+    versions = versions_of(request.form.text("_versions"))
+    with request.site.store.begin() as connection:
+        sheet = sheet_of(state.assignment, paper)
+        now, _ = save_form_drafts(connection, request, sheet, texts, lambda stored: {}, versions)
     return {name: DraftBox(text, now[name].version if name in now else 0) for name, text in texts.items()}
 
 

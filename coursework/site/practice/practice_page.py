@@ -73,23 +73,29 @@ def _warm(request: Request, work: Worksheet) -> None:
 
 
 def _form_response(request: Request, work: Worksheet) -> Response:
-    others = {} if request.is_fragment else _save_typed(request, work)
-    _save_predictions(request, work)
-    if target := request.form.text("go"):
+    target = request.form.text("go")
+    with work.saving():
+        choices = {name: request.form.text(f"predict-{name}") for name in work.parts}
+        work.store.add(work.seed, "predictions", choices)
+        checked, parts, hinted = _acted(request, work)
+    if target:
         return _gone(request, work, target)
-    texts = request.form.texts
-    hinted: dict[str, tuple[QuestionHints, ...]] = {}
-    parts: tuple[str, ...] = ()
-    if "hint" in texts or "reveal" in texts:
-        checked, hinted = work.attempt.marked(), _hinted(request, work)
-    elif "check" in texts:
-        checked, parts = _checked(request, work)
-    else:
-        checked = work.attempt.marked()
     if request.is_fragment:
         return _pieces(request, work, checked, parts, hinted)
-    names = {"others": {BOX_PREFIX + n: box for n, box in others.items()}, "came": parts}
+    names = {"others": {BOX_PREFIX + n: box for n, box in work.others.items()}, "came": parts}
     return _page(request, work, checked, work.typed, hinted, **names)
+
+
+def _acted(
+    request: Request, work: Worksheet
+) -> tuple[CheckedAnswers, tuple[str, ...], dict[str, tuple[QuestionHints, ...]]]:
+    """Do what a form requests; return the marked answers, the parts to show again, and the hints."""
+    texts = request.form.texts
+    if "hint" in texts or "reveal" in texts:
+        return work.attempt.marked(), (), _hinted(request, work)
+    if "check" in texts and "go" not in texts:
+        return *_checked(request, work), {}
+    return work.attempt.marked(), (), {}
 
 
 def _gone(request: Request, work: Worksheet, target: str) -> Response:
@@ -118,11 +124,6 @@ def _hinted(request: Request, work: Worksheet) -> dict[str, tuple[QuestionHints,
     name = name or under
     new = work.hint(name) if action == "hint" else work.reveal(name)
     return {under: (new,) if name == under else (work.hinted(under), new)}
-
-
-def _save_predictions(request: Request, work: Worksheet) -> None:
-    choices = {name: request.form.text(f"predict-{name}") for name in work.parts}
-    work.store.add(work.seed, "predictions", dict(choices))
 
 
 def _page(
@@ -176,12 +177,6 @@ def _after(request: Request, summary: dict[str, Any]) -> dict[str, Any]:
 
 
 # ------------------------------------------------------------------- drafts
-
-
-def _save_typed(request: Request, work: Worksheet) -> dict[str, Any]:
-    """Store the texts of a form without a script; return the boxes that another page has changed since."""
-    others = work.save_typed(request.form.text("versions"))
-    return {n: box for n, box in others.items() if box.text != work.typed[n]}
 
 
 def draft(request: Request) -> Response:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -28,7 +29,7 @@ from coursework.selfstudy.reading_back import read_back
 from coursework.selfstudy.store import ExerciseStore, is_blank
 from coursework.selfstudy.theory import theory
 from coursework.sheets.handout import handout
-from coursework.site.frame.drafts import LONGEST, draft_attributes, save_form_drafts
+from coursework.site.frame.drafts import LONGEST, draft_attributes, save_form_drafts, versions_of
 from coursework.site.frame.requests import HTTPException
 
 if TYPE_CHECKING:
@@ -78,8 +79,13 @@ class Worksheet:
         if not request.user.may(Permission.PRACTICE_ANY) and not site.pool.holds(exercise, int(seed)):
             raise HTTPException("own", 404)
         self.exercise, self.seed = exercise, int(seed)
-        progress = PersonProgress(site.store, request.user.id, site.clock, exercise)
-        self.store = ExerciseStore(progress, exercise)
+        self.others: dict[str, DraftBox] = {}  #: boxes of the form that another page has changed since
+        self.drafts: Mapping[str, DraftBox] = {}  #: by part
+        with site.store.reading() as connection:
+            self._progress = PersonProgress(site.store, request.user.id, site.clock, exercise, connection)
+            if not request.is_post:
+                self.drafts = drafts(connection, request.user.id, self.name)
+        self.store = ExerciseStore(self._progress, exercise)
         self.variant: Variant = self._open_variant()
         self.attempt = StudyAttempt(self.variant, self.store)
 
@@ -130,30 +136,36 @@ class Worksheet:
         texts = self.request.form.texts
         return {name: ", ".join(texts.get(BOX_PREFIX + name, ()))[:LONGEST] for name in self.parts}
 
-    @cached_property
-    def drafts(self) -> dict[str, DraftBox]:
-        """Drafts by part."""
-        with self.request.site.store.reading() as connection:
-            return drafts(connection, self.request.user.id, self.name)
-
     def box_contents(self) -> dict[str, str]:
         """Content of each box: the draft, or else the last answer, in the form that the box uses."""
-        answers = self.attempt.answers
+        return self._contents(self.drafts, self.attempt.answers)
+
+    def _contents(self, boxes: Mapping[str, DraftBox], answers: Mapping[str, Any]) -> dict[str, str]:
         texts = {
-            name: self.drafts[name].text if name in self.drafts else str(answers.get(name) or "")
-            for name in self.parts
+            name: boxes[name].text if name in boxes else str(answers.get(name) or "") for name in self.parts
         }
         return {
             name: ", ".join(_ticked(self.variant, self.parts[name], text)) for name, text in texts.items()
         }
 
-    def save_typed(self, versions: str) -> dict[str, DraftBox]:
-        """Store the texts of a form without a script; return the boxes that another page has changed
-        since."""
-        self.drafts, others = save_form_drafts(
-            self.request, self.name, self.typed, self.box_contents(), versions
-        )
-        return others
+    @contextmanager
+    def saving(self) -> Iterator[None]:
+        """Store what a form brings, and what the block records, in one transaction after the block; even if the
+        block fails."""
+        request, answers = self.request, self.attempt.answers
+        versions = versions_of(request.form.text("versions"))
+        self._progress.waits = True
+        try:
+            yield
+        finally:
+            if self._progress.unsaved or not request.is_fragment:
+                with request.site.store.begin() as connection:
+                    if not request.is_fragment:  # a script stores the texts by itself
+                        self.drafts, others = save_form_drafts(
+                            connection, request, self.name, self.typed, lambda boxes: self._contents(boxes, answers), versions,
+                        )  # fmt: skip
+                        self.others = {n: box for n, box in others.items() if box.text != self.typed[n]}
+                    self._progress.save(connection)
 
     # -------------------------------------------------------------------- feedback
 
