@@ -142,12 +142,14 @@ def _is_likely(name: str, key: Key, part: Part, before: EarlierAnswers) -> bool:
 
     Not one made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
     many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that an earlier answer,
-    which it would have changed, does not show.
+    which it would have changed, does not show; nor of one that would have changed what is right and decides it.
     """
-    if f"mistake:{name}" in before.shown:
-        return True
     about = key.solution.mistakes[name].targets
-    if part.quantity in about:
+    if part.sort.has_few_values and part.quantity not in about:
+        decide = (q for q in before.right if part.quantity in key.solution.depending_on(q))
+        if any(_shows(key, name, q) for q in decide):
+            return False
+    if f"mistake:{name}" in before.shown or part.quantity in about:
         return True
     if not part.sort.has_few_values:
         return not any(_shows(key, name, quantity) for quantity in before.right.intersection(about))

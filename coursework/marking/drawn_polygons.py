@@ -100,9 +100,11 @@ def read_off(
     """
     is_drawn = 2 * sum(judgements[i].share == 1.0 for i in points if i in judgements) >= len(points)
     nothing = undrawn if is_drawn else read
-    little = Judged(PENALTIES["not_drawn"], slip="not_drawn")
     return {
-        i: little if verdict.share == 1.0 and i in nothing else verdict for i, verdict in judgements.items()
+        i: Judged(PENALTIES["not_drawn"], slip="not_drawn", follows=verdict.follows)
+        if verdict.share == 1.0 and i in nothing
+        else verdict
+        for i, verdict in judgements.items()
     }
 
 

@@ -58,8 +58,9 @@ def mark_judged(
 
     if verdict.slip:
         slip = f"slip:{verdict.slip}"
-        is_scale_alone = verdict.slip == "not_drawn" and is_scale(part)
-        sentence = "scale_alone" if is_scale_alone else f"slip_{verdict.slip}"
+        sentence = f"slip_{verdict.slip}"
+        if verdict.slip == "not_drawn" and (is_scale(part) or verdict.follows):
+            sentence = "scale_alone" if is_scale(part) else "drawn_so"
         return mark_of(slip, key.rules.share(verdict.slip), read_as, told(sentence), (slip,))
     is_followed = judgement.followed or verdict.follows
     if (

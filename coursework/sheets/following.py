@@ -56,13 +56,14 @@ def follows_from(variant: Variant, quantity: str) -> str:
     question.
 
     What is given as a case, such as an assembly mode, has no symbol and is left out. Nothing where it takes none of these,
-    or so many that a list of them says nothing.
+    so many that a list of them says nothing, or numbers that stand elsewhere than among the data.
     """
     numbers = {part.quantity: number for number, part in enumerate(variant.parts, start=1)}
     needed = _on_the_sheet(variant, quantity, numbers)
     given = [_symbol(variant, name) for name in variant.stated if name in needed]
     before = [(name, numbers[name]) for name in needed if name in numbers and name not in variant.given]
-    if not 0 < len(given) + len(before) <= _MOST:
+    numbers_given = (name for name in needed if not isinstance(variant.given.get(name, ""), str))
+    if not 0 < len(given) + len(before) <= _MOST or not {*numbers_given} <= variant.stated.keys():
         return ""
     texts, lang = words(variant.lang)["feedback"]["follows"], variant.lang
     noun = words(lang)["sheet"]["question"]["one"]

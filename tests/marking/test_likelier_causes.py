@@ -179,3 +179,13 @@ def test_an_opposite_sign_is_told_as_such_or_as_a_mistake_about_this_very_quanti
                 kind == "mistake" and part.quantity in variant.exercise.solution.mistakes[mistake].targets
             )
             assert mark.verdict in ("slip:sign", "correct", "slip:other_case") or is_here, (part.id, mark)
+
+
+def test_a_case_is_not_told_of_an_error_that_the_right_answer_above_it_disproves():
+    """Of few cases any error gives one: who has the degree of indeterminacy right did not err before it."""
+    variant = COURSE["closed_chain"].variant(3, "en")
+    wrong = variant.key.wrong["unknowns_exchanged"]
+    answers = {p.id: str(variant.key.reference[p.quantity]) for p in variant.parts}
+    marking = variant.grade({**answers, "m": str(wrong["m"]), "statics": wrong["statics"]})
+    assert "mistake:unknowns_exchanged" in marking["m"].matches
+    assert marking["statics"].verdict == "wrong"

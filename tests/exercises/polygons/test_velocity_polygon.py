@@ -69,6 +69,18 @@ def test_a_value_that_follows_from_ones_own_wrong_length_follows():
     assert marking["v_B"].verdict == "follow_through"
 
 
+def test_a_value_read_off_a_wrong_drawing_is_not_called_right():
+    variant = FOUR_BAR.variant(3, "en")
+    found = variant.solution()
+    points = {n: f"{x + dx}; {y}" for n, dx in zip("pab", (0, 30, -40), strict=True) for x, y in (found[n],)}
+    length = found["pv_b"] + 15
+    given = {"kv": found["kv"], "pv_b": length, "v_B": length * found["kv"], **points}
+    mark = variant.grade(given)["v_B"]
+    assert mark.verdict == "slip:not_drawn"
+    assert "is right" not in mark.feedback
+    assert "is right" in variant.grade({**given, "v_B": found["v_B"]})["v_B"].feedback
+
+
 def test_a_right_length_on_a_wrong_drawing_is_right_and_one_of_the_drawing_follows():
     variant = FOUR_BAR.variant(5)
     found = variant.solution()
