@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
@@ -49,6 +49,21 @@ class Slip(NamedTuple):
     def mended(self, answer: float) -> float:
         """Return the answer without it."""
         return answer / self.factor
+
+    def is_turned(self, answers: Iterable[float], turn: float) -> bool:
+        """Return whether directions are more than a ``turn`` when mended: modulo a turn, some are near to anything."""
+        return (
+            bool(turn)
+            and self.kind == "radians"
+            and all(abs(self.mended(answer)) > turn for answer in answers)
+        )
+
+    def trace(self, unit: str) -> str:
+        """Return the key under which a unit that is mistaken everywhere in the same way is recognised: metres for
+        millimetres, say; an empty text for a sign."""
+        if self.kind == "sign":
+            return ""
+        return f"{self.kind}/{self.factor:.6g}/{'mm' if 'mm' in unit else unit}"
 
 
 class KeyNumbers(NamedTuple):
@@ -222,9 +237,9 @@ class Key:
 
     def slips(self, part: Part) -> Iterator[Slip]:
         """Slips that need nobody to declare them: what each makes of a right value, and how a wrong one is mended."""
-        if not part.sort.is_number or part.judge:
+        if not part.sort.is_number:
             return
-        if self.reference[part.quantity]:
+        if self.reference[part.quantity] and not part.judge:  # a drawing tells the senses itself
             yield Slip("sign", -1.0)
         if part.unit == "deg" or part.unit.startswith("rad/s"):
             yield Slip("radians", math.radians(1.0))
@@ -243,7 +258,10 @@ class Key:
         return self._other_values(part.quantity) if is_alone else []
 
     def slip_values(self, part: Part) -> Iterator[tuple[str, Any]]:
-        """Yield the wrong values that slips, and the other case, give of a part, each with its kind."""
+        """Yield the wrong values that slips, and the other case, give of a part, each with its kind; none of one that a
+        judge judges, who may accept others than the reference."""
+        if part.judge:
+            return
         for slip in self.slips(part):
             yield slip.kind, slip.made(self.reference[part.quantity])
         for value in self.other_cases(part):

@@ -29,9 +29,9 @@ def is_in_radians(key: Key, wrong: Iterable[tuple[Part, Reading]]) -> bool:
         for value in key.in_radians[p.quantity]
         if fitting(key, p, r, value) is not None
     }
-    directions = {p.quantity for p, _ in numbers if p.sort.turn}
+    angles = {p.quantity for p, _ in numbers if p.unit == "deg"}
     return len(explained) >= SEVERAL and any(
-        q not in directions or not _is_told_in_radians(key, q, value) for q, value in explained.items()
+        q not in angles or not _is_told_in_radians(key, q, value) for q, value in explained.items()
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from coursework.course.answer_key import Key, Slip
+from coursework.course.answer_key import Key
 from coursework.course.asked import KeySource
 from coursework.course.error_values import TAKEN, UsualError
 from coursework.marking.attempts import SheetEvidence, is_attempt
@@ -239,14 +239,14 @@ def _explanations(
     seen = set()
     for slip in key.slips(judged_by):
         mended = [slip.mended(value) for value in reading.values]
-        fits = slip.kind not in seen and not (part.sort.turn and _is_turned(slip, mended, part.sort.turn))
+        fits = slip.kind not in seen and not slip.is_turned(reading.values, part.sort.turn)
         fit = _fitting(part, mended, reference, None, width) if fits else None
         if fit is None:
             continue
         usual = 1.0 if slip.is_common else NEAR
         if _is_near(key, part, judged_by, mended[fit[0]], fit[1], usual):
             seen.add(slip.kind)
-            yield Explanation(f"slip:{slip.kind}", *fit, traces=_of_unit(slip, part.unit))
+            yield Explanation(f"slip:{slip.kind}", *fit, traces=tuple(filter(None, (slip.trace(part.unit),))))
     for value in key.other_cases(judged_by):
         if (
             "other_case" not in seen
@@ -255,11 +255,6 @@ def _explanations(
         ):
             seen.add("other_case")
             yield Explanation("slip:other_case", *fit)
-
-
-def _is_turned(slip: Slip, mended: Sequence[float], turn: float) -> bool:
-    """Return whether directions are more than a turn when mended: modulo a turn, some are near to anything."""
-    return slip.kind == "radians" and all(abs(value) > turn for value in mended)
 
 
 def _is_near(key: Key, part: Part, judged_by: Part, answer: Any, gap: float, usual: float = NEAR) -> bool:
@@ -323,15 +318,6 @@ def _trace(error: UsualError) -> str:
         return ""
     # The calculator is set to radians for all formulas.
     return ALL_DEGREES if error.kind in (DEGREES, ALL_DEGREES) else "/".join(map(str, error))
-
-
-def _of_unit(slip: Slip, unit: str) -> tuple[str, ...]:
-    """Return the traces of a unit that was mistaken everywhere in the same way: metres for millimetres,
-    say."""
-    if slip.kind == "sign":
-        return ()
-    length_unit = "mm" if "mm" in unit else unit
-    return (f"{slip.kind}/{slip.factor:.6g}/{length_unit}",)
 
 
 def _is_constant(key: Key, part: Part, value: Any, before: EarlierAnswers) -> bool:

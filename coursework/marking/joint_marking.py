@@ -86,19 +86,22 @@ def mark_judged(
             message = told("mistake", says=variant.told(mistakes[0]))
         return mark_of(matches[0], share, read_as, message, matches)
     if judgement.slip:
-        error = f"{judgement.slip}/{'/'.join(judgement.about)}"
-        if judgement.about and error in before.paid and before.sheet.has_work:
+        error = judgement.trace or "/".join(judgement.about and (judgement.slip, *judgement.about))
+        if error in before.paid and before.sheet.has_work:
             return mark_of(
                 "follow_through",
-                key.rules.follow_through,
+                judgement.left * key.rules.follow_through,
                 read_as,
                 told("same_error", first=questions(variant, [before.paid[error]], "and")),
                 matches,
             )
-        before.paid[error] = part.id
+        if error:
+            before.paid[error] = part.id
         about = either_symbol(variant, judgement.about, both=judgement.slip == "frame_missing")
         message = told(f"slip_{judgement.slip}", about=about)
-        return mark_of(matches[0], key.rules.share(judgement.slip), read_as, message, matches)
+        return mark_of(
+            matches[0], judgement.left * key.rules.share(judgement.slip), read_as, message, matches
+        )
     return mark_of("wrong", share, read_as, told(_unexplained(variant, part)))
 
 

@@ -18,9 +18,12 @@ from coursework.parsing.reading import Reading
 from coursework.solution import Judged
 
 if TYPE_CHECKING:
+    from coursework.course.answer_key import Slip
     from coursework.course.asked import KeySource
+    from coursework.course.variant import Variant
 
 
+_ALMOST = 0.99  #: of the points, more than which an answer earns that is right and read off a drawing
 SHEETS = 64  #: ways at most to read one student's answers to the parts of one judge
 
 
@@ -89,42 +92,110 @@ class Verdict(NamedTuple):
     followed: bool = False  #: judged from the student's own earlier answers
     slip: str = ""  #: what is missed, where that needs no naming by the solution
     about: tuple[str, ...] = ()  #: the quantities that the slip may be about
+    trace: str = ""  #: what other answers that show the same slip have in common with it
+    left: float = 1.0  #: the share of the points that the answer would earn without the slip
+
+    @property
+    def is_unexplained(self) -> bool:
+        """Return whether the answer is wrong, and nothing is known of why."""
+        return self.said is not None and not (
+            self.said.share or self.said.mistake or self.said.slip or self.slip
+        )
 
 
-def best_judged(
-    variant: KeySource,
+def best_judged(variant: KeySource, name: str, readings: Mapping[str, Reading]) -> dict[str, Verdict]:
+    """Return the verdicts of a judge on what was read.
+
+    Where answers may honestly be read in several ways, those are taken that together earn most.
+    """
+    return _best(variant, name, readings, {}, None)
+
+
+def judged_again(
+    variant: Variant,
     name: str,
     readings: Mapping[str, Reading],
+    verdicts: Mapping[str, Verdict],
     own_answers: Mapping[str, float],
     wrong: Collection[str],
 ) -> dict[str, Verdict]:
-    """Return the verdicts of a judge on what was read.
+    """Return the verdicts of a judge where answers may follow from others, and show slips that nobody need name.
 
-    Where answers may honestly be read in several ways, those are taken that together earn most. Where some
-    quantity that a student has answered before is ``wrong``, the answers may follow from the student's ``own_answers``.
+    They follow from a student's ``own_answers``, where some quantity that was answered before is ``wrong``.
     """
+    if _bears_on(variant, name, wrong):
+        verdicts = _best(variant, name, readings, verdicts, own_answers)
+    return _without_slips(variant, name, readings, verdicts, own_answers)
+
+
+def _best(
+    variant: KeySource,
+    name: str,
+    readings: Mapping[str, Reading],
+    best: Mapping[str, Verdict],
+    own_answers: Mapping[str, float] | None,
+) -> dict[str, Verdict]:
+    """Return the ``best`` verdicts so far, or those that earn more."""
     points = {part.id: part.points for part in variant.parts}
     read = [i for i in dict(judges_of(variant))[name] if i in readings and readings[i].status == "read"]
-    full = sum(points[i] for i in read)
-    best, most = {}, -1.0
-    for own_ones in (None, own_answers):
-        if own_ones is not None and (most == full or not _bears_on(variant, name, wrong)):
-            break
-        ways = itertools.product(*(range(len(readings[i].values)) for i in read))
-        for combination in itertools.islice(ways, SHEETS):
-            chosen = dict(zip(read, combination, strict=True))
-            answers = {i: readings[i].values[index] for i, index in chosen.items()}
+    most = sum(points[i] * float(v.said.share) for i, v in best.items() if v.said) if best else -1.0
+    ways = itertools.product(*(range(len(readings[i].values)) for i in read))
+    if most == sum(points[i] for i in read):
+        return dict(best)
+    for combination in itertools.islice(ways, SHEETS):
+        chosen = dict(zip(read, combination, strict=True))
+        answers = {i: readings[i].values[index] for i, index in chosen.items()}
+        try:
+            judgements = judged(variant, name, answers, own_answers)
+        except (CannotAssemble, Undefined):
+            if own_answers is None:
+                raise
+            continue  # nothing follows from the student's own answers
+        earned = sum(points[i] * float(verdict.share) for i, verdict in judgements.items())
+        if earned > most:
+            followed = own_answers is not None
+            best, most = {i: Verdict(chosen[i], judgements.get(i), followed) for i in read}, earned
+    return dict(best)
+
+
+def _without_slips(
+    variant: Variant,
+    name: str,
+    readings: Mapping[str, Reading],
+    verdicts: Mapping[str, Verdict],
+    own_answers: Mapping[str, float],
+) -> dict[str, Verdict]:
+    """Return the verdicts, with its slip for each number that would be right without one: angles in radians, metres.
+
+    A slip that several answers may show is taken from all of them at once, then from each alone: a judge may judge
+    each by the others.
+    """
+    explained = dict(verdicts)
+    parts = {p.id: p for p in variant.parts if p.id in verdicts and verdicts[p.id].is_unexplained}
+    answers = {i: readings[i].values[verdict.reading] for i, verdict in verdicts.items()}
+    showing: dict[Slip, list[str]] = {}
+    for i, part in parts.items():
+        for slip in variant.key.slips(part):
+            if slip.is_common and slip.factor != 1 and not slip.is_turned([answers[i]], part.sort.turn):
+                showing.setdefault(slip, []).append(i)
+    for slip, ids in showing.items():
+        for some in dict.fromkeys((tuple(ids), *((i,) for i in ids))):
+            left = [i for i in some if not explained[i].slip]
+            if not left:
+                continue
+            own = own_answers if explained[left[0]].followed else None
             try:
-                judgements = judged(variant, name, answers, own_ones)
+                said = judged(variant, name, answers | {i: slip.mended(answers[i]) for i in left}, own)
             except (CannotAssemble, Undefined):
-                if own_ones is None:
-                    raise
-                continue  # nothing follows from the student's own answers
-            earned = sum(points[i] * float(verdict.share) for i, verdict in judgements.items())
-            if earned > most:
-                followed = own_ones is not None
-                best, most = {i: Verdict(chosen[i], judgements.get(i), followed) for i in read}, earned
-    return best
+                continue
+            for i in left:
+                # A value that is read off nothing has a wide margin: a power of ten fits by chance.
+                enough = 0.0 if slip.kind == "radians" else _ALMOST
+                if i in said and said[i].share > enough and not said[i].mistake:
+                    explained[i] = explained[i]._replace(
+                        slip=slip.kind, trace=slip.trace(parts[i].unit), left=float(said[i].share)
+                    )
+    return explained
 
 
 def _bears_on(variant: KeySource, name: str, wrong: Collection[str]) -> bool:

@@ -26,7 +26,7 @@ from coursework.marking.error_messages import mark_wrong, shown_as
 from coursework.marking.exchanged import Exchange, exchanged
 from coursework.marking.feedback import Sentence, echo, part_name, questions, say, say_not_read
 from coursework.marking.joint_marking import is_scale, is_told_with, mark_judged, waits_for
-from coursework.marking.judges import best_judged
+from coursework.marking.judges import best_judged, judged_again, judges_of
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, SheetMarks, made_mark
 from coursework.model import Part
@@ -66,6 +66,11 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = settled(variant, readings, answers)
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
+    by_judge = {
+        name: best_judged(variant, name, readings)
+        for name, ids in judges_of(variant)
+        if any(i in readings for i in ids)
+    }
     before = EarlierAnswers(sheet=sheet_of(parts, readings, known, key))
     alone = [i for i, p in parts.items() if i not in known and not p.judge and i not in together]
     nearest_of = {i: nearest_reading(parts[i], readings[i], key, parts[target[i]]) for i in alone}
@@ -86,7 +91,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             continue
         judged_by, reading = parts[target[i]], readings[i]
         if part.judge and i not in together:
-            together |= best_judged(variant, part.judge, readings, before.own, before.wrong)
+            name = part.judge
+            together |= judged_again(variant, name, readings, by_judge[name], before.own, before.wrong)
         if i in elsewhere and elsewhere[i].part.id not in marks and _follows(key, part, reading, before):
             del elsewhere[elsewhere[i].part.id], elsewhere[i]
         if i in elsewhere and before.sheet.has_work:

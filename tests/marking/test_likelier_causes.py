@@ -8,9 +8,11 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from sweeps import seeds
 
 import coursework
 from coursework import degrees
+from coursework.course.exercise import ALL
 from coursework.errors import CourseworkError
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.numbers import significant
@@ -93,14 +95,39 @@ def test_a_calculator_in_radians_throughout_costs_one_question(name, converts, m
         assert len(lost) <= 1, [(i, answers[i], marking[i].verdict, marking[i].feedback) for i in lost]
 
 
-def test_one_answer_in_radians_is_not_a_calculator():
-    """Both angles are right, told in radians; the rest is right in degrees."""
-    for variant in distinct_variants(COURSE["four_bar_motion"], 0, 4, "en"):
-        right = {p.id: variant.key.reference[p.quantity] for p in measured(variant)}
-        told = {i: math.radians(right[i]) for i in ("theta3", "theta4")}
-        marking = variant.grade({**right, **told})
-        assert marking["theta3"].verdict == "slip:radians"
-        assert marking["theta4"].verdict == "follow_through"
+@seeds(1, 12)
+def test_angles_told_in_radians_are_named_once_and_paid_once(seeds):
+    """Each angle alone amid right answers, in whichever kind of part it is asked, then all of a sheet: the first pays."""
+    missed, tried = [], 0
+    for variant in (
+        v
+        for n in COURSE.names
+        for v in distinct_variants(COURSE[n], seeds[0], len(seeds), "en", parts=(ALL,))
+    ):
+        reference = variant.key.reference
+        right = {p.id: reference[p.quantity] for p in variant.parts if not p.sort.is_open}
+        angles = {p.id: p.quantity for p in variant.parts if p.unit == "deg" and p.sort.is_number}
+        told = {i: significant(math.radians(reference[q]), 4) for i, q in angles.items()}
+        told = {
+            i: text for i, text in told.items() if variant.grade({**right, i: text})[i].verdict != "correct"
+        }
+        for answers in (told, *({i: text} for i, text in told.items() if len(told) > 1)):
+            if not answers:
+                continue
+            marking = variant.grade({**right, **answers})
+            said = [(marking[i].verdict, marking[i].points / marking[i].out_of) for i in answers]
+            paid = [("slip:radians", PENALTIES["radians"]), *[("follow_through", 1.0)] * (len(answers) - 1)]
+            others = {
+                i: m.verdict
+                for i, m in marking.items()
+                if i in right and i not in answers and m.verdict != "correct"
+            }
+            tried += 1
+            missed += [(variant.exercise.name, variant.seed, answers, said, others)] * (
+                said != paid[: len(said)] or bool(others)
+            )
+    assert tried > 60
+    assert not missed, missed
 
 
 # ----------------------------------------------------------------------- exchanged boxes
