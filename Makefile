@@ -112,7 +112,7 @@ wheel-test: $(VENV)/ready-test  ## The wheel has every file and does the job
 
 # What a server installs, with digests, for each Python and system: all.txt decides each version, the others follow it.
 # The versions that stand there stay while they fit pyproject.toml: make lock UPGRADE=--upgrade takes the newest.
-EXTRAS := accuracy charts cluster lti nbgrader parquet scan
+EXTRAS := accuracy charts cluster nbgrader parquet scan
 UPGRADE ?=
 COMPILE = $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --custom-compile-command "make lock" $(UPGRADE)
@@ -131,7 +131,7 @@ lock-test: wheel  ## The site from its lock file, in an environment of its own
 	build/locked/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r locks/site.txt
 	build/locked/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-index dist/*.whl
 	build/locked/bin/python -m pip check
-	cd build/locked && bin/python -P -c "import coursework.site.server, coursework.lti.service" && bin/coursework list | tail -1
+	cd build/locked && bin/python -P -c "import coursework.site.server, coursework.site.lti.service" && bin/coursework list | tail -1
 
 sbom: $(VENV)/ready-supply  ## The inventory of what the site installs, in build
 	$(BIN)/python locks/sbom.py locks/site.txt build/site.cdx.json

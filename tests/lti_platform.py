@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 import secrets
-import shutil
 import tempfile
 import time
 from functools import cache
@@ -17,13 +16,8 @@ import jwt
 from cryptography.hazmat.primitives.asymmetric import rsa
 from jwt.algorithms import RSAAlgorithm
 
-import coursework
-from coursework.lti.course_host import CourseHost
 from coursework.lti.keys import KeyFolder
-from coursework.lti.pages import LTIPages
-from coursework.lti.service import service
-from coursework.lti.settings import LTIPlatform, Settings
-from coursework.lti.storage import Storage
+from coursework.lti.settings import LTIPlatform
 
 LTI = "https://purl.imsglobal.org/spec/lti/claim/"
 DEEP = "https://purl.imsglobal.org/spec/lti-dl/claim/"
@@ -148,7 +142,7 @@ class FakePlatform:
         told = {
             "iss": SITE, "aud": CLIENT, "sub": "ada", "iat": now, "exp": now + 300, "nonce": nonce, "name": "Ada Byron",
             f"{LTI}message_type": "LtiResourceLinkRequest", f"{LTI}version": "1.3.0", f"{LTI}deployment_id": DEPLOYMENT,
-            f"{LTI}target_link_uri": f"{TOOL}/launch", f"{LTI}roles": STUDENT, f"{LTI}resource_link": {"id": "link-1", "title": "Week 3"},
+            f"{LTI}target_link_uri": f"{TOOL}/lti/launch", f"{LTI}roles": STUDENT, f"{LTI}resource_link": {"id": "link-1", "title": "Week 3"},
             f"{LTI}context": {"id": "course-1", "title": "Mechanics"}, f"{LTI}launch_presentation": {"locale": "en_GB"},
             f"{LTI}custom": {"exercise": "slotted_mechanism"},
             f"{AGS}claim/endpoint": {"scope": SCOPES, "lineitem": f"{SITE}/lines/9?of=7", "lineitems": f"{SITE}/lines"},
@@ -196,7 +190,7 @@ class Browser:
 class Visitor:
     """A browser that follows links from the platform."""
 
-    def __init__(self, app, platform, base=""):
+    def __init__(self, app, platform, base="/lti"):
         self.platform, self.base = platform, base
         self.browser = Browser(app)
 
@@ -205,7 +199,7 @@ class Visitor:
         told = {
             "iss": SITE,
             "login_hint": "ada",
-            "target_link_uri": f"{TOOL}/launch",
+            "target_link_uri": f"{TOOL}/lti/launch",
             "client_id": CLIENT,
             **changed,
         }
@@ -216,11 +210,19 @@ class Visitor:
             name: values[0] for name, values in parse_qs(urlsplit(answer.headers["location"]).query).items()
         }
 
-    def launch(self, *, token=None, **changed):
-        """The tool's answer to a launch."""
+    def told(self, sign=None, **changed):
+        """What the browser brings back from the platform after a login; ``sign`` makes the token of the claims."""
         asked = self.login()
-        token = token or self.platform.signed(self.platform.claims(asked["nonce"], **changed))
-        return self.browser.post(f"{self.base}/launch", data={"state": asked["state"], "id_token": token})
+        token = (sign or self.platform.signed)(self.platform.claims(asked["nonce"], **changed))
+        return {"state": asked["state"], "id_token": token}
+
+    def returned(self, told):
+        """The tool's answer to what a browser brings back."""
+        return self.browser.post(f"{self.base}/launch", data=told)
+
+    def launch(self, *, sign=None, **changed):
+        """The tool's answer to a launch."""
+        return self.returned(self.told(sign, **changed))
 
     def enter(self, **changed):
         """The first page after a launch, and its path."""
@@ -248,41 +250,3 @@ def _made_keys():
     folder = Path(tempfile.mkdtemp()) / "keys"
     KeyFolder(folder).new()
     return folder
-
-
-class Tool:
-    """The service with the built-in course, on a platform of one's own, with a clock that is turned by hand."""
-
-    def __init__(self, folder, course=None, assignments=()):
-        self.course = course or coursework.open_course()
-        self.platform = FakePlatform()
-        self.ahead = 0.0
-        self.settings = Settings(folder, TOOL, (PLATFORM,))
-        self.storage = Storage(folder, self.clock)
-        self.host = CourseHost(self.course, self.storage, assignments, self.clock)
-        self.keys = KeyFolder(folder / "keys")
-        if not self.keys.keys:
-            shutil.copytree(_made_keys(), self.keys.folder)  # making one takes longer than most tests
-        self.platform.tool_keys = lambda: self.keys.public
-        self.app = self.made()
-
-    def made(self):
-        pages = LTIPages(self.course.folder)
-        return service(
-            self.settings,
-            self.host,
-            pages,
-            storage=self.storage,
-            client=self.platform.client,
-            clock=self.clock,
-        )
-
-    def clock(self):
-        return time.time() + self.ahead
-
-    @property
-    def sender(self):
-        return self.app.state.sender
-
-    def visitor(self):
-        return Visitor(self.app, self.platform)

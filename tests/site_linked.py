@@ -1,7 +1,11 @@
 """A site with a learning platform in front of it."""
 
 import shutil
+import tempfile
+import time
 from dataclasses import asdict, replace
+from functools import cache
+from pathlib import Path
 
 from lti_platform import PLATFORM, TOOL, FakePlatform, Visitor, _made_keys
 from site_assignments import ASSIGNMENT, USUAL, dealt, right
@@ -10,39 +14,68 @@ from sqlalchemy import select, update
 
 from coursework.database.assignments import issued_of
 from coursework.database.publication import AT_ONCE, publish
+from coursework.database.store import Store
 from coursework.database.tables import assignment
 from coursework.lti.keys import KeyFolder
 from coursework.lti.settings import Settings
+from coursework.lti.storage import Storage
 from coursework.site.application import application
 from coursework.site.desk.class_cache import class_now
 from coursework.site.desk.class_page import rows
-from coursework.site.lti.mount import mounted
+from coursework.site.lti.service import mounted
 
 AT_ONCE_TOLD = replace(USUAL, feedback=AT_ONCE)
 
 
+@cache
+def _pristine():
+    """A class whose assignment is dealt and published; its database is copied, since making one takes longer than most tests."""
+    made = Class(f"sqlite:///{tempfile.mkdtemp()}/site.db")
+    made.number = dealt(made, AT_ONCE_TOLD)
+    with made.site.store.begin() as connection:
+        connection.execute(update(assignment).values(asked=_table()))
+    made.site.store.scrub()
+    made.site.store.close()
+    return made
+
+
 class Linked(Class):
-    """A site with a platform in front; its assignment is dealt to Zoé and Max."""
+    """A site with a platform in front; its assignment is dealt to Zoé and Max. ``ahead`` are seconds by which the clock of the
+    service is turned."""
 
     def __init__(self, folder, publication=AT_ONCE_TOLD, platform=PLATFORM):
-        super().__init__(f"sqlite:///{folder}/site.db")
-        self.platform, self.site.lti = FakePlatform(), folder / "lti"
-        keys = KeyFolder(self.site.lti / "keys")
-        shutil.copytree(_made_keys(), keys.folder)
-        self.platform.tool_keys = lambda: keys.public
-        self.lti = mounted(
-            self.site,
-            self.site.lti,
-            self.platform.client,
-            Settings(self.site.lti, f"{TOOL}/lti", (platform,)),
-        )
+        made = _pristine()
+        shutil.copy(Path(made.site.store.display_name), folder / "site.db")
+        self.at, self.ids, self.number = made.at, made.ids, made.number
+        self.site = replace(made.site, store=Store(f"sqlite:///{folder}/site.db"), clock=lambda: self.at)
+        if publication != AT_ONCE_TOLD:
+            self.publish(publication)
+        self.platform, self.site.lti, self.ahead = FakePlatform(), folder / "lti", 0.0
+        self.settings = Settings(self.site.lti, f"{TOOL}/lti", (platform,))
+        self.keys = KeyFolder(self.site.lti / "keys")
+        shutil.copytree(_made_keys(), self.keys.folder)
+        self.platform.tool_keys = lambda: self.keys.public
+        self.storage = Storage(self.site.store, self.clock)
+        self.begin()
+
+    def begin(self):
+        """Begin the site, or begin it once more."""
+        self.lti = mounted(self.site, self.site.lti, self.platform.client, self.settings, self.clock)
         self.app = application(self.site, self.lti)
-        self.number = dealt(self, publication)
-        with self.site.store.begin() as connection:
-            connection.execute(update(assignment).values(asked=_table()))
+
+    def clock(self):
+        return time.time() + self.ahead
+
+    @property
+    def course(self):
+        return self.site.course
+
+    def send(self):
+        """How many scores arrived, and how many did not."""
+        return self.lti.state.sender.send_due()
 
     def visitor(self):
-        return Visitor(self.app, self.platform, "/lti")
+        return Visitor(self.app, self.platform)
 
     def enter(self, visitor=None, **changed):
         visitor = visitor or self.visitor()
@@ -62,7 +95,7 @@ class Linked(Class):
             return connection.execute(select(*columns)).all()
 
     def sent(self):
-        self.lti.state.sender.send_due()
+        self.send()
         return self.platform.scores
 
     def publish(self, publication):

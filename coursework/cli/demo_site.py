@@ -14,6 +14,7 @@ from typing import Any
 from coursework.api import open_course
 from coursework.authoring.new_assignment import new_assignment
 from coursework.cli.demo import CLASS, HABITS, ROSTER
+from coursework.cli.options import SITE_DATABASE
 from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.database.assignments import names, put_issued
@@ -30,7 +31,6 @@ from coursework.issuing.roster import Student, read_roster
 from coursework.issuing.variant_assignment import assign_variants
 from coursework.system.folder_lock import only_writer
 
-FILE = "coursework.db"
 DONE, NOW = "homework_1", "homework_2"  #: the assignment that is marked, and the one that is open
 _OPENED = datetime(2026, 10, 5, 8, tzinfo=UTC)
 _CLOSED = datetime(2026, 10, 12, 18, tzinfo=UTC)
@@ -46,7 +46,7 @@ def demo_database(folder: str | None, target: Path) -> str:
     CourseworkError
         The course cannot be opened, or the folder cannot be written.
     """
-    file = target / FILE
+    file = target / SITE_DATABASE
     with only_writer(target, "serve"):
         course, store = open_course(folder), Store(str(file))
         with store.reading() as connection:

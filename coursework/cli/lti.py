@@ -1,4 +1,4 @@
-"""Commands of the LTI 1.3 service: lti platform, keys, serve, scores, roster, forget."""
+"""Commands of learning platforms by LTI 1.3: lti platform, keys, scores, roster."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ import click
 from coursework.cli.options import (
     DONE,
     FOUND,
+    SITE_DATABASE,
     FilePath,
     NeedingExtra,
-    WholeNumber,
+    database_ready,
     json_option,
-    opened,
     print_notes,
 )
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import BadInput, counted, nearest
 from coursework.system.extras import libraries
-from coursework.system.limits import MOST_PORT
 
 if TYPE_CHECKING:
     from coursework.lti.settings import LTIPlatform, Settings
+    from coursework.lti.storage import Storage
 
-_LIBRARIES = ("cryptography", "httpx", "jwt", "starlette", "uvicorn")
+_LIBRARIES = ("cryptography", "httpx", "jwt")
 KINDS = ("moodle", "canvas", "other")
 
 folder_option = click.option(
@@ -36,7 +36,14 @@ folder_option = click.option(
     type=FilePath(path_type=Path, file_okay=False),
     default="lti",
     show_default=True,
-    help="Folder of the platforms, the keys and the data.",
+    help="Folder of the platforms and the keys.",
+)
+db_option = click.option(
+    "--db",
+    metavar="URL",
+    default=SITE_DATABASE,
+    show_default=True,
+    help="The database of the site, as 'serve' has it.",
 )
 
 
@@ -44,11 +51,16 @@ def _ready() -> None:
     libraries(_LIBRARIES, "LTI needs", "lti")
 
 
+def _stored_ready() -> None:
+    _ready()
+    database_ready()
+
+
 @click.group()
 def lti() -> None:
     """Open exercises from a learning platform and send points back, by LTI 1.3.
 
-    Begin with 'lti keys new', 'lti platform moodle https://…' and 'lti serve'.
+    Begin with 'lti keys new', 'lti platform moodle https://…' and 'serve --lti lti'.
     """
 
 
@@ -69,18 +81,11 @@ def lti() -> None:
 @click.option("--auth-url", help="Unless the platform's kind says it.")
 @click.option("--token-url", help="Unless the platform's kind says it.")
 @click.option("--jwks-url", help="Unless the platform's kind says it.")
-@click.option(
-    "--assignment",
-    "assignments",
-    multiple=True,
-    type=FilePath(path_type=Path, exists=True, dir_okay=False),
-    help="An assignment's file that links may open.",
-)
 @click.option("--check", is_flag=True, help="Ask the platforms for their keys, and for a token.")
 @json_option
 def platform(
     kind: str | None, site: str | None, folder: Path, client_id: str | None, deployments: Sequence[str], url: str | None, name: str,
-    assignments: Sequence[Path], check: bool, as_json: bool, **addresses: str | None,
+    check: bool, as_json: bool, **addresses: str | None,
 ) -> int:  # fmt: skip
     """Write a platform down, or list those that are known.
 
@@ -93,11 +98,8 @@ def platform(
 
     settings = read_settings(folder)
     settings = replace(settings, url=checked_url(url, "--url")) if url else settings
-    if assignments:
-        paths = dict.fromkeys([*settings.assignments, *(path.resolve() for path in assignments)])
-        settings = replace(settings, assignments=tuple(paths))
     if kind is None:
-        if url or assignments:
+        if url:
             _write(settings)
         return _list(settings, check, as_json)
     added = _platform(kind, site, client_id, deployments, name, addresses)
@@ -285,111 +287,25 @@ def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
             click.echo(f"no key in {key_folder.folder}: coursework lti keys new")
 
 
-# ------------------------------------------------------------------------ serve
-
-
-@lti.command(cls=NeedingExtra, ready=_ready)
-@folder_option
-@click.option("--host", default="127.0.0.1", show_default=True, help="Where to listen.")
-@click.option("--port", type=WholeNumber(1, MOST_PORT), default=8700, show_default=True)
-@click.option("--url", help="Where browsers find it, where platforms.toml does not say it.")
-@click.option(
-    "--behind-proxy",
-    is_flag=True,
-    help="A proxy in front speaks https: listen in plain http beyond this machine.",
-)
-@click.pass_context
-def serve(
-    context: click.Context, folder: Path, host: str, port: int, url: str | None, behind_proxy: bool
-) -> None:
-    """Start the service. It listens on this machine alone unless told, and to others only behind a proxy that speaks https."""
-    import uvicorn
-
-    app, address = _application(context, folder, host, port, url, behind_proxy)
-    click.echo(f"coursework lti: {address}, listening on {host} port {port}; stop with Ctrl+C", err=True)
-    uvicorn.run(
-        app,
-        host=host,
-        port=port,
-        access_log=False,
-        log_config=_LOGS,
-        server_header=False,
-        proxy_headers=False,
-    )
-
-
-_LOGS: dict[str, Any] = {
-    "version": 1,
-    "disable_existing_loggers": False,
-    "formatters": {
-        "line": {
-            "class": "coursework.system.log_lines.VisibleLines",
-            "format": "%(asctime)s %(levelname)s %(message)s",
-        }
-    },
-    "handlers": {"out": {"class": "logging.StreamHandler", "formatter": "line"}},
-    "loggers": {
-        "coursework.lti": {"handlers": ["out"], "level": "INFO"},
-        "uvicorn": {"handlers": ["out"], "level": "WARNING"},
-        "uvicorn.error": {"level": "WARNING"},
-    },
-}
-
-
-def _application(
-    context: click.Context, folder: Path, host: str, port: int, url: str | None, behind_proxy: bool
-) -> tuple[Any, str]:
-    """Return the service of a folder, and where browsers find it."""
-    from dataclasses import replace
-
-    from coursework.lti.course_host import CourseHost
-    from coursework.lti.keys import KeyFolder
-    from coursework.lti.pages import LTIPages
-    from coursework.lti.service import service
-    from coursework.lti.settings import checked_url, is_loopback, read_settings
-    from coursework.lti.storage import Storage
-
-    settings = read_settings(folder)
-    if not is_loopback(host) and not behind_proxy:
-        raise BadInput(
-            "--host {host} is open to others, in plain http: put a proxy that speaks https in front, and say --behind-proxy",
-            host=host,
-        )
-    public_url = url or settings.url or (f"http://{host}:{port}" if is_loopback(host) else "")
-    if not public_url:
-        raise BadInput(
-            "where do browsers find it? --url https://exercises.example.org, or url in platforms.toml"
-        )
-    settings = replace(settings, url=checked_url(public_url, "the service's url"))
-    if not settings.platforms:
-        print_notes([f"no platform in {folder}: 'coursework lti platform moodle https://…' adds one"])
-    key_folder = KeyFolder(folder / "keys")
-    if not key_folder.keys:
-        print_notes([f"a key was made: {key_folder.new().kid}"])
-    course, storage = opened(context), Storage(folder)
-    crowd = CourseHost(course, storage, settings.assignments)
-    return service(settings, crowd, LTIPages(course.folder), storage=storage), settings.url
-
-
 # --------------------------------------------------------------- scores, roster
 
 
-@lti.command(cls=NeedingExtra, ready=_ready)
+@lti.command(cls=NeedingExtra, ready=_stored_ready)
 @folder_option
+@db_option
 @click.option("--send", is_flag=True, help="Try now to send what waits.")
 @json_option
-def scores(folder: Path, send: bool, as_json: bool) -> int:
+@click.pass_context
+def scores(context: click.Context, folder: Path, db: str, send: bool, as_json: bool) -> int:
     """Tell which points have not reached their gradebook, and why; exit status 1 where some wait."""
-    from coursework.lti.storage import Storage
-
-    storage = Storage(folder)
+    storage = _storage(context, db)
     if send:
         _send(folder, storage)
-    every = storage.scores().values()
+    every = storage.scores()
     rows = [
         {
-            "link": entry.title or entry.link,
-            "person": entry.person,
+            "link": entry.launch.link_title or entry.launch.link,
+            "person": entry.name,
             "points": f"{entry.score.given:g}/{entry.score.maximum:g}",
             "tries": entry.failures,
             "why": entry.problem,
@@ -405,7 +321,14 @@ def scores(folder: Path, send: bool, as_json: bool) -> int:
     return FOUND if rows else DONE
 
 
-def _send(folder: Path, storage: Any) -> None:
+def _storage(context: click.Context, db: str) -> Storage:
+    from coursework.cli.database import store_at
+    from coursework.lti.storage import Storage
+
+    return Storage(store_at(context, db))
+
+
+def _send(folder: Path, storage: Storage) -> None:
     import httpx
 
     from coursework.lti.keys import KeyFolder
@@ -420,13 +343,15 @@ def _send(folder: Path, storage: Any) -> None:
             pass
 
 
-@lti.command(cls=NeedingExtra, ready=_ready)
+@lti.command(cls=NeedingExtra, ready=_stored_ready)
 @click.argument("course_title", required=False, metavar="[COURSE]")
 @folder_option
+@db_option
 @click.option(
     "--out", type=FilePath(path_type=Path, dir_okay=False), help="The CSV to write; printed unless told."
 )
-def roster(course_title: str | None, folder: Path, out: Path | None) -> None:
+@click.pass_context
+def roster(context: click.Context, course_title: str | None, folder: Path, db: str, out: Path | None) -> None:
     """Write the class list that a platform gives as the CSV that 'build --roster' reads.
 
     COURSE is its title, or the start of it; without it, the courses are listed that were opened from a platform.
@@ -437,53 +362,31 @@ def roster(course_title: str | None, folder: Path, out: Path | None) -> None:
     from coursework.lti.keys import KeyFolder
     from coursework.lti.services import Services
     from coursework.lti.settings import read_settings
-    from coursework.lti.storage import Storage
 
-    courses = Storage(folder).courses()
+    courses = _storage(context, db).courses()
     if course_title is None:
-        for (issuer, *_), title, _ in courses:
-            click.echo(f"{title}  ({issuer})")
+        for course in courses:
+            click.echo(f"{course.title}  ({course.issuer})")
         if not courses:
             click.echo("no course yet: open a link of this tool from one, as its teacher")
         return
-    matches = [
-        registered for registered in courses if registered[1].casefold().startswith(course_title.casefold())
-    ]
+    matches = [course for course in courses if course.title.casefold().startswith(course_title.casefold())]
     if len(matches) != 1:
-        titles = [title for _, title, _ in courses]
+        titles = [course.title for course in courses]
         raise BadInput(
             "{count} courses begin with {title!r}{nearest}",
             count=len(matches),
             title=course_title,
             nearest="" if matches else nearest(course_title, titles),
         )
-    ((issuer, client_id, *_), _, address) = matches[0]
-    registered = read_settings(folder).platform(issuer, client_id)
+    (course,) = matches
+    registered = read_settings(folder).platform(course.issuer, course.client)
     if registered is None:
-        raise BadInput("{issuer} is no longer in {folder}", issuer=issuer, folder=folder)
+        raise BadInput("{issuer} is no longer in {folder}", issuer=course.issuer, folder=folder)
     with httpx.Client(timeout=8.0, trust_env=False) as client:
-        text = as_csv(Services(client, KeyFolder(folder / "keys")).roster(registered, address))
+        text = as_csv(Services(client, KeyFolder(folder / "keys")).roster(registered, course.memberships))
     if out is None:
         click.echo(text, nl=False)
     else:
         out.write_text(text, "utf-8-sig", newline="")
         click.echo(f"{out}: {counted(text.count(chr(10)) - 1, 'student')}")
-
-
-@lti.command(cls=NeedingExtra, ready=_ready)
-@click.argument("person")
-@folder_option
-def forget(person: str, folder: Path) -> None:
-    """Take away all that is kept of a person, by the platform's own identifier (lti_user_id of the roster)."""
-    from coursework.lti.storage import Storage
-
-    storage = Storage(folder)
-    gone = storage.forget(person)
-    if not gone:
-        raise BadInput("nothing is kept of {person!r}", person=person)
-    if not storage.scrub():
-        click.echo(
-            f"{storage.path} still holds traces, since another program reads it: repeat this command later",
-            err=True,
-        )
-    click.echo(f"{counted(gone, 'line')} taken away")

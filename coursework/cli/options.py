@@ -47,6 +47,9 @@ def complain(message: str) -> int:
     return BAD
 
 
+SITE_DATABASE = "coursework.db"  #: file of a site whose database is not stated
+
+
 class NeedingExtra(click.Command):
     """Command that needs the libraries of an extra, and complains of them before its arguments.
 

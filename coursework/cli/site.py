@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from coursework.cli.options import (
+    SITE_DATABASE,
     FilePath,
     NeedingExtra,
     WholeNumber,
@@ -23,6 +24,7 @@ from coursework.cli.options import (
     print_notes,
 )
 from coursework.errors import BadInput, unknown
+from coursework.messages import Message
 from coursework.system.extras import libraries
 from coursework.system.limits import MOST_PORT, MOST_VARIANTS, MOST_WORKERS
 
@@ -34,7 +36,6 @@ if TYPE_CHECKING:
 _LIBRARIES = (
     "argon2", "itsdangerous", "limits", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn",
 )  # fmt: skip
-_FILE = "coursework.db"
 _LOOPBACK = "127.0.0.1"
 
 open_option = click.option("--open/--no-open", "opens", help="Open it in the browser.")
@@ -55,7 +56,7 @@ def _lti_ready() -> None:
 @click.option(
     "--db",
     metavar="URL",
-    help=f"Where all is kept: a file of SQLite, or postgresql+psycopg://…; {_FILE} in the current folder unless told.",
+    help=f"Where all is kept: a file of SQLite, or postgresql+psycopg://…; {SITE_DATABASE} in the current folder unless told.",
 )
 @click.option(
     "--host", default="127.0.0.1", show_default=True, help="Where to listen; 0.0.0.0 is every address."
@@ -156,12 +157,19 @@ def _check_lti(folder: Path, url: str) -> None:
         The folder's file is for another address, or cannot be read.
     """
     from coursework.lti.keys import KeyFolder
-    from coursework.site.lti.mount import settings_of
+    from coursework.site.lti.service import settings_of
 
     if not settings_of(folder, url).platforms:
         print_notes(
             [f"no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one"]
         )
+    if (old := folder / "lti.sqlite").exists():
+        note = Message(
+            "{file} is of an earlier version, and nothing reads it now: answers to links of exercises are in it alone. Take them out with "
+            "that version, answers.csv and issued.json on the class page of each link, which 'coursework grade' reads; then delete the file",
+            file=old,
+        )
+        print_notes([note])
     if not (key_folder := KeyFolder(folder / "keys")).keys:
         print_notes([f"a key was made: {key_folder.new().kid}"])
 
@@ -178,7 +186,7 @@ def _invite(course: str | None, db: str | None, login: str, role: str, url: str)
 
 
 def _usual() -> str:
-    return str(Path(_FILE).resolve())
+    return str(Path(SITE_DATABASE).resolve())
 
 
 @contextmanager

@@ -34,7 +34,7 @@ FORMAT = "coursework database dump 2"
 _BEFORE = "coursework database dump 1"  #: which left cells as they are, whatever a spreadsheet makes of them
 _ABOUT = "dump.json"
 #: Columns, all of which may be empty, that dumps of before do not have, by table.
-_NEWER: Mapping[str, set[str]] = {"assignment": {"secret"}, "audit": {"actor", "subject", "address"}}
+_NEWER: Mapping[str, set[str]] = {"assignment": {"secret", "link"}, "audit": {"actor", "subject", "address"}}
 
 
 # --------------------------------------------------------------------------- out

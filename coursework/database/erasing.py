@@ -11,13 +11,14 @@ from collections.abc import Collection, Mapping
 from functools import lru_cache
 from typing import Any
 
-from sqlalchemy import Connection, Table, delete, select, update
+from sqlalchemy import Connection, Table, delete, exists, select, update
 
 from coursework.database.personal_data import PersonIdentifiers, conditions, identifiers_of
 from coursework.database.tables import (
     answer,
     assignment,
     audit,
+    dealt,
     decision,
     delivery,
     extension,
@@ -27,6 +28,7 @@ from coursework.database.tables import (
     scanned,
     seen,
     typed,
+    variant,
     worksheet,
 )
 
@@ -58,7 +60,8 @@ TELLING: tuple[tuple[Table, tuple[str, ...]], ...] = (
 
 
 def erase(connection: Connection, number: int) -> dict[str, int]:
-    """Delete all data of a person; return the number of deleted rows of each table.
+    """Delete all data of a person; return the number of deleted rows of each table. An exercise that only
+    this person opened by a link of a platform is deleted with its assignment.
 
     The audit's line on it is for who calls to write.
     """
@@ -68,6 +71,8 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
     gone = {}
     for name, (table, theirs) in conditions(connection, known_as).items():
         gone[name] = connection.execute(delete(table).where(theirs)).rowcount
+    issued = exists().where(variant.c.assignment_id == assignment.c.id, dealt.c.variant_id == variant.c.id)
+    connection.execute(delete(assignment).where(assignment.c.link.is_not(None), ~issued))
     theirs = audit.c.actor == number
     connection.execute(update(audit).where(theirs).values(actor=None, address=None))
     _strike(connection, known_as)

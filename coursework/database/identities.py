@@ -26,12 +26,6 @@ def link_identity(connection: Connection, number: int, issuer: str, subject: str
     return insert_unless_there(connection, identity, row, ("issuer", "subject")) is not None
 
 
-def identities_of(connection: Connection, number: int) -> list[tuple[str, str]]:
-    """Return the identities of a person on platforms: issuer and identifier."""
-    query = select(identity.c.issuer, identity.c.subject).where(identity.c.person_id == number)
-    return [(row.issuer, row.subject) for row in connection.execute(query)]
-
-
 def people_matching(connection: Connection, issuer: str, email: str, number: str) -> list[Any]:
     """Return the people with the e-mail or the number of a launch who are not linked to the platform yet.
     Staff are excluded: a platform's statement of an address grants no role."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from sqlalchemy import ColumnElement, Connection, Table, or_, select
+from sqlalchemy import ColumnElement, Connection, Table, exists, or_, select
 
 from coursework.database.people import person_by_id
 from coursework.database.tables import (
@@ -20,6 +20,8 @@ from coursework.database.tables import (
     draft,
     extension,
     identity,
+    lti_launch,
+    lti_session,
     mark,
     marking,
     person,
@@ -42,6 +44,8 @@ _HIDDEN = {
     "progress": {"digest"},
     "marking": {"state"},
     "prepared": {"state", "head", "body"},  # the paper may not be open yet; ``dealt`` contains it
+    "lti_session": {"digest"},
+    "lti_launch": {"link"},
 }
 
 
@@ -118,12 +122,20 @@ def conditions(
         "draft": (draft, draft.c.person_id == known_as.person),
         "prepared": (prepared, prepared.c.person_id == known_as.person),
         "progress": (progress, progress.c.person_id == known_as.person),
+        "lti_session": (lti_session, launch_sessions(known_as.person)),
+        "lti_launch": (lti_launch, lti_launch.c.person_id == known_as.person),
         "identity": (identity, identity.c.person_id == known_as.person),
         "session": (session, session.c.person_id == known_as.person),
         "area": (area, area.c.person_id == known_as.person),
         "account": (account, account.c.person_id == known_as.person),
         "person": (person, person.c.id == known_as.person),
     }  # fmt: skip
+
+
+def launch_sessions(person_id: int) -> ColumnElement[bool]:
+    """Return the condition that selects the sessions of a person in frames of platforms."""
+    mine = identity.c.issuer == lti_session.c.issuer, identity.c.subject == lti_session.c.subject
+    return exists().where(identity.c.person_id == person_id, *mine)
 
 
 def ids_of(connection: Connection, table: Table, known_as: PersonIdentifiers) -> list[int]:

@@ -22,8 +22,9 @@ from coursework.database.tables import assignment, dealt, delivery, extension, v
 
 #: Release of marks and feedback, and of right answers and worked solutions.
 AT_ONCE, CLOSED, DATE, NEVER = "at_once", "closed", "date", "never"
+LAST_TRY = "last_try"  #: to each person after the last attempt
 FEEDBACK = (AT_ONCE, CLOSED, DATE, NEVER)
-ANSWERS = (NEVER, CLOSED, DATE)
+ANSWERS = (NEVER, LAST_TRY, CLOSED, DATE)
 #: Treatment of late submissions.
 REFUSE, ACCEPT, CHARGE = "refuse", "accept", "charge"
 LATE = (REFUSE, ACCEPT, CHARGE)
@@ -119,6 +120,8 @@ class Publication:
                 yield Fault(f"{released}_on", "no_date")
             if when == CLOSED and self.closes is None:
                 yield Fault(released, "never_closes")
+        if self.answers == LAST_TRY and self.tries is None:
+            yield Fault("answers", "no_last_try")
         if self.takes_saved and self.closes is None:
             yield Fault("takes_saved", "never_closes")
 
@@ -180,10 +183,15 @@ class Publication:
             return 0.0
         return min(1.0, self.late_percent / 100 * math.ceil(late / _DAY))
 
-    def releases(self, what: str, now: datetime, ends: datetime | None) -> bool:
+    def releases(
+        self, what: str, now: datetime, ends: datetime | None, tries_left: int | None = None
+    ) -> bool:
         """Return True if ``feedback`` or ``answers`` are released; ``ends`` is the time at which the
-        assignment has closed for everybody concerned."""
+        assignment has closed for everybody concerned, ``tries_left`` the number of attempts that the person
+        has left."""
         when, on = getattr(self, what), getattr(self, f"{what}_on")
+        if when == LAST_TRY:
+            return tries_left == 0
         if when == CLOSED:
             return ends is not None and now > ends
         return when == AT_ONCE or (when == DATE and on is not None and now >= on)

@@ -189,6 +189,8 @@ assignment = Table(
     #: key for the draws of students added later; none if it was issued without one
     Column("secret", String(32)),
     Column("published", Json),  #: dates, attempts, feedback, late rules; none while it is not published
+    #: digest of the link of a platform that opens an exercise; none of an assignment that staff made
+    Column("link", String(64), index=True, unique=True),
     Column("created", UTCDateTime, nullable=False),
 )
 
@@ -495,6 +497,66 @@ audit = Table(
     Column("actor", Integer),  #: id of the person who did it; none for commands and platforms
     Column("subject", Integer, index=True),  #: id of the person concerned
     Column("address", String(64)),  #: network address of the actor
+)
+
+# ------------------------------------------------------------- learning platforms
+
+#: Nonce of a launch, as a digest: a launch counts once.
+lti_nonce = Table(
+    "lti_nonce",
+    METADATA,
+    _key(),
+    Column("digest", String(64), nullable=False, unique=True),
+    Column("until", UTCDateTime, nullable=False, index=True),
+    info={"fleeting": True},
+)
+
+#: Session of a launch in a frame of a platform. Dumps omit it.
+lti_session = Table(
+    "lti_session",
+    METADATA,
+    _key(),
+    Column("name", String(16), nullable=False, unique=True),  #: in the addresses of its pages
+    Column("digest", String(64), nullable=False),  #: of the browser's token
+    Column("issuer", SafeText, nullable=False),
+    Column("subject", SafeText, nullable=False),
+    Column("launch", Json, nullable=False),
+    Column("until", UTCDateTime, nullable=False, index=True),
+    info={"fleeting": True},
+)
+
+#: Last launch of a student in a link, without e-mail and number, and the score that the platform receives for it.
+lti_launch = Table(
+    "lti_launch",
+    METADATA,
+    _key(),
+    _of("person", index=True),
+    _of("assignment", index=True),
+    Column("link", String(64), nullable=False),  #: digest of platform, deployment and link
+    Column("launch", Json, nullable=False),
+    Column("line", SafeText, nullable=False, default=""),  #: column of the gradebook to which the score goes
+    Column("given", Double),  #: points; none before there is a score
+    Column("maximum", Double),
+    Column("comment", SafeText, nullable=False, default=""),
+    Column("waits", Boolean, nullable=False, default=False),  #: some answers wait for a person
+    Column("stamp", UTCDateTime),  #: of the score, as the platform is told; a later one is larger
+    Column("due", UTCDateTime, index=True),  #: time of the next attempt; none once the score has arrived
+    Column("failures", Integer, nullable=False, default=0),
+    Column("problem", SafeText, nullable=False, default=""),  #: of the last attempt
+    UniqueConstraint("person_id", "link"),
+)
+
+#: Course of a platform, with the address of its roster.
+lti_course = Table(
+    "lti_course",
+    METADATA,
+    _key(),
+    Column("digest", String(64), nullable=False, unique=True),  #: of platform, deployment and course
+    Column("issuer", SafeText, nullable=False),
+    Column("client", SafeText, nullable=False),
+    Column("title", SafeText, nullable=False),
+    Column("memberships", SafeText, nullable=False),
+    Column("seen", UTCDateTime, nullable=False),
 )
 
 for _table in METADATA.tables.values():  # an id is never used again after its row was erased

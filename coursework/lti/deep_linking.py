@@ -6,13 +6,12 @@ import math
 import secrets
 import time
 import unicodedata
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import jwt
 
-from coursework.lti.host import Form, Offer, OfferGroup
 from coursework.lti.keys import SigningKey
 from coursework.lti.launch import Launch
 from coursework.lti.link_settings import AFTER, BEST, LAST, NEVER, LinkSettings, tries_of
@@ -21,6 +20,26 @@ from coursework.lti.refusal import LTIRefusal
 _LTI = "https://purl.imsglobal.org/spec/lti/claim/"
 _DEEP = "https://purl.imsglobal.org/spec/lti-dl/claim/"
 _MOST_POINTS = 1_000_000.0
+
+Form = Mapping[str, Sequence[str]]  #: values of each field
+
+
+@dataclass(frozen=True)
+class Offer:
+    """Exercise or assignment that a link may open."""
+
+    key: str  #: ``exercise:slotted_mechanism``
+    title: str
+    points: float
+    words: str = ""  #: further search text: its title in other languages
+
+
+@dataclass(frozen=True)
+class OfferGroup:
+    """Offers that stand together, under a title."""
+
+    title: str
+    offers: tuple[Offer, ...]
 
 
 def matching_offers(offer_groups: Sequence[OfferGroup], sought: str) -> list[OfferGroup]:

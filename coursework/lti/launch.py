@@ -67,12 +67,12 @@ class Launch:
         """Return the key of the course, unique over all platforms."""
         return json.dumps([self.issuer, self.client_id, self.deployment, self.context])
 
-    def as_json(self) -> str:
-        return json.dumps(asdict(self), ensure_ascii=False)
+    def as_plain(self) -> dict[str, Any]:
+        """Return the fields as JSON stores them."""
+        return {**asdict(self), "role": str(self.role), "scopes": list(self.scopes)}
 
     @classmethod
-    def from_json(cls, text: str) -> Self:
-        fields = json.loads(text)
+    def of_plain(cls, fields: Mapping[str, Any]) -> Self:
         picking = fields["picking"] and Picking(**fields["picking"])
         return cls(
             **{**fields, "role": Role(fields["role"]), "scopes": tuple(fields["scopes"]), "picking": picking}

@@ -4,8 +4,8 @@ attempt that counts."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any, Self
+from dataclasses import dataclass
+from typing import Self
 
 from coursework.lti.refusal import LTIRefusal
 
@@ -52,9 +52,6 @@ class LinkSettings:
             "answers": "" if self.answers == NEVER else self.answers,
         }  # fmt: skip
         return {name: text for name, text in parameters.items() if text}
-
-    def as_plain(self) -> dict[str, Any]:
-        return asdict(self)
 
     @classmethod
     def of(cls, custom: Mapping[str, str]) -> Self:

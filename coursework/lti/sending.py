@@ -30,8 +30,9 @@ class Sender:
     def send_due(self) -> tuple[int, int]:
         """Send the scores that are due; return how many arrived and how many did not."""
         arrived = failed = 0
-        for (issuer, client_id), waiting in self._storage.due():
-            platform = self._settings.platform(issuer, client_id)
+        for waiting in self._storage.due():
+            issuer = waiting.launch.issuer
+            platform = self._settings.platform(issuer, waiting.launch.client_id)
             try:
                 if platform is None:
                     raise NotServed(Message("{issuer} is no longer in the settings", issuer=issuer), 404)

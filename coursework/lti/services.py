@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import secrets
 import threading
 import time
@@ -71,9 +70,9 @@ class Services:
         """
         line = waiting.line or self._line(platform, waiting)
         score = waiting.score
-        at = datetime.datetime.fromtimestamp(waiting.stamp, datetime.UTC).isoformat(timespec="milliseconds")
+        at = waiting.stamp.isoformat(timespec="milliseconds")
         body: dict[str, Any] = {
-            "userId": waiting.person,
+            "userId": waiting.launch.person,
             "scoreGiven": score.given,
             "scoreMaximum": score.maximum,
             "timestamp": at.replace("+00:00", "Z"),
@@ -87,21 +86,21 @@ class Services:
     def _line(self, platform: LTIPlatform, waiting: Waiting) -> str:
         """Return the address of a gradebook column for a link without one: an existing column of the link, or
         else a new one."""
-        link = waiting.link
-        if not waiting.lines or LINE not in waiting.scopes:
+        link, lines = waiting.launch.link, waiting.launch.lines
+        if not lines or LINE not in waiting.launch.scopes:
             raise NotServed(Message("the link has no column in the gradebook"), 404)
-        url = _with(waiting.lines, resource_link_id=link)
+        url = _with(lines, resource_link_id=link)
         columns = self._request(platform, [LINE], "GET", url, accept=_LINES_TYPE).json()
         for column in columns if isinstance(columns, list) else []:
             if isinstance(column, Mapping) and str(column.get("resourceLinkId")) == link and column.get("id"):
                 return str(column["id"])
         wanted = {
-            "label": waiting.title or link,
+            "label": waiting.launch.link_title or link,
             "scoreMaximum": waiting.score.maximum,
             "resourceLinkId": link,
         }
         created = self._request(
-            platform, [LINE], "POST", waiting.lines, json=wanted, kind=_LINE_TYPE, accept=_LINE_TYPE
+            platform, [LINE], "POST", lines, json=wanted, kind=_LINE_TYPE, accept=_LINE_TYPE
         ).json()
         return str(created["id"])
 

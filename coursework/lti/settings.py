@@ -6,7 +6,7 @@ import ipaddress
 import json
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -55,10 +55,8 @@ class Settings:
     folder: Path  #: of the keys and the data
     url: str = ""  #: its address in browsers, without a slash at the end
     platforms: tuple[LTIPlatform, ...] = ()
-    assignments: tuple[Path, ...] = ()  #: that instructors can choose
     session_seconds: float = 12 * _HOUR
     login_seconds: float = 600.0
-    extra: Mapping[str, Any] = field(default_factory=dict)
 
     def platform(self, issuer: str, client_id: str = "") -> LTIPlatform | None:
         """Return the platform of an issuer; if the issuer has several clients, the one with the given client
@@ -160,7 +158,11 @@ _KEYS = (
     "audience",
     "emails_verified",
 )
-_SERVICE = ("url", "assignments", "session_hours")
+_SERVICE = (
+    "url",
+    "assignments",
+    "session_hours",
+)  #: ``assignments``, of earlier versions, says nothing any more
 
 
 def read_settings(folder: Path) -> Settings:
@@ -222,10 +224,6 @@ class _SettingsReader:
             self.path.parent,
             self._url(["service", "url"], service["url"]) if "url" in service else "",
             platforms,
-            tuple(
-                self.path.parent / entry
-                for entry in self._texts(["service", "assignments"], service.get("assignments", []))
-            ),
             session_seconds=hours * _HOUR,
         )
 
@@ -314,11 +312,6 @@ def as_toml(settings: Settings) -> str:
         "[service]",
     ]
     lines += [f"url = {_text(settings.url)}  # where browsers find this service"] if settings.url else []
-    below = [
-        entry.relative_to(settings.folder) if entry.is_relative_to(settings.folder) else entry
-        for entry in settings.assignments
-    ]
-    lines += [f"assignments = {_list([entry.as_posix() for entry in below])}"] if below else []
     if settings.session_seconds != 12 * _HOUR:
         lines.append(f"session_hours = {settings.session_seconds / _HOUR:g}")
     for entry in settings.platforms:

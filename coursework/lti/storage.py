@@ -1,78 +1,26 @@
-"""Database of the service in one SQLite file: nonces of launches, sessions, papers, attempts, and scores to
-send."""
+"""Launches in the database: nonces, sessions in frames, courses with a roster, and scores to send."""
 
 from __future__ import annotations
 
 import hashlib
-import json
-import os
 import secrets
-import sqlite3
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from coursework.course.secrecy import Secret
-from coursework.errors import BadInput
+from sqlalchemy import ColumnElement, Connection, Table, delete, insert, select, update
+
+from coursework.database.personal_data import launch_sessions
+from coursework.database.store import Store, insert_unless_there
+from coursework.database.tables import lti_course, lti_launch, lti_nonce, lti_session, person
 from coursework.lti.launch import Launch
 from coursework.lti.refusal import LTIRefusal
-from coursework.lti.roles import Role
-from coursework.system.sqlite_files import scrub
 
-FILE = "lti.sqlite"
-_WAIT = 10.0  #: seconds for another writer
-_TAKEN = 180.0  #: seconds for which a score in transmission is not due for another process
-
-_TABLES = """
-CREATE TABLE IF NOT EXISTS used (nonce TEXT PRIMARY KEY, until REAL NOT NULL) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS sessions (id TEXT PRIMARY KEY, token TEXT NOT NULL, until REAL NOT NULL, launch TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS papers (
-  place TEXT NOT NULL, person TEXT NOT NULL, name TEXT NOT NULL, asked TEXT NOT NULL, records TEXT NOT NULL,
-  PRIMARY KEY (place, person)) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS tries (
-  place TEXT NOT NULL, person TEXT NOT NULL, number INTEGER NOT NULL, at REAL NOT NULL, answers TEXT NOT NULL,
-  points REAL NOT NULL, out_of REAL NOT NULL, waits INTEGER NOT NULL, comment TEXT NOT NULL,
-  PRIMARY KEY (place, person, number)) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS scores (
-  place TEXT NOT NULL, person TEXT NOT NULL, platform TEXT NOT NULL, line TEXT NOT NULL, lines TEXT NOT NULL, title TEXT NOT NULL,
-  scopes TEXT NOT NULL, given REAL NOT NULL, maximum REAL NOT NULL, waits INTEGER NOT NULL, comment TEXT NOT NULL, stamp REAL NOT NULL,
-  due REAL, failures INTEGER NOT NULL DEFAULT 0, said TEXT NOT NULL DEFAULT '',
-  PRIMARY KEY (place, person)) WITHOUT ROWID;
-CREATE INDEX IF NOT EXISTS scores_due ON scores (due);
-CREATE TABLE IF NOT EXISTS opened (
-  place TEXT NOT NULL, person TEXT NOT NULL, launch TEXT NOT NULL, PRIMARY KEY (place, person)) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS looked (what TEXT PRIMARY KEY, stood TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS secrets (what TEXT PRIMARY KEY, text TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS courses (
-  course TEXT PRIMARY KEY, title TEXT NOT NULL, memberships TEXT NOT NULL, seen REAL NOT NULL) WITHOUT ROWID;
-"""
-
-
-@dataclass(frozen=True)
-class LTIPaper:
-    """Variants issued to a person in a link."""
-
-    person: str
-    name: str
-    settings: Mapping[str, Any]  #: settings of the link at the time of issue
-    records: Sequence[Mapping[str, Any]]
-
-
-@dataclass(frozen=True)
-class LTIAttempt:
-    """One submission of a person."""
-
-    person: str
-    number: int
-    at: float
-    answers: Sequence[Mapping[str, str]]  #: by part, for each exercise in order
-    points: float
-    out_of: float
-    waits: bool  #: a person has to mark a part
-    comment: str
+_LEEWAY = timedelta(minutes=2)  #: for which a nonce is kept after it has expired
+_TAKEN = timedelta(minutes=3)  #: for which a score in transmission is not due for another process
+_STEP = timedelta(milliseconds=1)  #: between two stamps, as platforms read them
 
 
 @dataclass(frozen=True)
@@ -89,90 +37,52 @@ class Score:
 class Waiting:
     """Score with the state of its delivery; ``due`` is None once it has arrived."""
 
-    link_key: str
-    person: str
+    id: int  #: of the launch in the database
+    launch: Launch
+    name: str  #: of the person
     line: str
-    lines: str
-    title: str
-    scopes: tuple[str, ...]
     score: Score
-    stamp: float  #: seconds; no two of one person in one link are alike, and later ones are larger
-    due: float | None
+    stamp: datetime  #: no two of one person in one link are alike, and later ones are larger
+    due: datetime | None
     failures: int
     problem: str
 
-    @property
-    def link(self) -> str:
-        """Return the platform's own identifier of the link."""
-        return str(json.loads(self.link_key)[-1])
-
 
 class Storage:
-    """Database file, opened for each operation; writers wait for each other."""
+    """Launches of the learning platforms in the database of a site."""
 
-    def __init__(self, folder: Path, clock: Callable[[], float] = time.time):
-        self.path, self._clock = folder / FILE, clock
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            if not self.path.exists():
-                os.close(os.open(self.path, os.O_CREAT | os.O_WRONLY, 0o600))
-            with self._open() as file:
-                file.execute("PRAGMA journal_mode = WAL")
-                file.executescript(_TABLES)
-        except (OSError, sqlite3.Error) as fault:
-            raise BadInput("{file} cannot be used: {problem}", file=self.path, problem=fault) from fault
+    def __init__(self, store: Store, clock: Callable[[], float] = time.time):
+        self._store, self._clock = store, clock
 
-    @contextmanager
-    def _open(self) -> Iterator[sqlite3.Connection]:
-        """Open one transaction; its changes are on the disk when it ends."""
-        file = sqlite3.connect(self.path, timeout=_WAIT, isolation_level=None)
-        try:
-            file.row_factory = sqlite3.Row
-            file.execute("PRAGMA synchronous = FULL")
-            file.execute("PRAGMA secure_delete = ON")
-            yield file
-        finally:
-            file.close()
-
-    @contextmanager
-    def _writing(self) -> Iterator[sqlite3.Connection]:
-        with self._open() as file:
-            file.execute("BEGIN IMMEDIATE")
-            try:
-                yield file
-            except BaseException:
-                file.execute("ROLLBACK")
-                raise
-            file.execute("COMMIT")
+    @property
+    def now(self) -> datetime:
+        return datetime.fromtimestamp(self._clock(), UTC)
 
     # ---------------------------------------------------------------- sessions
 
     def use(self, nonce: str, until: float) -> bool:
         """Record the nonce of a launch; return True if it is new."""
-        with self._writing() as file:
-            file.execute("DELETE FROM used WHERE until < ?", [self._clock() - 120])
-            done = file.execute("INSERT OR IGNORE INTO used VALUES (?, ?)", [_digest(nonce), until])
-            return done.rowcount == 1
+        row = {"digest": digest_of(nonce), "until": datetime.fromtimestamp(until, UTC)}
+        with self._store.begin() as connection:
+            connection.execute(delete(lti_nonce).where(lti_nonce.c.until < self.now - _LEEWAY))
+            return insert_unless_there(connection, lti_nonce, row, ["digest"]) is not None
 
     def begin(self, launch: Launch, seconds: float) -> tuple[str, str]:
         """Begin the session of a launch; return its name, and the token that identifies its browser."""
-        name, token = secrets.token_urlsafe(12), secrets.token_urlsafe(32)
-        now = self._clock()
-        with self._writing() as file:
-            file.execute("DELETE FROM sessions WHERE until < ?", [now])
-            file.execute(
-                "INSERT INTO sessions VALUES (?, ?, ?, ?)",
-                [name, _digest(token), now + seconds, launch.as_json()],
-            )
-            if launch.link and launch.role is Role.STUDENT:
-                lasting = replace(launch, email="", number="").as_json()
-                file.execute(
-                    "INSERT OR REPLACE INTO opened VALUES (?, ?, ?)",
-                    [launch.link_key, launch.person, lasting],
-                )
+        name, token, now = secrets.token_urlsafe(12), secrets.token_urlsafe(32), self.now
+        row = {
+            "name": name, "digest": digest_of(token), "issuer": launch.issuer, "subject": launch.person,
+            "launch": launch.as_plain(), "until": now + timedelta(seconds=seconds),
+        }  # fmt: skip
+        with self._store.begin() as connection:
+            connection.execute(delete(lti_session).where(lti_session.c.until < now))
+            connection.execute(insert(lti_session).values(row))
             if launch.context and launch.memberships:
-                values = [launch.course, launch.context_title, launch.memberships, now]
-                file.execute("INSERT OR REPLACE INTO courses VALUES (?, ?, ?, ?)", values)
+                values = {
+                    "issuer": launch.issuer, "client": launch.client_id, "title": launch.context_title,
+                    "memberships": launch.memberships, "seen": now,
+                }  # fmt: skip
+                _put(connection, lti_course, {"digest": digest_of(launch.course)}, values)
         return name, token
 
     def launch(self, name: str, token: str | None) -> Launch:
@@ -183,254 +93,160 @@ class Storage:
         LTIRefusal
             The session has ended, or belongs to another browser.
         """
-        with self._open() as file:
-            row = file.execute("SELECT * FROM sessions WHERE id = ?", [name]).fetchone()
-        if row is None or row["until"] < self._clock():
+        with self._store.reading() as connection:
+            row = connection.execute(select(lti_session).where(lti_session.c.name == name[:16])).first()
+        if row is None or row.until < self.now:
             raise LTIRefusal("session", 403, "no such session")
         if token is None:
             raise LTIRefusal("cookie", 403, "no cookie of a session")
-        if not secrets.compare_digest(row["token"], _digest(token)):
+        if not secrets.compare_digest(row.digest, digest_of(token)):
             raise LTIRefusal("browser", 403, "the cookie of another session")
-        return Launch.from_json(row["launch"])
+        return Launch.of_plain(row.launch)
 
-    def opened(self) -> list[Launch]:
-        """Return the last launch of each student in each link."""
-        with self._open() as file:
-            rows = file.execute("SELECT launch FROM opened ORDER BY place, person")
-            return [Launch.from_json(row["launch"]) for row in rows]
+    # ---------------------------------------------------------------- launches
 
-    def end(self, name: str) -> None:
-        with self._writing() as file:
-            file.execute("DELETE FROM sessions WHERE id = ?", [name])
+    def record(self, launch: Launch, person_id: int, assignment_id: int) -> bool:
+        """Record the last launch of a student in a link, without e-mail and number; return True if it differs
+        from the one before."""
+        values = {"assignment_id": assignment_id, "launch": replace(launch, email="", number="").as_plain()}
+        with self._store.reading() as connection:
+            row = connection.execute(select(lti_launch).where(*_of(launch, person_id))).first()
+        if row is not None and all(getattr(row, name) == value for name, value in values.items()):
+            return False
+        with self._store.begin() as connection:
+            key = {"person_id": person_id, "link": digest_of(launch.link_key)}
+            _put(connection, lti_launch, key, values)
+        return True
 
-    # --------------------------------------------------------- papers and tries
-
-    def paper(self, link: str, person: str) -> LTIPaper | None:
-        with self._open() as file:
-            row = file.execute(
-                "SELECT * FROM papers WHERE place = ? AND person = ?", [link, person]
-            ).fetchone()
-        return row and _paper(row)
-
-    def papers(self, link: str) -> list[LTIPaper]:
-        with self._open() as file:
-            rows = file.execute("SELECT * FROM papers WHERE place = ? ORDER BY name, person", [link])
-            return [_paper(row) for row in rows]
-
-    def issue(self, link: str, paper: LTIPaper) -> LTIPaper:
-        """Store a paper and return it; an earlier paper of the person stays and is returned instead."""
-        values = [link, paper.person, paper.name, _json(paper.settings), _json(paper.records)]
-        with self._writing() as file:
-            file.execute("INSERT OR IGNORE INTO papers VALUES (?, ?, ?, ?, ?)", values)
-            row = file.execute("SELECT * FROM papers WHERE place = ? AND person = ?", values[:2]).fetchone()
-            return _paper(row)
-
-    def submit(self, link: str, attempt: LTIAttempt) -> bool:
-        """Store an attempt; return whether it is new, since a form may be sent twice."""
-        values = [
-            link,
-            attempt.person,
-            attempt.number,
-            attempt.at,
-            _json(attempt.answers),
-            attempt.points,
-            attempt.out_of,
-            attempt.waits,
-            attempt.comment,
-        ]
-        with self._writing() as file:
-            done = file.execute("INSERT OR IGNORE INTO tries VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", values)
-            return done.rowcount == 1
-
-    def tries(self, link: str, person: str = "") -> list[LTIAttempt]:
-        """Return the attempts in a link, of one person or of everybody, the earliest first."""
-        with self._open() as file:
-            rows = file.execute(
-                "SELECT * FROM tries WHERE place = ? AND (? = '' OR person = ?) ORDER BY person, number",
-                [link, person, person],
-            )
-            return [_try(row) for row in rows]
+    def opened(self, assignment_id: int | None = None) -> list[tuple[int, int, Launch]]:
+        """Return the last launch of each student in each link, with the assignment and the person; those of
+        one assignment, if given."""
+        query = select(lti_launch.c.assignment_id, lti_launch.c.person_id, lti_launch.c.launch)
+        if assignment_id is not None:
+            query = query.where(lti_launch.c.assignment_id == assignment_id)
+        with self._store.reading() as connection:
+            rows = connection.execute(query.order_by(lti_launch.c.id)).all()
+        return [(row.assignment_id, row.person_id, Launch.of_plain(row.launch)) for row in rows]
 
     # ------------------------------------------------------------------ scores
 
-    def put_score(self, launch: Launch, score: Score) -> bool:
+    def put_score(self, launch: Launch, person_id: int, score: Score) -> bool:
         """Queue a score for the platform in place of an older one; return whether it differs."""
-        link, person = launch.link_key, launch.person
-        with self._writing() as file:
-            row = file.execute(
-                "SELECT * FROM scores WHERE place = ? AND person = ?", [link, person]
-            ).fetchone()
-            previous = row and _waiting(row)
-            if previous and previous.score == score and previous.line == launch.line:
+        with self._store.begin() as connection:
+            row = connection.execute(
+                select(lti_launch).where(*_of(launch, person_id)).with_for_update()
+            ).first()
+            if row is None:
                 return False
-            stamp = max(self._clock(), previous.stamp + 0.001 if previous else 0.0)
-            platform = json.dumps([launch.issuer, launch.client_id])
-            values: list[Any] = [
-                link,
-                person,
-                platform,
-                launch.line,
-                launch.lines,
-                launch.link_title,
-                _json(launch.scopes),
-            ]
-            values += [score.given, score.maximum, score.waits, score.comment, stamp, self._clock()]
-            marks = ", ".join("?" * len(values))
-            file.execute(f"INSERT OR REPLACE INTO scores VALUES ({marks}, 0, '')", values)
+            now = self.now
+            if row.stamp is not None:
+                if (_score(row), row.line) == (score, launch.line):
+                    return False
+                now = max(now, row.stamp + _STEP)
+            values = {
+                "given": score.given, "maximum": score.maximum, "comment": score.comment, "waits": score.waits,
+                "line": launch.line, "stamp": now, "due": self.now, "failures": 0, "problem": "",
+            }  # fmt: skip
+            connection.execute(update(lti_launch).where(lti_launch.c.id == row.id).values(values))
         return True
 
-    def due(self, count: int = 50) -> list[tuple[tuple[str, str], Waiting]]:
-        """Return the scores to send now, the longest waiting first, each with the issuer and client of its
-        platform. Each is postponed for a while, so that another process sends it if no result is recorded
-        by then."""
-        now = self._clock()
-        with self._open() as file:
-            if file.execute("SELECT 1 FROM scores WHERE due <= ? LIMIT 1", [now]).fetchone() is None:
+    def due(self, count: int = 50) -> list[Waiting]:
+        """Return the scores to send now, the longest waiting first. Each is postponed for a while, so that
+        another process sends it if no result is recorded by then."""
+        now = self.now
+        with self._store.reading() as connection:
+            if connection.execute(_scores().where(lti_launch.c.due <= now).limit(1)).first() is None:
                 return []
-        with self._writing() as file:
-            rows = file.execute("SELECT * FROM scores WHERE due <= ? ORDER BY due LIMIT ?", [now, count])
-            scores = [(json.loads(row["platform"]), _waiting(row)) for row in rows]
-            postponed = [
-                [now + _TAKEN, waiting_score.link_key, waiting_score.person] for _, waiting_score in scores
-            ]
-            file.executemany("UPDATE scores SET due = ? WHERE place = ? AND person = ?", postponed)
-        return [((issuer, client_id), waiting) for (issuer, client_id), waiting in scores]
+        query = _scores().where(lti_launch.c.due <= now).order_by(lti_launch.c.due).limit(count)
+        with self._store.begin() as connection:
+            rows = connection.execute(query.with_for_update(of=lti_launch, skip_locked=True)).all()
+            postponed = update(lti_launch).where(lti_launch.c.id.in_([row.id for row in rows]))
+            connection.execute(postponed.values(due=now + _TAKEN))
+        return [_waiting(row) for row in rows]
 
     def arrived(self, sent: Waiting) -> None:
         """Record that a score has arrived; a newer score stays queued."""
-        self._settle(sent, None, 0, "")
+        self._settle(sent, due=None, failures=0, problem="")
 
     def put_off(self, sent: Waiting, seconds: float, message: str) -> None:
         """Note why a score did not arrive, and when to try again."""
-        self._settle(sent, self._clock() + seconds, sent.failures + 1, message)
-
-    def _settle(self, sent: Waiting, due: float | None, failures: int, message: str) -> None:
-        with self._writing() as file:
-            values = [due, failures, message[:300], sent.link_key, sent.person, sent.stamp]
-            file.execute(
-                "UPDATE scores SET due = ?, failures = ?, said = ? WHERE place = ? AND person = ? AND stamp = ?",
-                values,
-            )
+        due = self.now + timedelta(seconds=seconds)
+        self._settle(sent, due=due, failures=sent.failures + 1, problem=str(message)[:300])
 
     def newer_stamp(self, sent: Waiting) -> None:
         """Give a score a newer time stamp, for a platform that claims to have a later one."""
-        with self._writing() as file:
-            values = [max(self._clock(), sent.stamp + 1.0), sent.link_key, sent.person, sent.stamp]
-            file.execute("UPDATE scores SET stamp = ? WHERE place = ? AND person = ? AND stamp = ?", values)
+        self._settle(sent, stamp=max(self.now, sent.stamp + timedelta(seconds=1)))
 
-    def scores(self, link: str = "") -> dict[tuple[str, str], Waiting]:
-        """Return the scores by link and person."""
-        with self._open() as file:
-            rows = file.execute(
-                "SELECT * FROM scores WHERE ? = '' OR place = ? ORDER BY place, person", [link, link]
-            )
-            return {(row["place"], row["person"]): _waiting(row) for row in rows}
+    def _settle(self, sent: Waiting, **values: Any) -> None:
+        mine = lti_launch.c.id == sent.id, lti_launch.c.stamp == sent.stamp
+        with self._store.begin() as connection:
+            connection.execute(update(lti_launch).where(*mine).values(values))
 
-    def hurry(self) -> int:
-        """Make all waiting scores due now; return their number."""
-        with self._writing() as file:
-            return file.execute("UPDATE scores SET due = ? WHERE due IS NOT NULL", [self._clock()]).rowcount
+    def scores(self, launch: Launch | None = None) -> list[Waiting]:
+        """Return the scores, of one link if a launch of it is given."""
+        query = _scores().where(lti_launch.c.stamp.is_not(None)).order_by(lti_launch.c.id)
+        if launch is not None:
+            query = query.where(lti_launch.c.link == digest_of(launch.link_key))
+        with self._store.reading() as connection:
+            return [_waiting(row) for row in connection.execute(query)]
 
-    # -------------------------------------------------------- secret and checks
-
-    def secret(self) -> Secret:
-        """Return the secret that keys the draws of exercises, and of assignments without a secret; create it
-        at the first use.
-
-        Raises
-        ------
-        BadInput
-            The stored text is no secret.
-        """
-        with self._writing() as file:
-            file.execute("INSERT OR IGNORE INTO secrets VALUES ('draws', ?)", [Secret.new().text])
-            (text,) = file.execute("SELECT text FROM secrets WHERE what = 'draws'").fetchone()
-        try:
-            return Secret.of(text)
-        except ValueError as fault:
-            raise BadInput("{file}: {problem}; restore a backup", file=self.path, problem=fault) from None
-
-    def checked_state(self, subject: str) -> str:
-        """Return the state of something when it was last checked; empty if it never was."""
-        with self._open() as file:
-            row = file.execute("SELECT stood FROM looked WHERE what = ?", [subject]).fetchone()
-        return str(row["stood"]) if row else ""
-
-    def record_check(self, subject: str, stood: str) -> None:
-        """Record the state of a subject at its check."""
-        with self._writing() as file:
-            file.execute("INSERT OR REPLACE INTO looked VALUES (?, ?)", [subject, stood])
+    def hurry(self) -> None:
+        """Make all waiting scores due now."""
+        with self._store.begin() as connection:
+            waiting = update(lti_launch).where(lti_launch.c.due.is_not(None))
+            connection.execute(waiting.values(due=self.now))
 
     # ----------------------------------------------------------------- courses
 
-    def courses(self) -> list[tuple[tuple[str, str, str, str], str, str]]:
-        """Return the known courses, the latest first: each with its identifier, its title, and the address of
-        its roster."""
-        with self._open() as file:
-            rows = file.execute("SELECT * FROM courses ORDER BY seen DESC")
-            return [(tuple(json.loads(row["course"])), row["title"], row["memberships"]) for row in rows]
-
-    def scrub(self) -> bool:
-        """Rewrite the file without deleted data; return False if another process still uses it."""
-        return scrub(self.path)
-
-    def forget(self, person: str, issuer: str = "") -> int:
-        """Delete all data of a person, on one platform if an issuer is given; return the number of deleted
-        rows."""
-        begins = json.dumps([issuer])[:-1] + "," if issuer else ""  # as places do
-        with self._writing() as file:
-            gone = sum(
-                file.execute(
-                    f"DELETE FROM {table} WHERE person = ? AND substr(place, 1, ?) = ?",
-                    [person, len(begins), begins],
-                ).rowcount
-                for table in ("papers", "tries", "scores", "opened")
-            )
-            return gone + _end_sessions(file, person, issuer)
-
-    def end_sessions(self, person: str, issuer: str) -> int:
-        """End the sessions of a person of a platform; return their number."""
-        with self._writing() as file:
-            return _end_sessions(file, person, issuer)
+    def courses(self) -> list[Any]:
+        """Return the known courses, the latest first: ``issuer``, ``client``, ``title`` and ``memberships``,
+        the address of the roster."""
+        with self._store.reading() as connection:
+            return list(connection.execute(select(lti_course).order_by(lti_course.c.seen.desc())))
 
 
-def _end_sessions(file: sqlite3.Connection, person: str, issuer: str) -> int:
-    gone = 0
-    for row in file.execute("SELECT id, launch FROM sessions").fetchall():
-        launch = json.loads(row["launch"])
-        if launch["person"] == person and issuer in ("", launch["issuer"]):
-            gone += file.execute("DELETE FROM sessions WHERE id = ?", [row["id"]]).rowcount
-    return gone
+def end_launch_sessions(connection: Connection, person_id: int) -> None:
+    """End the sessions of a person in frames of platforms."""
+    connection.execute(delete(lti_session).where(launch_sessions(person_id)))
 
 
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
+def drop_launches(connection: Connection, person_id: int, issuer: str, subject: str) -> None:
+    """Delete the launches of a person from a platform, so that no score is sent there any more, and end the
+    sessions."""
+    mine = lti_session.c.issuer == issuer, lti_session.c.subject == subject
+    connection.execute(delete(lti_session).where(*mine))
+    rows = connection.execute(select(lti_launch).where(lti_launch.c.person_id == person_id)).all()
+    ids = [row.id for row in rows if (row.launch["issuer"], row.launch["person"]) == (issuer, subject)]
+    connection.execute(delete(lti_launch).where(lti_launch.c.id.in_(ids)))
 
 
-def _json(data: Any) -> str:
-    return json.dumps(data, ensure_ascii=False)
+def digest_of(text: str) -> str:
+    """Return the SHA-256 of a token or a key, which the database stores."""
+    return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()
 
 
-def _paper(row: sqlite3.Row) -> LTIPaper:
-    return LTIPaper(row["person"], row["name"], json.loads(row["asked"]), json.loads(row["records"]))
+def _put(connection: Connection, table: Table, key: Mapping[str, Any], values: Mapping[str, Any]) -> None:
+    """Update the row with a key; add it if there is none."""
+    mine = (table.c[name] == value for name, value in key.items())
+    if not connection.execute(update(table).where(*mine).values(dict(values))).rowcount:
+        insert_unless_there(connection, table, {**key, **values}, list(key))
 
 
-def _try(row: sqlite3.Row) -> LTIAttempt:
-    return LTIAttempt(
-        row["person"],
-        row["number"],
-        row["at"],
-        json.loads(row["answers"]),
-        row["points"],
-        row["out_of"],
-        bool(row["waits"]),
-        row["comment"],
-    )
+def _of(launch: Launch, person_id: int) -> tuple[ColumnElement[bool], ...]:
+    """Return the conditions of a person's launch in a link."""
+    return lti_launch.c.link == digest_of(launch.link_key), lti_launch.c.person_id == person_id
 
 
-def _waiting(row: sqlite3.Row) -> Waiting:
+def _scores() -> Any:
+    return select(lti_launch, person.c.name).join(person, person.c.id == lti_launch.c.person_id)
+
+
+def _score(row: Any) -> Score:
+    return Score(row.given, row.maximum, row.comment, row.waits)
+
+
+def _waiting(row: Any) -> Waiting:
+    launch = Launch.of_plain(row.launch)
     return Waiting(
-        row["place"], row["person"], row["line"], row["lines"], row["title"], tuple(json.loads(row["scopes"])),
-        Score(row["given"], row["maximum"], row["comment"], bool(row["waits"])),
-        row["stamp"], row["due"], row["failures"], row["said"],
-    )  # fmt: skip
+        row.id, launch, row.name, row.line, _score(row), row.stamp, row.due, row.failures, row.problem
+    )

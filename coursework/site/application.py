@@ -92,7 +92,7 @@ def _lti(site: Site) -> Starlette | None:
     """Return the service for learning platforms; None if the site has none."""
     if site.lti is None:
         return None
-    from coursework.site.lti.mount import mounted
+    from coursework.site.lti.service import mounted
 
     return mounted(site, site.lti)
 

@@ -19,7 +19,7 @@ WITHOUT = {
         "database restore nowhere nothere.db", "database new-key", "database sign-out",
         "build nosuch --db nowhere/x.db", "grade nothere.csv --issued nope.json --db nowhere/x.db", "report --db nope.db",
     ],
-    "lti": ["lti keys new", "lti platform", "lti serve", "lti roster", "lti scores", "lti forget"],
+    "lti": ["lti keys new", "lti platform", "lti roster", "lti scores"],
     "scan": ["scan", "scan nothere.pdf --issued nope.json", "build nosuch --scan"],
     "cluster": [
         "build nosuch --cluster local:2", "grade nothere.csv --issued nope.json --cluster tcp://127.0.0.1:1",

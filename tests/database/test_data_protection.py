@@ -1,13 +1,11 @@
 """docs/data_protection.md and its French version name every column that is kept, and nothing that is not."""
 
 import re
-import sqlite3
 from pathlib import Path
 
 import pytest
 
 from coursework.database.tables import METADATA
-from coursework.lti.storage import FILE, Storage
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = [DOCS / "data_protection.md", DOCS / "data_protection.fr.md"]
@@ -36,15 +34,6 @@ def test_no_column_of_the_database_is_forgotten(page):
     assert {name: sorted(columns) for name, columns in told.items()} == {
         name: sorted(columns) for name, columns in kept.items()
     }
-
-
-@both
-def test_no_table_of_learning_platforms_is_forgotten(page, tmp_path):
-    Storage(tmp_path)
-    with sqlite3.connect(tmp_path / FILE) as file:
-        kept = {name for (name,) in file.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
-    rows = re.findall(rf"^\| `{FILE}`\s*: ([^|]+) \|", page.read_text("utf-8"), re.M)
-    assert {name for row in rows for name in re.findall(r"`(\w+)`", row)} == kept
 
 
 def test_both_languages_say_the_same_of_each_table():

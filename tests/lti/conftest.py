@@ -1,12 +1,12 @@
-"""A tool on a platform of one's own."""
+"""A site with a platform in front."""
 
 import pytest
-from lti_platform import Tool
+from site_linked import Linked
 
 
 @pytest.fixture
-def tool(tmp_path, course):
-    return Tool(tmp_path / "lti", course)
+def tool(tmp_path):
+    return Linked(tmp_path)
 
 
 @pytest.fixture

@@ -106,7 +106,7 @@ def extras_of(lock: Path) -> list[str]:
 @needs_sources
 def test_each_lock_file_satisfies_what_its_extras_ask():
     files = sorted(LOCKS.glob("*.txt"))
-    assert {lock.stem for lock in files} == {"all", *EXTRAS} - TOOLS - {"supply"}
+    assert {lock.stem for lock in files} == {"all", *EXTRAS} - TOOLS - {"supply", "lti"}
     for lock in files:
         asked = [*PROJECT["dependencies"], *(one for extra in extras_of(lock) for one in EXTRAS[extra])]
         assert not lacking(locked(lock), asked), lock.name

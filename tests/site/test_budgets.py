@@ -21,14 +21,14 @@ from site_walk import Filled, filled, fillings
 
 from coursework.database.permissions import is_of_staff
 from coursework.gradebook.submissions import read_rows
-from coursework.lti import service
-from coursework.lti.host import LTIResponse
-from coursework.lti.service import AT_ONCE as LINKS_AT_ONCE
-from coursework.lti.service import LARGEST, PROCESSOR
 from coursework.site.application import ROUTES
 from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS
 from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON
+from coursework.site.frame.requests import Response as SiteResponse
+from coursework.site.lti import service
+from coursework.site.lti.service import AT_ONCE as LINKS_AT_ONCE
+from coursework.site.lti.service import LARGEST, PROCESSOR
 from coursework.site.lti.site_host import SiteHost
 from coursework.site.papers import assignments
 from coursework.system.allowances import Allowances
@@ -386,7 +386,7 @@ def test_of_one_person_by_a_link_two_requests_are_answered_at_once(linked, monke
     """Also where the person opened the link twice."""
     under_way, most, lock, go_on = set(), 0, threading.Lock(), threading.Event()
 
-    def slow(self, visit):
+    def slow(self, visit, form=None):
         nonlocal most
         with lock:
             under_way.add(threading.get_ident())
@@ -394,10 +394,10 @@ def test_of_one_person_by_a_link_two_requests_are_answered_at_once(linked, monke
         go_on.wait(PATIENCE)
         with lock:
             under_way.discard(threading.get_ident())
-        return LTIResponse("")
+        return SiteResponse("")
 
     pages = [linked.enter() for _ in range(2)]
-    monkeypatch.setattr(SiteHost, "show", slow)
+    monkeypatch.setattr(SiteHost, "answer", slow)
     with served(linked) as url, ThreadPoolExecutor(12) as threads:
         import httpx
 

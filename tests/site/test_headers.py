@@ -1,19 +1,16 @@
 """One policy on every response of the whole application: pages, files, refusals, faults, and the mounted service of platforms."""
 
 import re
-import shutil
 
 import pytest
-from lti_platform import PLATFORM, SITE, TOOL, FakePlatform, Visitor, _made_keys
+from lti_platform import SITE
 from lti_platform import TEACHER as TEACHES
-from site_people import HOME, TEACHER, Class
+from site_linked import Linked
+from site_people import HOME, TEACHER
 from starlette.applications import Starlette
 from starlette.routing import Mount, Route
 from starlette.testclient import TestClient
 
-from coursework.lti.settings import Settings
-from coursework.site.application import application
-from coursework.site.lti.mount import mounted
 from coursework.system.headers import Guarded
 
 ALWAYS = {
@@ -42,12 +39,7 @@ FRAMED = {**POLICY, "frame-ancestors": FRAMES, "form-action": f"'self' {FRAMES}"
 @pytest.fixture(scope="module")
 def linked(tmp_path_factory):
     folder = tmp_path_factory.mktemp("headers")
-    found = Class(f"sqlite:///{folder}/site.db")
-    found.platform, found.site.lti = FakePlatform(), folder / "lti"
-    shutil.copytree(_made_keys(), found.site.lti / "keys")
-    settings = Settings(found.site.lti, f"{TOOL}/lti", (PLATFORM,))
-    found.app = application(found.site, mounted(found.site, found.site.lti, found.platform.client, settings))
-    return found
+    return Linked(folder)
 
 
 def policy_of(reply):
@@ -109,18 +101,18 @@ def test_every_response_has_the_same_policy(linked):
 
 
 def test_pages_in_a_frame_have_the_same_policy_and_only_their_platform_frames_them(linked):
-    visitor = Visitor(linked.app, linked.platform, "/lti")
+    visitor = linked.visitor()
     page, path = visitor.enter()
     assert page.status_code == 200
     assert faults_of(page, FRAMED) == []
     assert page.headers["strict-transport-security"].startswith("max-age=")
-    assert faults_of(visitor.hand_in(path, page, {"rA": "1"}), FRAMED) == []
+    assert faults_of(visitor.hand_in(path, page, {"e1-rA": "1"}), FRAMED) == []
 
 
 def test_the_one_script_of_a_page_in_a_frame_is_told_by_its_digest(linked):
     from lti_platform import DEEP, LTI, seal
 
-    visitor = Visitor(linked.app, linked.platform, "/lti")
+    visitor = linked.visitor()
     settings = {
         "deep_link_return_url": "https://back.example.org/return", "accept_types": ["ltiResourceLink"],
         "accept_presentation_document_targets": ["iframe"],

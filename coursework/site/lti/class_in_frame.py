@@ -12,11 +12,11 @@ from coursework.database.instructor_queries import people_of
 from coursework.database.publication import CHARGE, Publication
 from coursework.database.tables import identity
 from coursework.language.words import words
-from coursework.lti.host import LTIRequest
 from coursework.lti.storage import Waiting
 from coursework.site.desk import class_page
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import moment_text
+from coursework.site.lti.launch_request import LTIRequest
 from coursework.site.lti.scores import assignment_state, marked_in, number_text
 
 
@@ -98,12 +98,11 @@ def _score_state(waiting: Waiting | None, subject: str, lang: str) -> str:
     )
 
 
-def rules_rows(visit: LTIRequest, now: ClassState, publication: Publication | None) -> list[tuple[str, str]]:
+def rules_rows(visit: LTIRequest, counts: str, publication: Publication | None) -> list[tuple[str, str]]:
     """Return the rules with which the assignment is published, each with its label."""
     link, site_texts = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
     if publication is None:
         return [(site_texts["published"], site_texts["hidden"])]
-    counts = (now.about.stated or {}).get("sittings", "best")
 
     def moment(at: object) -> str:
         return moment_text(at, visit.lang) if at else site_texts["never"]  # type: ignore[arg-type]

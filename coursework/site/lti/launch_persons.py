@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, select, update
+from sqlalchemy.exc import IntegrityError
 
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.audit import note
@@ -24,9 +26,11 @@ from coursework.issuing.issued import issued_content as content_of
 from coursework.issuing.roster import Student
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import assign_variants
+from coursework.lti.storage import digest_of
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
 from coursework.site.lti import connecting
+from coursework.site.lti.linked_assignment import LinkedAssignment, number_of
 from coursework.site.publication.assigning import holders
 
 if TYPE_CHECKING:
@@ -86,12 +90,12 @@ def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -
 
 def _new(connection: Connection, launch: Launch) -> Student:
     """Return a new student as a roster would list them: identified by number or e-mail, unless another has
-    it; never by the name."""
+    it; never by the name. Platforms may tell people apart by capitals, which rosters do not."""
     candidates = [
         {"number": launch.number.strip()},
         {"email": launch.email.strip()},
         {"number": f"{launch.person} {platform_name(launch)}"},
-        {"number": f"{launch.person} {launch.issuer}"},
+        {"number": f"{launch.person} {digest_of(f'{launch.issuer} {launch.person}')[:12]}"},
     ]
     for columns in candidates:
         student = Student(launch.name, columns=columns)
@@ -103,8 +107,9 @@ def _new(connection: Connection, launch: Launch) -> Student:
 # ----------------------------------------------------------------------- assigning
 
 
-def assign_paper(site: Site, number: int, person: Any, launch: Launch, lang: str) -> None:
-    """Assign a paper to somebody who joins late; all other papers remain as they are.
+def assign_paper(site: Site, linked: LinkedAssignment, person: Any, launch: Launch, lang: str) -> int:
+    """Assign a paper to somebody who joins late; all other papers remain as they are. The first paper of a
+    link of an exercise adds the assignment of the link. Return the assignment's id.
 
     Raises
     ------
@@ -112,30 +117,52 @@ def assign_paper(site: Site, number: int, person: Any, launch: Launch, lang: str
         The assignment has no file that states its exercises, or concurrent assignments never end.
     """
     for _ in range(_ROUNDS):
-        with site.store.reading() as connection:
-            before = issued_content(connection, number, secret=True)
-            stood = stamp(connection, number).dealt
-            about = connection.execute(select(assignment).where(assignment.c.id == number)).one()
-        if about.asked is None:
+        name, before, stood = linked.name, None, None
+        table: Mapping[str, Any] | None = linked.table
+        if linked.number is not None:
+            with site.store.reading() as connection:
+                before = issued_content(connection, linked.number, secret=True)
+                stood = stamp(connection, linked.number).dealt
+                mine = assignment.c.id == linked.number
+                table = connection.execute(select(assignment.c.asked).where(mine)).scalar()
+        if table is None:
             raise HTTPException("not_dealt", 409)
-        definition = assignment_of(about.name, about.asked, site.course)
-        everybody = holders(before)
-        student = _student(
-            person, launch, _spoken(site, definition, lang), {folded(other.name) for other in everybody}
-        )
+        definition = assignment_of(name, table, site.course)
+        everybody = holders(before) if before else []
+        names = {folded(other.name) for other in everybody}
+        student = _student(person, launch, _spoken(site, definition, lang), names)
         assigned = assign_variants(
             site.course, definition, [*everybody, student], [site.languages[0]], before
         )
-        with site.store.begin() as connection:
-            connection.execute(
-                select(assignment.c.id).where(assignment.c.id == number).with_for_update(key_share=True)
-            )
-            if stamp(connection, number).dealt == stood:
-                put_issued(connection, content_of(assigned.issues, definition, assigned.secret), about.name)
-                details = {"assignment": about.name, "students": 1, "person": person.id}
-                note(connection, site.clock(), platform_name(launch), "late ones added", **details)
-                return
+        content = content_of(assigned.issues, definition, assigned.secret)
+        try:
+            with site.store.begin() as connection:
+                if _stands(connection, linked, stood):
+                    number = _put(connection, linked, content)
+                    details = {"assignment": name, "students": 1, "person": person.id}
+                    note(connection, site.clock(), platform_name(launch), "late ones added", **details)
+                    return number
+                linked = linked._replace(number=linked.number or number_of(connection, linked.link))
+        except IntegrityError:  # another process added the assignment of the link at the same moment
+            continue
     raise HTTPException("busy", 503, _AGAIN)
+
+
+def _stands(connection: Connection, linked: LinkedAssignment, stood: Any) -> bool:
+    """Return True if nothing was issued since it was read."""
+    if linked.number is None:
+        return number_of(connection, linked.link) is None
+    mine = assignment.c.id == linked.number
+    connection.execute(select(assignment.c.id).where(mine).with_for_update(key_share=True))
+    return bool(stamp(connection, linked.number).dealt == stood)
+
+
+def _put(connection: Connection, linked: LinkedAssignment, content: Mapping[str, Any]) -> int:
+    number = put_issued(connection, content, linked.name)
+    if linked.number is None:
+        own = {"asked": linked.table, "link": linked.link, "published": linked.publication.as_json()}
+        connection.execute(update(assignment).where(assignment.c.id == number).values(own))
+    return number
 
 
 def _spoken(site: Site, definition: Assignment, lang: str) -> str:
@@ -145,8 +172,9 @@ def _spoken(site: Site, definition: Assignment, lang: str) -> str:
 
 def _student(person: Any, launch: Launch, lang: str, names: set[str]) -> Student:
     """Return the student of a launch as a roster would list them; two students of one name are distinguished."""
-    name = launch.name or person.name or launch.person
-    if folded(name) in names:
-        name = f"{name} ({launch.number or launch.email or launch.person})"
+    plain = launch.name or person.name or launch.person
+    apart = launch.number or launch.email or launch.person
+    called = (plain, f"{plain} ({apart})", f"{plain} ({person.who})")
+    name = next((name for name in called if folded(name) not in names), f"{plain} ({person.id})")
     student = Student(name, lang, {title: str(text) for title, text in person.columns.items()})
     return student if student.draw_key == person.who else Student(name, lang, {"number": person.who})

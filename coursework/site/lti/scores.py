@@ -9,20 +9,20 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 from typing import Any, NamedTuple
 
 from sqlalchemy import Connection
 
-from coursework.database.assignments import issued_of, names
+from coursework.database.assignments import issued_of
 from coursework.database.class_state import ClassState
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import Decisions
-from coursework.database.identities import person_linked_to
 from coursework.database.instructor_queries import stamp
 from coursework.database.publication import extensions, last_end, published, student_assignments
+from coursework.database.settings import put_value, value_of
 from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
@@ -31,8 +31,6 @@ from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.lti.launch import Launch
-from coursework.lti.link_settings import LinkSettings
-from coursework.lti.refusal import LTIRefusal
 from coursework.lti.storage import Score, Storage
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import class_now
@@ -95,16 +93,13 @@ def _marked(
     return Marked(issued, result, counted, waits)
 
 
-def score_of(site: Site, launch: Launch, now: ClassState | None = None) -> Score | None:
-    """Return the score of a launch's person; None before the marks are released."""
-    number, lang = assignment_number(site, launch), lang_of(site, launch)
-    if number is None:
-        return None
+def score_of(
+    site: Site, launch: Launch, number: int, person_id: int, now: ClassState | None = None
+) -> Score | None:
+    """Return the score of a launch's person in an assignment; None before the marks are released."""
+    lang = lang_of(site, launch)
     with site.store.reading() as connection:
-        person = person_linked_to(connection, launch.issuer, launch.person)
-        state = (
-            None if person is None else assignment_state(connection, number, person.id, lang, site.clock())
-        )
+        state = assignment_state(connection, number, person_id, lang, site.clock())
         if state is None or not state.done or not state.releases("feedback"):
             return None
         student = state.assignment.student
@@ -113,17 +108,6 @@ def score_of(site: Site, launch: Launch, now: ClassState | None = None) -> Score
         return None
     comment = _comment(marked, marked.given(state), lang)
     return Score(marked.given(state), marked.result.out_of, comment, marked.waits)
-
-
-def assignment_number(site: Site, launch: Launch) -> int | None:
-    """Return the number of the assignment that a link opens; None if it opens an exercise, or nothing that
-    exists."""
-    try:
-        name = LinkSettings.of(launch.custom).assignment
-    except LTIRefusal:
-        return None
-    with site.store.reading() as connection:
-        return names(connection).get(name)
 
 
 def assignment_state(
@@ -169,24 +153,22 @@ class ScoreWatch:
 
     def look(self) -> int:
         """Check every assignment that a link opens; return the number of new scores."""
-        return sum(self._look(number, launches) for number, launches in self._opened().items())
+        by_assignment: dict[int, list[tuple[int, Launch]]] = {}
+        for number, person_id, launch in self._storage.opened():
+            if launch.line or launch.lines:
+                by_assignment.setdefault(number, []).append((person_id, launch))
+        return sum(self._look(number, launches) for number, launches in by_assignment.items())
 
-    def _opened(self) -> Mapping[int, list[Launch]]:
-        by_assignment: dict[int, list[Launch]] = {}
-        for launch in self._storage.opened():
-            number = assignment_number(self._site, launch)
-            if number is not None and (launch.line or launch.lines):
-                by_assignment.setdefault(number, []).append(launch)
-        return by_assignment
-
-    def _look(self, number: int, launches: Sequence[Launch]) -> int:
+    def _look(self, number: int, launches: Sequence[tuple[int, Launch]]) -> int:
         pass_dates(self._site, number, self._site.clock())
-        key, state = f"assignment {number}", f"{self._state_text(number)} {len(launches)}"
-        if self._storage.checked_state(key) == state:
-            return 0
+        key, state = f"lti assignment {number}", f"{self._state_text(number)} {len(launches)}"
+        with self._site.store.reading() as connection:
+            if value_of(connection, key) == state:
+                return 0
         now = class_now(self._site, number)
-        new = sum(self._queue_score(launch, now) for launch in launches)
-        self._storage.record_check(key, state)
+        new = sum(self._queue_score(number, person_id, launch, now) for person_id, launch in launches)
+        with self._site.store.begin() as connection:
+            put_value(connection, key, state)
         if new:
             self._wake()
         return new
@@ -204,9 +186,9 @@ class ScoreWatch:
         rules = replace(publication, reached=None).as_json()
         return f"{stamped} {passed} {sorted(rules.items())} {len(more)}"
 
-    def _queue_score(self, launch: Launch, now: ClassState) -> bool:
-        score = score_of(self._site, launch, now)
-        return score is not None and self._storage.put_score(launch, score)
+    def _queue_score(self, number: int, person_id: int, launch: Launch, now: ClassState) -> bool:
+        score = score_of(self._site, launch, number, person_id, now)
+        return score is not None and self._storage.put_score(launch, person_id, score)
 
     # ------------------------------------------------------------------ beside
 

@@ -1,134 +1,101 @@
-"""Host of the LTI service on the site: a link opens a published assignment of the database, or an exercise
-for practice.
+"""Pages of links on a platform: a paper of an assignment of the site, or of an exercise.
 
-A student answers a paper, which is submitted and marked as on the site; an instructor sees the class. An
-exercise is served by the package's own host, whose papers and attempts are separate from those of the site.
+A student answers a paper, which is submitted and marked as on the site; an instructor sees the class, and the
+paper as a student sees it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from sqlalchemy import Connection
-
 from coursework.database.assignments import issued_of
-from coursework.database.publication import Phase, published, student_assignments
+from coursework.database.publication import Phase, Publication, published, student_assignments
 from coursework.database.submissions import rows_of
 from coursework.errors import BadInput
+from coursework.gradebook.class_marking import judged
+from coursework.gradebook.feedback_sheets import feedback_paper
+from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import AnswerRow
+from coursework.issuing.assignment import Assignment, text_in
 from coursework.issuing.students import folded
 from coursework.language.words import words
 from coursework.lti.class_list import students
-from coursework.lti.course_host import CourseHost
-from coursework.lti.host import Form, LTIRequest, LTIResponse, Offer, OfferGroup
+from coursework.lti.deep_linking import Form
 from coursework.lti.launch import Launch
-from coursework.lti.link_settings import LinkSettings
-from coursework.lti.pages import LTIPages, SheetForm
 from coursework.lti.refusal import LTIRefusal
 from coursework.lti.roles import Role
-from coursework.lti.services import Member, NotServed
-from coursework.lti.storage import Score, Storage
-from coursework.messages import as_message
+from coursework.lti.services import SCORE, Member, NotServed
+from coursework.lti.storage import Storage
+from coursework.messages import as_message, localised
 from coursework.site.desk.class_cache import assignment_title, class_now
 from coursework.site.frame.arrivals import arrived
-from coursework.site.frame.requests import FormData, HTTPException, Person
+from coursework.site.frame.requests import FormData, HTTPException, Person, Response
 from coursework.site.frame.requests import Request as SiteRequest
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import exact_text, moment_text
 from coursework.site.lti import launch_persons
-from coursework.site.lti.class_in_frame import class_rows, rules_rows
-from coursework.site.lti.scores import assignment_number, score_of
+from coursework.site.lti.class_in_frame import LaunchClassRow, class_rows, rules_rows
+from coursework.site.lti.launch_request import LTIRequest
+from coursework.site.lti.linked_assignment import LinkedAssignment, follow_link, linked_assignment
+from coursework.site.lti.pages import LTIPages, SheetForm
+from coursework.site.lti.scores import score_of
 from coursework.site.papers.assignment_state import AssignmentState, state_and_paper
 from coursework.site.papers.assignments import feedback_from
 from coursework.site.papers.feedback import feedback_of
 from coursework.site.papers.pending_marking import pending_marking
 from coursework.site.papers.student_paper import StudentPaper, read_lines
-from coursework.site.papers.submission import submit
-from coursework.site.publication.publishing import listed_assignments
+from coursework.site.papers.submission import rows_for, submit
+from coursework.site.publication.publishing import definition_of, listed_assignments, preview_paper
 
 FROM_A_PLATFORM = "site: from a platform"
 _BEST = "best"
 
 
 class SiteHost:
-    """Host of the LTI service that shows the content of a site."""
+    """Pages of links, with the content of a site."""
 
-    def __init__(self, site: Site, storage: Storage):
-        self._site, self._storage = site, storage
-        self._practice: CourseHost | None = None
+    def __init__(self, site: Site, storage: Storage, wake: Callable[[], None]):
+        self._site, self._storage, self._wake = site, storage, wake
 
     @property
     def languages(self) -> tuple[str, ...]:
         return self._site.languages
 
     @property
-    def practice(self) -> CourseHost:
-        """Host for links that open an exercise."""
-        if self._practice is None or self._practice.course is not self._site.course:
-            self._practice = CourseHost(
-                self._site.course, self._storage, clock=lambda: self._site.clock().timestamp()
-            )
-        return self._practice
-
-    @property
     def pages(self) -> LTIPages:
         return LTIPages(self._site.course.folder)
 
-    # -------------------------------------------------------------------- offers
-
-    def offer_groups(self, lang: str) -> Sequence[OfferGroup]:
-        """Return the published assignments, then the exercises by chapter."""
-        with self._site.store.reading() as connection:
-            assignments = [
-                assignment
-                for assignment in listed_assignments(connection)
-                if assignment.publication is not None
-            ]
-            offers = [
-                Offer(
-                    f"assignment:{assignment.name}", assignment.title(lang), _worth(connection, assignment.id),
-                    " ".join([assignment.name, *(assignment.stated.get("title") or {}).values()]),
-                )
-                for assignment in assignments
-            ]  # fmt: skip
-        site_groups = [OfferGroup(words(lang, "site")["lti"]["shelf"], tuple(offers))] if offers else []
-        return [*site_groups, *self.practice.offer_groups(lang)]
-
     # ---------------------------------------------------------------------- pages
 
-    def show(self, visit: LTIRequest) -> LTIResponse:
-        if not LinkSettings.of(visit.launch.custom).assignment:
-            return self.practice.show(visit)
-        return self._answered(visit, lambda number: self._student_page(visit, number))
+    def answer(self, visit: LTIRequest, form: Form | None = None) -> Response:
+        """Return the page of a link, or the response to a ``form`` of it, which may be sent twice; a refusal
+        of the site becomes a page.
 
-    def take(self, visit: LTIRequest, form: Form) -> LTIResponse:
-        if not LinkSettings.of(visit.launch.custom).assignment:
-            return self.practice.take(visit, form)
-        return self._answered(visit, lambda number: self._submit(visit, number, form))
-
-    def score(self, visit: LTIRequest) -> Score | None:
+        Raises
+        ------
+        LTIRefusal
+            The person may not see it, or there is none.
+        """
+        role = visit.launch.role
+        if role is not Role.STUDENT and not role.sees_class:
+            raise LTIRefusal("nobody", 403, f"role {role}")
+        linked = linked_assignment(self._site, visit.launch)
         try:
-            wanted = LinkSettings.of(visit.launch.custom)
-        except LTIRefusal:
-            return None
-        return score_of(self._site, visit.launch) if wanted.assignment else self.practice.score(visit)
-
-    def _answered(self, visit: LTIRequest, work: Callable[[int], LTIResponse]) -> LTIResponse:
-        """Return the response for the assignment of a link; a refusal of the site becomes a page."""
-        if visit.launch.role is not Role.STUDENT and not visit.launch.role.sees_class:
-            raise LTIRefusal("nobody", 403, f"role {visit.launch.role}")
-        number = assignment_number(self._site, visit.launch)
-        if number is None:
-            raise LTIRefusal("unknown_choice", 404, "no such assignment")
-        try:
-            return work(number)
+            if role is not Role.STUDENT and visit.path == "sheet":
+                return self._preview(visit, linked, form)
+            if visit.path or (form is not None and role is not Role.STUDENT):
+                raise LTIRefusal("page", 404, "no such page")
+            if role is not Role.STUDENT:
+                return self._class(visit, linked)
+            return self._student_page(visit, linked) if form is None else self._submit(visit, linked, form)
         except HTTPException as why:
             return self._refused(visit, why)
         except BadInput as fault:
             return self._refused(visit, HTTPException("mistaken", 422, as_message(fault)))
 
-    def _refused(self, visit: LTIRequest, why: HTTPException) -> LTIResponse:
+    def _refused(self, visit: LTIRequest, why: HTTPException) -> Response:
         texts = words(visit.lang, "site")
         sentence = texts["lti"]["refused"].get(why.sentence) or texts["refused"][why.sentence]
         names = {
@@ -137,25 +104,21 @@ class SiteHost:
         }  # fmt: skip
         if why.sentence == "connect":
             names |= {"connect": str(why.parts[0]), "connect_word": texts["connect"]["title"]}
-        return LTIResponse(self.pages.page("platform/lti_message", visit.lang, names), why.status_code)
+        return Response(self.pages.page("platform/lti_message", visit.lang, names), why.status_code)
 
-    def _student_page(self, visit: LTIRequest, number: int) -> LTIResponse:
-        if visit.launch.role is not Role.STUDENT:
-            return self._class(visit, number)
-        if visit.path:
-            raise LTIRefusal("page", 404, "a student")
-        site_request = self._site_request(visit, number, FormData())
+    def _student_page(self, visit: LTIRequest, linked: LinkedAssignment) -> Response:
+        site_request = self._site_request(visit, linked, FormData())
         state, paper = state_and_paper(site_request)
         if state.done and not ("again" in visit.query and state.may_hand_in):
             return self._after_submission(visit, site_request, state, paper)
         if not state.may_hand_in:
             raise HTTPException("closed", 409)
         texts = self._handed_in(state, paper) if state.done else {}
-        return LTIResponse(self._sheet(visit, state, paper, texts))
+        return Response(self._sheet(visit, state, paper, texts))
 
     # ------------------------------------------------------------------- a student
 
-    def _site_request(self, visit: LTIRequest, number: int, form: FormData) -> SiteRequest:
+    def _site_request(self, visit: LTIRequest, linked: LinkedAssignment, form: FormData) -> SiteRequest:
         """Return the site's request of the launch's person, after a paper has been assigned to them.
 
         Raises
@@ -164,15 +127,18 @@ class SiteHost:
             The assignment is not published, not open, or cannot be assigned.
         """
         site, launch = self._site, visit.launch
-        with site.store.reading() as connection:
-            if published(connection, number) is None:
-                raise HTTPException("own", 404)
+        if linked.number is not None:
+            with site.store.reading() as connection:
+                if published(connection, linked.number) is None:
+                    raise HTTPException("own", 404)
+            follow_link(site, linked)
         row = launch_persons.launch_person(site, launch, visit.lang)
-        self._assign(visit, number, row)
-        person = Person(row.id, row.name, "student", visit.lang)
+        number = self._assigned(visit, linked, row)
+        if self._storage.record(launch, row.id, number):
+            self._queue_score(launch, row.id, number)
         return SiteRequest(
             site,
-            person,
+            Person(row.id, row.name, "student", visit.lang),
             visit.lang,
             arrived(site.clock),
             visit.home,
@@ -181,35 +147,39 @@ class SiteHost:
             is_post=bool(form.texts),
         )
 
-    def _assign(self, visit: LTIRequest, number: int, person: Any) -> None:
-        with self._site.store.reading() as connection:
-            publication = published(connection, number)
-            if publication is None or student_assignments(connection, person.id, number):
-                return
-        phase = publication.phase(publication.now(self._site.clock()))
-        if phase is Phase.TO_COME:
-            raise HTTPException(
-                "not_yet", 409, moment_text(publication.opens, visit.lang) if publication.opens else ""
-            )
-        if not phase.takes:
-            raise HTTPException("closed", 409)
-        launch_persons.assign_paper(self._site, number, person, visit.launch, visit.lang)
+    def _assigned(self, visit: LTIRequest, linked: LinkedAssignment, person: Any) -> int:
+        """Return the assignment's id, after a paper was assigned to the person, if they have none."""
+        if linked.number is not None:
+            with self._site.store.reading() as connection:
+                publication = published(connection, linked.number)
+                if publication is None or student_assignments(connection, person.id, linked.number):
+                    return linked.number
+            phase = publication.phase(publication.now(self._site.clock()))
+            if phase is Phase.TO_COME:
+                opens = moment_text(publication.opens, visit.lang) if publication.opens else ""
+                raise HTTPException("not_yet", 409, opens)
+            if not phase.takes:
+                raise HTTPException("closed", 409)
+        return launch_persons.assign_paper(self._site, linked, person, visit.launch, visit.lang)
+
+    def _queue_score(self, launch: Launch, person_id: int, number: int) -> None:
+        """Queue the person's score for the platform if it has changed."""
+        if SCORE not in launch.scopes or not (launch.line or launch.lines):
+            return
+        score = score_of(self._site, launch, number, person_id)
+        if score is not None and self._storage.put_score(launch, person_id, score):
+            self._wake()
 
     def _sheet(
         self, visit: LTIRequest, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
         unread: Sequence[str] = (),
     ) -> str:  # fmt: skip
-        filled = {
-            name: [text, *text.split(", ")] if ", " in text else [text]
-            for name, text in texts.items()
-            if text
-        }
         more = [(visit.home, words(visit.lang)["lti"]["see_again"])] if state.done else []
         form = SheetForm(
-            visit.home, visit.csrf_token, len(state.done) + 1, filled, (*notes, *self._rules(visit, state)), tuple(unread),
+            visit.home, visit.csrf_token, len(state.done) + 1, _filled(texts), (*notes, *self._rules(visit, state)), tuple(unread),
             bool(unread), tuple(more), visit.launch.return_url,
         )  # fmt: skip
-        return self.pages.sheet(paper.paper, form, alone=False)
+        return self.pages.sheet(paper.paper, form)
 
     def _handed_in(self, state: AssignmentState, paper: StudentPaper) -> dict[str, str]:
         """Return the last submission, by box."""
@@ -253,7 +223,7 @@ class SiteHost:
 
     def _after_submission(
         self, visit: LTIRequest, site_request: SiteRequest, state: AssignmentState, paper: StudentPaper
-    ) -> LTIResponse:
+    ) -> Response:
         """Return the feedback on the last submission if it is released; otherwise a confirmation."""
         texts, last = words(visit.lang)["lti"], state.done[-1]
         arrival = texts["try_number"].format(last.number, exact_text(last.received_at, visit.lang))
@@ -264,7 +234,7 @@ class SiteHost:
             document, notes = feedback_of(site_request, state, paper, last)
             notes = [f"{arrival}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
             form = SheetForm("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
-            return LTIResponse(self.pages.feedback(document, form, alone=False))
+            return Response(self.pages.feedback(document, form))
         notes = [
             f"{arrival}.",
             receipt,
@@ -276,7 +246,7 @@ class SiteHost:
             "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": visit.launch.return_url,
             "handed_in": site_request.words["lti"]["handed_in"],
         }  # fmt: skip
-        return LTIResponse(self.pages.page("platform/lti_site_handed_in", visit.lang, names))
+        return Response(self.pages.page("platform/lti_site_handed_in", visit.lang, names))
 
     def _sent(self, visit: LTIRequest, state: AssignmentState | None = None) -> str:
         """Return the state of the score on its way to the platform."""
@@ -291,67 +261,98 @@ class SiteHost:
             return str(words(visit.lang, "site")["lti"][kept_back])
         return str(texts["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
 
-    def _submit(self, visit: LTIRequest, number: int, form: Form) -> LTIResponse:
+    def _submit(self, visit: LTIRequest, linked: LinkedAssignment, form: Form) -> Response:
         """Submit the answers of a form; a repeated form has no effect."""
-        if visit.launch.role is not Role.STUDENT or visit.path:
-            raise LTIRefusal("page", 404, "nothing is handed in there")
-        site_request = self._site_request(visit, number, FormData(form))
+        site_request = self._site_request(visit, linked, FormData(form))
         state, paper = state_and_paper(site_request)
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):
-            return LTIResponse(goto=visit.home)  # repeated form
+            return Response(redirect=visit.home)  # repeated form
+        back = self._doubts(visit, paper, texts, form)
+        if back:
+            return Response(self._sheet(visit, state, paper, texts, **back), 422)
+        number, person_id = state.assignment.id, site_request.user.id
+        received_at = site_request.received_at
+        submit(self._site, state.assignment, paper, person_id, texts, attempt, received_at, FROM_A_PLATFORM)
+        self._queue_score(visit.launch, person_id, number)
+        return Response(redirect=visit.home)
+
+    def _doubts(
+        self, visit: LTIRequest, paper: StudentPaper, texts: Mapping[str, str], form: Form
+    ) -> dict[str, list[str]]:
+        """Return what to tell instead of accepting a form: that it is empty, or which answers cannot be
+        read, unless the person insists."""
         if not any(text.strip() for text in texts.values()):
-            empty = words(visit.lang)["lti"]["empty"]
-            return LTIResponse(self._sheet(visit, state, paper, texts, notes=[empty]), 422)
+            return {"notes": [words(visit.lang)["lti"]["empty"]]}
         unread = _unread(visit, paper, texts)
-        if unread and not form.get("_as_it_is"):
-            return LTIResponse(self._sheet(visit, state, paper, texts, unread=unread), 422)
-        submit(
-            self._site,
-            state.assignment,
-            paper,
-            site_request.user.id,
-            texts,
-            attempt,
-            site_request.received_at,
-            FROM_A_PLATFORM,
-        )
-        return LTIResponse(goto=visit.home)
+        return {"unread": unread} if unread and not form.get("_as_it_is") else {}
 
-    # ------------------------------------------------------------------------ class
+    # ------------------------------------------------------------------------ staff
 
-    def _opened_by_course(self, launch: Launch) -> set[str]:
-        """Return the platform identifiers of the people who opened the assignment from the launch's
-        course."""
-        named = LinkSettings.of(launch.custom).assignment
-        opened = (other for other in self._storage.opened() if other.course == launch.course)
-        return {other.person for other in opened if other.custom.get("assignment", "").strip() == named}
-
-    def _class(self, visit: LTIRequest, number: int) -> LTIResponse:
+    def _class(self, visit: LTIRequest, linked: LinkedAssignment) -> Response:
         """Return the class table, read-only; decisions are made on the site, with an account there."""
-        if visit.path:
-            raise LTIRefusal("page", 404, "no such page")
-        now, lang = class_now(self._site, number), visit.lang
+        lang, stated = visit.lang, linked.table
+        publication: Publication | None = linked.publication
+        rows: list[LaunchClassRow] = []
         members, note = _members(visit, lang)
-        with self._site.store.reading() as connection:
-            publication = published(connection, number)
-            rows = class_rows(connection, self._site, now, visit, self._opened_by_course(visit.launch))
+        if linked.number is None:
+            title = text_in(stated["title"], lang)
+        else:
+            now = class_now(self._site, linked.number)
+            stated, title = now.about.stated or {}, assignment_title(now.about, lang)
+            opened = self._storage.opened(linked.number)
+            here = {other.person for *_, other in opened if other.course == visit.launch.course}
+            with self._site.store.reading() as connection:
+                publication = published(connection, linked.number)
+                rows = class_rows(connection, self._site, now, visit, here)
         missing = _not_there(members, {folded(row.name) for row in rows}, {row.person for row in rows})
         names = {
-            "title": visit.launch.link_title or assignment_title(now.about, lang), "context": visit.launch.context_title, "home": visit.home,
-            "desk": f"{self._site.url}/desk/{number}", "rules": rules_rows(visit, now, publication), "rows": rows, "missing": missing,
+            "title": visit.launch.link_title or title, "context": visit.launch.context_title, "home": visit.home,
+            "desk": "" if linked.number is None else f"{self._site.url}/desk/{linked.number}",
+            "rules": rules_rows(visit, stated.get("sittings", _BEST), publication), "rows": rows, "missing": missing,
             "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
         }  # fmt: skip
-        return LTIResponse(self.pages.page("platform/lti_site_class", lang, names))
+        return Response(self.pages.page("platform/lti_site_class", lang, names))
+
+    def _preview(self, visit: LTIRequest, linked: LinkedAssignment, form: Form | None) -> Response:
+        """Return the paper as a student sees it, with variants that are issued to nobody, or the marks of a
+        ``form``, which is not stored."""
+        site, texts = self._site, words(visit.lang)["lti"]
+        paper = preview_paper(site, replace(self._definition(linked), answers="never"), visit.lang)
+        home, sheet, notes = visit.home, f"{visit.home}/sheet", (texts["preview"],)
+        links = ((home, texts["to_class"]),)
+        if form is None:
+            form_names = SheetForm(sheet, visit.csrf_token, notes=notes, more=links)
+            return Response(self.pages.sheet(paper.paper, form_names))
+        typed = paper.texts(FormData(form))
+        if back := self._doubts(visit, paper, typed, form):
+            again = SheetForm(
+                sheet, visit.csrf_token, filled=_filled(typed), notes=(*notes, *back.get("notes", ())),
+                unread=tuple(back.get("unread", ())), may_insist="unread" in back, more=links,
+            )  # fmt: skip
+            return Response(self.pages.sheet(paper.paper, again), 422)
+        rows = rows_for(paper, typed, 1, site.clock(), FROM_A_PLATFORM)
+        sheets = placed_sheets(site.course, paper.issued, rows)
+        graded = [mark for _, mark in judged(site.course, paper.issued, sheets) if not isinstance(mark, str)]
+        document = feedback_paper(site.course, paper.issued, paper.student, graded, visit.lang)
+        told = SheetForm("", "", notes=notes, more=((sheet, texts["again"]), *links))
+        return Response(self.pages.feedback(document, told))
+
+    def _definition(self, linked: LinkedAssignment) -> Assignment:
+        if linked.link:
+            return linked.definition(self._site.course)
+        assert linked.number is not None
+        with self._site.store.reading() as connection:
+            (listed,) = listed_assignments(connection, linked.number)
+            return definition_of(self._site.course, listed, issued_of(connection, linked.number))
 
 
-def _worth(connection: Connection, number: int) -> float:
-    """Return the points of an assignment: those of the first issued paper."""
-    issued = issued_of(connection, number)
-    student = next(iter(issued.students), "")
-    seeds = issued.issued_to(student) if student else {}
-    records = [issued.record_of(student, exercise, seed) for exercise, seed in seeds.items()]
-    return sum(float(part["points"]) for record in records for part in record["parts"]) or 1.0
+def _filled(texts: Mapping[str, str]) -> dict[str, list[str]]:
+    """Return the values of the input fields: each tick of a multiple choice, and the whole text for a text
+    field."""
+    return {
+        name: [text, *text.split(", ")] if ", " in text else [text] for name, text in texts.items() if text
+    }
 
 
 def _unread(visit: LTIRequest, paper: StudentPaper, texts: Mapping[str, str]) -> list[str]:
@@ -379,7 +380,7 @@ def _members(visit: LTIRequest, lang: str) -> tuple[Sequence[Member] | None, str
     try:
         return visit.roster(), ""
     except NotServed as fault:
-        return None, texts["no_roster"].format(fault)
+        return None, texts["no_roster"].format(localised(fault, lang))
 
 
 def _not_there(members: Sequence[Member] | None, names: set[str], persons: set[str]) -> list[str]:

@@ -66,7 +66,7 @@ class AssignmentState:
     def releases(self, content: str) -> bool:
         """Return True if ``feedback`` or ``answers`` are released now."""
         ends = self.closed_for_both if content == "feedback" else self.everybody_ends
-        return self.assignment.own_publication.releases(content, self.now, ends)
+        return self.assignment.own_publication.releases(content, self.now, ends, self.tries_left)
 
     def moment(self, at: datetime | None) -> str:
         return "" if at is None else moment_text(at, self.lang)

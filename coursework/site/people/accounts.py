@@ -20,12 +20,11 @@ from coursework.database.accounts import (
     set_secret,
 )
 from coursework.database.audit import OF_ACCOUNTS, Actor, note, noted
-from coursework.database.identities import identities_of
 from coursework.database.people import put_person
 from coursework.database.permissions import ADMINISTRATOR, Permission
 from coursework.database.sessions import end_session, end_sessions, sessions_of
 from coursework.errors import BadInput
-from coursework.lti.storage import Storage
+from coursework.lti.storage import end_launch_sessions
 from coursework.site.frame.attempts import Attempt
 from coursework.site.frame.budgets import PLAIN
 from coursework.site.frame.devices import Devices
@@ -160,10 +159,7 @@ def account(request: Request) -> Response:
     if request.form.text("do") == "everywhere":
         with request.site.store.begin() as connection:
             end_sessions(connection, request.user.id)
-            identities = identities_of(connection, request.user.id)
-        if request.site.lti is not None:
-            for issuer, subject in identities:
-                Storage(request.site.lti).end_sessions(subject, issuer)
+            end_launch_sessions(connection, request.user.id)
         return Response(redirect="/", signed_in=0)
     if "session" in request.form.texts:
         return _end_chosen_session(request)

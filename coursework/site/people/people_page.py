@@ -19,7 +19,7 @@ from coursework.database.people import people, person_by_id, person_by_identifie
 from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Area, Permission, may, to_invite
 from coursework.issuing.identity import EMAIL, LOGIN, plain
 from coursework.issuing.roster import Student, read_roster
-from coursework.lti.storage import Storage
+from coursework.lti.storage import drop_launches
 from coursework.site.desk.class_cache import assignment_title
 from coursework.site.frame.budgets import DESK_FILE, read_apart
 from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
@@ -249,10 +249,9 @@ def separate_tie(request: Request) -> Response:
         gone = unlink_identity(connection, person.id, number(request.form.text("tie")))
         if gone is None:
             raise HTTPException("own", 404)
+        drop_launches(connection, person.id, *gone)
         about = {"person": person.id, "platform": urlsplit(gone[0]).hostname or gone[0]}
         note(connection, request.received_at, request.actor, "separated from a platform", **about)
-    if request.site.lti is not None:
-        Storage(request.site.lti).end_sessions(gone[1], gone[0])
     return Response(redirect=f"/desk/people/{person.id}")
 
 

@@ -15,13 +15,11 @@ from sqlalchemy import Connection
 from coursework.database.accounts import is_last_administrator
 from coursework.database.audit import Actor, kinds, note, noted
 from coursework.database.erasing import erase
-from coursework.database.identities import identities_of
 from coursework.database.people import people
 from coursework.database.permissions import Permission
 from coursework.database.personal_data import identifiers_of, personal_data
 from coursework.issuing.students import file_stems
 from coursework.language.words import words
-from coursework.lti.storage import Storage
 from coursework.site.frame.requests import HTTPException, Request, Response, Route
 from coursework.site.papers.release import Release, full_release, release_to
 from coursework.site.people import scrubbing
@@ -135,13 +133,9 @@ def erase_person(request: Request) -> Response:
     with request.site.store.begin() as connection:
         if is_last_administrator(connection, person.id):
             raise HTTPException("last_administrator", 409)
-        identities = identities_of(connection, person.id)
         gone = erase(connection, person.id)
         by = Actor("", 0, request.client_address) if person.id == request.user.id else request.actor
         note(connection, request.received_at, by, "erased", person=person.id, rows=sum(gone.values()))
-    if request.site.lti is not None:
-        for issuer, subject in identities:
-            Storage(request.site.lti).forget(subject, issuer)
     if not scrubbing.scrub(request.site):
         scrubbing.scrub_until_done(request.site)
         return Response(redirect="/desk/people?left=1")

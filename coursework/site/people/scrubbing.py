@@ -8,7 +8,6 @@ from threading import Event, Thread
 
 from coursework.database.settings import drop_value, put_value, value_of
 from coursework.errors import CourseworkError
-from coursework.lti.storage import Storage
 from coursework.site.frame.settings import Site
 
 LOG = logging.getLogger("coursework.site")
@@ -20,8 +19,6 @@ def scrub(site: Site) -> bool:
     """Rewrite the files without the deleted bytes. Return False if some are left, which the next start tries
     again."""
     done = site.store.scrub()
-    if site.lti is not None:
-        done = Storage(site.lti).scrub() and done
     with site.store.begin() as connection:
         if done:
             drop_value(connection, _LEFT)

@@ -25,6 +25,7 @@ from coursework.issuing.roster import Student, read_roster
 from coursework.messages import as_message
 from coursework.site.frame.budgets import DESK_FILE, read_apart
 from coursework.site.frame.requests import Request, Upload
+from coursework.site.frame.settings import Site
 from coursework.site.publication.assigning import AssignmentRequest
 
 _LONGEST = 80  #: characters of a name
@@ -62,13 +63,15 @@ def read(request: Request) -> NewAssignment:
     students = roster(request)
     if not students:
         raise BadInput(texts["nobody"])
-    return NewAssignment(name, AssignmentRequest(name, table, students, spoken(request, definition)))
+    return NewAssignment(
+        name, AssignmentRequest(name, table, students, spoken(request.site, definition, request.lang))
+    )
 
 
-def spoken(request: Request, definition: Assignment) -> str:
+def spoken(site: Site, definition: Assignment, lang: str) -> str:
     """Return the reader's language if all the exercises have it, or else the course's default."""
-    all_have = all(request.lang in request.site.course[name].languages for name in definition.names)
-    return request.lang if all_have else request.site.languages[0]
+    all_have = all(lang in site.course[name].languages for name in definition.names)
+    return lang if all_have else site.languages[0]
 
 
 def _sent(request: Request, field: str) -> Upload | None:

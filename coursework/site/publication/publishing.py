@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 from sqlalchemy import Connection, Select, func, select
 
+from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.database.assignments import issued_content, issued_of, put_issued
 from coursework.database.audit import note
@@ -47,8 +48,10 @@ from coursework.issuing.issued import Issued
 from coursework.issuing.issued import issued_content as content_of
 from coursework.issuing.roster import Student
 from coursework.issuing.variant_assignment import assign_variants
+from coursework.language.words import words
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.requests import FormData, HTTPException, Request, Response, Route
+from coursework.site.frame.settings import Site
 from coursework.site.frame.times import exact_text, field_text, from_field, moment_text, zone_name
 from coursework.site.papers.assignment_state import AssignmentState, state_of
 from coursework.site.papers.opening import prepare_soon
@@ -420,25 +423,11 @@ def preview(request: Request) -> Response:
     with request.site.store.reading() as connection:
         listed = assignment_here(request, connection)
         issued = issued_of(connection, listed.id)
-    definition = _definition(request, listed, issued)
-    assigned = assign_variants(
-        request.site.course,
-        definition,
-        [Student(request.words["publishing"]["nobody"])],
-        [new_assignment.spoken(request, definition)],
-        secret=Secret(request.site.secret[:16]).under("preview"),
-    )
-    student = assigned.issues[0].student
-    paper = StudentPaper(
-        request.site.course,
-        content_of(assigned.issues, definition),
-        student,
-        request.lang,
-        definition.instructions,
-    )
+    definition = definition_of(request.site.course, listed, issued)
+    paper = preview_paper(request.site, definition, request.lang)
     publication = listed.publication or Publication()
     state = AssignmentState(
-        StudentAssignment(listed.id, listed.name, definition.stated(), student, publication, None),
+        StudentAssignment(listed.id, listed.name, definition.stated(), paper.student, publication, None),
         request.lang,
         publication.now(request.received_at),
         (),
@@ -447,10 +436,20 @@ def preview(request: Request) -> Response:
     return _seen(request, listed, state, paper, request.words["publishing"]["look_preview"])
 
 
-def _definition(request: Request, listed: ListedAssignment, issued: Issued) -> Assignment:
+def preview_paper(site: Site, definition: Assignment, lang: str) -> StudentPaper:
+    """Return a paper with variants that are issued to nobody."""
+    student = Student(words(lang, "site")["publishing"]["nobody"])
+    langs = [new_assignment.spoken(site, definition, lang)]
+    secret = Secret(site.secret[:16]).under("preview")
+    assigned = assign_variants(site.course, definition, [student], langs, secret=secret)
+    content = content_of(assigned.issues, definition)
+    return StudentPaper(site.course, content, student.name, lang, definition.instructions)
+
+
+def definition_of(course: Course[Any], listed: ListedAssignment, issued: Issued) -> Assignment:
     """Return the assignment as its file states it; for one issued elsewhere, as its records state it."""
     if listed.definition is not None:
-        return assignment_of(listed.name, listed.definition, request.site.course)
+        return assignment_of(listed.name, listed.definition, course)
     exercises = []
     for exercise in issued.exercises:
         record = next(record for (name, _), record in issued.records.items() if name == exercise)

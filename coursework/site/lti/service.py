@@ -1,4 +1,4 @@
-"""Web service of LTI: login, launch, keys, and the pages of a session."""
+"""Web service of LTI within a site, under ``/lti``: login, launch, keys, and the pages of a session."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import traceback
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl
 
@@ -24,22 +25,27 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 
+from coursework.errors import BadInput
 from coursework.language.words import words
 from coursework.lti import deep_linking
 from coursework.lti.class_list import as_csv
-from coursework.lti.host import Form, Host, LTIRequest, LTIResponse
 from coursework.lti.key_sets import KeySets
 from coursework.lti.keys import KeyFolder
 from coursework.lti.launch import PICKING, Launch, launch_of
 from coursework.lti.login import Login, cookie_of, session_cookie
-from coursework.lti.pages import LTIPages
 from coursework.lti.refusal import LTIRefusal
 from coursework.lti.roles import Role
 from coursework.lti.sending import Sender
-from coursework.lti.services import SCORE, Member, NotServed, Services
-from coursework.lti.settings import LTIPlatform, Settings, origin
+from coursework.lti.services import Member, NotServed, Services
+from coursework.lti.settings import LTIPlatform, Settings, checked_url, origin, read_settings
 from coursework.lti.storage import Storage, Waiting
 from coursework.lti.tokens import verified
+from coursework.site.frame.requests import Response as SiteResponse
+from coursework.site.frame.settings import Site
+from coursework.site.lti.launch_request import LTIRequest
+from coursework.site.lti.offers import offer_groups
+from coursework.site.lti.scores import ScoreWatch
+from coursework.site.lti.site_host import SiteHost
 from coursework.system.allowances import Allowances, network
 from coursework.system.headers import Guarded, security_headers
 from coursework.system.processes import processor_time
@@ -58,33 +64,54 @@ _AGAIN = 2  #: seconds until another attempt if too many requests wait
 _ROSTER_SECONDS = 60.0  #: for which a roster is cached
 _SECONDS = 8.0  #: time limit of a platform's response
 
-FormFields = Mapping[str, Sequence[str]]
+FormFields = deep_linking.Form
 
 
-def service(
-    settings: Settings, host: Host, pages: LTIPages, *, storage: Storage | None = None, client: httpx.Client | None = None,
+PATH = "/lti"
+
+
+def settings_of(folder: Path, url: str) -> Settings:
+    """Return the settings of the platforms in a folder, for a site at an address.
+
+    Raises
+    ------
+    BadInput
+        The file cannot be read, or was written for a service at another address.
+    """
+    settings, due = read_settings(folder), checked_url(url, "the site's --url") + PATH
+    if settings.url not in ("", due):
+        raise BadInput(
+            "{folder}: platforms.toml is for a service at {found}, and the site has it at {due}: "
+            "coursework lti platform --in {folder} --url {due}, and register that address on the platform",
+            folder=folder,
+            found=settings.url,
+            due=due,
+        )
+    return replace(settings, url=due)
+
+
+def mounted(
+    site: Site, folder: Path, client: httpx.Client | None = None, settings: Settings | None = None,
     clock: Callable[[], float] = time.time,
 ) -> Starlette:  # fmt: skip
-    """Return the service as an ASGI application.
+    """Return the service of a site as an ASGI application, with its own cookies, headers and refusals.
 
     Parameters
     ----------
-    settings
-        Its address, its platforms and its time limits.
-    host
-        Provider of the content of links.
-    pages
-        Renderer of its own pages: refusals, and the choice of a link's content.
-    storage
-        Database; by default in the folder of the settings.
+    site
+        Site that provides the content of links.
+    folder
+        Folder of the platforms and the keys.
     client
         HTTP client for platforms; by default with short time limits.
+    settings
+        Its address, its platforms and its time limits; by default those of the folder.
     clock
         Function that returns the time in seconds.
     """
-    lti_service = _Service(
-        settings, host, pages, storage or Storage(settings.folder, clock), client or _client(), clock
-    )
+    settings = settings or settings_of(folder, site.url)
+    lti_service = _Service(settings, site, client or _client(), clock)
+    watch = ScoreWatch(site, lti_service.storage, lti_service.sender.wake)
     routes = [
         Route("/login", lti_service.answering(lti_service.login), methods=["GET", "POST"]),
         Route("/launch", lti_service.answering(lti_service.launch), methods=["POST"]),
@@ -96,7 +123,9 @@ def service(
     @asynccontextmanager
     async def running(app: Starlette) -> AsyncIterator[None]:
         lti_service.sender.start()
+        watch.start()
         yield
+        watch.stop()
         await run_in_threadpool(lti_service.sender.stop)
 
     handlers: Mapping[Any, Any] = {HTTPException: lti_service.no_page}
@@ -104,7 +133,9 @@ def service(
     is_secure = settings.url.startswith("https:")
     app.add_middleware(Guarded, is_secure=lambda: is_secure, frames=settings.frames)
     app.router.redirect_slashes = False  # it would redirect to any host that a request names
-    app.state.sender, app.state.processor = lti_service.sender, lti_service.processor
+    app.state.sender, app.state.processor, app.state.watch = (
+        lti_service.sender, lti_service.processor, watch,
+    )  # fmt: skip
     return app
 
 
@@ -117,26 +148,14 @@ def _client() -> httpx.Client:
 class _Service:
     """Endpoints of the service."""
 
-    def __init__(
-        self,
-        settings: Settings,
-        host: Host,
-        pages: LTIPages,
-        storage: Storage,
-        client: httpx.Client,
-        clock: Callable[[], float],
-    ):
-        self.settings, self.host, self.pages, self.storage, self._clock = (
-            settings,
-            host,
-            pages,
-            storage,
-            clock,
-        )
+    def __init__(self, settings: Settings, site: Site, client: httpx.Client, clock: Callable[[], float]):
+        self.settings, self.site, self._clock = settings, site, clock
+        self.storage = Storage(site.store, clock)
         self.keys = KeyFolder(settings.folder / "keys", clock)
         self.key_sets = KeySets(client)
         self.services = Services(client, self.keys)
-        self.sender = Sender(settings, storage, self.services)
+        self.sender = Sender(settings, self.storage, self.services)
+        self.host = SiteHost(site, self.storage, self.sender.wake)
         self._secret = self.keys.secret
         self._login = Login(settings, self._secret, clock)
         self._rosters: dict[str, tuple[float, list[Member]]] = {}
@@ -253,7 +272,10 @@ class _Service:
         }
         after = {"Retry-After": str(fault.wait)} if fault.wait else None
         return Response(
-            self.pages.page("platform/lti_message", lang, names), fault.status, after, media_type="text/html"
+            self.host.pages.page("platform/lti_message", lang, names),
+            fault.status,
+            after,
+            media_type="text/html",
         )
 
     async def no_page(self, request: Request, fault: HTTPException) -> Response:
@@ -302,7 +324,6 @@ class _Service:
         if launch.kind == PICKING and not launch.role.picks:
             raise LTIRefusal("role", 403, f"deep linking by {launch.role}")
         name, secret = self.storage.begin(launch, self.settings.session_seconds)
-        self._pass_on(self._visit(launch, name))
         response = RedirectResponse(f"{self.settings.url}/at/{name}", 303)
         self._set_cookie(
             response, session_cookie(name, self.settings.url), secret, self.settings.session_seconds
@@ -331,24 +352,15 @@ class _Service:
         elif visit.path == "roster.csv":
             response = self._roster_file(visit)
         else:
-            response = self._hosted(visit, form, request.method == "POST")
+            response = self._replied(self.host.answer(visit, form if request.method == "POST" else None))
         platform = self._platform(launch)
         request.state.frames = platform.frames
         return response
 
-    def _hosted(self, visit: LTIRequest, form: Form, posted: bool) -> Response:
-        reply = self.host.take(visit, form) if posted else self.host.show(visit)
-        if posted:
-            self._pass_on(visit)
-        return self._replied(reply)
-
-    def _replied(self, reply: LTIResponse) -> Response:
-        if reply.goto:
-            return RedirectResponse(reply.goto, 303)
-        if reply.file:
-            attached = {"Content-Disposition": f'attachment; filename="{reply.file}"'}
-            return Response(reply.data, reply.status, attached, media_type=reply.kind)
-        return Response(reply.html, reply.status, media_type="text/html")
+    def _replied(self, reply: SiteResponse) -> Response:
+        if reply.redirect:
+            return RedirectResponse(reply.redirect, 303)
+        return Response(reply.html, reply.status_code, media_type="text/html")
 
     def _visit(self, launch: Launch, name: str, request: Request | None = None) -> LTIRequest:
         csrf_token = hmac.new(self._secret, f"form {name}".encode(), hashlib.sha256).hexdigest()
@@ -364,7 +376,7 @@ class _Service:
         )
 
     def _scores(self, launch: Launch) -> dict[str, Waiting]:
-        return {person: waiting for (_, person), waiting in self.storage.scores(launch.link_key).items()}
+        return {waiting.launch.person: waiting for waiting in self.storage.scores(launch)}
 
     def _check_csrf_token(self, request: Request, visit: LTIRequest, form: FormFields) -> None:
         """Check the CSRF token of a form: the form must come from a page of this session."""
@@ -373,15 +385,6 @@ class _Service:
             raise LTIRefusal("form", 403, "a form from another site")
         if not hmac.compare_digest(_first(form, "_seal").encode(), visit.csrf_token.encode()):
             raise LTIRefusal("form", 403, "a form without its csrf_token")
-
-    def _pass_on(self, visit: LTIRequest) -> None:
-        """Queue the person's score for the platform if it has changed."""
-        launch = visit.launch
-        if launch.role is not Role.STUDENT or SCORE not in launch.scopes or not (launch.line or launch.lines):
-            return
-        score = self.host.score(visit)
-        if score is not None and self.storage.put_score(launch, score):
-            self.sender.wake()
 
     # -------------------------------------------------------------------- roster
 
@@ -410,26 +413,25 @@ class _Service:
             members = visit.roster()
         except NotServed as fault:
             raise LTIRefusal("platform_down", 502, str(fault)) from None
-        return self._replied(
-            LTIResponse(
-                file="roster.csv", kind="text/csv; charset=utf-8", data=as_csv(members).encode("utf-8-sig")
-            )
+        attached = {"Content-Disposition": 'attachment; filename="roster.csv"'}
+        return Response(
+            as_csv(members).encode("utf-8-sig"), 200, attached, media_type="text/csv; charset=utf-8"
         )
 
     # ------------------------------------------------------------------- picking
 
-    def _picking(self, visit: LTIRequest, form: Form, request: Request) -> Response:
+    def _picking(self, visit: LTIRequest, form: FormFields, request: Request) -> Response:
         launch = visit.launch
         if visit.path or launch.picking is None or not launch.role.picks:
             raise LTIRefusal(
                 "role" if not launch.role.picks else "page", 403 if not launch.role.picks else 404, "picking"
             )
-        offer_groups = self.host.offer_groups(visit.lang)
+        groups = offer_groups(self.site, visit.lang)
         if request.method == "POST":
             items = (
                 []
                 if form.get("cancel")
-                else deep_linking.content_items(launch, offer_groups, form, self.settings.url)
+                else deep_linking.content_items(launch, groups, form, self.settings.url)
             )
             return self._sent_back(visit, items, request)
         sought = visit.query.get("q", "")[:200].strip()
@@ -440,9 +442,9 @@ class _Service:
             "sought": sought,
             "several": launch.picking.several,
             "with_line": launch.picking.with_line,
-            "offer_groups": deep_linking.matching_offers(offer_groups, sought),
+            "offer_groups": deep_linking.matching_offers(groups, sought),
         }
-        return Response(self.pages.page("platform/lti_pick", visit.lang, names), media_type="text/html")
+        return Response(self.host.pages.page("platform/lti_pick", visit.lang, names), media_type="text/html")
 
     def _sent_back(self, visit: LTIRequest, items: Sequence[dict[str, Any]], request: Request) -> Response:
         """Return a page that sends the instructor and the chosen links back to the platform."""
@@ -455,7 +457,7 @@ class _Service:
             else "many"
         ]
         request.state.forms = [origin(launch.picking.return_url)]
-        request.state.scripts = [self.pages.digest("platform/_lti_return.js")]
+        request.state.scripts = [self.host.pages.digest("platform/_lti_return.js")]
         names = {
             "title": texts["return_title"],
             "message": ready.format(len(items)),
@@ -465,7 +467,9 @@ class _Service:
             ),
             "token": deep_linking.response(launch, items, self.keys.signing),
         }
-        return Response(self.pages.page("platform/lti_return", visit.lang, names), media_type="text/html")
+        return Response(
+            self.host.pages.page("platform/lti_return", visit.lang, names), media_type="text/html"
+        )
 
 
 # -------------------------------------------------------------------------- pieces

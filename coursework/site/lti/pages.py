@@ -1,4 +1,4 @@
-"""Pages of the service, rendered with the templates of a course."""
+"""Pages in the frames of platforms, rendered with the templates of a course."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 from coursework.course.folder import Folder
 from coursework.language.words import words
-from coursework.rendering import feedback, papers, views
+from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of, script_digest
 from coursework.sheets.paper import FeedbackPaper, Paper
@@ -39,7 +39,7 @@ class LTIPages:
         self._folders = folder.template_folders
 
     def page(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
-        """Return the page of a template such as ``lti_class``."""
+        """Return the page of a template such as ``lti_pick``."""
         texts = words(lang)
         usual = {"lang": lang, "words": texts, "said": texts["lti"], "paper": "a4", "title": ""}
         return render(environment_of(self._folders, lang), f"{template}.html.j2", {**usual, **names})
@@ -48,33 +48,17 @@ class LTIPages:
         """Return the digest by which a policy allows a script among the templates, ``sha256-…``."""
         return script_digest(environment_of(self._folders, "en"), script)
 
-    def sheet(self, paper: Paper, form: SheetForm, *, alone: bool) -> str:
-        """Return a sheet with input fields for the answers; ``alone`` for a single exercise without a paper."""
-        if alone:
-            return self.page(
-                "platform/lti_sheet",
-                paper.heading.lang,
-                {**views.context(paper.handouts[0]), **_formed(form)},
-            )
-        return self.page(
-            "platform/lti_paper", paper.heading.lang, {**self._paper(paper, form), **_formed(form)}
-        )
+    def sheet(self, paper: Paper, form: SheetForm) -> str:
+        """Return a paper with input fields for the answers."""
+        return self._page("platform/lti_paper", paper, form)
 
-    def feedback(self, paper: FeedbackPaper, form: SheetForm, *, alone: bool) -> str:
+    def feedback(self, paper: FeedbackPaper, form: SheetForm) -> str:
         """Return the feedback page of a submission."""
-        env = environment_of(self._folders, paper.heading.lang)
-        if alone:
-            names = feedback.context(paper.sheets[0], "html.j2", partial(render, env))
-            return self.page("platform/lti_feedback", paper.heading.lang, {**names, **_formed(form)})
-        return self.page(
-            "platform/lti_paper_feedback", paper.heading.lang, {**self._paper(paper, form), **_formed(form)}
-        )
+        return self._page("platform/lti_paper_feedback", paper, form)
 
-    def _paper(self, paper: Paper | FeedbackPaper, form: SheetForm) -> dict[str, Any]:
+    def _page(self, template: str, paper: Paper | FeedbackPaper, form: SheetForm) -> str:
         env = environment_of(self._folders, paper.heading.lang)
         files = [{"filled": form.filled}] * len(papers.sheets_of(paper))
-        return {**papers.context(paper, "html.j2", partial(render, env), files), "image": papers.image}
-
-
-def _formed(form: SheetForm) -> dict[str, Any]:
-    return {"form": form, "filled": form.filled, "keeping": ""}
+        names = papers.context(paper, "html.j2", partial(render, env), files)
+        more = {"image": papers.image, "form": form, "filled": form.filled, "keeping": ""}
+        return self.page(template, paper.heading.lang, {**names, **more})
