@@ -380,9 +380,9 @@ def _roster(path: Path) -> None:
 
 
 def _accepted(path: Path) -> None:
-    from coursework.gradebook.accepted import Accepted
+    from coursework.gradebook.decisions import DecisionFiles
 
-    assert all(one.student and one.exercise and one.part for one in Accepted(path).lines)
+    assert all(one.student and one.exercise and one.part for one in DecisionFiles(None, path).lines)
 
 
 def _typed(path: Path) -> None:

@@ -87,7 +87,7 @@ if TYPE_CHECKING:
 @click.option(
     "--accepted",
     type=FilePath(path_type=Path, dir_okay=False, exists=True),
-    help="CSV of answers accepted by hand: student,exercise,seed,part and, if wanted, points,reason.",
+    help="CSV of answers accepted by hand: student,exercise,seed,part and, if wanted, points,reason. decisions.csv in the folder of the marks counts without it.",
 )
 @decimal_option
 @click.option(
@@ -205,7 +205,7 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
     if book.waiting:
         unreadable = "1 answer waits" if book.waiting == 1 else f"{book.waiting} answers wait"
         click.echo(
-            f"{unreadable} to be marked by a person: give points in {out / 'to_mark.csv'}, and grade again"
+            f"{unreadable} to be marked by a person: give points in {out / 'decisions.csv'}, and grade again"
         )
     if book.changes:
         unreadable = (
@@ -233,7 +233,7 @@ def _check_source(
     database."""
     if marks is not None and in_database:
         raise BadInput(
-            "--from takes the marks as they stand in {marks}, and --db those of the database: what is to count there is named in accepted.csv",
+            "--from takes the marks as they stand in {marks}, and --db those of the database: what is to count there is named in decisions.csv",
             marks=marks,
         )
     if marks is None and not submissions and not in_database:

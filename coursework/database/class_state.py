@@ -8,7 +8,6 @@ from functools import cached_property
 from hashlib import sha256
 
 from coursework.course.course import Course
-from coursework.database.decisions import Decisions
 from coursework.database.instructor_queries import (
     AssignmentOverview,
     Placing,
@@ -18,6 +17,7 @@ from coursework.database.instructor_queries import (
 from coursework.errors import closest
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rejecting
+from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets
 from coursework.gradebook.rows import Rejected

@@ -9,16 +9,16 @@ from sqlalchemy import Connection, Select, func, select
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
-from coursework.database.decisions import Decision, Decisions
+from coursework.database.decisions import read_decisions
 from coursework.database.publication import late_penalties
 from coursework.database.submissions import rows_of
 from coursework.database.tables import mark, marking
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.class_marking import rejecting
+from coursework.gradebook.decisions import TO_MARK, Decision
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, placed_sheets
 from coursework.gradebook.platform_files import platform_file_lines
-from coursework.gradebook.to_mark import TO_MARK
 from coursework.issuing.issued import Issued
 from coursework.marking.mark import Mark
 
@@ -127,7 +127,7 @@ def graded(connection: Connection, assignment_id: int, student: str | None = Non
     if not sheets:
         return []
     lines = lines_of(connection, sheets.values())
-    decisions = Decisions.read(connection, assignment_id, student)
+    decisions = read_decisions(connection, assignment_id, student)
     issued = issued_of(connection, assignment_id, student=student)
     results = machine_marks(issued, sheets.values(), lines)
     return [decisions.apply(result) for _, result in results if not isinstance(result, str)]
@@ -146,7 +146,7 @@ def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gra
     standing = last_markings(connection, assignment_id)
     marked = [standing[key] for key in sheets.sheets if key in standing]
     results = machine_marks(issued, marked, lines_of(connection, marked))
-    decisions = Decisions.read(connection, assignment_id)
+    decisions = read_decisions(connection, assignment_id)
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     for sheet in map(decisions.apply, rejecting(sheets, results)):
         book.add(sheet)
@@ -188,7 +188,7 @@ def waiting(
         .join(last, marking.c.id == last.c.last)
         .order_by(last.c.first, mark.c.place)
     )
-    decisions = Decisions.read(connection, assignment_id)
+    decisions = read_decisions(connection, assignment_id)
     waits = []
     for row in connection.execute(query.where(mark.c.verdict.in_(verdicts))):
         sheet, line = _last_marking(row), _line(row[len(marking.c) :])

@@ -1,24 +1,34 @@
-"""Decisions on answers: accepted, given points, mark confirmed, or withdrawn. All are stored; the last on an
-answer counts."""
+"""Decisions of people on answers, stored: all of them are kept, in their order. Decisions in the files of a
+folder are taken in: a difference between a file and its content when it was last read or written is a new
+decision, under the file's name. So an old file states nothing new, and an edited one states the changes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from datetime import UTC, datetime
+from hashlib import sha256
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, insert, select
+from sqlalchemy import Connection, Select, delete, insert, select
 
-from coursework.database.tables import decision, mark, marking, variant
+from coursework.database.tables import decision, mark, marking, variant, worksheet
 from coursework.errors import BadInput, UnknownName, nearest
-from coursework.gradebook.accepted import accepted_mark, check_points
-from coursework.gradebook.graded_sheet import Graded
-from coursework.gradebook.to_mark import given_mark, same_answer
+from coursework.gradebook.decisions import (
+    ACCEPTED_FILE,
+    DECISIONS_FILE,
+    EDITED,
+    GIVEN,
+    KINDS,
+    TO_MARK_FILE,
+    WITHDRAWN,
+    Decision,
+    DecisionFiles,
+    Decisions,
+    check_points,
+)
 from coursework.issuing.students import folded
-from coursework.marking.feedback import RecordedSentence
-from coursework.marking.mark import Mark
-
-ACCEPTED, GIVEN, KEPT, WITHDRAWN = KINDS = ("accepted", "given", "kept", "withdrawn")
 
 
 class DecidedAnswer(NamedTuple):
@@ -30,17 +40,10 @@ class DecidedAnswer(NamedTuple):
     part: str
     answer: str | None = None  #: what was seen: another one is not decided on; None for whatever it is
 
-
-class Decision(NamedTuple):
-    """Decision of a person on an answer."""
-
-    seed: str
-    kind: str
-    points: float | None  #: None for all of them
-    reason: str
-    answer: str | None
-    by: str
-    made: datetime
+    @staticmethod
+    def of(decided: Decision) -> DecidedAnswer:
+        """Return the answer that a decision is about."""
+        return DecidedAnswer(*decided.answer_id, decided.answer)
 
 
 # ---------------------------------------------------------------------- writing
@@ -114,82 +117,25 @@ def _check(
             check_points(points, answer.part, parts[answer.part], f"{answer.student}, {answer.exercise}")
 
 
-# --------------------------------------------------------------------- standing
+# ---------------------------------------------------------------------- reading
+
+_STORED = Decision._fields[: Decision._fields.index("line")]  #: fields of a decision that have a column
 
 
-class Decisions:
-    """Decisions on the answers of an assignment, or of one student."""
-
-    def __init__(self, rows: Iterable[tuple[str, str, str, Decision]] = ()):
-        self._of: dict[tuple[str, str, str], list[Decision]] = {}
-        for student, exercise, part, decided in rows:
-            self._of.setdefault((folded(student), exercise, part), []).append(decided)
-
-    @staticmethod
-    def read(connection: Connection, assignment_id: int, student: str | None = None) -> Decisions:
-        """Return the decisions on an assignment in their order; of one student, if given."""
-        query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
-        # A file may spell a name differently, so the names are compared here, after folding.
-        return Decisions(
-            (row.student, row.exercise, row.part, _decision(row))
-            for row in connection.execute(query)
-            if student is None or folded(row.student) == folded(student)
-        )
-
-    def on(self, student: str, exercise: str, part: str) -> Sequence[Decision]:
-        """Return all decisions on a student's answer, of any variant."""
-        return self._of.get((folded(student), exercise, part), ())
-
-    def standing(self, graded: Graded, line: Mark) -> Decision | None:
-        """Return the decision that counts for an answer."""
-        return next(self.counting(graded[:3], line), None)
-
-    def given(self, graded: Graded, line: Mark) -> Decision | None:
-        """Return the decision that gives points for an answer, even if the answer was also accepted."""
-        return next((decided for decided in self.counting(graded[:3], line) if decided.kind == GIVEN), None)
-
-    def counting(self, sheet: tuple[str, str, int], line: Mark) -> Iterator[Decision]:
-        """Yield the decisions on exactly this answer of a sheet, the last first, as far as the last
-        withdrawal."""
-        student, exercise, seed = sheet
-        for decided in reversed(self.on(student, exercise, line.part)):
-            if decided.seed not in ("", str(seed)):
-                continue
-            if decided.kind == WITHDRAWN:
-                return
-            if decided.answer is None or same_answer(decided.answer, line.answer):
-                yield decided
-
-    def apply(self, graded: Graded, lang: str = "") -> Graded:
-        """Return the sheet with the decisions of people applied to its marks."""
-        if not self._of:
-            return graded
-        lines, unanswered = dict(graded.lines), list(graded.unanswered)
-        for part, line in graded.lines.items():
-            if (decided := self.standing(graded, line)) is not None:
-                lines[part] = _decided(line, decided, lang or str(graded.record.get("lang", "fr")))
-                if part not in (*graded.answered, *unanswered):
-                    unanswered.append(part)
-        return graded._replace(lines=lines, unanswered=tuple(unanswered))
+def stored_decision(row: Any) -> Decision:
+    """Return the decision of a row."""
+    return Decision(*(getattr(row, name) for name in _STORED))
 
 
-def _decided(line: Mark, decided: Decision, lang: str) -> Mark:
-    if decided.kind == GIVEN:
-        return given_mark(line, decided.points or 0.0, decided.reason, lang, decided.by)
-    if decided.kind == KEPT:
-        return (
-            line._replace(told=(*line.told, RecordedSentence(decided.reason, decided.reason)))
-            if decided.reason
-            else line
-        )
-    return accepted_mark(line, decided.points, decided.reason, lang, decided.by)
-
-
-def _decision(row: Any) -> Decision:
-    return Decision(*(getattr(row, name) for name in Decision._fields))
-
-
-# ---------------------------------------------------------------------- history
+def read_decisions(connection: Connection, assignment_id: int, student: str | None = None) -> Decisions:
+    """Return the decisions on an assignment in their order; of one student, if given."""
+    query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
+    # A file may spell a name differently, so the names are compared here, after folding.
+    return Decisions(
+        stored_decision(row)
+        for row in connection.execute(query)
+        if student is None or folded(row.student) == folded(student)
+    )
 
 
 class HistoryEvent(NamedTuple):
@@ -248,3 +194,67 @@ def _marking_event(row: Any) -> HistoryEvent:
 
 def _decision_event(row: Any) -> HistoryEvent:
     return HistoryEvent(row.made, row.by, row.kind, row.seed, 0, row.answer, "", row.points, row.reason)
+
+
+# ------------------------------------------------------------------------ files
+
+
+def store_new_decisions(connection: Connection, assignment_id: int, files: DecisionFiles) -> int:
+    """Store the new decisions in the files; return the number of answers concerned.
+
+    Raises
+    ------
+    BadInput
+        An answer is given more points than its part has.
+    """
+    was = _by_answer(one for path in files.files for one in _remembered(connection, assignment_id, path))
+    now = _by_answer(one._replace(line=0, location="") for one in files.lines)
+    decisions = read_decisions(connection, assignment_id)
+    names = {TO_MARK_FILE, ACCEPTED_FILE, DECISIONS_FILE, *(path.name for path in files.files)}
+    changed = [on for on in dict.fromkeys((*was, *now)) if was.get(on) != now.get(on)]
+    for on in changed:
+        standing = decisions.on(*on)
+        if on in was and standing and standing[-1].by in names and standing[-1].kind != WITHDRAWN:
+            withdrawn = was[on][-1]._replace(kind=WITHDRAWN, seed="", points=None, reason="")
+            _store_decision(connection, assignment_id, withdrawn)
+        for one in now.get(on, ()):
+            _store_decision(connection, assignment_id, one)
+    remember_written(connection, assignment_id, files)
+    return len(changed)
+
+
+def remember_written(connection: Connection, assignment_id: int, files: DecisionFiles) -> None:
+    """Record the content of the files, so that it counts as known."""
+    for path, decisions in files.files.items():
+        key = {"assignment_id": assignment_id, "file": _file(path)}
+        lines = [list(one[:_STATED]) for one in decisions if one.kind != EDITED]
+        if lines != [list(one[:_STATED]) for one in _remembered(connection, assignment_id, path)]:
+            connection.execute(delete(worksheet).filter_by(**key))
+            connection.execute(insert(worksheet).values(lines=lines, **key))
+
+
+_STATED = Decision._fields.index("made")  #: fields of a decision that a worksheet has
+
+
+def _store_decision(connection: Connection, assignment_id: int, one: Decision) -> None:
+    """Store a decision; ignore a line that names nothing issued, since the reader of the file reports it."""
+    with suppress(UnknownName):
+        decide(connection, assignment_id, [DecidedAnswer.of(one)], one.kind, one.points, one.reason, one.by)
+
+
+def _by_answer(decisions: Iterable[Decision]) -> dict[tuple[str, str, str], list[Decision]]:
+    by_answer: dict[tuple[str, str, str], list[Decision]] = {}
+    for one in decisions:
+        by_answer.setdefault(one.key, []).append(one)
+    return by_answer
+
+
+def _file(path: Path) -> str:
+    return sha256(str(path.resolve()).encode("utf-8", "backslashreplace")).hexdigest()
+
+
+def _remembered(connection: Connection, assignment_id: int, path: Path) -> list[Decision]:
+    query = select(worksheet.c.lines).where(
+        worksheet.c.assignment_id == assignment_id, worksheet.c.file == _file(path)
+    )
+    return [Decision(*line) for line in connection.execute(query).scalar() or ()]

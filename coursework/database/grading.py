@@ -13,27 +13,20 @@ from sqlalchemy import Connection
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.current_marks import last_markings
-from coursework.database.decision_files import (
-    DecidedAccepted,
-    DecidedToMark,
-    remember_written,
-    store_new_decisions,
-)
-from coursework.database.decisions import Decisions
+from coursework.database.decisions import read_decisions, remember_written, store_new_decisions
 from coursework.database.marking import MarkedNow, Work, mark_changed
 from coursework.database.publication import late_penalties
 from coursework.database.store import Store
 from coursework.database.submissions import Submission, insert_submission, rows_of
 from coursework.errors import BadInput
-from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.class_marking import rejecting
+from coursework.gradebook.decisions import DecisionFiles
 from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.grading import nothing_in, usual_feedback, write_marks
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import Rejected, path_text
 from coursework.gradebook.submissions import find, read_file
-from coursework.gradebook.to_mark import ToMark
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import Progress
 
@@ -74,9 +67,7 @@ def grade_new(
         A file that is not there, nothing that can be marked, more points than there are, solutions before their day; then
         nothing is kept.
     """
-    accepted = accepted_in(accepted, out)
-    by_hand = None if accepted is None else Accepted(accepted)
-    by_person = None if out is None else ToMark(out / TO_MARK_FILE)
+    files = DecisionFiles(out, accepted)
     with store.begin() as connection:
         issued = issued_of(connection, assignment_id)
         shows_solutions(issued, form)
@@ -85,19 +76,9 @@ def grade_new(
             sheets = placed_sheets(course, issued, rows_of(connection, assignment_id))
             if not sheets.sheets:
                 raise BadInput(nothing_in(submissions, sheets.rejected))
-        decided = store_new_decisions(connection, assignment_id, by_person, by_hand)
+        decided = store_new_decisions(connection, assignment_id, files)
     work = mark_changed(course, store, assignment_id)
     return GradedNow(submitted, decided, work.summary(), work)
-
-
-TO_MARK_FILE = "to_mark.csv"
-
-
-def accepted_in(accepted: Path | None, out: Path | None) -> Path | None:
-    """Return the file of accepted answers: the given one, else that of ``out`` if it exists."""
-    if accepted is not None or out is None:
-        return accepted
-    return out / "accepted.csv" if (out / "accepted.csv").exists() else None
 
 
 def _store_submissions(
@@ -132,7 +113,7 @@ def write_standing(
     """Write the files that :func:`coursework.gradebook.grading.grade_files` would write for all submissions
     so far."""
     with store.reading() as connection:
-        decisions = Decisions.read(connection, work.assignment_id)
+        decisions = read_decisions(connection, work.assignment_id)
         charged = late_penalties(connection, work.assignment_id)
     book = write_marks(
         course,
@@ -140,8 +121,8 @@ def write_standing(
         work.sheets,
         rejecting(work.sheets, work.results()),
         out,
-        by_person=DecidedToMark(out / TO_MARK_FILE, decisions),
-        by_hand=DecidedAccepted(accepted_in(accepted, out), decisions),
+        files=DecisionFiles(out, accepted),
+        decisions=decisions,
         feedback=usual_feedback(work.sheets) if feedback is None else feedback,
         charged=charged,
         spreadsheet=spreadsheet,
@@ -149,5 +130,5 @@ def write_standing(
         form=form,
     )
     with store.begin() as connection:
-        remember_written(connection, work.assignment_id, out / TO_MARK_FILE)
+        remember_written(connection, work.assignment_id, DecisionFiles(out))
     return book

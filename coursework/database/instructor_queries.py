@@ -10,9 +10,9 @@ from datetime import UTC, datetime
 from typing import Any, NamedTuple
 from zlib import crc32
 
-from sqlalchemy import Connection, Select, delete, func, insert, select
+from sqlalchemy import Connection, delete, func, insert, select
 
-from coursework.database.decisions import WITHDRAWN, DecidedAnswer
+from coursework.database.decisions import stored_decision
 from coursework.database.tables import (
     answer,
     assignment,
@@ -25,6 +25,7 @@ from coursework.database.tables import (
     progress,
     variant,
 )
+from coursework.gradebook.decisions import WITHDRAWN, Decision
 
 _BESIDE = 50  #: numbers before the last that may be seen after it
 
@@ -118,47 +119,19 @@ def listed_assignments(connection: Connection, assignment_id: int | None = None)
 # --------------------------------------------------------------------- decisions
 
 
-class NumberedDecision(NamedTuple):
-    """Decision with its id."""
-
-    id: int
-    student: str
-    exercise: str
-    seed: str
-    part: str
-    kind: str
-    points: float | None
-    reason: str
-    answer: str | None
-    by: str
-    made: datetime
-
-
-def _numbered_decisions(query: Select[Any], connection: Connection) -> list[NumberedDecision]:
-    return [
-        NumberedDecision(*(getattr(row, name) for name in NumberedDecision._fields))
-        for row in connection.execute(query)
-    ]
-
-
-def decided_since(connection: Connection, assignment_id: int, after: int) -> list[NumberedDecision]:
+def decided_since(connection: Connection, assignment_id: int, after: int) -> list[Decision]:
     """Return the decisions with an id above a number, in their order."""
     query = select(decision).where(decision.c.assignment_id == assignment_id, decision.c.id > after)
-    return _numbered_decisions(query.order_by(decision.c.id), connection)
+    return [stored_decision(row) for row in connection.execute(query.order_by(decision.c.id))]
 
 
-def decisions_of(connection: Connection, assignment_id: int) -> list[NumberedDecision]:
-    """Return all decisions of an assignment, in order."""
-    return decided_since(connection, assignment_id, 0)
-
-
-def undoable(connection: Connection, assignment_id: int, by: str) -> list[NumberedDecision]:
+def undoable(connection: Connection, assignment_id: int, by: str) -> list[Decision]:
     """Return the latest batch of decisions of a person that can be undone: no later decision replaces them."""
     query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id.desc())
     met: set[tuple[str, ...]] = set()
-    batch: list[NumberedDecision] = []
+    batch: list[Decision] = []
     for row in connection.execute(query):
-        decided = NumberedDecision(*(getattr(row, name) for name in NumberedDecision._fields))
+        decided = stored_decision(row)
         key = decided.student, decided.exercise, decided.seed, decided.part
         if batch and (decided.made != batch[0].made or decided.by != by):
             break
@@ -166,11 +139,6 @@ def undoable(connection: Connection, assignment_id: int, by: str) -> list[Number
             batch.append(decided)
         met.add(key)
     return batch[::-1]
-
-
-def decided_answer_of(decided: NumberedDecision) -> DecidedAnswer:
-    """Return the key of the answer that a decision is about."""
-    return DecidedAnswer(decided.student, decided.exercise, decided.seed, decided.part, decided.answer)
 
 
 # ---------------------------------------------------------------------- rejected

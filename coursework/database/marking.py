@@ -12,7 +12,7 @@ from sqlalchemy import Connection, insert, select
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.current_marks import LastMarking, last_markings, lines_of, machine_marks
-from coursework.database.decisions import Decisions
+from coursework.database.decisions import read_decisions
 from coursework.database.states import exercise_state, sheet_state
 from coursework.database.store import Store
 from coursework.database.submissions import rows_of
@@ -84,7 +84,7 @@ class Work:
         students = {sheet[0] for sheet in self.places}
         student = self._student = students.pop() if len(students) == 1 and delivery_id is not None else None
         self.last: dict[SheetKey, LastMarking] = last_markings(connection, assignment_id, student)
-        self.decisions = Decisions.read(connection, assignment_id, student)
+        self.decisions = read_decisions(connection, assignment_id, student)
         self.is_whole = delivery_id is None
         rules = rules_of(course, self.issued)
         self.states = {sheet: self._state(sheet, rules) for sheet in self.places}

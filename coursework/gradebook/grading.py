@@ -9,15 +9,25 @@ from __future__ import annotations
 import datetime
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from coursework.course.course import Course
 from coursework.errors import BadInput
 from coursework.gradebook import book as gradebook
-from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.book import Gradebook, Sitting
 from coursework.gradebook.changes import CHANGES_COLUMNS, EarlierMarks, History
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
+from coursework.gradebook.decisions import (
+    DECISION_COLUMNS,
+    DECISIONS_FILE,
+    EDITED_FILE,
+    TO_MARK,
+    TO_MARK_FILE,
+    DecisionFiles,
+    Decisions,
+    edited_row,
+)
 from coursework.gradebook.edited_marks import EditedMarks, differs
 from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.feedback_sheets import renew_feedback
@@ -27,14 +37,12 @@ from coursework.gradebook.platform_files import platform_file_lines
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.sheets_on_disk import placed_on_disk
 from coursework.gradebook.submissions import find, read_file
-from coursework.gradebook.to_mark import TO_MARK, TO_MARK_COLUMNS, ToMark, sorted_rows
 from coursework.issuing.issued import Issued
 from coursework.messages import Message
 from coursework.system.build_folder import free_name, is_as_written, write_down
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import Progress, TableFile, Tables, write_whole
 
-BY_HAND = "by_hand.csv"  #: marks of the folder that a hand changed
 _WRITTEN = ".marks.json"  #: what was written as marks.csv
 #: Largest number of students for which feedback sheets are printed by default.
 FEEDBACK_STUDENTS = 1000
@@ -52,11 +60,11 @@ def grade_files(
     progress: Progress = lambda done, of: None,
     form: FeedbackForm = USUAL,
 ) -> Gradebook:
-    """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``to_mark.csv`` where
-    answers are marked by a person, whose points in an earlier one count.
+    """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``decisions.csv`` where
+    answers are marked by a person, whose decisions in an earlier one count.
 
     If there are earlier marks, ``changes.csv`` lists the differences. ``accepted`` is a file of answers that
-    a person accepts; by default ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a class of
+    a person accepts, besides ``decisions.csv`` in ``out``. ``feedback`` None prints sheets for a class of
     usual size, with the options of ``form``. ``spreadsheet`` is the program for which the tables are written.
 
     Raises
@@ -66,11 +74,7 @@ def grade_files(
     """
     issued = Issued.read(issued_path)
     shows_solutions(issued, form)
-    default_accepted = out / "accepted.csv"
-    by_hand = Accepted(
-        accepted if accepted is not None else default_accepted if default_accepted.exists() else None
-    )
-    by_person = ToMark(out / "to_mark.csv")
+    files = DecisionFiles(out, accepted)
 
     def rows() -> Iterator[AnswerRow | Rejected | PlatformFile]:
         for file in find(submissions):
@@ -82,7 +86,7 @@ def grade_files(
         feedback = usual_feedback(sheets) if feedback is None else feedback
         results = marked(course, issued, sheets, printed=feedback)
         return write_marks(
-            course, issued, sheets, results, out, by_person=by_person, by_hand=by_hand, feedback=feedback,
+            course, issued, sheets, results, out, files=files, decisions=files.decisions, feedback=feedback,
             spreadsheet=spreadsheet, progress=progress, form=form,
         )  # fmt: skip
 
@@ -108,16 +112,16 @@ def write_marks(
     results: Iterable[Graded],
     out: Path,
     *,
-    by_person: ToMark,
-    by_hand: Accepted,
+    files: DecisionFiles,
+    decisions: Decisions,
     feedback: bool,
     charged: Mapping[Sitting, float] | None = None,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
     form: FeedbackForm = USUAL,
 ) -> Gradebook:
-    """Write the files of :func:`grade_files` for sheets that are marked on demand; ``charged`` contains the
-    penalties of late submissions as shares of the points."""
+    """Write the files of :func:`grade_files` for sheets that are marked on demand, with the
+    ``decisions`` that count; ``charged`` contains the penalties of late submissions as shares of the points."""
     before = EarlierMarks(out / "marks.csv")
     history = History(out, _day(form))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
@@ -129,8 +133,8 @@ def write_marks(
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
         for done, graded in enumerate(results, start=1):
-            lang = str(graded.record.get("lang", "fr"))
-            graded = by_hand.apply(by_person.apply(graded, lang), lang)
+            files.follow(graded, decisions)
+            graded = decisions.apply(graded)
             book.add(graded)
             for row in gradebook.marks_rows(graded):
                 marks.write(row)
@@ -143,12 +147,12 @@ def write_marks(
         for change in before.gone():
             history.add(change)
             book.changes += 1
-        book.faults, notes = by_hand.unfollowed(issued, dict.fromkeys(s for s, _ in book.students))
+        book.faults, notes = files.unfollowed(issued, dict.fromkeys(s for s, _ in book.students))
         book.warnings += notes
-        book.waiting = by_person.waiting
-        _list_to_mark(by_person, tables, book)
+        book.waiting = files.waiting
+        _write_decisions(files, tables, book)
         _write_counts(book, summary, rejected, changes, history)
-        stood = (out / BY_HAND).exists()
+        stood = files.is_edited or (out / EDITED_FILE).exists()
         edited = not is_as_written(out / _WRITTEN, marks.path) and before.edited(out / "summary.csv")
         if book.changes and (stood or edited):
             book.warnings.insert(0, _kept_copy(out / "marks.csv"))
@@ -158,7 +162,7 @@ def write_marks(
         # Stopped halfway, these are no marks that a hand changed.
         write_down(out / _WRITTEN, marks.path, marks.part, *([] if edited else [marks.path]))
         tables.commit()
-    (out / BY_HAND).unlink(missing_ok=True)
+    _remove_earlier_files(out)
     return book
 
 
@@ -193,7 +197,7 @@ def grade_edited_marks(
     """Write ``summary.csv``, ``rejected.csv`` and feedback sheets for the marks in a file.
 
     ``changes.csv`` lists the marks that differ from the marking, since they were edited. They are also stored
-    in ``by_hand.csv``, so that a later marking knows them. The file itself remains unchanged.
+    in ``decisions.csv``, so that a later marking knows them. The file itself remains unchanged.
 
     Raises
     ------
@@ -202,11 +206,7 @@ def grade_edited_marks(
     """
     issued = Issued.read(issued_path)
     shows_solutions(issued, form)
-    default_accepted = marks.with_name("accepted.csv")
-    accepted, by_person = (
-        Accepted(default_accepted if default_accepted.exists() else None),
-        ToMark(marks.with_name("to_mark.csv")),
-    )
+    decisions, files = DecisionFiles(marks.parent).decisions, DecisionFiles(out)
     standing = EditedMarks(course, issued, marks)
     sheets = standing.sheets
     feedback = usual_feedback(sheets) if feedback is None else feedback
@@ -220,53 +220,52 @@ def grade_edited_marks(
         summary = tables.open("summary.csv", summary_columns(issued))
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS)
-        by_hand = tables.open(
-            BY_HAND, [c for c in CHANGES_COLUMNS if c not in ("date", "mark_before", "mark_now")]
-        )
+        edited = []
         for graded in machine:
             sheets_shown.append(standing.of(graded))
             book.add(sheets_shown[-1])
-            lang = str(graded.record.get("lang", "fr"))
-            for change in differs(accepted.apply(by_person.apply(graded, lang), lang), sheets_shown[-1]):
+            files.follow(graded, files.decisions)
+            for change in differs(decisions.apply(graded), sheets_shown[-1]):
                 history.add(change)
-                by_hand.write(change)
-        book.changes = by_hand.rows
+                edited.append(edited_row(change))
+        book.changes = len(edited)
         book.waiting = sum(
             line.verdict == TO_MARK for graded_sheet in sheets_shown for line in graded_sheet.lines.values()
         )
+        _write_decisions(files, tables, book, edited)
         _write_counts(book, summary, rejected, changes, history)
         if feedback:
             renew_feedback(course, book, sheets_shown, out, progress, form, tables.check)
         tables.commit()
-    if not book.changes:
-        (out / BY_HAND).unlink()
+    _remove_earlier_files(out)
     if marks.resolve() != (out / "marks.csv").resolve():
         write_whole(out / "marks.csv", marks.read_bytes())
     return book
 
 
-def _list_to_mark(by_person: ToMark, tables: Tables, book: Gradebook) -> None:
-    """Write the answers that a person marks. Points for answers that are missing or have changed are kept in
-    a copy, with a warning."""
-    path = by_person.path
-    if by_person.loses:
-        copy = free_name(path)
-        write_whole(copy, path.read_bytes())
+def _write_decisions(
+    files: DecisionFiles, tables: Tables, book: Gradebook, edited: Sequence[dict[str, Any]] = ()
+) -> None:
+    """Write ``decisions.csv``, if there is something to state. Points for answers that are missing or have
+    changed are kept in a copy, with a warning."""
+    rows, replaced = [*files.rows(), *edited], files.replaced
+    if replaced is not None and (lost := files.lost):
+        copy = free_name(replaced)
+        write_whole(copy, replaced.read_bytes())
         book.warnings += [
-            *(
-                Message("marked by a person, but answered anew since: {answer}", answer=answer)
-                for answer in by_person.changed
-            ),
-            *(
-                Message("marked by a person, but never answered: {answer}", answer=answer)
-                for answer in by_person.unused
-            ),
-            Message("{file} as it was is kept as {copy}", file=path.name, copy=copy),
+            *lost,
+            Message("{file} as it was is kept as {copy}", file=replaced.name, copy=copy),
         ]
-    if by_person.rows or path.exists():
-        table = tables.open(path.name, TO_MARK_COLUMNS)
-        for row in sorted_rows(by_person.rows):
+    if files.path is not None and (rows or replaced is not None):
+        table = tables.open(files.path.name, DECISION_COLUMNS)
+        for row in rows:
             table.write(row)
+
+
+def _remove_earlier_files(out: Path) -> None:
+    """Remove the files of earlier versions whose content ``decisions.csv`` has now."""
+    for name in (TO_MARK_FILE, EDITED_FILE):
+        (out / name).unlink(missing_ok=True)
 
 
 def _kept_copy(marks: Path) -> str:
@@ -277,7 +276,7 @@ def _kept_copy(marks: Path) -> str:
         "{file} had been edited, and is written anew: the edited one is kept as {copy}; a mark that is to last is named in {accepted}",
         file=marks.name,
         copy=copy,
-        accepted=marks.with_name("accepted.csv"),
+        accepted=marks.with_name(DECISIONS_FILE),
     )
 
 

@@ -117,7 +117,7 @@ def test_round_by_round_the_files_are_those_of_all_at_once(one):
             for row in rows
         ]
 
-    one.both("to_mark.csv", give)
+    one.both("decisions.csv", give)
     one.both(
         "accepted.csv",
         accepted(("Ana", "coil", "", "Z", "", "read on paper"), ("Cléo", "coil", "", "Z", "1", "")),
@@ -145,7 +145,7 @@ def test_round_by_round_the_files_are_those_of_all_at_once(one):
         accepted(("Ana", "coil", "", "Z", "0.5", "half of it"), ("Ben", "coil", "", "why", "2", "")),
     )
     one.both(
-        "to_mark.csv",
+        "decisions.csv",
         lambda rows: [{**row, "points": "" if row["student"] == "Ana" else row["points"]} for row in rows],
     )
     late = one.file("late.csv", one.rows("Ben", why="Something else.")[-2:])
@@ -177,7 +177,8 @@ def test_a_decision_of_a_file_is_taken_in_once_and_a_later_one_from_elsewhere_st
     first = one.file("first.csv", one.rows("Ana", why="It stores."))
     one.grade(first)
     one.both(
-        "to_mark.csv", lambda rows: [{**row, "points": "2"} if row["part"] == "why" else row for row in rows]
+        "decisions.csv",
+        lambda rows: [{**row, "points": "2"} if row["part"] == "why" else row for row in rows],
     )
     stored, _ = one.grade()
     store = Store(one.url)
@@ -189,12 +190,12 @@ def test_a_decision_of_a_file_is_taken_in_once_and_a_later_one_from_elsewhere_st
         one.status("grade", "--db", one.url, "--out", stored, *FORMATS)
     marks = {row["part"]: row for row in table(stored / "marks.csv")}
     assert marks["why"]["points"] == "1"
-    assert next(row for row in table(stored / "to_mark.csv") if row["part"] == "why")["points"] == "1"
+    assert next(row for row in table(stored / "decisions.csv") if row["part"] == "why")["points"] == "1"
     with store.reading() as connection:
         found = [
             happened.by for *_, happened in history(connection, number, "Ana", "coil", "why") if happened.by
         ]
-    assert found == ["to_mark.csv", "Prof. Roe"]
+    assert found == ["decisions.csv", "Prof. Roe"]
     store.close()
 
 

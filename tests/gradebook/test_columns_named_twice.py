@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
 from coursework.errors import BadInput
-from coursework.gradebook.accepted import Accepted
+from coursework.gradebook.decisions import DecisionFiles
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.submissions import read_file
 from coursework.issuing.roster import read_roster
@@ -33,7 +35,7 @@ def test_columns_of_ones_own_may_be_called_alike(tmp_path):
 @pytest.mark.parametrize(
     ("read", "text"),
     [
-        (Accepted, "student,exercise,seed,part,points,Points\nAnn,x,1,rA,1,0\n"),
+        (partial(DecisionFiles, None), "student,exercise,seed,part,points,Points\nAnn,x,1,rA,1,0\n"),
         (read_roster, "student,student\nAnn,Bob\n"),
         (read_roster, "student,lang,lang\nAnn,fr,en\n"),
         (read_typed, "student,exercise,seed,part,coordinate,answer,seen,answer\nAnn,x,1,rA,1,3,,4\n"),

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from coursework.gradebook.accepted import Accepted
+from coursework.gradebook.decisions import DecisionFiles
 from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import read_file
 from coursework.system import tables
@@ -93,4 +93,4 @@ def test_a_blank_first_line_rejects_nothing(tmp_path, blank):
         rows = read(tmp_path / "a.csv", blank + f"{HEADER}\nA,x,1,rA,2\n".replace(",", comma))
         assert [row[:5] for row in rows] == [("A", "x", "1", "rA", "2")]
     (tmp_path / "accepted.csv").write_text(blank + "student,exercise,part\nA,x,rA\n")
-    assert [one.answer_id for one in Accepted(tmp_path / "accepted.csv").lines] == [("A", "x", "", "rA")]
+    assert [one.answer_id for one in DecisionFiles(tmp_path).lines] == [("A", "x", "", "rA")]

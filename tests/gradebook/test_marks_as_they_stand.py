@@ -106,13 +106,15 @@ def test_a_change_that_makes_no_sense_is_told_by_line_and_writes_nothing(course,
 def test_a_later_marking_keeps_the_marks_that_a_hand_changed(course, marks, capsys):
     change(marks, "v", points="1.5")
     again(course, marks)
+    (edited,) = table(marks / "decisions.csv")
+    assert (edited["part"], edited["kind"], edited["points"]) == ("v", "edited", "1.5")
     stood = (marks / "marks.csv").read_bytes()
     asked = ["--course", course.folder.root, "grade", marks.parent / "answers.csv", "--no-feedback"]
     capsys.readouterr()
     run(list(map(str, [*asked, "--issued", marks.parent / "issued.json"])))
     assert "marks.before.csv" in capsys.readouterr().err
     assert (marks / "marks.before.csv").read_bytes() == stood
-    assert not (marks / "by_hand.csv").exists()
+    assert table(marks / "decisions.csv") == []
 
 
 def test_another_folder_holds_the_marks_too(course, marks, tmp_path):

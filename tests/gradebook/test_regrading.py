@@ -421,7 +421,7 @@ def test_marks_mended_by_hand_are_kept_beside_those_that_replace_them(small_cour
         said = capsys.readouterr().err
         assert "had been edited" in said
         assert kept in said
-        assert "accepted.csv" in said
+        assert "decisions.csv" in said
         assert (marks / kept).read_text("utf-8") == mended
         (marks / "marks.csv").write_text(mended, "utf-8")
 

@@ -284,14 +284,14 @@ def test_open_answers_wait_until_a_person_marks_them(marked, capsys):
     folder, grade = marked
     assert grade() == 1
     assert "4 answers wait to be marked by a person" in capsys.readouterr().out
-    waiting = table(folder / "marks" / "to_mark.csv")
+    waiting = table(folder / "marks" / "decisions.csv")
     assert {row["part"] for row in waiting} == {"why", "sketch"}
     assert "Because of 0,\nit stores." in [row["answer"] for row in waiting]
     summary = table(folder / "marks" / "summary.csv")
     assert [(s["points"], s["to_mark"], s["correct"]) for s in summary] == [("13", "2", "5")] * 2
     for row, points in zip(waiting, ("4", "1,5", "0", "3"), strict=True):
         row["points"], row["reason"] = points, "seen"
-    write(folder / "marks" / "to_mark.csv", waiting)
+    write(folder / "marks" / "decisions.csv", waiting)
     assert grade() == 0
     marks = {(m["student"], m["part"]): m for m in table(folder / "marks" / "marks.csv")}
     given = [marks[row["student"], row["part"]] for row in waiting]
@@ -305,29 +305,70 @@ def test_open_answers_wait_until_a_person_marks_them(marked, capsys):
 def test_points_for_another_answer_do_not_count_and_are_kept(marked, capsys):
     folder, grade = marked
     grade()
-    rows = table(folder / "marks" / "to_mark.csv")
+    rows = table(folder / "marks" / "decisions.csv")
     for row in rows:
         row["points"] = "1"
-    write(folder / "marks" / "to_mark.csv", rows)
+    write(folder / "marks" / "decisions.csv", rows)
     answers = table(folder / "answers.csv")
     for row in answers:
         row["answer"] = "Something else." if row["part"] == "why" else row["answer"]
     write(folder / "answers.csv", answers)
     assert grade() == 1
     assert "answered anew since: s0, coil, 0, why" in capsys.readouterr().err
-    assert (folder / "marks" / "to_mark.before.csv").exists()
-    assert [r["points"] for r in table(folder / "marks" / "to_mark.csv")] == ["", "", "1", "1"]
+    assert (folder / "marks" / "decisions.before.csv").exists()
+    assert [r["points"] for r in table(folder / "marks" / "decisions.csv")] == ["", "", "1", "1"]
+
+
+def test_the_files_of_a_folder_of_before_are_read_and_become_one(marked):
+    """Points of ``to_mark.csv`` and lines of ``accepted.csv`` count, and ``decisions.csv`` has the former from then on."""
+    folder, grade = marked
+    grade()
+    marks = folder / "marks"
+    rows = table(marks / "decisions.csv")
+    (marks / "decisions.csv").unlink()
+    old = [{**row, "points": "1" if row["part"] == "why" else ""} for row in rows]
+    write(marks / "to_mark.csv", [{c: v for c, v in row.items() if c != "kind"} for row in old])
+    (marks / "by_hand.csv").write_text("student,exercise\n", "utf-8")
+    student = rows[0]["student"]
+    (marks / "accepted.csv").write_text(f"student,exercise,part\n{student},coil,sketch\n", "utf-8")
+    for _ in range(2):
+        assert grade() == 1
+        verdicts = {
+            (row["student"], row["part"]): row["verdict"]
+            for row in table(marks / "marks.csv")
+            if row["part"] in ("why", "sketch")
+        }
+        assert sorted(verdicts.values()) == ["accepted", "partial", "partial", "to_mark"]
+        assert verdicts[student, "sketch"] == "accepted"
+        assert {row["points"] for row in table(marks / "decisions.csv") if row["part"] == "why"} == {"1"}
+        assert {path.name for path in marks.glob("*.csv")} & {"to_mark.csv", "by_hand.csv"} == set()
+
+
+def test_a_line_without_a_kind_accepts_an_answer_that_no_marking_listed(marked):
+    folder, grade = marked
+    grade()
+    rows = table(folder / "marks" / "decisions.csv")
+    one = {**dict.fromkeys(rows[0], ""), "student": "s0", "exercise": "coil", "part": "Z", "reason": "seen"}
+    write(folder / "marks" / "decisions.csv", [*rows, one])
+    for _ in range(2):
+        grade()
+        marks = {(row["student"], row["part"]): row for row in table(folder / "marks" / "marks.csv")}
+        assert marks["s0", "Z"]["verdict"] == "accepted"
+    assert [row["kind"] for row in table(folder / "marks" / "decisions.csv")] == [
+        *[""] * len(rows),
+        "accepted",
+    ]
 
 
 @pytest.mark.parametrize("points", ["4.5", "many", "-1"])
 def test_points_that_are_none_are_refused_with_their_line(marked, capsys, points):
     folder, grade = marked
     grade()
-    rows = table(folder / "marks" / "to_mark.csv")
+    rows = table(folder / "marks" / "decisions.csv")
     rows[0]["points"] = points
-    write(folder / "marks" / "to_mark.csv", rows)
+    write(folder / "marks" / "decisions.csv", rows)
     assert grade() == 2
-    assert "to_mark.csv, line 2" in capsys.readouterr().err
+    assert "decisions.csv, line 2" in capsys.readouterr().err
 
 
 def test_statistics_do_not_count_what_waits_as_wrong(marked, root, capsys):

@@ -147,7 +147,7 @@ READERS = {
     ),
     "rejected": ("b/marks/rejected.csv", lambda coil, folder: coil("report", folder, "--json")),
     "accepted": ("b/marks/accepted.csv", grade_there),
-    "to mark": ("b/marks/to_mark.csv", grade_there),
+    "decisions": ("b/marks/decisions.csv", grade_there),
     "answers": ("all.csv", lambda coil, folder: coil("grade", folder / "all.csv", "--issued", coil.folder / "b/issued.json", "--no-feedback", "--out", folder / "o")),
     "sheets": ("sheets.json", lambda coil, folder: coil("grade", folder / "sheets.json", "--issued", coil.folder / "b/issued.json", "--no-feedback", "--out", folder / "o")),
     "roster": ("r.csv", lambda coil, folder: coil("build", "coil", "--roster", folder / "r.csv", "--formats", "ipynb", "--out", folder / "o")),

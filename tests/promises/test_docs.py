@@ -234,7 +234,7 @@ def test_the_first_hour_prints_and_writes_what_its_commands_do(tmp_path, monkeyp
             continue
         if command.startswith("grade"):
             if "--accepted" in command:
-                Path("accepted.csv").write_text(accepted, "utf-8")
+                Path("decisions.csv").write_text(accepted, "utf-8")
             else:
                 hand_in(answers | {row[:2]: row[2] for row in shown})
         run(shlex.split(command))

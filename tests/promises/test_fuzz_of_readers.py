@@ -266,13 +266,15 @@ def test_a_roster_beyond_its_size_or_its_columns_is_told(tmp_path, monkeypatch):
         read_roster(path)
 
 
-@pytest.mark.parametrize("name", ["gradebook.accepted.Accepted", "scanning.typed.read_typed"])
-def test_what_people_write_is_read_to_a_size(tmp_path, monkeypatch, name):
+@pytest.mark.parametrize(
+    ("name", "more"), [("gradebook.decisions.DecisionFiles", [None]), ("scanning.typed.read_typed", [])]
+)
+def test_what_people_write_is_read_to_a_size(tmp_path, monkeypatch, name, more):
     room, _, reads = f"coursework.{name}".rpartition(".")
     monkeypatch.setattr(f"{room}.MOST_TABLE_BYTES", 10)
     (tmp_path / "a.csv").write_text("student,exercise,seed,part,answer\nA,x,1,rA,2\n")
     with pytest.raises(BadInput, match=r"a\.csv: a file of 45 bytes is not read; the limit is 10"):
-        getattr(__import__(room, fromlist=[reads]), reads)(tmp_path / "a.csv")
+        getattr(__import__(room, fromlist=[reads]), reads)(*more, tmp_path / "a.csv")
 
 
 def notebook(*sources, **about):

@@ -7,7 +7,7 @@ from desk_class import EXERCISE, OTHER, SEED, DeskClass, Rejected, field, told
 from site_people import TEACHER, ZOE
 
 from coursework.database.current_marks import graded
-from coursework.database.decisions import Decisions
+from coursework.database.decisions import read_decisions
 from coursework.database.instructor_queries import people_of
 from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import AnswerRow, RowOrigin
@@ -135,7 +135,7 @@ def test_undo_is_a_decision_that_brings_the_card_back(desk):
     assert (told(page), field(page, "group")) == ("Undone (2).", field(desk.page(TEACHER, "/queue"), "group"))
     assert marks(desk)["Ada"].verdict == "unreadable"
     with desk.site.store.reading() as connection:
-        kinds = [one.kind for one in Decisions.read(connection, desk.number).on("Ada", EXERCISE, "rA")]
+        kinds = [one.kind for one in read_decisions(connection, desk.number).on("Ada", EXERCISE, "rA")]
     assert kinds == ["accepted", "withdrawn"]
     assert told(press(desk, TEACHER, page, "undo")) == "There is nothing of yours to undo."
 
@@ -156,7 +156,7 @@ def test_of_two_at_once_the_second_sees_who_decided_and_nothing_counts_twice(des
     assert TEACHER in told(press(desk, OTHER, second, "refuse"))
     assert marks(desk)["Ada"].points == 1
     with desk.site.store.reading() as connection:
-        assert len(Decisions.read(connection, desk.number).on("Ada", EXERCISE, "rA")) == 1
+        assert len(read_decisions(connection, desk.number).on("Ada", EXERCISE, "rA")) == 1
 
 
 def test_a_press_that_comes_twice_decides_once(desk):
@@ -164,7 +164,7 @@ def test_a_press_that_comes_twice_decides_once(desk):
     press(desk, TEACHER, page, "accept")
     press(desk, TEACHER, page, "accept")
     with desk.site.store.reading() as connection:
-        assert len(Decisions.read(connection, desk.number).on("Bo", EXERCISE, "rA")) == 1
+        assert len(read_decisions(connection, desk.number).on("Bo", EXERCISE, "rA")) == 1
 
 
 def test_an_answer_that_is_handed_in_anew_waits_anew_where_the_decision_was_of_another_text(desk):

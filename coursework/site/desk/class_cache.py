@@ -16,7 +16,7 @@ from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.class_state import ClassState
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
-from coursework.database.decisions import Decisions
+from coursework.database.decisions import read_decisions
 from coursework.database.instructor_queries import (
     AssignmentOverview,
     Stamp,
@@ -104,7 +104,7 @@ def _read(
     course: Course, connection: Connection, about: AssignmentOverview, at: Stamp, cached: _ClassCache
 ) -> ClassState:
     before = cached.now if cached.now is not None and cached.now.course is course else None
-    decisions, placed_by_hand = Decisions.read(connection, about.id), placings(connection, about.id)
+    decisions, placed_by_hand = read_decisions(connection, about.id), placings(connection, about.id)
     charged = late_penalties(connection, about.id)
     if before is not None and _has_come(before.stamp, before.about) == _has_come(at, about):
         now = replace(

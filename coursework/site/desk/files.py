@@ -14,7 +14,7 @@ from typing import Any
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState
-from coursework.database.instructor_queries import decisions_of
+from coursework.database.instructor_queries import decided_since
 from coursework.database.marking import mark_submission
 from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission, rows_of, submissions_of
@@ -260,9 +260,9 @@ def _rejected(request: Request, now: ClassState) -> bytes:
 
 def _decided(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
-        decisions = decisions_of(connection, now.about.id)
+        decisions = decided_since(connection, now.about.id, 0)
     rows = (
-        {**decision._asdict(), "made": decision.made.isoformat(timespec="seconds")} for decision in decisions
+        {**one._asdict(), "made": one.made and one.made.isoformat(timespec="seconds")} for one in decisions
     )
     return csv_file(
         ({c: "" if row[c] is None else row[c] for c in _DECISIONS} for row in rows),

@@ -11,16 +11,14 @@ from typing import Any
 
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState, OpenGroup, UnplacedRow
-from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, DecidedAnswer, decide
+from coursework.database.decisions import DecidedAnswer, decide
 from coursework.database.instructor_queries import (
-    NumberedDecision,
-    decided_answer_of,
     decided_since,
     undoable,
 )
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
-from coursework.gradebook.accepted import points_of
+from coursework.gradebook.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Decision, points_of
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
 from coursework.language.numbers import localise, significant
 from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
@@ -386,10 +384,10 @@ def _target(answer: AnswerToReview) -> DecidedAnswer:
 
 
 def _decided_meanwhile(
-    later: Sequence[NumberedDecision],
-) -> dict[tuple[str, str, str, str], NumberedDecision]:
+    later: Sequence[Decision],
+) -> dict[tuple[str, str, str, str], Decision]:
     """Return the answers with a later decision."""
-    decisions: dict[tuple[str, str, str, str], NumberedDecision] = {}
+    decisions: dict[tuple[str, str, str, str], Decision] = {}
     for decision in later:
         key = decision.student, decision.exercise, decision.seed, decision.part
         if decision.kind == WITHDRAWN:
@@ -406,7 +404,7 @@ def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
         batch = undoable(connection, now.about.id, by_whom(request))
         if batch:
             decide(
-                connection, now.about.id, map(decided_answer_of, batch), WITHDRAWN, None, "", by_whom(request)
+                connection, now.about.id, map(DecidedAnswer.of, batch), WITHDRAWN, None, "", by_whom(request)
             )
             note(
                 connection,
@@ -428,7 +426,7 @@ def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
     return card_response(request, later, next_filters, at, message=texts["undone"].format(len(batch)))
 
 
-def _is_of(members: Sequence[AnswerToReview], decision: NumberedDecision) -> bool:
+def _is_of(members: Sequence[AnswerToReview], decision: Decision) -> bool:
     return any(
         _key(w) == (decision.student, decision.exercise, decision.seed, decision.part) for w in members
     )

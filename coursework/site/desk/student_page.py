@@ -15,10 +15,6 @@ from typing import Any
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState
 from coursework.database.decisions import (
-    ACCEPTED,
-    GIVEN,
-    KEPT,
-    WITHDRAWN,
     DecidedAnswer,
     HistoryEvent,
     decide,
@@ -27,8 +23,8 @@ from coursework.database.decisions import (
 from coursework.database.instructor_queries import people_of, practised, submissions_of_student
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
-from coursework.gradebook.accepted import points_of
 from coursework.gradebook.columns import own_columns
+from coursework.gradebook.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, points_of
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.issuing.students import folded

@@ -19,13 +19,14 @@ from sqlalchemy import Connection
 from coursework.database.assignments import issued_of
 from coursework.database.class_state import ClassState
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
-from coursework.database.decisions import Decisions
+from coursework.database.decisions import read_decisions
 from coursework.database.instructor_queries import stamp
 from coursework.database.publication import extensions, last_end, published, student_assignments
 from coursework.database.settings import put_value, value_of
 from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
+from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise, plain
@@ -70,7 +71,7 @@ def marked_of(connection: Connection, number: int, student: str) -> Marked | Non
     """Return the marks of one student alone, at a cost that does not depend on the size of the class."""
     markings = last_markings(connection, number, student).values()
     issued = issued_of(connection, number, student=student)
-    decisions = Decisions.read(connection, number, student)
+    decisions = read_decisions(connection, number, student)
     marked = machine_marks(issued, markings, lines_of(connection, markings))
     sheets = [decisions.apply(graded) for _, graded in marked if not isinstance(graded, str)]
     book = Gradebook(issued)
