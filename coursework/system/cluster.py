@@ -1,7 +1,7 @@
 """Cluster that shares a large job: the workers of a Dask scheduler instead of processes of this machine.
 
 Dask distributes the tasks and sends a task again if its worker ends. This module sends a task again if the
-scheduler is lost, and ends the run if no worker is left.
+scheduler is lost, and ends the run if no worker is left: joblib 1.6 above Dask ends it as soon as the scheduler is lost.
 """
 
 from __future__ import annotations
