@@ -69,6 +69,7 @@ class MotionTrack:
     effect: str = ""  #: what must be switched on for it to be seen
     point: str = ""  #: the point that it belongs to
     key: bool = False  #: a part of the legend
+    is_label: bool = False
 
     @property
     def moves(self) -> bool:
@@ -405,6 +406,7 @@ def _labels(
             layer=MARKS,
             effect="position" if point else "",
             point=point,
+            is_label=True,
         )
         for row, centres, point in zip(rows, ride(rows, segments, closed), points, strict=True)
     ]

@@ -51,9 +51,20 @@ def moving_svg(
     return _document(displayed, lines, title, words, lang, style)
 
 
-def still_svg(displayed: MovingDrawing, instant: int, *, title: str, words: str, lang: str) -> str:
-    """Return the drawing at one instant as SVG."""
-    return _document(displayed, (track.svg(instant) for track in displayed.tracks), title, words, lang)
+_FEW_LABELS = 5  #: of a still that has room for them
+
+
+def still_svgs(
+    displayed: MovingDrawing, instants: Sequence[int], *, title: str, words: str, lang: str
+) -> tuple[str, ...]:
+    """Return the drawing at some instants as SVG; where labels would crowd, only the first has them."""
+    everything = displayed.tracks
+    bare = [track for track in everything if not track.is_label]
+    others = everything if len(everything) - len(bare) <= _FEW_LABELS else bare
+    return tuple(
+        _document(displayed, (t.svg(instant) for t in (others if k else everything)), title, words, lang)
+        for k, instant in enumerate(instants)
+    )
 
 
 def _document(

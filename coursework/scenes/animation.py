@@ -25,7 +25,7 @@ from coursework.figures.base import Element
 from coursework.figures.elements import bar
 from coursework.figures.marks import angle_mark, dimension, line
 from coursework.figures.moving import PAPER_MM, Arrow, LegendKey, MovingDrawing, TracedPoint, drawing, extent
-from coursework.figures.moving_svg import moving_svg, still_svg
+from coursework.figures.moving_svg import moving_svg, still_svgs
 from coursework.language.numbers import unit_text
 from coursework.language.words import words
 from coursework.markup.shown import SvgPicture
@@ -219,7 +219,7 @@ class Animation(Reel):
         displayed, instants = self.drawing(self.effects, paper_mm, frames), len(self.angles)
         turned = [(self.first + round(k * instants / count)) % instants for k in range(count)]
         text = {"title": self.title, "words": self.words, "lang": self.variant.lang}
-        return tuple(still_svg(displayed, instant, **text) for instant in turned)
+        return still_svgs(displayed, turned, **text)
 
     def _key_times(self) -> str:
         """Return the times as SVG key times; empty when they are evenly spread."""

@@ -13,7 +13,7 @@ from coursework.course.lessons import lesson_file
 from coursework.errors import BadCourse, BadInput, CourseworkError, nearest
 from coursework.figures import Figure, Picture
 from coursework.figures.moving import drawing
-from coursework.figures.moving_svg import moving_svg, still_svg
+from coursework.figures.moving_svg import moving_svg, still_svgs
 from coursework.markup.markdown import plain_line
 from coursework.scenes.animation import Animation
 from coursework.scenes.reel import SECONDS
@@ -85,7 +85,7 @@ def _moving(frames: Sequence[Figure], text: str, caption: str, lang: str) -> Dra
         text,
         caption,
         svg=moving_svg(displayed, order=[*range(count), 0], first=0, seconds=SECONDS, **entries),
-        stills=tuple(still_svg(small, round(k * count / STILLS) % count, **entries) for k in range(STILLS)),
+        stills=still_svgs(small, [round(k * count / STILLS) % count for k in range(STILLS)], **entries),
     )
 
 
