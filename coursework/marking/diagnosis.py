@@ -142,12 +142,13 @@ def _is_likely(name: str, key: Key, part: Part, before: EarlierAnswers) -> bool:
 
     Not one made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
     many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that an earlier answer,
-    which it would have changed, does not show; nor of one that would have changed what is right and decides it.
+    which it would have changed, does not show; nor of one that would have changed what is right and
+    decides it at once.
     """
     about = key.solution.mistakes[name].targets
     if part.sort.has_few_values and part.quantity not in about:
-        decide = (q for q in before.right if part.quantity in key.solution.depending_on(q))
-        if any(_shows(key, name, q) for q in decide):
+        decides = before.right.intersection(key.solution.graph.textbook.node(part.quantity).arguments)
+        if any(_shows(key, name, q) for q in decides):
             return False
     if f"mistake:{name}" in before.shown or part.quantity in about:
         return True
