@@ -1,4 +1,4 @@
-"""The LTI service against a real Moodle, in a real browser: a link is picked, opened, answered, and the points arrive.
+"""Links of a site against a real Moodle, in a real browser: a link is picked, opened, answered, and the points arrive.
 
 ``COURSEWORK_MOODLE``: the folder of Moodle's code, with its ``config.php``; the site is up, on this machine.
 ``COURSEWORK_CHROMIUM``: the program of a Chromium; Playwright for Python drives it.
@@ -21,12 +21,12 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+from sqlalchemy import select
 
 import coursework
-from coursework.issuing.assignment import Assignment
+from coursework.database.store import Store
+from coursework.database.tables import variant
 from coursework.issuing.roster import read_roster
-from coursework.issuing.variant_assignment import keyed
-from coursework.lti.storage import Storage
 
 MOODLE, CHROMIUM = os.environ.get("COURSEWORK_MOODLE", ""), os.environ.get("COURSEWORK_CHROMIUM", "")
 PICTURES, ADMIN = os.environ.get("COURSEWORK_PICTURES", ""), os.environ.get("COURSEWORK_MOODLE_ADMIN", "")
@@ -47,11 +47,13 @@ def ask(verb, **what):
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def lti(folder, *arguments):
-    done = subprocess.run(
-        [*_COMMAND, "lti", *arguments], cwd=folder, capture_output=True, text=True, check=False
-    )
+def command(folder, *arguments):
+    done = subprocess.run([*_COMMAND, *arguments], cwd=folder, capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr
+
+
+def lti(folder, *arguments):
+    return command(folder, "lti", *arguments)
 
 
 @pytest.fixture(scope="module")
@@ -61,16 +63,17 @@ def site(tmp_path_factory):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    url, folder = f"http://localhost:{port}", tmp_path_factory.mktemp("lti")
+    home, folder = f"http://localhost:{port}", tmp_path_factory.mktemp("lti")
+    url = f"{home}/lti"
     made = ask("prepare", course=COURSE, url=url, password=PASSWORD)
     kept, service = ask("open"), None
     try:
         assert lti(folder, "keys", "new")[0] == 0
         told = ["--client-id", made["client_id"], "--deployment", made["deployment"]]
         assert lti(folder, "platform", "moodle", root, "--url", url, *told)[0] == 0
-        service = subprocess.Popen(
-            [*_COMMAND, "lti", "serve", "--port", str(port)], cwd=folder, stderr=subprocess.PIPE, text=True
-        )
+        serving = ["serve", "--lti", "lti", "--port", str(port), "--url", home]
+        assert command(folder, *serving, "--administrator", "ada@example.org")[0] == 0
+        service = subprocess.Popen([*_COMMAND, *serving], cwd=folder, stderr=subprocess.DEVNULL, text=True)
         _wait_for(f"{url}/jwks")
         yield {"root": root, "url": url, "folder": folder, **made}
     finally:
@@ -150,10 +153,11 @@ class Person:
 
 
 def variant_on(site, frame):
-    """The variant of a page, which the secret of the service draws."""
-    code = frame.inner_text("header .small >> nth=0")
-    key = keyed(Storage(site["folder"]).secret(), Assignment(NAME, ()))
-    return coursework.open_course()[NAME].variant(int(code.split(" · ")[1]), secret=key)
+    """The variant of a page, as it was issued."""
+    seed = re.search(rf"{NAME} · (\d+)", frame.inner_text("main"))[1]
+    with Store(str(site["folder"] / "coursework.db")).reading() as connection:
+        record = connection.execute(select(variant.c.record).where(variant.c.seed == seed)).scalars().first()
+    return coursework.open_course()[NAME].from_record(record)
 
 
 def answer(site, frame, wrong=()):
@@ -162,10 +166,11 @@ def answer(site, frame, wrong=()):
     for part in variant.parts:
         value = found[part.quantity]
         if part.choices:
-            frame.check(f"input[name='{part.id}'][value='{variant.letters(part)[value]}']")
+            frame.check(f"input[name='e1-{part.id}'][value='{variant.letters(part)[value]}']")
         else:
             frame.fill(
-                f"input[name='{part.id}']", f"{value * (-1 if part.id in wrong else 1):.6g}".replace(".", ",")
+                f"input[name='e1-{part.id}']",
+                f"{value * (-1 if part.id in wrong else 1):.6g}".replace(".", ","),
             )
     return sum(part.points for part in variant.parts)
 
@@ -234,8 +239,8 @@ def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
 
     frame = teacher.open(title)
     told = frame.inner_text("main")
-    assert re.search(rf"Ada Byron\s+{NAME} \d+\s+2\s+{worth:g} / {worth:g}\s+yes", told), told
-    assert re.search(r"Bob Noyce\s+not opened", told)
+    assert re.search(rf"Ada Byron\s+2\s+{worth:g} / {worth:g}\s+yes", told), told
+    assert "Bob Noyce" in told.split("In the course, without a paper")[1]
     teacher.picture("moodle-class.png")
     teacher.page.goto(f"{site['root']}/grade/report/grader/index.php?id={site['course']}")
     teacher.page.add_style_tag(content="[data-flexitour] { display: none !important }")
@@ -285,7 +290,7 @@ def test_the_registration_page_is_as_the_documentation_shows(site, chromium):
     admin = Person(chromium, site, name, password, height=1500)
     admin.page.goto(f"{site['root']}/my/")
     admin.page.goto(f"{site['root']}/mod/lti/typessettings.php?action=add&sesskey={_sesskey(admin.page)}")
-    told = "https://exercises.example.org"
+    told = "https://exercises.example.org/lti"
     admin.page.fill("#id_lti_typename", "Coursework")
     admin.page.fill("#id_lti_toolurl", f"{told}/launch")
     admin.page.select_option("#id_lti_ltiversion", label="LTI 1.3")
