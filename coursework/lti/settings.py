@@ -83,8 +83,8 @@ def is_loopback(host: str) -> bool:
         return host == "localhost" or host.endswith(".localhost")
 
 
-def checked_url(url: str, label: str, *, slash: bool = False) -> str:
-    """Check an address; return it, without slashes at its end unless ``slash``.
+def checked_url(url: str, label: str) -> str:
+    """Check an address; return it, without slashes at its end.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def checked_url(url: str, label: str, *, slash: bool = False) -> str:
             label=Message(label),
             url=url,
         )
-    return url if slash else url.rstrip("/")
+    return url.rstrip("/")
 
 
 # ------------------------------------------------------------------------ kinds

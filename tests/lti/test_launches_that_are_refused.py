@@ -353,8 +353,9 @@ def test_a_form_that_is_too_large_is_refused(visitor):
     page, path = visitor.enter()
     assert visitor.hand_in(path, page, {"e1-rA": "1" * 5000}).status_code == 413
     assert refused(visitor.browser.post(path, data={f"f{k}": "1" for k in range(500)}), "bad_request", 400)
-    answer = visitor.browser.post(path, files={"rA": b"1"})
-    assert refused(answer, "bad_request", 415)
+    assert refused(visitor.browser.post(path, files={"rA": b"1"}), "bad_request", 400)
+    json = {"content-type": "application/json"}
+    assert refused(visitor.browser.post(path, content=b"{}", headers=json), "bad_request", 415)
 
 
 @each_row(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import hashlib
 import hmac
 import json
@@ -15,7 +14,6 @@ from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
-from urllib.parse import parse_qsl
 
 import httpx
 from starlette.applications import Starlette
@@ -40,6 +38,10 @@ from coursework.lti.services import Member, NotServed, Services
 from coursework.lti.settings import LTIPlatform, Settings, checked_url, origin, read_settings
 from coursework.lti.storage import Storage, Waiting
 from coursework.lti.tokens import verified
+from coursework.site.frame.budgets import Budget
+from coursework.site.frame.forms import read_form
+from coursework.site.frame.requests import FormData
+from coursework.site.frame.requests import HTTPException as RefusedForm
 from coursework.site.frame.requests import Response as SiteResponse
 from coursework.site.frame.settings import Site
 from coursework.site.lti.launch_request import LTIRequest
@@ -53,9 +55,8 @@ from coursework.system.request_slots import Crowded, RequestSlots
 
 LOG = logging.getLogger("coursework.lti")
 LARGEST = 256 * 1024  #: bytes of a form
-_FIELDS = 400  #: of a form
-_FORM_SECONDS, _RATE = 30.0, 20_000  #: time limit of a form: fixed part, and bytes per second
 AT_ONCE = 2  #: requests of one person that are answered at once; the others wait
+_BUDGET = Budget("lti", LARGEST, 400, AT_ONCE)
 #: Allowed requests of a person, or of an unknown person's address: at once, and refilled per second.
 PERSONS, ADDRESSES = (600.0, 10.0), (6000.0, 100.0)
 #: Allowed processor seconds of a student, likewise; separately for reading pages and for sending forms.
@@ -63,8 +64,6 @@ PROCESSOR = (30.0, 0.1)
 _AGAIN = 2  #: seconds until another attempt if too many requests wait
 _ROSTER_SECONDS = 60.0  #: for which a roster is cached
 _SECONDS = 8.0  #: time limit of a platform's response
-
-FormFields = deep_linking.Form
 
 
 PATH = "/lti"
@@ -165,7 +164,7 @@ class _Service:
 
     # ------------------------------------------------------------------ requests
 
-    def answering(self, work: Callable[[Request, FormFields], Response]) -> Callable[[Request], Any]:
+    def answering(self, work: Callable[[Request, FormData], Response]) -> Callable[[Request], Any]:
         """Return an endpoint that works in a thread; a refusal or an unexpected fault becomes a page, never a
         traceback."""
 
@@ -194,7 +193,7 @@ class _Service:
 
         return answer
 
-    async def _in_turn(self, request: Request, work: Callable[[Request, FormFields], Response]) -> Response:
+    async def _in_turn(self, request: Request, work: Callable[[Request, FormData], Response]) -> Response:
         """Run an endpoint when fewer requests of the same person are in progress, without blocking a thread
         meanwhile.
 
@@ -238,9 +237,9 @@ class _Service:
     def _charged(
         self,
         key: tuple[str, bool],
-        work: Callable[[Request, FormFields], Response],
+        work: Callable[[Request, FormData], Response],
         request: Request,
-        form: FormFields,
+        form: FormData,
     ) -> Response:
         begun = processor_time()
         try:
@@ -294,22 +293,22 @@ class _Service:
 
     # ------------------------------------------------------------------ launches
 
-    def jwks(self, request: Request, form: FormFields) -> Response:
+    def jwks(self, request: Request, form: FormData) -> Response:
         return JSONResponse(self.keys.public, headers={"Cache-Control": "public, max-age=300"})
 
-    def login(self, request: Request, form: FormFields) -> Response:
+    def login(self, request: Request, form: FormData) -> Response:
         parameters = (
-            {name: values[0] for name, values in form.items()} if form else dict(request.query_params)
+            {name: form.text(name) for name in form.texts} if form.texts else dict(request.query_params)
         )
         sent = self._login.sent(parameters)
         response = RedirectResponse(sent.url, 302)
         self._set_cookie(response, sent.cookie, sent.value, self.settings.login_seconds)
         return response
 
-    def launch(self, request: Request, form: FormFields) -> Response:
-        if "error" in form:
-            raise LTIRefusal("bad_request", 400, f"the platform says {_first(form, 'error')[:60]!r}")
-        state, token = _first(form, "state"), _first(form, "id_token")
+    def launch(self, request: Request, form: FormData) -> Response:
+        if "error" in form.texts:
+            raise LTIRefusal("bad_request", 400, f"the platform says {form.text('error')[:60]!r}")
+        state, token = form.text("state"), form.text("id_token")
         if not state or not token:
             raise LTIRefusal("bad_request", 400, "state or id_token missing")
         back = self._login.returned(state, request.cookies)
@@ -341,7 +340,7 @@ class _Service:
 
     # ----------------------------------------------------------------- the pages
 
-    def page(self, request: Request, form: FormFields) -> Response:
+    def page(self, request: Request, form: FormData) -> Response:
         name = request.path_params["session"]
         launch = request.state.launch
         visit = self._visit(launch, name, request)
@@ -378,12 +377,12 @@ class _Service:
     def _scores(self, launch: Launch) -> dict[str, Waiting]:
         return {waiting.launch.person: waiting for waiting in self.storage.scores(launch)}
 
-    def _check_csrf_token(self, request: Request, visit: LTIRequest, form: FormFields) -> None:
+    def _check_csrf_token(self, request: Request, visit: LTIRequest, form: FormData) -> None:
         """Check the CSRF token of a form: the form must come from a page of this session."""
         sent = request.headers.get("origin")
         if sent is not None and sent != origin(self.settings.url):
             raise LTIRefusal("form", 403, "a form from another site")
-        if not hmac.compare_digest(_first(form, "_seal").encode(), visit.csrf_token.encode()):
+        if not hmac.compare_digest(form.text("_seal").encode(), visit.csrf_token.encode()):
             raise LTIRefusal("form", 403, "a form without its csrf_token")
 
     # -------------------------------------------------------------------- roster
@@ -420,7 +419,7 @@ class _Service:
 
     # ------------------------------------------------------------------- picking
 
-    def _picking(self, visit: LTIRequest, form: FormFields, request: Request) -> Response:
+    def _picking(self, visit: LTIRequest, form: FormData, request: Request) -> Response:
         launch = visit.launch
         if visit.path or launch.picking is None or not launch.role.picks:
             raise LTIRefusal(
@@ -430,8 +429,8 @@ class _Service:
         if request.method == "POST":
             items = (
                 []
-                if form.get("cancel")
-                else deep_linking.content_items(launch, groups, form, self.settings.url)
+                if form.text("cancel")
+                else deep_linking.content_items(launch, groups, form.texts, self.settings.url)
             )
             return self._sent_back(visit, items, request)
         sought = visit.query.get("q", "")[:200].strip()
@@ -475,46 +474,21 @@ class _Service:
 # -------------------------------------------------------------------------- pieces
 
 
-async def _form(request: Request) -> dict[str, list[str]]:
-    """Return the fields of a form, within limits of type, size, number and time; empty unless the request is
-    a POST.
+async def _form(request: Request) -> FormData:
+    """Return the form of a POST request; an empty one for another request.
 
     Raises
     ------
     LTIRefusal
-        The form is too large, too slow, or of another type.
+        The form is too large, too slow, or cannot be read.
     """
     if request.method != "POST":
-        return {}
-    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if kind != "application/x-www-form-urlencoded":
-        raise LTIRefusal("bad_request", 415, f"a form of kind {kind[:60]!r}")
-    length = request.headers.get("content-length", "")
-    if length.isascii() and length.isdecimal() and (len(length) > 15 or int(length) > LARGEST):
-        raise LTIRefusal("too_large", 413, "a form")
-    data = b""
+        return FormData()
     try:
-        async with asyncio.timeout(_FORM_SECONDS + LARGEST / _RATE):
-            async for piece in request.stream():
-                data += piece
-                if len(data) > LARGEST:
-                    raise LTIRefusal("too_large", 413, "a form")
-    except TimeoutError:
-        raise LTIRefusal("bad_request", 408, "a form that takes too long") from None
-    try:
-        pairs = parse_qsl(
-            data.decode("ascii"), keep_blank_values=True, max_num_fields=_FIELDS, errors="strict"
-        )
-    except (UnicodeDecodeError, ValueError):
-        raise LTIRefusal("bad_request", 400, "no form that can be read") from None
-    fields: dict[str, list[str]] = {}
-    for name, value in pairs:
-        fields.setdefault(name, []).append(value.replace("\r\n", "\n"))
-    return fields
-
-
-def _first(form: FormFields, name: str) -> str:
-    return next(iter(form.get(name, ())), "")
+        return await read_form(request, _BUDGET)
+    except RefusedForm as fault:
+        why = "too_large" if fault.status_code == 413 else "bad_request"
+        raise LTIRefusal(why, fault.status_code, "a form") from None
 
 
 def _shown_path(request: Request) -> str:

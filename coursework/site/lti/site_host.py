@@ -22,7 +22,6 @@ from coursework.issuing.assignment import Assignment, text_in
 from coursework.issuing.students import folded
 from coursework.language.words import words
 from coursework.lti.class_list import students
-from coursework.lti.deep_linking import Form
 from coursework.lti.launch import Launch
 from coursework.lti.refusal import LTIRefusal
 from coursework.lti.roles import Role
@@ -69,7 +68,7 @@ class SiteHost:
 
     # ---------------------------------------------------------------------- pages
 
-    def answer(self, visit: LTIRequest, form: Form | None = None) -> Response:
+    def answer(self, visit: LTIRequest, form: FormData | None = None) -> Response:
         """Return the page of a link, or the response to a ``form`` of it, which may be sent twice; a refusal
         of the site becomes a page.
 
@@ -261,9 +260,9 @@ class SiteHost:
             return str(words(visit.lang, "site")["lti"][kept_back])
         return str(texts["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
 
-    def _submit(self, visit: LTIRequest, linked: LinkedAssignment, form: Form) -> Response:
+    def _submit(self, visit: LTIRequest, linked: LinkedAssignment, form: FormData) -> Response:
         """Submit the answers of a form; a repeated form has no effect."""
-        site_request = self._site_request(visit, linked, FormData(form))
+        site_request = self._site_request(visit, linked, form)
         state, paper = state_and_paper(site_request)
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):
@@ -278,14 +277,14 @@ class SiteHost:
         return Response(redirect=visit.home)
 
     def _doubts(
-        self, visit: LTIRequest, paper: StudentPaper, texts: Mapping[str, str], form: Form
+        self, visit: LTIRequest, paper: StudentPaper, texts: Mapping[str, str], form: FormData
     ) -> dict[str, list[str]]:
         """Return what to tell instead of accepting a form: that it is empty, or which answers cannot be
         read, unless the person insists."""
         if not any(text.strip() for text in texts.values()):
             return {"notes": [words(visit.lang)["lti"]["empty"]]}
         unread = _unread(visit, paper, texts)
-        return {"unread": unread} if unread and not form.get("_as_it_is") else {}
+        return {"unread": unread} if unread and not form.text("_as_it_is") else {}
 
     # ------------------------------------------------------------------------ staff
 
@@ -314,7 +313,7 @@ class SiteHost:
         }  # fmt: skip
         return Response(self.pages.page("platform/lti_site_class", lang, names))
 
-    def _preview(self, visit: LTIRequest, linked: LinkedAssignment, form: Form | None) -> Response:
+    def _preview(self, visit: LTIRequest, linked: LinkedAssignment, form: FormData | None) -> Response:
         """Return the paper as a student sees it, with variants that are issued to nobody, or the marks of a
         ``form``, which is not stored."""
         site, texts = self._site, words(visit.lang)["lti"]
@@ -324,7 +323,7 @@ class SiteHost:
         if form is None:
             form_names = SheetForm(sheet, visit.csrf_token, notes=notes, more=links)
             return Response(self.pages.sheet(paper.paper, form_names))
-        typed = paper.texts(FormData(form))
+        typed = paper.texts(form)
         if back := self._doubts(visit, paper, typed, form):
             again = SheetForm(
                 sheet, visit.csrf_token, filled=_filled(typed), notes=(*notes, *back.get("notes", ())),
@@ -365,8 +364,8 @@ def _unread(visit: LTIRequest, paper: StudentPaper, texts: Mapping[str, str]) ->
     ]
 
 
-def _number(form: Form) -> int:
-    text = next(iter(form.get("_number", ())), "")
+def _number(form: FormData) -> int:
+    text = form.text("_number")
     if not text.isdecimal() or not 1 <= len(text) <= 6 or int(text) < 1:
         raise LTIRefusal("answer", 400, "no number of a try")
     return int(text)
