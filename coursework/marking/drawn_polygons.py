@@ -51,6 +51,7 @@ def scale_for(*images: Any) -> Any:
 
 
 _MOST = 0.1  #: of a value, by which it may be off where it does not come from a drawing
+_WIDEST_MM = 2000.0  #: of a polygon on paper: at a scale that makes it wider nobody draws
 
 
 class Read(NamedTuple):
@@ -161,6 +162,8 @@ def _of_scale(scale: float | None, upside_down: bool, drawing: JudgedDrawing) ->
         return Judged(0.0)
     if upside_down:
         return Judged(0.0, "scale_upside_down")
+    if drawing.polygon.size > _WIDEST_MM * scale:
+        return Judged(0.0)
     return Judged() if drawing.fits_stated_scale else Judged(0.0, "scale_not_drawn")
 
 

@@ -81,6 +81,14 @@ def test_a_value_read_off_a_wrong_drawing_is_not_called_right():
     assert "is right" in variant.grade({**given, "v_B": found["v_B"]})["v_B"].feedback
 
 
+def test_a_scale_at_which_no_paper_holds_the_drawing_is_not_called_possible():
+    variant = FOUR_BAR.variant(3, "en")
+    found = variant.solution()
+    points = {n: f"{x}; {dy - y}" for n, dy in zip("pab", (0, 30, -40), strict=True) for x, y in (found[n],)}
+    marks = [variant.grade({**points, "kv": scale})["kv"] for scale in (found["kv"], found["kv"] / 1000)]
+    assert ["possible scale" in mark.feedback for mark in marks] == [True, False]
+
+
 def test_a_right_length_on_a_wrong_drawing_is_right_and_one_of_the_drawing_follows():
     variant = FOUR_BAR.variant(5)
     found = variant.solution()
