@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Self
+from urllib.parse import urlsplit
 
 from coursework.lti.refusal import LTIRefusal
 from coursework.lti.roles import Role, role_of
@@ -66,6 +67,11 @@ class Launch:
     def course(self) -> str:
         """Return the key of the course, unique over all platforms."""
         return json.dumps([self.issuer, self.client_id, self.deployment, self.context])
+
+    @property
+    def platform(self) -> str:
+        """Name of the platform on pages and in the audit."""
+        return urlsplit(self.issuer).hostname or self.issuer
 
     def as_plain(self) -> dict[str, Any]:
         """Return the fields as JSON stores them."""

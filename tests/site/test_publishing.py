@@ -268,6 +268,7 @@ def test_what_the_form_says_is_what_is_published(class_of_three, staff):
         ({"feedback": "date"}, "which day"),
         ({"feedback": "sometimes"}, "none of the choices"),
         ({"sittings": "sometimes"}, "none of the choices"),
+        ({"answers": "last_try", "tries": ""}, "no last try"),
     ],
 )
 def test_a_publication_that_makes_no_sense_is_refused_and_says_why(class_of_three, staff, change, told):

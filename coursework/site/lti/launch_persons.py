@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
-from urllib.parse import urlsplit
 
 from sqlalchemy import Connection, select, update
 from sqlalchemy.exc import IntegrityError
@@ -38,11 +37,6 @@ if TYPE_CHECKING:
 
 _ROUNDS = 20  #: tries to assign a paper while others are assigned
 _AGAIN = 5  #: seconds after which to try again
-
-
-def platform_name(launch: Launch) -> str:
-    """Return the name of the platform on pages and in the audit."""
-    return urlsplit(launch.issuer).hostname or launch.issuer
 
 
 def launch_person(site: Site, launch: Launch, lang: str) -> Any:
@@ -84,8 +78,8 @@ def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -
         student = _new(connection, launch)
         number, how = put_person(connection, student.draw_key, launch.name, lang, student.columns), "new"
     link_identity(connection, number, launch.issuer, launch.person)
-    about = {"person": number, "platform": platform_name(launch), "how": how}
-    note(connection, site.clock(), platform_name(launch), "came from a platform", **about)
+    about = {"person": number, "platform": launch.platform, "how": how}
+    note(connection, site.clock(), launch.platform, "came from a platform", **about)
 
 
 def _new(connection: Connection, launch: Launch) -> Student:
@@ -94,7 +88,7 @@ def _new(connection: Connection, launch: Launch) -> Student:
     candidates = [
         {"number": launch.number.strip()},
         {"email": launch.email.strip()},
-        {"number": f"{launch.person} {platform_name(launch)}"},
+        {"number": f"{launch.person} {launch.platform}"},
         {"number": f"{launch.person} {digest_of(f'{launch.issuer} {launch.person}')[:12]}"},
     ]
     for columns in candidates:
@@ -140,7 +134,7 @@ def assign_paper(site: Site, linked: LinkedAssignment, person: Any, launch: Laun
                 if _stands(connection, linked, stood):
                     number = _put(connection, linked, content)
                     details = {"assignment": name, "students": 1, "person": person.id}
-                    note(connection, site.clock(), platform_name(launch), "late ones added", **details)
+                    note(connection, site.clock(), launch.platform, "late ones added", **details)
                     return number
                 linked = linked._replace(number=linked.number or number_of(connection, linked.link))
         except IntegrityError:  # another process added the assignment of the link at the same moment

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, select
 
 from coursework.course.course import Course
+from coursework.database.audit import note
 from coursework.database.publication import (
     AT_ONCE,
     LAST_TRY,
@@ -93,7 +94,7 @@ def _publication(wanted: LinkSettings) -> Publication:
     return Publication(tries=wanted.tries, feedback=AT_ONCE, answers=answers)
 
 
-def follow_link(site: Site, linked: LinkedAssignment) -> None:
+def follow_link(site: Site, linked: LinkedAssignment, launch: Launch) -> None:
     """Take over the rules that a link of an exercise states now; what staff set beside them stays."""
     if linked.number is None or not linked.link:
         return
@@ -110,3 +111,5 @@ def follow_link(site: Site, linked: LinkedAssignment) -> None:
     with site.store.begin() as connection:
         publish(connection, linked.number, stating)
         set_counting_attempt(connection, linked.number, counts)
+        details = {"assignment": linked.name, **stating.as_json(), "sittings": counts}
+        note(connection, site.clock(), launch.platform, "assignment published", **details)

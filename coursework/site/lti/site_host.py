@@ -130,7 +130,7 @@ class SiteHost:
             with site.store.reading() as connection:
                 if published(connection, linked.number) is None:
                     raise HTTPException("own", 404)
-            follow_link(site, linked)
+            follow_link(site, linked, launch)
         row = launch_persons.launch_person(site, launch, visit.lang)
         number = self._assigned(visit, linked, row)
         if self._storage.record(launch, row.id, number):
