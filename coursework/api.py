@@ -188,7 +188,7 @@ class Variant(numbers.Variant):
 
     def study_sheet(self, student: str = "", beside: Collection[str] = ()) -> StudySheet:
         """Return the self-study notebook of this variant, with links to the lessons whose notebooks stand ``beside`` it."""
-        from coursework.selfstudy.sheet import study_sheet
+        from coursework.selfstudy.session import study_sheet
 
         return study_sheet(self, student, beside)
 

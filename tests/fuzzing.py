@@ -455,7 +455,7 @@ def _course(path: Path) -> None:
 
 
 def _progress(path: Path) -> None:
-    from coursework.selfstudy.store import ExerciseStore, ProgressFile
+    from coursework.selfstudy.progress import ExerciseStore, ProgressFile
 
     before = path.read_bytes()
     ExerciseStore(ProgressFile(path.parent), "coil").add(3, "answers", {"Z": "4"})

@@ -19,7 +19,7 @@ from coursework.language.words import words
 from coursework.marking.marking import mark as grade
 from coursework.model import Part
 from coursework.rendering.renderer import renderer_of
-from coursework.selfstudy.examples import LEVELS, blanks, told_steps
+from coursework.selfstudy.worked import LEVELS, blanks, told_steps
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.handout import handout
 

@@ -35,10 +35,9 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
 
     from coursework.language.words import words
     from coursework.markup.shown import NotebookDisplay
-    from coursework.selfstudy import advice
-    from coursework.selfstudy.mastery import skills, standings
-    from coursework.selfstudy.recording import mark_what_came_unmarked
-    from coursework.selfstudy.store import EARLIER, ExerciseStore, ProgressFile, now
+    from coursework.selfstudy import mastery
+    from coursework.selfstudy.mastery import mark_what_came_unmarked, skills, standings
+    from coursework.selfstudy.progress import EARLIER, ExerciseStore, ProgressFile, now
 
     course = opened(context)
     if not folder.is_dir():
@@ -51,7 +50,7 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
     study_words = words(lang)["study"]
     if file.trouble:
         print_notes([study_words["trouble"][file.trouble].format(file=file.troubled)])
-    step = advice.next_step(course, file.progress, on.date())
+    step = mastery.next_step(course, file.progress, on.date())
     if as_json:
         print_json(
             {
@@ -61,10 +60,10 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
             }
         )
         return
-    lines = advice.told_standings(course, file.progress, on.date(), lang)
-    pieces = [lines or study_words["progress"]["nothing"], advice.told_skills(course, file.progress, lang)]
+    lines = mastery.told_standings(course, file.progress, on.date(), lang)
+    pieces = [lines or study_words["progress"]["nothing"], mastery.told_skills(course, file.progress, lang)]
     if step is not None:
-        pieces.append(advice.told_advice(course, step, lang))
+        pieces.append(mastery.told_advice(course, step, lang))
     click.echo(str(NotebookDisplay(lang, *pieces)))
 
 

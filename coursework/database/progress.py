@@ -13,8 +13,7 @@ from sqlalchemy import Connection, select
 
 from coursework.database.store import Store, put_rows
 from coursework.database.tables import progress as table
-from coursework.selfstudy.progress import Entry, Progress
-from coursework.selfstudy.store import Clock
+from coursework.selfstudy.progress import Clock, Entry, Progress
 
 
 def _now() -> datetime:

@@ -19,7 +19,7 @@ from coursework.language.words import is_whole, words
 from coursework.markup.formula_tree import tokens
 from coursework.quantities.formula_latex import PrintedName, formula_latex, kind_of, number_latex
 from coursework.rendering.views import chain_on_lines, given_formula, given_words
-from coursework.selfstudy.refusals import expect
+from coursework.selfstudy.wording import expect
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.following import needs
 from coursework.sheets.handout import handout
@@ -238,12 +238,6 @@ def _names_something(latex: str) -> bool:
     return any(c.isalpha() for c in without)
 
 
-def revealed(variant: Variant, name: str) -> Step:
-    """Return the complete step of the worked solution, with its value."""
-    quantity = quantity_of(variant, name)
-    return next(s for s in answer_sheet(variant).steps if s.name == quantity)
-
-
 def revealed_text(variant: Variant, name: str) -> str:
     """Return the complete step as Markdown; for a question marked by a person, its model answer or a note
     that it has none."""
@@ -251,6 +245,10 @@ def revealed_text(variant: Variant, name: str) -> str:
     if requested is not None:
         models = (s.words for s in answer_sheet(variant).steps if s.name == requested.id)
         return next(models, words(variant.lang)["solution"]["by_hand"])
-    step = revealed(variant, name)
-    formula = f"$${chain_on_lines(step)}$$" if step.value else ""
-    return "\n\n".join(filter(None, (step.words, formula)))
+    quantity = quantity_of(variant, name)
+    return step_text(next(s for s in answer_sheet(variant).steps if s.name == quantity))
+
+
+def step_text(step: Step) -> str:
+    """Return the words and the chain of a step as Markdown."""
+    return "\n\n".join(filter(None, [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]))

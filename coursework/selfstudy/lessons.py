@@ -1,19 +1,23 @@
-"""Output of lessons: predictions with their outcomes, and curves."""
+"""Output of lessons and sessions: predictions with their outcomes, and curves."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from typing import Any
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.figures.plot import Axis, Plot
-from coursework.language.numbers import localise, significant
+from coursework.course.variant import Variant
+from coursework.figures.plot import AnswerPoint, Axis, Plot
+from coursework.language.numbers import localise, significant, unit_text
 from coursework.language.words import words
+from coursework.marking.answers import read
 from coursework.markup.shown import NotebookDisplay, SvgPicture
-from coursework.selfstudy.refusals import would_do
-from coursework.selfstudy.store import is_blank
-from coursework.selfstudy.word_answers import folded, numbers, truth, unwrapped
+from coursework.model import Part
+from coursework.selfstudy import predictions
+from coursework.selfstudy.attempt import OwnAnswer
+from coursework.selfstudy.progress import is_blank
+from coursework.selfstudy.wording import folded, numbers, truth, unwrapped, would_do
 
 _NEAR = 0.1
 _NEAR_ANGLE = 10.0  #: degrees
@@ -124,3 +128,68 @@ def plot(
     panels = [Axis(label, of, np.asarray(y, dtype=float)) for label, (of, y) in curves.items()]
     drawn = Plot(Axis(symbol, unit, np.asarray(values, dtype=float)), panels, lang, at)
     return NotebookDisplay(lang, SvgPicture(drawn.svg(), f"{', '.join(curves)} / {symbol}"))
+
+
+PANELS = 6  #: curves of a plot, unless some are named
+
+
+class Curves(NamedTuple):
+    """Plot with its notes."""
+
+    plot: Plot
+    driver: str  #: the angle of the driver, degrees, by name
+    parts: tuple[Part, ...]  #: a panel each
+    beside: tuple[Part, ...]  #: of which the student's own right answer is of another curve
+    outside: tuple[Part, ...]  #: of which the student's answer is outside the panel
+
+    @property
+    def plain(self) -> str:
+        """Description of the plot for readers who cannot see it."""
+        return f"{', '.join(a.label for a in self.plot.panels)} / {self.driver}"
+
+
+def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
+    """Return the parts plotted by default: first those with a prediction."""
+    first = [p.quantity for p in predictions.over_the_cycle(variant)]
+    wanted = sorted(parts, key=lambda p: p.quantity not in first)[:PANELS]
+    return tuple(p for p in parts if p in wanted)
+
+
+def curves(
+    variant: Variant, parts: Sequence[Part], answers: Mapping[str, Any], own_answers: Mapping[str, OwnAnswer]
+) -> Curves:
+    """Plot the parts over a turn of the driver; ``answers`` by part, ``own_answers`` the student's right answers by
+    quantity."""
+    exercise, lang = variant.exercise, variant.lang
+    assert exercise.spec.driver is not None  # without one no part moves
+    driver = exercise.spec.driver.angle
+    at = float(variant.given[driver]) % 360.0
+    axes, spots = [], []
+    for part in parts:
+        angles, values = predictions.curve(variant, part.quantity)
+        axes.append(Axis(exercise.symbol(part.quantity), unit_text(part.unit, lang), values))
+        spots.append(_spots(variant, part, answers.get(part.id), own_answers.get(part.quantity), at, values))
+    plot = Plot(Axis(exercise.symbol(driver), "°", angles), axes, lang, at, spots)
+    answered = tuple(p for p in parts if p.quantity in own_answers and not own_answers[p.quantity].is_usual)
+    outside = tuple(p for p, far in zip(parts, plot.has_outside, strict=True) if far)
+    return Curves(plot, driver, tuple(parts), answered, outside)
+
+
+def _spots(
+    variant: Variant, part: Part, answer: Any, mine: OwnAnswer | None, at: float, values: np.ndarray
+) -> tuple[AnswerPoint, ...]:
+    """Return the student's answer as a point, if it can be read; nothing for a right answer that does not lie
+    on this curve."""
+    if mine is not None and not mine.is_usual:
+        return ()
+    if is_blank(answer):
+        return ()
+    reading = read(variant, part, answer)
+    if reading.status != "read":
+        return ()
+    value = written = float(reading.values[0]) if mine is None or mine.value is None else mine.value
+    if turn := part.sort.turn:
+        # Of all turns the one beside the curve, so that a point above it is above.
+        middle = (np.nanmin(values) + np.nanmax(values)) / 2
+        value = middle + (value - middle + turn / 2) % turn - turn / 2
+    return (AnswerPoint(at, value, mine is not None, written),)

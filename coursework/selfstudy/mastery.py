@@ -9,12 +9,35 @@ given another shows it. A skill shown in two variants since its last loss is hel
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import date, timedelta
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
-from coursework.selfstudy.progress import ANSWER, EXAMPLE, HINT, REVEAL, Entry, Progress, date_of
+from coursework.errors import CourseworkError
+from coursework.language.words import words
+from coursework.marking.marking import mark
+from coursework.selfstudy.progress import (
+    ANSWER,
+    EXAMPLE,
+    HINT,
+    REVEAL,
+    Entry,
+    Progress,
+    ProgressStore,
+    date_of,
+    entry,
+    is_blank,
+)
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+    from coursework.course.exercise import CourseExercise
+    from coursework.course.variant import Variant
+    from coursework.marking.mark import SheetMarks
+    from coursework.model import Part
+
 
 AFTER_DAYS = (1, 3, 7, 16)  #: when what was missed comes again
 HELD = 2  #: variants in which a skill is shown since it was last lost
@@ -205,13 +228,13 @@ class Advice:
 
 
 def advised(
-    progress: Progress, on: date, exercises: Iterable[str], errors: Mapping[str, Iterable[str]]
+    progress: Progress, on: date, exercises: Iterable[str], errors: Callable[[str], Collection[str]]
 ) -> Advice | None:
     """Return the recommended exercise of a course for a day; None for a course without exercises.
 
     In this order: the exercise with the most due questions; a new exercise that tests a skill lost and not
-    held since; the next new exercise; the question that returns first. ``errors`` are the skills that each
-    exercise tests, by exercise.
+    held since; the next new exercise; the question that returns first. ``errors`` returns the skills
+    that an exercise tests.
     """
     known_names = tuple(exercises)
     waiting: dict[str, list[RepeatedQuestion]] = {}
@@ -228,7 +251,7 @@ def advised(
     begun = progress.exercises
     new = [e for e in known_names if e not in begun]
     for skill in sorted((s for s in skills(progress) if s.is_open), key=lambda s: -s.lost):
-        tries = next((e for e in new if skill.id in errors.get(e, ())), None)
+        tries = next((e for e in new if skill.id in errors(e)), None)
         if tries:
             return Advice(tries, "skill", day=skill.last_lost, skill=skill.id)
     if new:
@@ -237,3 +260,175 @@ def advised(
         first = min((q for met in waiting.values() for q in met), key=lambda q: (q.due or on, q.exercise))
         return Advice(first.exercise, "later", (first.part,), first.due)
     return Advice(known_names[0], "again") if known_names else None
+
+
+def marked_answers(
+    variant: Variant, answers: Mapping[str, Any], marking: SheetMarks, before: Sequence[Entry]
+) -> list[dict[str, Any]]:
+    """Return the records of a marking, for answers that are new or marked differently from ``before``."""
+    last = {e["part"]: (e.get("answer"), e.get("verdict")) for e in before if e["what"] == ANSWER}
+    results = []
+    for part in variant.parts:
+        answer, mark = answers.get(part.id), marking[part.id]
+        if is_blank(answer) or last.get(part.id) == (answer, mark.verdict):
+            continue
+        entries: dict[str, Any] = {"part": part.id, "what": ANSWER, "answer": answer, "verdict": mark.verdict}
+        entries["kind"] = skill_of_kind(part)
+        if mark.verdict in RIGHT:
+            entries["shown"] = sorted(set(errors_shown(variant, part)))
+        results.append(entries)
+    return results
+
+
+def mark_what_came_unmarked(course: Course[Any], file: ProgressStore) -> None:
+    """Mark the stored answers without a verdict, with the date of the answer.
+
+    An earlier version stored them.
+    """
+    last = {(e["exercise"], e["seed"], e["part"]): e for e in file.progress if e["what"] == ANSWER}
+    unmarked: dict[tuple[str, int], list[Entry]] = {}
+    for (exercise, seed, _), item in last.items():
+        if "verdict" not in item and exercise in course:
+            unmarked.setdefault((exercise, seed), []).append(item)
+    for (exercise, seed), result in unmarked.items():
+        variant = course[exercise].variant(seed)
+        answers = {e["part"]: e.get("answer") for e in result if e["part"] in variant.part_ids}
+        try:
+            marking = mark(variant, answers)
+        except CourseworkError:
+            continue
+        at = max(map(date_of, result)) + timedelta(microseconds=1)
+        text = marked_answers(variant, answers, marking, ())
+        file.add([entry(at, exercise, seed, **each) for each in text])
+
+
+def skill_of_kind(part: Part) -> str:
+    """Return the kind of an answer: its unit if it has one, else its kind."""
+    return part.unit if part.unit != "1" else part.kind
+
+
+def errors_shown(variant: Variant, part: Part) -> Iterator[str]:
+    """Yield the named errors that would have given another answer to a part of this variant."""
+    key, sort = variant.key, part.sort
+    if sort.is_open or not sort.disproves:
+        return
+    reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
+    along = key.reference.get(part.along)
+    for name, value in key.wrong_ways(part.quantity):
+        if value is not None and sort.apart(part, value, reference, along, width) > 1:
+            yield f"mistake:{name}"
+    for kind, value in key.slip_values(part):
+        if sort.apart(part, value, reference, along, width) > 1:
+            yield f"slip:{kind}"
+
+
+Called = Callable[["CourseExercise[Any]", str], str]  #: how an exercise is called in a language
+
+_SKILLS = 6  #: that are told, the last lost first
+
+
+def next_step(
+    course: Course[Any], progress: Progress, on: date, order: Sequence[str] | None = None
+) -> Advice | None:
+    """Return the recommendation for a day; None for a course without exercises. ``order`` is the study order,
+    by default the course's."""
+    order_known = course.folder.study_order if order is None else order
+    return advised(progress, on, order_known, partial(_errors, course))
+
+
+def _errors(course: Course[Any], exercise: str) -> Collection[str]:
+    """Return the named errors that an exercise tests; its solution is loaded for that."""
+    try:
+        return [f"mistake:{name}" for name in course[exercise].solution.mistakes]
+    except CourseworkError:
+        return ()
+
+
+def told_standings(course: Course[Any], progress: Progress, on: date, lang: str) -> str:
+    """Return a line for each exercise begun, as a Markdown list; empty where there is none."""
+    texts = words(lang)["study"]["progress"]
+    return "\n".join(
+        _line(course, s, on, lang, texts) for s in standings(progress) if s.tried and s.exercise in course
+    )
+
+
+def _line(course: Course[Any], item: ExerciseProgress, on: date, lang: str, text: Mapping[str, Any]) -> str:
+    line = text["line"].format(
+        title=title(course[item.exercise], lang),
+        variants=item.variants,
+        right=item.right,
+        of=item.tried,
+        clean=item.clean,
+    )
+    if item.due is None:
+        return f"- {line}"
+    again = text["due"] if item.due <= on else text["again"].format(day=told_date(item.due, lang))
+    return f"- {line} {again}"
+
+
+def told_skills(course: Course[Any], progress: Progress, lang: str, label: Called | None = None) -> str:
+    """Return the skills lost since and those recovered, as Markdown lists; ``label`` as for
+    :func:`told_advice`."""
+    texts = words(lang)["study"]["progress"]
+    lost = sorted(
+        (s for s in skills(progress) if s.last_lost), key=lambda s: s.last_lost or date.min, reverse=True
+    )
+    named = [(s, text) for s in lost if (text := told_skill(course, s.id, s.exercise, lang))]
+    pieces = []
+    for head, chosen in (
+        ("open", [(s, t) for s, t in named if s.is_open]),
+        ("held", [(s, t) for s, t in named if not s.is_open]),
+    ):
+        if chosen:
+            pieces.append(
+                f"**{texts[head]}**\n\n"
+                + "\n".join(_skill_line(course, s, t, lang, label or title) for s, t in chosen[:_SKILLS])
+            )
+    return "\n\n".join(pieces)
+
+
+def _skill_line(course: Course[Any], skill: Skill, text: str, lang: str, label: Called) -> str:
+    texts = words(lang)["study"]["progress"]
+    displayed = texts["shown"].format(count=skill.shown, of=HELD) if skill.shown and skill.is_open else ""
+    position = "" if skill.id.startswith("kind:") else label(course[skill.exercise], lang)
+    heading = texts["separator"].join(filter(None, (position, displayed)))
+    return f"- {' '.join(text.split())}{f' ({heading})' if heading else ''}"
+
+
+def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str:
+    """Return the words for a skill; empty where it has no name here."""
+    family, _, name = skill.partition(":")
+    texts = words(lang)["study"]["skills"]
+    if family == "kind":
+        return texts["kinds"].get(name, "")
+    if family == "slip":
+        return texts["slips"].get(name, "")
+    if family != "mistake" or exercise not in course:
+        return ""
+    try:
+        return course[exercise].variant(0, lang).told(name)
+    except (CourseworkError, KeyError):
+        return ""
+
+
+def told_advice(course: Course[Any], advice: Advice, lang: str, label: Called | None = None) -> str:
+    """Return the reason for the recommended exercise, in a sentence or two; ``label`` names an exercise, by
+    default by title and name."""
+    texts = words(lang)["study"]["next"]
+    skill = told_skill(course, advice.skill, advice.exercise, lang) if advice.skill else ""
+    why = "new" if advice.why == "skill" and not skill else advice.why
+    return texts[why].format(
+        title=(label or title)(course[advice.exercise], lang),
+        day=told_date(advice.day, lang) if advice.day else "",
+        skill=" ".join(skill.split()),
+        count=len(advice.parts),
+    )
+
+
+def title(exercise: CourseExercise[Any], lang: str) -> str:
+    """Return the title of an exercise with its name."""
+    return f"{exercise.title(lang)} (`{exercise.name}`)"
+
+
+def told_date(day: date, lang: str) -> str:
+    return str(words(lang)["study"]["progress"]["date"]).format(day=day.day, month=day.month, year=day.year)

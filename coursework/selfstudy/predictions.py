@@ -24,8 +24,8 @@ from coursework.marking.answers import read
 from coursework.markup.markdown import to_text
 from coursework.model import Part
 from coursework.parsing.numbers import read_number
-from coursework.selfstudy import word_answers as wording
-from coursework.selfstudy.store import is_blank
+from coursework.selfstudy import wording
+from coursework.selfstudy.progress import is_blank
 
 if TYPE_CHECKING:
     from coursework.course.exercise import CourseExercise

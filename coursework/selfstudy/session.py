@@ -1,4 +1,4 @@
-"""Study session: one exercise for a student working alone, in a notebook or a terminal."""
+"""Study session: one exercise for a student working alone, in a notebook or a terminal; and its notebook."""
 
 from __future__ import annotations
 
@@ -9,34 +9,115 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from coursework.course.answer_keys import answer_keys
+from coursework.course.builtin import builtin_root
 from coursework.course.course import Course
+from coursework.course.lessons import taught_by
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, Starved, UnknownName, WrongValue
+from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
-from coursework.marking.marking import mark as grade
 from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.model import Part
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.views import offered, points_number
 from coursework.scenes.gauges import EFFECTS
-from coursework.selfstudy import hints, predictions, refusals
-from coursework.selfstudy import word_answers as wording
-from coursework.selfstudy.advice import next_step, told_advice, told_skills, told_standings
-from coursework.selfstudy.answers import is_open, judged_out_of, quoted, sentence_of, sign_of
-from coursework.selfstudy.attempt import StudyAttempt
-from coursework.selfstudy.examples import LEVELS, blanks, example_variant, has_example, told_steps
-from coursework.selfstudy.plotting import curves, usual_parts
+from coursework.selfstudy import hints, predictions, wording
+from coursework.selfstudy.attempt import (
+    OwnAnswer,
+    StudyAttempt,
+    is_open,
+    judged_out_of,
+    quoted,
+    sentence_of,
+    sign_of,
+)
+from coursework.selfstudy.lessons import curves, usual_parts
+from coursework.selfstudy.mastery import (
+    mark_what_came_unmarked,
+    next_step,
+    told_advice,
+    told_skills,
+    told_standings,
+)
 from coursework.selfstudy.predictions import Prediction
-from coursework.selfstudy.progress import EXAMPLE, HINT, REVEAL
-from coursework.selfstudy.recording import mark_what_came_unmarked
-from coursework.selfstudy.right_answers import OwnAnswer
-from coursework.selfstudy.sheet import fresh_variants
-from coursework.selfstudy.store import Clock, ExerciseStore, ProgressFile, is_blank, now
-from coursework.selfstudy.theory import theory, without_theory
+from coursework.selfstudy.progress import (
+    EXAMPLE,
+    FILE,
+    HINT,
+    REVEAL,
+    Clock,
+    ExerciseStore,
+    ProgressFile,
+    is_blank,
+    now,
+)
+from coursework.selfstudy.worked import (
+    LEVELS,
+    blanks,
+    example_variant,
+    has_example,
+    theory,
+    told_steps,
+    without_theory,
+)
 from coursework.sheets.handout import handout
+from coursework.sheets.sheet import Ask, Question, StudySheet
+from coursework.system.distribution import DISTRIBUTION
 
 if TYPE_CHECKING:
     from coursework import figures
+    from coursework.course.exercise import CourseExercise
+    from coursework.course.variant import Variant
+
+
+def study_sheet(variant: Variant, student: str = "", neighbours: Collection[str] = ()) -> StudySheet:
+    """Return the self-study notebook of a variant, before it is printed, with links to the lessons in ``neighbours``, the folder of the notebook."""
+    exercise = variant.exercise
+    is_other_course = exercise.folder.root != builtin_root().resolve()
+    return StudySheet(
+        handout=handout(variant, student),
+        file=FILE,
+        package=DISTRIBUTION,
+        install=exercise.folder.install,
+        course=exercise.folder.root.name if is_other_course else "",
+        before=tuple(_ask(variant, p) for p in predictions.before_answers(variant)),
+        cycle=tuple(_ask(variant, p) for p in predictions.over_the_cycle(variant)),
+        moves=bool(predictions.moving(variant)),
+        animates=exercise.is_animated,
+        questions=_fresh_questions(variant),
+        theory=theory(exercise),
+        has_example=has_example(variant),
+        lessons=taught_by(exercise.folder, exercise.name, variant.lang),
+        beside=frozenset(neighbours),
+    )
+
+
+def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -> list[Variant]:
+    """Return the first valid variants after that of a seed, all distinct, without theory questions.
+
+    Raises
+    ------
+    Starved
+        So many do not exist.
+    """
+    result = distinct_variants(exercise, seed + 1, count + 1, lang)
+    base = exercise.variant(seed, lang)
+    return [without_theory(v) for v in result if v.given != base.given][:count]
+
+
+def _fresh_questions(variant: Variant) -> tuple[Question, ...]:
+    try:
+        return handout(fresh_variants(variant.exercise, variant.seed, 1, variant.lang)[0]).questions
+    except Starved:
+        return ()
+
+
+def _ask(variant: Variant, prediction: Prediction) -> Ask:
+    return Ask(
+        predictions.prediction_keys(variant)[prediction.id],
+        predictions.question_of(variant, prediction),
+        predictions.options(variant, prediction),
+    )
 
 
 def open_session(
@@ -61,13 +142,13 @@ def open_session(
         No such exercise or language.
     """
     words(lang)  # an unknown language is told before anything is said in it
-    refusals.expect(lang, "exercise", exercise, course.names)
+    wording.expect(lang, "exercise", exercise, course.names)
     item = course[exercise]
     if version is not None and version != item.version:
         course_option = f"--course {named} " if named is not None else ""
         again = f"coursework {course_option}notebook {exercise} --seed {seed} --lang {lang} --out DIR"
         entries = {"exercise": exercise, "version": version, "installed": item.version, "command": again}
-        raise refusals.refused(lang, "version", **entries)
+        raise wording.refused(lang, "version", **entries)
     return StudySession(item.variant(seed, lang), ExerciseStore(ProgressFile(Path(folder), clock), exercise))
 
 
@@ -165,14 +246,14 @@ class StudySession:
             An effect of which there is nothing to show.
         """
         for effect in effects:
-            refusals.expect(self.variant.lang, "effect", effect, EFFECTS)
+            wording.expect(self.variant.lang, "effect", effect, EFFECTS)
         try:
             moving = DisplayedAnimation(self.variant, effects)
         except BadCourse:
             return self._display(self._texts["no_motion"])
         except WrongValue:
             displayed = ", ".join(dict.fromkeys(("position", *DisplayedAnimation(self.variant).available)))
-            raise refusals.refused(self.variant.lang, "no_effect", names=displayed) from None
+            raise wording.refused(self.variant.lang, "no_effect", names=displayed) from None
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
             moving = DisplayedAnimation(self.variant, usual)
@@ -244,7 +325,7 @@ class StudySession:
         strange: list[UnknownName] = []
         under = self._asked_under if kind == "prediction" else self._keys
         by_key = {key: name for name, key in under.items()}
-        given = refusals.by_name(self.variant.lang, f"{self._name}.{method}", {} if text is None else text)
+        given = wording.by_name(self.variant.lang, f"{self._name}.{method}", {} if text is None else text)
         for name, value in (*given.items(), *named.items()):
             if name == "student" and kind == "question":
                 continue
@@ -253,7 +334,7 @@ class StudySession:
             if self._is_passed_over(kind, name):
                 continue
             if not isinstance(name, str) or name not in names:
-                strange.append(refusals.stranger(self.variant.lang, kind, name, tuple(by_key)))
+                strange.append(wording.stranger(self.variant.lang, kind, name, tuple(by_key)))
             elif is_blank(results.get(name)):
                 results[name] = wording.unwrapped(value)
         if strange and not results:
@@ -316,10 +397,6 @@ class StudySession:
     def answers(self) -> dict[str, Any]:
         """Last answer to each question of this variant that is not blank."""
         return self._attempt.answers
-
-    def _asked_of(self, variant: Variant) -> dict[str, Any]:
-        """Return the stored answers to a variant that it asks for: a file may hold others."""
-        return {n: a for n, a in self._store.of(variant.seed, "answers").items() if n in variant.part_ids}
 
     def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> NotebookDisplay:
         """Mark answers, by the name or number of the question, and give feedback; stored answers fill in for
@@ -395,7 +472,7 @@ class StudySession:
             return self._display(self._which("hint", self._texts["hint"]["which"]))
         name = self._named(question)
         if step is not None:
-            step = refusals.counted(self.variant.lang, "step", step)
+            step = wording.counted(self.variant.lang, "step", step)
         texts = self._attempt.hints(name, lambda n: self._call("hint", n))
         if not texts:
             return self._display(self._texts["hint"]["none"].format(call=self._call("reveal", name)))
@@ -454,7 +531,7 @@ class StudySession:
         label = [self._named(name) for name in names]
         for name in label:
             if not isinstance(name, str) or name not in parts:
-                refusals.expect(self.variant.lang, "curve", name, [self._keys[n] for n in parts])
+                wording.expect(self.variant.lang, "curve", name, [self._keys[n] for n in parts])
         own_answers = self._right_answers
         wanted = [parts[name] for name in label] or list(parts.values())
         free = [p for p in wanted if p.quantity in own_answers or self._attempt.is_revealed(p)]
@@ -502,7 +579,7 @@ class StudySession:
             The exercise has no more variants.
         """
         if number is not None:
-            number = refusals.counted(self.variant.lang, "fresh", number)
+            number = wording.counted(self.variant.lang, "fresh", number)
         begun = {s for s in self._store.seeds if self._store.of(s, "answers") and not self._is_example(s)}
         # One of so many is not begun.
         count = number or len((begun | {self.variant.seed}) - {self._base}) + 1
@@ -537,7 +614,7 @@ class StudySession:
             if e["what"] == EXAMPLE
         ]
         last = min(max(seen, default=0) + 1, LEVELS)
-        level = last if level is None else refusals.counted(self.variant.lang, "level", level, LEVELS)
+        level = last if level is None else wording.counted(self.variant.lang, "level", level, LEVELS)
         if not has_example(self.variant.exercise.variant(self._base, self.variant.lang)):
             return self._display(self._texts["example"]["none"])
         try:
@@ -587,7 +664,7 @@ class StudySession:
                 continue
             variant = self.variant.exercise.variant(seed, lang)
             variant = variant if seed == self._base else without_theory(variant)
-            marking = grade(variant, self._asked_of(variant))
+            marking = StudyAttempt(variant, self._store).marked().marking
             right = sum(m.verdict == "correct" for m in marking.values())
             judged = sum(not is_open(variant, m) for m in marking.values())
             lines.append("- " + self._texts["variant_line"].format(seed=seed, right=right, of=judged))
@@ -606,7 +683,7 @@ class StudySession:
         if name.startswith("_"):
             raise AttributeError(name)
         names = [n for n in dir(type(self)) if not n.startswith("_")]
-        raise refusals.no_method(self.variant.lang, name, names)
+        raise wording.no_method(self.variant.lang, name, names)
 
     def _call(self, method: str, name: str) -> str:
         """Return the call of a method in the notebook, as code in Markdown."""

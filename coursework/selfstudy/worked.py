@@ -1,31 +1,201 @@
-"""Worked examples of a lesson: a variant with its complete solution, then with blanks, then bare; and the
-mistakes to expect."""
+"""Worked solutions of other variants: complete, with blanks, bare; and the questions that another variant asks the same."""
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from coursework.course.answer_keys import answer_keys
 from coursework.course.exercise import ALL, USUAL
-from coursework.errors import BadCourse, WrongValue, unknown
+from coursework.errors import BadCourse, CourseworkError, Starved, WrongValue, unknown
+from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import NotebookDisplay, SvgPicture
-from coursework.rendering.views import ROOM_ALONE, ROOM_BESIDE, chain_on_lines, offered
+from coursework.rendering.views import ROOM_ALONE, ROOM_BESIDE, offered
 from coursework.selfstudy import hints
-from coursework.selfstudy.answers import sentence_of, sign_of
-from coursework.selfstudy.examples import LEVELS, blanks, told_steps
-from coursework.sheets.answer_sheet import answer_sheet, answer_text
+from coursework.selfstudy.attempt import sentence_of, sign_of
+from coursework.sheets.answer_sheet import answer_sheet, answer_text, question_called
 from coursework.sheets.handout import handout
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
+    from coursework.course.exercise import CourseExercise
     from coursework.course.variant import Variant
     from coursework.model import Part
     from coursework.sheets.sheet import Question, Step
+
+
+_SAMPLE = range(48)  #: what changes in one variant of six is met in all but one sample of five thousand
+
+
+@lru_cache(maxsize=64)
+def theory(exercise: CourseExercise[Any]) -> frozenset[str]:
+    """Return the ids of the parts that every variant asks with the same reference.
+
+    None in an exercise with such parts alone. A question that only some variants ask is excluded, since it
+    rotates; one that is judged together with others is asked with them.
+    """
+    requested = exercise.variants(_SAMPLE)
+    always = [p for p in requested[0].parts if all(p.id in v.part_ids for v in requested)]
+    same = frozenset(p.id for p in always if p.id in unchanging(exercise) and not p.judge)
+    return frozenset() if len(same) == len(requested[0].parts) else same
+
+
+@lru_cache(maxsize=64)
+def unchanging(exercise: CourseExercise[Any]) -> frozenset[str]:
+    """Return the ids of the parts with the same reference in every variant that asks them."""
+    variants = exercise.variants(_SAMPLE)
+    judged = (p for p in exercise.spec.parts if not p.sort.is_open)
+    return frozenset(
+        p.id for p in judged if _is_same([v for v in variants if p.id in v.part_ids], p.quantity)
+    )
+
+
+def _is_same(variants: list[Variant], quantity: str) -> bool:
+    values = []
+    for variant in variants:
+        try:
+            values.append(variant.quantities([quantity])[quantity])
+        except CourseworkError:
+            return False
+    return all(_agree(value, values[0]) for value in values)
+
+
+def _agree(first: Any, other: Any) -> bool:
+    """Return whether two references are equal up to the last digits."""
+    if isinstance(first, (int, float, complex, np.ndarray, list, tuple)):
+        try:
+            return bool(np.allclose(first, other, rtol=1e-9, atol=1e-9))
+        except (TypeError, ValueError):
+            return False
+    return bool(first == other)
+
+
+def without_theory(variant: Variant) -> Variant:
+    """Return the variant without the questions that another variant has already asked."""
+    theory_steps = theory(variant.exercise)
+    return variant.asking([p for p in variant.parts if p.id not in theory_steps]) if theory_steps else variant
+
+
+_ANNOUNCES = re.compile(r"[^.!?]*:")  # nothing but what comes next
+
+LEVELS = 4
+WITH_FORMULA = 2  #: levels up to which a blank still shows its formula
+_FAR = 100_000  #: seeds away from those of fresh variants, so that no example is one of them
+_APART = 1_000  #: seeds between levels
+
+
+def example_variant(variant: Variant, base: int, level: int) -> Variant:
+    """Return the variant for an example of a level, different from the attempted ones and from those of other
+    levels.
+
+    Raises
+    ------
+    Starved
+        The exercise has no other variant.
+    """
+    first = base + _FAR + _APART * level
+    others = distinct_variants(variant.exercise, first, 2, variant.lang)
+    other = next((v for v in others if v.given != variant.given), None)
+    if other is None:
+        raise Starved(variant.exercise.name)
+    return other
+
+
+def has_example(variant: Variant) -> bool:
+    """Return whether the solution has something to leave blank."""
+    return bool(blanks(variant, 1))
+
+
+def blanks(variant: Variant, level: int, *, in_lesson: bool = False) -> tuple[Part, ...]:
+    """Return the questions left blank at a level: the last one, a third, two thirds, all; in the order of the
+    solution.
+
+    A study session excludes a question with the same answer in every variant, since it would give away the
+    attempted one, and parts that are judged together. A lesson may leave both blank: parts judged together
+    count as one question.
+    """
+    places = {step.name: k for k, step in enumerate(_steps(variant))}
+    may_be = _may_be_blank_in_lesson if in_lesson else _may_be_blank
+    requested = _together([p for p in variant.parts if p.quantity in places and may_be(variant, p)], places)
+    count = (1, math.ceil(len(requested) / 3), math.ceil(2 * len(requested) / 3), len(requested))[level - 1]
+    return tuple(chain.from_iterable(requested[max(0, len(requested) - count) :]))
+
+
+def _may_be_blank_in_lesson(variant: Variant, part: Part) -> bool:
+    return not part.sort.is_open
+
+
+def _may_be_blank(variant: Variant, part: Part) -> bool:
+    if part.sort.is_open or part.judge or part.loop:
+        return False
+    return part.id not in unchanging(variant.exercise)
+
+
+def _together(parts: Iterable[Part], places: Mapping[str, int]) -> list[list[Part]]:
+    """Group the parts that are judged together, in the order of the solution, at the position of the first."""
+    groups: dict[tuple[str, str], list[Part]] = {}
+    for part in sorted(parts, key=lambda p: places[p.quantity]):
+        judge = part.judge or part.loop
+        groups.setdefault((judge, "" if judge else part.id), []).append(part)
+    return list(groups.values())
+
+
+def _steps(variant: Variant) -> Sequence[Step]:
+    return answer_sheet(variant, polygons=False).steps
+
+
+def _blank(variant: Variant, part: Part, step: Step, keys: Mapping[str, str], text: Any) -> str:
+    """Return the room for an answer, after its symbol, or after the number of its question where no symbol
+    names it."""
+    form = text["blank" if part.sort.has_symbol else "unnamed"]
+    question, key = question_called(variant, part), f"`{keys[part.id]}`"
+    return str(form.format(symbol=f"${step.symbol}$", question=question, key=key))
+
+
+def told_steps(
+    variant: Variant,
+    level: int,
+    left: Sequence[Part],
+    keys: Mapping[str, str],
+    text: Any,
+    *,
+    in_lesson: bool = False,
+) -> str:
+    """Return the steps of the solution as Markdown: complete up to the first blank, without numbers from
+    there on.
+
+    A study session leaves out steps with the same answer in every variant, since they are asked.
+    """
+    by_quantity = {p.quantity: p for p in left}
+    shared = () if in_lesson else unchanging(variant.exercise)
+    hidden = {p.quantity for p in variant.parts if p.id in shared}
+    lines: list[str] = []
+    is_whole = True
+    for step in _steps(variant):
+        if step.name in hidden:
+            continue
+        part = by_quantity.get(step.name)
+        is_whole = is_whole and part is None
+        if is_whole:
+            pieces = [hints.step_text(step)]
+        else:
+            formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
+            if not (part or formula) and _ANNOUNCES.fullmatch(step.words.strip()):
+                continue
+            blank = _blank(variant, part, step, keys, text) if part else ""
+            pieces = [hints.words_of(variant, step.name), formula, blank]
+        if any(pieces):
+            lines.append("\n\n".join(filter(None, pieces)))
+    return "\n\n".join(lines)
+
 
 _ROOM = ROOM_BESIDE[0], ROOM_ALONE[1]  #: of the figure, mm
 BARE = LEVELS  #: the level that tells nothing but what is asked
@@ -82,7 +252,7 @@ class WorkedExample(NotebookDisplay):
         title = f"**{words(self.lang)['lesson']['solution']}.**"
         wanted = {part.quantity for part in self.parts}
         if not self.level:
-            return "\n\n".join([title, *map(_step, _leading_to(self._asking, wanted))])
+            return "\n\n".join([title, *map(hints.step_text, _leading_to(self._asking, wanted))])
         texts = words(self.lang)["lesson"]
         text = told_steps(self._asking, self.level, self.left, self._keys, texts, in_lesson=True)
         return f"{title}\n\n{text}"
@@ -147,10 +317,6 @@ def _leading_to(variant: Variant, wanted: set[str]) -> list[Step]:
     met = graph.walk(sorted(wanted & graph.names), variant.used, variant.effects)
     needed = wanted | set(met)
     return [step for step in answer_sheet(variant, polygons=False).steps if step.name in needed]
-
-
-def _step(step: Step) -> str:
-    return "\n\n".join(filter(None, [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]))
 
 
 def worked(

@@ -10,7 +10,7 @@ from threading import Event, Thread
 
 from coursework.errors import CourseworkError
 from coursework.rendering.html import environment_of
-from coursework.selfstudy.theory import theory
+from coursework.selfstudy.worked import theory
 from coursework.site.frame.settings import Site
 from coursework.site.practice.contents import titles
 

@@ -77,6 +77,23 @@ def _owner(path: Path) -> str:
     return "?"
 
 
+@contextmanager
+def file_lock(path: Path, seconds: float) -> Iterator[bool]:
+    """Lock a file, which is made and removed, while the context lasts; yield whether it was free within some seconds."""
+    from filelock import FileLock, Timeout
+
+    lock = FileLock(path, timeout=seconds, poll_interval=_POLL)
+    with suppress(Timeout):
+        lock.acquire()
+    try:
+        yield lock.is_locked
+    finally:
+        if lock.is_locked:
+            with suppress(OSError):
+                path.unlink()
+            lock.release()
+
+
 def is_bare(folder: Path) -> bool:
     """Return whether a folder is missing or empty, apart from its lock."""
     return not folder.exists() or all(path.name == LOCK for path in folder.iterdir())

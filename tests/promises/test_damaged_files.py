@@ -21,8 +21,7 @@ from coursework.database.dump import restore
 from coursework.database.store import Store
 from coursework.errors import CourseworkError
 from coursework.gradebook.submissions import find, read_file
-from coursework.selfstudy.progress import entry
-from coursework.selfstudy.store import ExerciseStore, ProgressFile
+from coursework.selfstudy.progress import ExerciseStore, ProgressFile, entry
 
 RECORDED = Path(__file__).parents[1] / "gradebook" / "recorded"
 DEEP = "[" * 100_000

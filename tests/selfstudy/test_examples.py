@@ -10,10 +10,9 @@ from sweeps import sampled
 
 import coursework
 from coursework.errors import BadInput
-from coursework.selfstudy.examples import LEVELS
 from coursework.selfstudy.mastery import outings
-from coursework.selfstudy.theory import unchanging
-from coursework.selfstudy.word_answers import unwrapped
+from coursework.selfstudy.wording import unwrapped
+from coursework.selfstudy.worked import LEVELS, unchanging
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize(

@@ -12,8 +12,7 @@ from tables import each_row
 import coursework
 from coursework.errors import UnknownName
 from coursework.language.words import words
-from coursework.selfstudy import predictions
-from coursework.selfstudy import word_answers as wording
+from coursework.selfstudy import predictions, wording
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)

@@ -14,10 +14,24 @@ from tables import each_row
 import coursework
 from coursework.cli import run
 from coursework.course.variant import Variant
-from coursework.selfstudy.mastery import AFTER_DAYS, advised, outings, questions, skills, standings
-from coursework.selfstudy.progress import LaterVersion, NotProgress, Progress, entry
-from coursework.selfstudy.recording import errors_shown
-from coursework.selfstudy.store import FILE, ExerciseStore, ProgressFile
+from coursework.selfstudy.mastery import (
+    AFTER_DAYS,
+    advised,
+    errors_shown,
+    outings,
+    questions,
+    skills,
+    standings,
+)
+from coursework.selfstudy.progress import (
+    FILE,
+    ExerciseStore,
+    LaterVersion,
+    NotProgress,
+    Progress,
+    ProgressFile,
+    entry,
+)
 
 COURSE = coursework.open_course()
 START = datetime(2026, 3, 2, 9, 0, tzinfo=UTC)
@@ -109,7 +123,7 @@ def test_two_notebooks_open_at_once_lose_nothing(here):
 WRITER = """
 import sys
 from pathlib import Path
-from coursework.selfstudy.store import ExerciseStore, ProgressFile
+from coursework.selfstudy.progress import ExerciseStore, ProgressFile
 kept = ExerciseStore(ProgressFile(Path(sys.argv[1])), sys.argv[2])
 for number in range(20):
     kept.add(1, "answers", {f"part{number}": str(number)})
@@ -237,19 +251,22 @@ def test_a_skill_is_lost_by_its_error_and_held_by_two_variants_where_it_would_ha
 def test_what_comes_next():
     names, today = ("x", "y", "z"), START.date()
     errors = {"y": [], "z": ["mistake:m"]}
-    nothing = advised(Progress(), today, names, errors)
+    nothing = advised(Progress(), today, names, lambda name: errors.get(name, ()))
     assert (nothing.exercise, nothing.why) == ("x", "new")
     wrong = Progress([answered(0, "a", "mistake:m")])
-    assert (advised(wrong, today, names, errors).exercise, advised(wrong, today, names, errors).why) == (
+    assert (
+        advised(wrong, today, names, lambda name: errors.get(name, ())).exercise,
+        advised(wrong, today, names, lambda name: errors.get(name, ())).why,
+    ) == (
         "z",
         "skill",
     )
-    due = advised(wrong, today + timedelta(days=1), names, errors)
+    due = advised(wrong, today + timedelta(days=1), names, lambda name: errors.get(name, ()))
     assert (due.exercise, due.why, due.parts, due.day) == ("x", "due", ("a",), today)
     all_begun = wrong | Progress([answered(0, "a", "correct", exercise=e) for e in ("y", "z")])
-    later = advised(all_begun, today, names, errors)
+    later = advised(all_begun, today, names, lambda name: errors.get(name, ()))
     assert (later.exercise, later.why, later.day) == ("x", "later", today + timedelta(days=1))
-    assert advised(Progress(), today, (), {}) is None
+    assert advised(Progress(), today, (), lambda name: ()) is None
 
 
 # ------------------------------------------------------------------- in a course
@@ -335,7 +352,11 @@ def test_the_order_of_a_course_is_that_in_which_exercises_are_proposed(here):
     order = COURSE.folder.study_order
     assert set(order) == set(COURSE.names)
     assert len(order) == len(COURSE.names)
-    assert advised(Progress(), date(2026, 1, 1), order, {}).exercise == order[0] == COURSE.folder.in_order[0]
+    assert (
+        advised(Progress(), date(2026, 1, 1), order, lambda name: ()).exercise
+        == order[0]
+        == COURSE.folder.in_order[0]
+    )
     (line,) = standings(Progress([answered(0, "a", "correct")]))
     assert (line.tried, line.right, line.clean) == (1, 1, 1)
 

@@ -12,7 +12,7 @@ from sweeps import sampled
 import coursework
 from coursework.course.answer_keys import answer_keys
 from coursework.rendering.renderer import renderer_of
-from coursework.selfstudy.theory import theory, without_theory
+from coursework.selfstudy.worked import theory, without_theory
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize(

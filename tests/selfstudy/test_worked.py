@@ -12,7 +12,7 @@ import coursework
 from coursework.authoring.check_alone import asked_alone
 from coursework.errors import UnknownName, WrongValue
 from coursework.language.words import languages, words
-from coursework.selfstudy.examples import has_example
+from coursework.selfstudy.worked import has_example
 
 NAME, PARTS = "four_bar_motion", ("theta3", "omega3")
 

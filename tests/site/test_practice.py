@@ -247,7 +247,7 @@ def test_the_solution_is_shown_once_it_is_said_what_that_means(zoe):
 
 
 def test_a_fresh_variant_asks_no_theory_again(class_of_three):
-    from coursework.selfstudy.theory import theory
+    from coursework.selfstudy.worked import theory
 
     one = Practising(class_of_three, class_of_three.browser(ZOE), "slider_extras")
     known = theory(one.variant.exercise)

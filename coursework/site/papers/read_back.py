@@ -9,7 +9,7 @@ from coursework.marking.answers import read
 from coursework.marking.feedback import say_not_read
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
-from coursework.selfstudy.reading_back import read_back as readings
+from coursework.selfstudy.attempt import read_back as readings
 
 
 class ReadBack(NamedTuple):

@@ -13,8 +13,14 @@ from coursework.course.lessons import lesson_title
 from coursework.errors import BadCourse
 from coursework.language.words import words
 from coursework.markup import markdown
-from coursework.selfstudy.advice import next_step, told_advice, told_date
-from coursework.selfstudy.mastery import Advice, ExerciseProgress, standings
+from coursework.selfstudy.mastery import (
+    Advice,
+    ExerciseProgress,
+    next_step,
+    standings,
+    told_advice,
+    told_date,
+)
 from coursework.selfstudy.progress import Progress
 from coursework.workbook.binding import chapters_of
 

@@ -13,7 +13,7 @@ from coursework.rendering import motion_page, views
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.scenes.gauges import EFFECTS
 from coursework.selfstudy.attempt import CheckedAnswers
-from coursework.selfstudy.store import is_blank
+from coursework.selfstudy.progress import is_blank
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.site.frame.budgets import BOXES, PLAIN
 from coursework.site.frame.drafts import save_drafts

@@ -8,9 +8,8 @@ from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.errors import BadInput
 from coursework.markup import markdown
-from coursework.selfstudy.advice import told_skills
-from coursework.selfstudy.progress import LaterVersion, TooLong, read_brought
-from coursework.selfstudy.store import FILE
+from coursework.selfstudy.mastery import told_skills
+from coursework.selfstudy.progress import FILE, LaterVersion, TooLong, read_brought
 from coursework.site.frame.budgets import PROGRESS_FILE, read_apart
 from coursework.site.frame.requests import Request, Response, Route
 from coursework.site.practice.contents import contents, exercise_title, next_of

@@ -22,12 +22,16 @@ from coursework.markup import markdown
 from coursework.rendering import views
 from coursework.rendering.feedback import verdict_word
 from coursework.selfstudy import hints, predictions
-from coursework.selfstudy.answers import judged_out_of, sentence_of, sign_of
-from coursework.selfstudy.attempt import CheckedAnswers, StudyAttempt
-from coursework.selfstudy.progress import HINT, REVEAL
-from coursework.selfstudy.reading_back import read_back
-from coursework.selfstudy.store import ExerciseStore, is_blank
-from coursework.selfstudy.theory import theory
+from coursework.selfstudy.attempt import (
+    CheckedAnswers,
+    StudyAttempt,
+    judged_out_of,
+    read_back,
+    sentence_of,
+    sign_of,
+)
+from coursework.selfstudy.progress import HINT, REVEAL, ExerciseStore, is_blank
+from coursework.selfstudy.worked import theory
 from coursework.sheets.handout import handout
 from coursework.site.frame.drafts import LONGEST, draft_attributes, save_form_drafts, versions_of
 from coursework.site.frame.requests import HTTPException
