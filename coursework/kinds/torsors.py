@@ -6,6 +6,7 @@ the plane xy, is an array of three: ``(vx, vy, wz)`` of a twist, ``(X, Y, N)`` o
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
@@ -16,6 +17,7 @@ from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated, Tick
 from coursework.kinds.nearness import in_half_widths, offset
 from coursework.kinds.ticks import share_of_named
 from coursework.language.numbers import significant
+from coursework.language.words import listed, words
 from coursework.parsing.reading import Reading
 from coursework.parsing.torsors import TorsorForm, component_place, read_pattern, read_torsor
 
@@ -88,6 +90,12 @@ class Torsor(Kind):
         """Return the share of components that are right, noughts too; none where nothing that is not 0 is right."""
         right = self._gaps(part, value, reference, 0.0) <= 1
         return float(np.mean(right)) if np.any(right & (np.asarray(reference) != 0)) else 0.0
+
+    def remarks(self, part: Stated, value: Any, reference: Any, lang: str) -> Iterator[tuple[str, str]]:
+        wrong = self._gaps(part, value, reference, 0.0) > 1
+        if self.share(part, value, reference) and np.any(wrong):
+            names = itertools.compress(self._names(len(reference)), wrong)
+            yield words(lang)["marking"]["components"], listed([f"${_symbol(name)}$" for name in names], lang)
 
     def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
         value, reference = np.asarray(value, dtype=float), np.asarray(reference, dtype=float)

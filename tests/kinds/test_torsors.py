@@ -154,6 +154,20 @@ def test_the_margin_that_is_told_is_that_of_the_moments():
     assert WRENCH.sort.distance(WRENCH, off, light) > 1
 
 
+@each_row(
+    ("value", "names"),
+    [
+        ((0, 0, 5, 10, 27, 0), [r"$v_y$"]),
+        ((0, 1, 5, 10, 20, 9), [r"$\omega_y$ and $v_z$"]),
+        ((1,) * 6, []),
+        (SPIN, []),
+    ],
+)
+def test_the_components_that_are_not_right_are_named_where_others_are(value, names):
+    remarks = TWIST.sort.remarks(TWIST, np.array(value, float), SPIN, "en")
+    assert [components for _, components in remarks] == names
+
+
 def test_noughts_count():
     value = np.array([0.0, 0.0, 5.0, 10.0, 20.0, 1.0])
     assert TWIST.sort.distance(TWIST, value, SPIN) > 1
