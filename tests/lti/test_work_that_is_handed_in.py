@@ -131,6 +131,13 @@ def test_right_answers_have_all_the_points_and_reach_the_gradebook(tool, visitor
     assert score["comment"].startswith("9 of 9 points (try 1). 1.1: right;")
 
 
+def test_feedback_on_an_exercise_waits_for_no_worker(tool, visitor):
+    tool.site.has_worker = True
+    page, _ = works(visitor, tool)
+    assert "<b>9</b> / 9 points" in page.text.replace("\u00a0", " ")
+    assert tool.send() == (1, 0)
+
+
 def test_what_cannot_be_read_uses_no_try(tool, visitor):
     page, path = visitor.enter(custom={"exercise": NAME, "tries": "1"})
     answers = right_answers(tool, page.text) | {"e1-rA": "hello?", "e1-theta4": 'x" onfocus="<b>'}

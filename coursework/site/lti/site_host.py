@@ -45,7 +45,7 @@ from coursework.site.papers.assignments import feedback_from
 from coursework.site.papers.feedback import feedback_of
 from coursework.site.papers.pending_marking import pending_marking
 from coursework.site.papers.student_paper import StudentPaper, read_lines
-from coursework.site.papers.submission import rows_for, submit
+from coursework.site.papers.submission import mark, rows_for, submit
 from coursework.site.publication.publishing import definition_of, listed_assignments, preview_paper
 
 FROM_A_PLATFORM = "site: from a platform"
@@ -272,7 +272,11 @@ class SiteHost:
             return Response(self._sheet(visit, state, paper, texts, **back), 422)
         number, person_id = state.assignment.id, site_request.user.id
         received_at = site_request.received_at
-        submit(self._site, state.assignment, paper, person_id, texts, attempt, received_at, FROM_A_PLATFORM)
+        done = submit(
+            self._site, state.assignment, paper, person_id, texts, attempt, received_at, FROM_A_PLATFORM
+        )
+        if linked.link and done.is_new:
+            mark(self._site, done.delivery.id, at_once=True)
         self._queue_score(visit.launch, person_id, number)
         return Response(redirect=visit.home)
 
@@ -332,7 +336,9 @@ class SiteHost:
             return Response(self.pages.sheet(paper.paper, again), 422)
         rows = rows_for(paper, typed, 1, site.clock(), FROM_A_PLATFORM)
         sheets = placed_sheets(site.course, paper.issued, rows)
-        graded = [mark for _, mark in judged(site.course, paper.issued, sheets) if not isinstance(mark, str)]
+        graded = [
+            sheet for _, sheet in judged(site.course, paper.issued, sheets) if not isinstance(sheet, str)
+        ]
         document = feedback_paper(site.course, paper.issued, paper.student, graded, visit.lang)
         told = SheetForm("", "", notes=notes, more=((sheet, texts["again"]), *links))
         return Response(self.pages.feedback(document, told))

@@ -188,10 +188,10 @@ def _deliver(
     )
 
 
-def mark(site: Site, delivery_id: int) -> None:
-    """Mark a submission, unless a worker does. The submission is already stored: after a fault, it is marked
-    later."""
-    if site.has_worker:
+def mark(site: Site, delivery_id: int, *, at_once: bool = False) -> None:
+    """Mark a submission, unless a worker does; even then if its marks are wanted ``at_once``. The submission is
+    already stored: after a fault, it is marked later."""
+    if site.has_worker and not at_once:
         return
     try:
         mark_submission(site.course, site.store, delivery_id)
