@@ -34,7 +34,7 @@ class LaunchClassRow(NamedTuple):
 
 
 def class_rows(
-    connection: Connection, site: Site, now: ClassState, visit: LTIRequest, here: set[str]
+    connection: Connection, site: Site, now: ClassState, request: LTIRequest, here: set[str]
 ) -> list[LaunchClassRow]:
     """Return the students of the platform's course, in the order of the desk's table.
 
@@ -44,9 +44,9 @@ def class_rows(
         Platform identifiers of the people who opened the assignment from this course. Nobody else is shown,
         since an instructor of one course of the platform may not teach the others.
     """
-    people, subjects = people_of(connection, now.about.id), _subjects(connection, visit.launch.issuer)
+    people, subjects = people_of(connection, now.about.id), _subjects(connection, request.launch.issuer)
     charges = Publication.of(now.about.published or {}).late == CHARGE
-    scores, rows = visit.scores(), []
+    scores, rows = request.scores(), []
     for row in class_page.rows(now):
         person = people.get(row.student, 0)
         subject = subjects.get(person, "")
@@ -56,16 +56,16 @@ def class_rows(
         if (
             charges
             and row.late
-            and (state := assignment_state(connection, now.about.id, person, visit.lang, site.clock()))
+            and (state := assignment_state(connection, now.about.id, person, request.lang, site.clock()))
         ):
             marked = marked_in(now, row.student)
             points = marked.given(state) if marked else points
         points_text = (
-            f"{number_text(points, visit.lang)} / {number_text(row.out_of, visit.lang)}"
+            f"{number_text(points, request.lang)} / {number_text(row.out_of, request.lang)}"
             if row.handed_in
             else ""
         )
-        on_its_way = _score_state(scores.get(subject), subject, visit.lang) if row.handed_in else ""
+        on_its_way = _score_state(scores.get(subject), subject, request.lang) if row.handed_in else ""
         rows.append(
             LaunchClassRow(
                 row.student,
@@ -98,14 +98,14 @@ def _score_state(waiting: Waiting | None, subject: str, lang: str) -> str:
     )
 
 
-def rules_rows(visit: LTIRequest, counts: str, publication: Publication | None) -> list[tuple[str, str]]:
+def rules_rows(request: LTIRequest, counts: str, publication: Publication | None) -> list[tuple[str, str]]:
     """Return the rules with which the assignment is published, each with its label."""
-    link, site_texts = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
+    link, site_texts = words(request.lang)["lti"]["class"], words(request.lang, "site")["lti"]["class"]
     if publication is None:
         return [(site_texts["published"], site_texts["hidden"])]
 
     def moment(at: object) -> str:
-        return moment_text(at, visit.lang) if at else site_texts["never"]  # type: ignore[arg-type]
+        return moment_text(at, request.lang) if at else site_texts["never"]  # type: ignore[arg-type]
 
     return [
         (site_texts["opens"], moment(publication.opens) if publication.opens else site_texts["at_once"]),
@@ -116,5 +116,5 @@ def rules_rows(visit: LTIRequest, counts: str, publication: Publication | None) 
             site_texts["feedback"],
             site_texts["feedback_is"][publication.feedback].format(moment(publication.feedback_on)),
         ),
-        (link["sends"], link["yes" if visit.launch.line or visit.launch.lines else "no"]),
+        (link["sends"], link["yes" if request.launch.line or request.launch.lines else "no"]),
     ]

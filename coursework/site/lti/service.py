@@ -51,7 +51,7 @@ from coursework.site.lti.site_host import SiteHost
 from coursework.system.allowances import Allowances, network
 from coursework.system.headers import Guarded, security_headers
 from coursework.system.processes import processor_time
-from coursework.system.request_slots import Crowded, RequestSlots
+from coursework.system.request_slots import Crowded
 
 LOG = logging.getLogger("coursework.lti")
 LARGEST = 256 * 1024  #: bytes of a form
@@ -158,7 +158,6 @@ class _Service:
         self._secret = self.keys.secret
         self._login = Login(settings, self._secret, clock)
         self._rosters: dict[str, tuple[float, list[Member]]] = {}
-        self._slots = RequestSlots()
         self._request_allowances = {"person": Allowances(*PERSONS), "address": Allowances(*ADDRESSES)}
         self.processor = Allowances(*PROCESSOR)
 
@@ -212,7 +211,7 @@ class _Service:
         if launch.role is Role.STUDENT and (wait := self.processor.wait(key)):
             raise LTIRefusal("too_often", 429, f"{wait} s", wait=wait)
         try:
-            async with self._slots.slot(person, AT_ONCE):
+            async with self.site.places.slot(person, AT_ONCE):
                 form = await _form(request)
                 return await run_in_threadpool(self._charged, key, work, request, form)
         except Crowded:
@@ -343,15 +342,17 @@ class _Service:
     def page(self, request: Request, form: FormData) -> Response:
         name = request.path_params["session"]
         launch = request.state.launch
-        visit = self._visit(launch, name, request)
+        lti_request = self._lti_request(launch, name, request)
         if request.method == "POST":
-            self._check_csrf_token(request, visit, form)
+            self._check_csrf_token(request, lti_request, form)
         if launch.kind == PICKING:
-            response = self._picking(visit, form, request)
-        elif visit.path == "roster.csv":
-            response = self._roster_file(visit)
+            response = self._picking(lti_request, form, request)
+        elif lti_request.path == "roster.csv":
+            response = self._roster_file(lti_request)
         else:
-            response = self._replied(self.host.answer(visit, form if request.method == "POST" else None))
+            response = self._replied(
+                self.host.answer(lti_request, form if request.method == "POST" else None)
+            )
         platform = self._platform(launch)
         request.state.frames = platform.frames
         return response
@@ -361,7 +362,7 @@ class _Service:
             return RedirectResponse(reply.redirect, 303)
         return Response(reply.html, reply.status_code, media_type="text/html")
 
-    def _visit(self, launch: Launch, name: str, request: Request | None = None) -> LTIRequest:
+    def _lti_request(self, launch: Launch, name: str, request: Request | None = None) -> LTIRequest:
         csrf_token = hmac.new(self._secret, f"form {name}".encode(), hashlib.sha256).hexdigest()
         return LTIRequest(
             launch,
@@ -377,12 +378,12 @@ class _Service:
     def _scores(self, launch: Launch) -> dict[str, Waiting]:
         return {waiting.launch.person: waiting for waiting in self.storage.scores(launch)}
 
-    def _check_csrf_token(self, request: Request, visit: LTIRequest, form: FormData) -> None:
+    def _check_csrf_token(self, request: Request, lti_request: LTIRequest, form: FormData) -> None:
         """Check the CSRF token of a form: the form must come from a page of this session."""
         sent = request.headers.get("origin")
         if sent is not None and sent != origin(self.settings.url):
             raise LTIRefusal("form", 403, "a form from another site")
-        if not hmac.compare_digest(form.text("_seal").encode(), visit.csrf_token.encode()):
+        if not hmac.compare_digest(form.text("_seal").encode(), lti_request.csrf_token.encode()):
             raise LTIRefusal("form", 403, "a form without its csrf_token")
 
     # -------------------------------------------------------------------- roster
@@ -403,13 +404,13 @@ class _Service:
             }
         return members
 
-    def _roster_file(self, visit: LTIRequest) -> Response:
-        if not visit.launch.role.sees_class:
+    def _roster_file(self, lti_request: LTIRequest) -> Response:
+        if not lti_request.launch.role.sees_class:
             raise LTIRefusal("role", 403, "the roster")
-        if visit.roster is None:
+        if lti_request.roster is None:
             raise LTIRefusal("page", 404, "no roster")
         try:
-            members = visit.roster()
+            members = lti_request.roster()
         except NotServed as fault:
             raise LTIRefusal("platform_down", 502, str(fault)) from None
         attached = {"Content-Disposition": 'attachment; filename="roster.csv"'}
@@ -419,40 +420,44 @@ class _Service:
 
     # ------------------------------------------------------------------- picking
 
-    def _picking(self, visit: LTIRequest, form: FormData, request: Request) -> Response:
-        launch = visit.launch
-        if visit.path or launch.picking is None or not launch.role.picks:
+    def _picking(self, lti_request: LTIRequest, form: FormData, request: Request) -> Response:
+        launch = lti_request.launch
+        if lti_request.path or launch.picking is None or not launch.role.picks:
             raise LTIRefusal(
                 "role" if not launch.role.picks else "page", 403 if not launch.role.picks else 404, "picking"
             )
-        groups = offer_groups(self.site, visit.lang)
+        groups = offer_groups(self.site, lti_request.lang)
         if request.method == "POST":
             items = (
                 []
                 if form.text("cancel")
                 else deep_linking.content_items(launch, groups, form.texts, self.settings.url)
             )
-            return self._sent_back(visit, items, request)
-        sought = visit.query.get("q", "")[:200].strip()
+            return self._sent_back(lti_request, items, request)
+        sought = lti_request.query.get("q", "")[:200].strip()
         names = {
-            "title": words(visit.lang)["lti"]["pick"]["title"],
-            "home": visit.home,
-            "csrf_token": visit.csrf_token,
+            "title": words(lti_request.lang)["lti"]["pick"]["title"],
+            "home": lti_request.home,
+            "csrf_token": lti_request.csrf_token,
             "sought": sought,
             "several": launch.picking.several,
             "with_line": launch.picking.with_line,
             "offer_groups": deep_linking.matching_offers(groups, sought),
         }
-        return Response(self.host.pages.page("platform/lti_pick", visit.lang, names), media_type="text/html")
+        return Response(
+            self.host.pages.page("platform/lti_pick", lti_request.lang, names), media_type="text/html"
+        )
 
-    def _sent_back(self, visit: LTIRequest, items: Sequence[dict[str, Any]], request: Request) -> Response:
+    def _sent_back(
+        self, lti_request: LTIRequest, items: Sequence[dict[str, Any]], request: Request
+    ) -> Response:
         """Return a page that sends the instructor and the chosen links back to the platform."""
-        launch, texts = visit.launch, words(visit.lang)["lti"]["pick"]
+        launch, texts = lti_request.launch, words(lti_request.lang)["lti"]["pick"]
         if launch.picking is None:
             raise LTIRefusal("page", 404, "picking")
         ready = texts["return_says"][
             "one"
-            if len(items) == 1 or (not items and words(visit.lang)["numbers"]["one_below_two"])
+            if len(items) == 1 or (not items and words(lti_request.lang)["numbers"]["one_below_two"])
             else "many"
         ]
         request.state.forms = [origin(launch.picking.return_url)]
@@ -467,7 +472,7 @@ class _Service:
             "token": deep_linking.response(launch, items, self.keys.signing),
         }
         return Response(
-            self.host.pages.page("platform/lti_return", visit.lang, names), media_type="text/html"
+            self.host.pages.page("platform/lti_return", lti_request.lang, names), media_type="text/html"
         )
 
 

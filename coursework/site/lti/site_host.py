@@ -68,7 +68,7 @@ class SiteHost:
 
     # ---------------------------------------------------------------------- pages
 
-    def answer(self, visit: LTIRequest, form: FormData | None = None) -> Response:
+    def answer(self, request: LTIRequest, form: FormData | None = None) -> Response:
         """Return the page of a link, or the response to a ``form`` of it, which may be sent twice; a refusal
         of the site becomes a page.
 
@@ -77,25 +77,27 @@ class SiteHost:
         LTIRefusal
             The person may not see it, or there is none.
         """
-        role = visit.launch.role
+        role = request.launch.role
         if role is not Role.STUDENT and not role.sees_class:
             raise LTIRefusal("nobody", 403, f"role {role}")
-        linked = linked_assignment(self._site, visit.launch)
+        linked = linked_assignment(self._site, request.launch)
         try:
-            if role is not Role.STUDENT and visit.path == "sheet":
-                return self._preview(visit, linked, form)
-            if visit.path or (form is not None and role is not Role.STUDENT):
+            if role is not Role.STUDENT and request.path == "sheet":
+                return self._preview(request, linked, form)
+            if request.path or (form is not None and role is not Role.STUDENT):
                 raise LTIRefusal("page", 404, "no such page")
             if role is not Role.STUDENT:
-                return self._class(visit, linked)
-            return self._student_page(visit, linked) if form is None else self._submit(visit, linked, form)
+                return self._class(request, linked)
+            return (
+                self._student_page(request, linked) if form is None else self._submit(request, linked, form)
+            )
         except HTTPException as why:
-            return self._refused(visit, why)
+            return self._refused(request, why)
         except BadInput as fault:
-            return self._refused(visit, HTTPException("mistaken", 422, as_message(fault)))
+            return self._refused(request, HTTPException("mistaken", 422, as_message(fault)))
 
-    def _refused(self, visit: LTIRequest, why: HTTPException) -> Response:
-        texts = words(visit.lang, "site")
+    def _refused(self, request: LTIRequest, why: HTTPException) -> Response:
+        texts = words(request.lang, "site")
         sentence = texts["lti"]["refused"].get(why.sentence) or texts["refused"][why.sentence]
         names = {
             "title": texts["refused"]["title"], "message": str(sentence).format(*why.parts), "again": "", "action": "",
@@ -103,21 +105,21 @@ class SiteHost:
         }  # fmt: skip
         if why.sentence == "connect":
             names |= {"connect": str(why.parts[0]), "connect_word": texts["connect"]["title"]}
-        return Response(self.pages.page("platform/lti_message", visit.lang, names), why.status_code)
+        return Response(self.pages.page("platform/lti_message", request.lang, names), why.status_code)
 
-    def _student_page(self, visit: LTIRequest, linked: LinkedAssignment) -> Response:
-        site_request = self._site_request(visit, linked, FormData())
+    def _student_page(self, request: LTIRequest, linked: LinkedAssignment) -> Response:
+        site_request = self._site_request(request, linked, FormData())
         state, paper = state_and_paper(site_request)
-        if state.done and not ("again" in visit.query and state.may_hand_in):
-            return self._after_submission(visit, site_request, state, paper)
+        if state.done and not ("again" in request.query and state.may_hand_in):
+            return self._after_submission(request, site_request, state, paper)
         if not state.may_hand_in:
             raise HTTPException("closed", 409)
         texts = self._handed_in(state, paper) if state.done else {}
-        return Response(self._sheet(visit, state, paper, texts))
+        return Response(self._sheet(request, state, paper, texts))
 
     # ------------------------------------------------------------------- a student
 
-    def _site_request(self, visit: LTIRequest, linked: LinkedAssignment, form: FormData) -> SiteRequest:
+    def _site_request(self, request: LTIRequest, linked: LinkedAssignment, form: FormData) -> SiteRequest:
         """Return the site's request of the launch's person, after a paper has been assigned to them.
 
         Raises
@@ -125,28 +127,28 @@ class SiteHost:
         HTTPException
             The assignment is not published, not open, or cannot be assigned.
         """
-        site, launch = self._site, visit.launch
+        site, launch = self._site, request.launch
         if linked.number is not None:
             with site.store.reading() as connection:
                 if published(connection, linked.number) is None:
                     raise HTTPException("own", 404)
             follow_link(site, linked, launch)
-        row = launch_persons.launch_person(site, launch, visit.lang)
-        number = self._assigned(visit, linked, row)
+        row = launch_persons.launch_person(site, launch, request.lang)
+        number = self._assigned(request, linked, row)
         if self._storage.record(launch, row.id, number):
             self._queue_score(launch, row.id, number)
         return SiteRequest(
             site,
-            Person(row.id, row.name, "student", visit.lang),
-            visit.lang,
+            Person(row.id, row.name, "student", request.lang),
+            request.lang,
             arrived(site.clock),
-            visit.home,
+            request.home,
             {"number": number},
             form=form,
             is_post=bool(form.texts),
         )
 
-    def _assigned(self, visit: LTIRequest, linked: LinkedAssignment, person: Any) -> int:
+    def _assigned(self, request: LTIRequest, linked: LinkedAssignment, person: Any) -> int:
         """Return the assignment's id, after a paper was assigned to the person, if they have none."""
         if linked.number is not None:
             with self._site.store.reading() as connection:
@@ -155,11 +157,11 @@ class SiteHost:
                     return linked.number
             phase = publication.phase(publication.now(self._site.clock()))
             if phase is Phase.TO_COME:
-                opens = moment_text(publication.opens, visit.lang) if publication.opens else ""
+                opens = moment_text(publication.opens, request.lang) if publication.opens else ""
                 raise HTTPException("not_yet", 409, opens)
             if not phase.takes:
                 raise HTTPException("closed", 409)
-        return launch_persons.assign_paper(self._site, linked, person, visit.launch, visit.lang)
+        return launch_persons.assign_paper(self._site, linked, person, request.launch, request.lang)
 
     def _queue_score(self, launch: Launch, person_id: int, number: int) -> None:
         """Queue the person's score for the platform if it has changed."""
@@ -170,13 +172,13 @@ class SiteHost:
             self._wake()
 
     def _sheet(
-        self, visit: LTIRequest, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
+        self, request: LTIRequest, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
         unread: Sequence[str] = (),
     ) -> str:  # fmt: skip
-        more = [(visit.home, words(visit.lang)["lti"]["see_again"])] if state.done else []
+        more = [(request.home, words(request.lang)["lti"]["see_again"])] if state.done else []
         form = SheetForm(
-            visit.home, visit.csrf_token, len(state.done) + 1, _filled(texts), (*notes, *self._rules(visit, state)), tuple(unread),
-            bool(unread), tuple(more), visit.launch.return_url,
+            request.home, request.csrf_token, len(state.done) + 1, _filled(texts), (*notes, *self._rules(request, state)), tuple(unread),
+            bool(unread), tuple(more), request.launch.return_url,
         )  # fmt: skip
         return self.pages.sheet(paper.paper, form)
 
@@ -194,10 +196,10 @@ class SiteHost:
             for name, box in paper.boxes.items()
         }
 
-    def _rules(self, visit: LTIRequest, state: AssignmentState) -> list[str]:
+    def _rules(self, request: LTIRequest, state: AssignmentState) -> list[str]:
         """Return the rules of the assignment: closing time, remaining attempts, and the attempt that
         counts."""
-        texts, site_texts = words(visit.lang)["lti"], words(visit.lang, "site")["lti"]
+        texts, site_texts = words(request.lang)["lti"], words(request.lang, "site")["lti"]
         rules = []
         if state.phase is Phase.OPEN and state.assignment.own_publication.closes:
             rules.append(
@@ -209,7 +211,7 @@ class SiteHost:
         if left is None:
             rules.append(str(texts["tries_free"]))
         elif state.phase.takes:
-            is_one = left < 2 if words(visit.lang)["numbers"]["one_below_two"] else left == 1
+            is_one = left < 2 if words(request.lang)["numbers"]["one_below_two"] else left == 1
             rules.append(
                 str(texts["tries_left"]["one" if is_one else "many"]).format(left)
                 if left
@@ -221,55 +223,55 @@ class SiteHost:
         return [" ".join(rules)]
 
     def _after_submission(
-        self, visit: LTIRequest, site_request: SiteRequest, state: AssignmentState, paper: StudentPaper
+        self, request: LTIRequest, site_request: SiteRequest, state: AssignmentState, paper: StudentPaper
     ) -> Response:
         """Return the feedback on the last submission if it is released; otherwise a confirmation."""
-        texts, last = words(visit.lang)["lti"], state.done[-1]
-        arrival = texts["try_number"].format(last.number, exact_text(last.received_at, visit.lang))
+        texts, last = words(request.lang)["lti"], state.done[-1]
+        arrival = texts["try_number"].format(last.number, exact_text(last.received_at, request.lang))
         receipt = site_request.words["lti"]["receipt"].format(last.receipt)
-        more = [(f"{visit.home}?again=1", texts["again"])] if state.may_hand_in else []
+        more = [(f"{request.home}?again=1", texts["again"])] if state.may_hand_in else []
         waits = pending_marking(site_request, last.id) if state.releases("feedback") else None
         if state.releases("feedback") and waits is None:
             document, notes = feedback_of(site_request, state, paper, last)
-            notes = [f"{arrival}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
-            form = SheetForm("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
+            notes = [f"{arrival}. {receipt}", *notes, *self._rules(request, state), self._sent(request)]
+            form = SheetForm("", "", notes=tuple(notes), more=tuple(more), leave=request.launch.return_url)
             return Response(self.pages.feedback(document, form))
         notes = [
             f"{arrival}.",
             receipt,
             waits.message if waits else feedback_from(site_request, state),
-            *self._rules(visit, state),
-            self._sent(visit, state),
+            *self._rules(request, state),
+            self._sent(request, state),
         ]
         names = {
-            "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": visit.launch.return_url,
+            "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": request.launch.return_url,
             "handed_in": site_request.words["lti"]["handed_in"],
         }  # fmt: skip
-        return Response(self.pages.page("platform/lti_site_handed_in", visit.lang, names))
+        return Response(self.pages.page("platform/lti_site_handed_in", request.lang, names))
 
-    def _sent(self, visit: LTIRequest, state: AssignmentState | None = None) -> str:
+    def _sent(self, request: LTIRequest, state: AssignmentState | None = None) -> str:
         """Return the state of the score on its way to the platform."""
-        texts, launch = words(visit.lang)["lti"], visit.launch
+        texts, launch = words(request.lang)["lti"], request.launch
         if not (launch.line or launch.lines):
             return str(texts["score_none"])
-        waiting = visit.scores().get(launch.person)
+        waiting = request.scores().get(launch.person)
         if waiting is None and state is not None:
             kept_back = (
                 "score_never" if state.assignment.own_publication.feedback == "never" else "score_later"
             )
-            return str(words(visit.lang, "site")["lti"][kept_back])
+            return str(words(request.lang, "site")["lti"][kept_back])
         return str(texts["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
 
-    def _submit(self, visit: LTIRequest, linked: LinkedAssignment, form: FormData) -> Response:
+    def _submit(self, request: LTIRequest, linked: LinkedAssignment, form: FormData) -> Response:
         """Submit the answers of a form; a repeated form has no effect."""
-        site_request = self._site_request(visit, linked, form)
+        site_request = self._site_request(request, linked, form)
         state, paper = state_and_paper(site_request)
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):
-            return Response(redirect=visit.home)  # repeated form
-        back = self._doubts(visit, paper, texts, form)
+            return Response(redirect=request.home)  # repeated form
+        back = self._doubts(request, paper, texts, form)
         if back:
-            return Response(self._sheet(visit, state, paper, texts, **back), 422)
+            return Response(self._sheet(request, state, paper, texts, **back), 422)
         number, person_id = state.assignment.id, site_request.user.id
         received_at = site_request.received_at
         done = submit(
@@ -277,60 +279,60 @@ class SiteHost:
         )
         if linked.link and done.is_new:
             mark(self._site, done.delivery.id, at_once=True)
-        self._queue_score(visit.launch, person_id, number)
-        return Response(redirect=visit.home)
+        self._queue_score(request.launch, person_id, number)
+        return Response(redirect=request.home)
 
     def _doubts(
-        self, visit: LTIRequest, paper: StudentPaper, texts: Mapping[str, str], form: FormData
+        self, request: LTIRequest, paper: StudentPaper, texts: Mapping[str, str], form: FormData
     ) -> dict[str, list[str]]:
         """Return what to tell instead of accepting a form: that it is empty, or which answers cannot be
         read, unless the person insists."""
         if not any(text.strip() for text in texts.values()):
-            return {"notes": [words(visit.lang)["lti"]["empty"]]}
-        unread = _unread(visit, paper, texts)
+            return {"notes": [words(request.lang)["lti"]["empty"]]}
+        unread = _unread(request, paper, texts)
         return {"unread": unread} if unread and not form.text("_as_it_is") else {}
 
     # ------------------------------------------------------------------------ staff
 
-    def _class(self, visit: LTIRequest, linked: LinkedAssignment) -> Response:
+    def _class(self, request: LTIRequest, linked: LinkedAssignment) -> Response:
         """Return the class table, read-only; decisions are made on the site, with an account there."""
-        lang, stated = visit.lang, linked.table
+        lang, stated = request.lang, linked.table
         publication: Publication | None = linked.publication
         rows: list[LaunchClassRow] = []
-        members, note = _members(visit, lang)
+        members, note = _members(request, lang)
         if linked.number is None:
             title = text_in(stated["title"], lang)
         else:
             now = class_now(self._site, linked.number)
             stated, title = now.about.stated or {}, assignment_title(now.about, lang)
             opened = self._storage.opened(linked.number)
-            here = {other.person for *_, other in opened if other.course == visit.launch.course}
+            here = {other.person for *_, other in opened if other.course == request.launch.course}
             with self._site.store.reading() as connection:
                 publication = published(connection, linked.number)
-                rows = class_rows(connection, self._site, now, visit, here)
+                rows = class_rows(connection, self._site, now, request, here)
         missing = _not_there(members, {folded(row.name) for row in rows}, {row.person for row in rows})
         names = {
-            "title": visit.launch.link_title or title, "context": visit.launch.context_title, "home": visit.home,
+            "title": request.launch.link_title or title, "context": request.launch.context_title, "home": request.home,
             "desk": "" if linked.number is None else f"{self._site.url}/desk/{linked.number}",
-            "rules": rules_rows(visit, stated.get("sittings", _BEST), publication), "rows": rows, "missing": missing,
+            "rules": rules_rows(request, stated.get("sittings", _BEST), publication), "rows": rows, "missing": missing,
             "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
         }  # fmt: skip
         return Response(self.pages.page("platform/lti_site_class", lang, names))
 
-    def _preview(self, visit: LTIRequest, linked: LinkedAssignment, form: FormData | None) -> Response:
+    def _preview(self, request: LTIRequest, linked: LinkedAssignment, form: FormData | None) -> Response:
         """Return the paper as a student sees it, with variants that are issued to nobody, or the marks of a
         ``form``, which is not stored."""
-        site, texts = self._site, words(visit.lang)["lti"]
-        paper = preview_paper(site, replace(self._definition(linked), answers="never"), visit.lang)
-        home, sheet, notes = visit.home, f"{visit.home}/sheet", (texts["preview"],)
+        site, texts = self._site, words(request.lang)["lti"]
+        paper = preview_paper(site, replace(self._definition(linked), answers="never"), request.lang)
+        home, sheet, notes = request.home, f"{request.home}/sheet", (texts["preview"],)
         links = ((home, texts["to_class"]),)
         if form is None:
-            form_names = SheetForm(sheet, visit.csrf_token, notes=notes, more=links)
+            form_names = SheetForm(sheet, request.csrf_token, notes=notes, more=links)
             return Response(self.pages.sheet(paper.paper, form_names))
         typed = paper.texts(form)
-        if back := self._doubts(visit, paper, typed, form):
+        if back := self._doubts(request, paper, typed, form):
             again = SheetForm(
-                sheet, visit.csrf_token, filled=_filled(typed), notes=(*notes, *back.get("notes", ())),
+                sheet, request.csrf_token, filled=_filled(typed), notes=(*notes, *back.get("notes", ())),
                 unread=tuple(back.get("unread", ())), may_insist="unread" in back, more=links,
             )  # fmt: skip
             return Response(self.pages.sheet(paper.paper, again), 422)
@@ -339,7 +341,7 @@ class SiteHost:
         graded = [
             sheet for _, sheet in judged(site.course, paper.issued, sheets) if not isinstance(sheet, str)
         ]
-        document = feedback_paper(site.course, paper.issued, paper.student, graded, visit.lang)
+        document = feedback_paper(site.course, paper.issued, paper.student, graded, request.lang)
         told = SheetForm("", "", notes=notes, more=((sheet, texts["again"]), *links))
         return Response(self.pages.feedback(document, told))
 
@@ -360,9 +362,9 @@ def _filled(texts: Mapping[str, str]) -> dict[str, list[str]]:
     }
 
 
-def _unread(visit: LTIRequest, paper: StudentPaper, texts: Mapping[str, str]) -> list[str]:
+def _unread(request: LTIRequest, paper: StudentPaper, texts: Mapping[str, str]) -> list[str]:
     """Return a sentence for each answer that could not be read."""
-    form = str(words(visit.lang)["lti"]["unread_line"])
+    form = str(words(request.lang)["lti"]["unread_line"])
     return [
         form.format(box.number, reading.message)
         for box, _, reading in read_lines(paper, texts)
@@ -377,13 +379,13 @@ def _number(form: FormData) -> int:
     return int(text)
 
 
-def _members(visit: LTIRequest, lang: str) -> tuple[Sequence[Member] | None, str]:
+def _members(request: LTIRequest, lang: str) -> tuple[Sequence[Member] | None, str]:
     """Return the platform's roster, and the sentence to show if there is none."""
     texts = words(lang)["lti"]["class"]
-    if visit.roster is None:
+    if request.roster is None:
         return None, texts["no_roster"].format(texts["roster_off"])
     try:
-        return visit.roster(), ""
+        return request.roster(), ""
     except NotServed as fault:
         return None, texts["no_roster"].format(localised(fault, lang))
 
