@@ -65,7 +65,7 @@ def lesson(
             click.echo(name)
         return DONE
     from coursework.system.writing import write_whole
-    from coursework.workbook.notebooks import lesson_notebook, notebook_name
+    from coursework.workbook.files import lesson_notebook, notebook_name
 
     writes(context, out)
     paths = {name: out / notebook_name(name, lang) for name in names}
@@ -153,7 +153,7 @@ def notebook(
     from coursework.issuing.issuing import distinct_variants
     from coursework.rendering.renderer import renderer_of
     from coursework.system.writing import write_whole
-    from coursework.workbook.notebooks import lesson_notebook, notebook_name
+    from coursework.workbook.files import lesson_notebook, notebook_name
 
     course = opened(context)
     wheel = course.folder.wheel
@@ -195,7 +195,7 @@ def notebook(
 
 
 def _formats() -> tuple[str, ...]:
-    from coursework.workbook.writing import FORMATS
+    from coursework.workbook.files import FORMATS
 
     return FORMATS
 
@@ -241,7 +241,7 @@ def workbook(
     pages and as notebooks that lead to one another."""
     from coursework.system.writing import write_tree
     from coursework.workbook.binding import bound, pieces_of
-    from coursework.workbook.writing import files
+    from coursework.workbook.files import files
 
     course = opened(context)
     _check_language(lang)

@@ -1,4 +1,4 @@
-"""Parser of a lesson's file: prose, cells, answers to questions, and pictures, in order.
+"""Lesson's file: prose, cells, answers to questions and pictures in order, proofread for what a book cannot print.
 
 A lesson is Markdown. A ```` ```python ```` fence is a cell, with ``{tags=…}`` after the word; a ```` ```answer ```` fence is the answer to the question
 above it; a picture stands on a line of its own, ``![caption](figure:NAME)`` or ``![caption](exercise:NAME?seed=3)``. Links lead to
@@ -8,11 +8,15 @@ above it; a picture stands on a line of its own, ``![caption](figure:NAME)`` or 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TypeAlias
+from urllib.parse import unquote
 
 from coursework.errors import BadCourse, closest, nearest
+from coursework.markup.markdown import INDEX, tree
+from coursework.markup.proofreading import pair_dollars, read_formulas
 
 SHOWN, NOTEBOOK, STILL = "shown", "notebook", "still"
 #: What a cell's tags say: its code is printed; it stands in the notebook alone; its code is printed and not run for the book.
@@ -159,3 +163,93 @@ def _image(image: re.Match[str], file: str, line: int) -> LessonImage:
     return LessonImage(
         image["caption"], target[1], target[2], {name: value for name, _, value in pairs}, line
     )
+
+
+_FORMS = 'exercise:NAME, lesson:NAME, lesson:NAME#3, #index "entry" or https://…'
+_LEADS = re.compile(r"(exercise:\w+|lesson:\w+(#\d+)?|(https?://|mailto:).+)")
+_PICTURE = re.compile(r"!\[[^\]]*\]\(")
+_CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
+_SECTION = re.compile(r"^## +(\d+)\.", re.MULTILINE)
+
+
+def proofread(results: Sequence[Block], file: str) -> None:
+    """Refuse words of a lesson that cannot be printed as intended.
+
+    Parameters
+    ----------
+    found
+        The blocks of the whole file.
+    file
+        What messages call it.
+
+    Raises
+    ------
+    BadCourse
+        It does not begin with its title, or has two; a section stands twice; a formula, a fence, a picture or a link is none.
+    """
+    _check_title(results, file)
+    sections: set[str] = set()
+    for words, line in lines_of_words(results):
+        location = partial(place_of, words, line, file)
+        pair_dollars(words, location)
+        read_formulas(words, location)
+        _check_pictures(words, location)
+        _check_leads(words, location)
+        sections |= _sections(words, sections, location)
+
+
+def lines_of_words(results: Sequence[Block]) -> Iterator[tuple[str, int]]:
+    """Yield the texts of a lesson, each with its first line number."""
+    for block in results:
+        if isinstance(block, LessonImage):
+            yield block.caption, block.line
+        elif not isinstance(block, CodeCell):
+            yield block.text, block.line
+
+
+def place_of(words: str, line: int, file: str, piece: str) -> str:
+    """Return the file and the line of a piece of some words."""
+    first = piece.split("\n")[0]
+    further = next((k for k, item in enumerate(words.split("\n")) if first in item), 0)
+    return f"{file}, line {line + further}"
+
+
+def _check_title(results: Sequence[Block], file: str) -> None:
+    """Refuse a lesson without exactly one title at its beginning."""
+    first = results[0] if results else None
+    if not isinstance(first, LessonProse) or not first.text.startswith("# "):
+        raise BadCourse(f"{file}, line 1: a lesson begins with its title, # TITLE")
+    titles = [
+        (line + node.map[0], node.children[0].content)
+        for words, line in lines_of_words(results)
+        for node in tree(words).walk()
+        if node.type == "heading" and node.tag == "h1" and node.map
+    ]
+    for line, title in titles[1:]:
+        raise BadCourse(f"{file}, line {line}: a lesson has one title; write ## before {title!r}")
+
+
+def _check_pictures(words: str, position: Callable[[str], str]) -> None:
+    if picture := _PICTURE.search(_CODE.sub("", words)):
+        raise BadCourse(
+            f"{position(picture[0])}: a picture stands on a line of its own: ![caption](figure:NAME)"
+        )
+
+
+def _check_leads(words: str, position: Callable[[str], str]) -> None:
+    for node in tree(words).walk():
+        href = unquote(str(node.attrs["href"])) if node.type == "link" else INDEX
+        if href != INDEX and not _LEADS.fullmatch(href):
+            raise BadCourse(f"{position(f']({href}')}: the link {href!r} leads nowhere: write {_FORMS}")
+
+
+def _sections(words: str, before: Set[str], position: Callable[[str], str]) -> set[str]:
+    """Return the section numbers that begin in some words; refuse a repeated one."""
+    results: set[str] = set()
+    for number in _SECTION.findall(words):
+        if number in before | results:
+            raise BadCourse(
+                f"{position(f'## {number}.')}: section {number} stands twice; number one of them anew"
+            )
+        results.add(number)
+    return results

@@ -16,9 +16,8 @@ from coursework.errors import BadCourse, CourseworkError, counted, nearest
 from coursework.markup.links import TERM, TextLink, links
 from coursework.sheets.book import CodePiece, HeadPiece, LaterPiece, LessonText, Piece, ProsePiece
 from coursework.workbook import lesson_source as source
-from coursework.workbook.pictures import drawn
-from coursework.workbook.proofread import lines_of_words, place_of, proofread
-from coursework.workbook.running import CellOutput, CellSession
+from coursework.workbook.lesson_source import lines_of_words, place_of, proofread
+from coursework.workbook.running import CellOutput, CellSession, drawn
 
 _TITLE = re.compile(r"\A# +[^\n]*\n*")
 _CELL = re.compile(r"(?<!\\)\|")

@@ -17,9 +17,9 @@ from coursework.errors import BadCourse, UnknownName
 from coursework.language.words import languages
 from coursework.sheets.book import CodePiece, PrintedPiece
 from coursework.sheets.book import ProsePiece as Prose_
+from coursework.workbook.files import lesson_notebook
 from coursework.workbook.lesson_source import CodeCell, LessonAnswer, LessonImage, LessonProse, blocks
 from coursework.workbook.lessons import faults, lesson_text, opened
-from coursework.workbook.notebooks import lesson_notebook
 
 every_language = pytest.mark.parametrize("lang", languages())
 LESSONS = coursework.open_course().folder.lessons

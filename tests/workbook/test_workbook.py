@@ -21,9 +21,8 @@ from coursework.rendering.renderer import renderer_of
 from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
 from coursework.sheets.handout import handout
 from coursework.workbook.binding import bound
+from coursework.workbook.files import files, lesson_notebook
 from coursework.workbook.lessons import faults, lesson_text
-from coursework.workbook.notebooks import lesson_notebook
-from coursework.workbook.writing import files
 
 CHAPTERS = """
 [[chapters]]
