@@ -158,6 +158,11 @@ def all_long(share, *vectors):
     return np.minimum.reduce(lengths) > share * np.maximum.reduce(lengths)
 
 
+def on_paper(vector):
+    """Return the length of a vector of a drawing, components along the last axis, in mm."""
+    return np.hypot(vector[..., 0], vector[..., 1])
+
+
 def dot(u, v):
     return u.real * v.real + u.imag * v.imag
 

@@ -70,6 +70,15 @@ def curves_differ_visibly(curves):
     return np.all(apart, axis=0)
 
 
+def coupler_turns_visibly(omega3, omega2):
+    return abs(omega3) > 0.08 * abs(omega2)
+
+
+def P_moves_visibly_both_ways(v_P_x, v_P_y, r2, omega2):
+    least = 0.12 * r2 * abs(omega2)
+    return (abs(v_P_x) > least) & (abs(v_P_y) > least)
+
+
 def _drawings(curves, arrangement, corner, width):
     """The four curves under the linkage, two by two and at one scale, each with its name on the left."""
     order = list(permutations(range(4)))[int(arrangement) - 1]
@@ -130,6 +139,8 @@ EXERCISE = Exercise(
         beta_makes_a_triangle,
         P_away_from_the_axes,
         curves_differ_visibly,
+        coupler_turns_visibly,
+        P_moves_visibly_both_ways,
     ),
     parts=(
         Part("theta3", unit="deg", kind="angle", points=1),
@@ -154,5 +165,4 @@ EXERCISE = Exercise(
         "curve": r"\mathrm{curve}",
     },
     driver=Driver("theta2", "omega2", output="omega3"),
-    kept_by_solution=True,
 )

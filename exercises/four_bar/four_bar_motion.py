@@ -1,7 +1,7 @@
 """Four-bar linkage: positions, velocities and accelerations at one instant (Figures 18, 19 and 23)."""
 
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
-from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
+from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, loop_equations
 
 from ._crank_rocker import (
     bars,
@@ -14,6 +14,17 @@ from ._crank_rocker import (
 
 def crank_accelerates(alpha2):
     return alpha2 != 0
+
+
+def links_turn_visibly(omega3, omega4, omega2):
+    return (abs(omega3) > 0.05 * abs(omega2)) & (abs(omega4) > 0.05 * abs(omega2))
+
+
+def links_accelerate_visibly(alpha3, alpha4, omega2):
+    return (abs(alpha3) > 0.03 * omega2**2) & (abs(alpha4) > 0.03 * omega2**2)
+
+
+RATES = ("omega3", "omega4", "v_BA", "v_B", "a_BA_n", "alpha3", "alpha4", "a_B")
 
 
 def figure(bars, r1, r2, theta2):
@@ -50,6 +61,18 @@ EXERCISE = Exercise(
         crank_off_the_frame,
         crank_turns_visibly,
         crank_accelerates,
+        links_turn_visibly,
+        links_accelerate_visibly,
+        *(
+            detectable(mistake, *RATES)
+            for mistake in (
+                "alpha2_left_out",
+                "no_normal_terms",
+                "omega_exchanged",
+                "sum_in_denominator",
+                "other_mode",
+            )
+        ),
     ),
     parts=(
         Part("theta3", unit="deg", kind="angle", points=2),
@@ -78,5 +101,4 @@ EXERCISE = Exercise(
         "a_BA_t": "a_{BA}^t",
     },
     driver=Driver("theta2", "omega2", "alpha2", output="omega4"),
-    kept_by_solution=True,
 )

@@ -14,6 +14,18 @@ def a_keeps_its_size(r1, r2, theta2):
     return abs(r1 - r2 * cos(theta2)) > 0.2 * r1
 
 
+def closes_well(mu):
+    return abs(cos(mu)) < 0.9
+
+
+def angle_at_B_not_square(mu):
+    return abs(cos(mu)) > 0.03
+
+
+def angle_at_A_not_square(psi):
+    return abs(cos(psi)) > 0.1
+
+
 def figure(r1, r2, r3, r4, theta2):
     O, A, C = 0j, polar(r2, theta2), complex(r1)
     B = rrr(A, C, r3, r4)
@@ -38,7 +50,13 @@ EXERCISE = Exercise(
         "r4": drawn(50, 220, step=5, unit="mm"),
         "theta2": drawn(-175, 180, step=5, unit="deg"),
     },
-    constraints=(crank_off_the_axes, a_keeps_its_size),
+    constraints=(
+        crank_off_the_axes,
+        a_keeps_its_size,
+        closes_well,
+        angle_at_B_not_square,
+        angle_at_A_not_square,
+    ),
     parts=(
         Part(
             "linkage_type",
@@ -72,5 +90,4 @@ EXERCISE = Exercise(
     },
     figure=figure,
     driver=Driver("theta2"),
-    kept_by_solution=True,
 )

@@ -1,5 +1,7 @@
 """Four-bar linkage: what torque turns the crank, and what do its joints bear?"""
 
+import numpy as np
+
 from coursework.figures import (
     Figure,
     angle_mark,
@@ -11,7 +13,7 @@ from coursework.figures import (
     rotation_arrow,
     vector,
 )
-from coursework.model import Driver, Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn
 
 from ._crank_rocker import bars, crank_off_the_frame, crank_turns, transmission_angle_from_30_to_150
 
@@ -30,6 +32,22 @@ def crank_accelerates_visibly(alpha2):
 
 def crank_turns_quickly(omega2):
     return abs(omega2) >= 5
+
+
+def bars_turn_visibly(k3, k4):
+    return (abs(k3) > 0.05) & (abs(k4) > 0.1)
+
+
+def answers_are_no_small_differences(
+    torque, R_A, R_B, R_C, R_O, X3, Y3, X4, Y4, r2, k3, k4, omega4, J3, alpha3, J4, alpha4, M, M2
+):
+    forces = np.hypot(X3, Y3) + np.hypot(X4, Y4)
+    couples = abs(M2) + abs(J3 * alpha3 * k3) + abs((J4 * alpha4 + M * np.sign(omega4)) * k4)
+    smallest = np.minimum.reduce([R_A, R_B, R_C, R_O])
+    return (abs(torque) > 0.12 * (r2 * forces / 1000 + couples)) & (smallest > 0.12 * forces)
+
+
+ANSWERS = ("torque", "R_B", "R_A", "R_C", "R_O")
 
 
 def figure(bars, r1, r2, theta2, omega2, s3, s4):
@@ -95,6 +113,10 @@ EXERCISE = Exercise(
         crank_accelerates_visibly,
         crank_turns_quickly,
         bars_point_their_own_ways,
+        bars_turn_visibly,
+        answers_are_no_small_differences,
+        detectable("inertia_forgotten", *ANSWERS, least=2.2, most=0.2),
+        detectable("inertia_torques_forgotten", *ANSWERS, least=2.2, most=0.2),
     ),
     parts=(
         Part("torque", unit="N*m", points=3),
@@ -107,5 +129,4 @@ EXERCISE = Exercise(
     figure=figure,
     symbols={"torque": r"\Gamma"},
     driver=Driver("theta2", "omega2", "alpha2", effort="torque", output="omega4"),
-    kept_by_solution=True,
 )

@@ -3,8 +3,9 @@
 import numpy as np
 
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, vector
-from coursework.model import Driver, Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn
 
+from ..slider_crank.mechanical_advantage_slider import speeds_of_rod_and_output_can_be_told_apart
 from ._crank_rocker import (
     bars,
     crank_off_the_frame,
@@ -12,6 +13,10 @@ from ._crank_rocker import (
     crank_turns_visibly,
     transmission_angle_from_30_to_150,
 )
+
+
+def links_turn_visibly(omega3, omega4, omega2):
+    return (abs(omega3) > 0.08 * abs(omega2)) & (abs(omega4) > 0.08 * abs(omega2))
 
 
 def figure(bars, r1, r2, theta2, omega2):
@@ -44,7 +49,18 @@ EXERCISE = Exercise(
         "F_e": drawn(50, 500, step=10, unit="N"),
     },
     helpers=(bars,),
-    constraints=(crank_turns, transmission_angle_from_30_to_150, crank_off_the_frame, crank_turns_visibly),
+    constraints=(
+        crank_turns,
+        transmission_angle_from_30_to_150,
+        crank_off_the_frame,
+        crank_turns_visibly,
+        links_turn_visibly,
+        speeds_of_rod_and_output_can_be_told_apart,
+        detectable("advantage_inverse", "mechanical_advantage"),
+        detectable("torque_ratio_inverse", "torque_ratio"),
+        detectable("sum_in_denominator", "omega4", "V_s"),
+        detectable("other_mode", "omega4", "V_s"),
+    ),
     parts=(
         Part("omega4", unit="rad/s", points=2),
         Part("mechanical_advantage", points=2),
@@ -60,5 +76,4 @@ EXERCISE = Exercise(
         "Gamma_s": r"\Gamma_s",
     },
     driver=Driver("theta2", "omega2", output="omega4"),
-    kept_by_solution=True,
 )

@@ -1,10 +1,12 @@
 """Four-bar linkage drawn to scale: where two circles meet, and the angles measured there (Figure 12)."""
 
-from coursework.degrees import polar
+import numpy as np
+
+from coursework.degrees import cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.model import Exercise, drawn
 
-from .._drawn import PAPER_MM, of_drawing
+from .._drawn import PAPER_MM, all_long, of_drawing
 from .four_bar_positions import crank_off_the_axes
 
 
@@ -26,6 +28,22 @@ def _angle(quantity):
     return of_drawing(quantity, "deg", kind="angle")
 
 
+def circles_cut_clearly(theta3_open, theta4_open):
+    """At 40 degrees at least."""
+    return abs(cos(theta4_open - theta3_open)) < 0.766
+
+
+def pins_B_far_apart(b1, b2, kl, r3, r4):
+    """Their distance is at least that of the shorter bar."""
+    apart = kl * np.hypot(*np.moveaxis(b1 - b2, -1, 0))
+    return (apart > r3) | (apart > r4)
+
+
+def bars_are_long_enough_to_draw(r1, r2, r3, r4, kl):
+    """15 mm at least, and that from which the scale is told twice as long."""
+    return all_long(0.4, r1, r2, r3, r4) & (r2 > 15 * kl) & (np.maximum(r1, r2) > 30 * kl)
+
+
 EXERCISE = Exercise(
     given={
         "r1": drawn(60, 240, step=5, unit="mm"),
@@ -34,7 +52,12 @@ EXERCISE = Exercise(
         "r4": drawn(50, 220, step=5, unit="mm"),
         "theta2": drawn(-175, 180, step=5, unit="deg"),
     },
-    constraints=(crank_off_the_axes,),
+    constraints=(
+        crank_off_the_axes,
+        circles_cut_clearly,
+        pins_B_far_apart,
+        bars_are_long_enough_to_draw,
+    ),
     parts=(
         of_drawing("kl", "mm/mm"),
         of_drawing("p", kind="point"),
@@ -61,5 +84,4 @@ EXERCISE = Exercise(
         "theta3_crossed": r"\theta_3^{(2)}",
         "theta4_crossed": r"\theta_4^{(2)}",
     },
-    kept_by_solution=True,
 )

@@ -3,7 +3,7 @@
 from coursework.degrees import polar
 from coursework.model import Exercise, Part, drawn, in_turn
 
-from .._drawn import told_angle, told_number
+from .._drawn import all_long, on_paper, told_angle, told_number
 from .havens_planetary import arm, figure
 
 REASONS = ("fixed_pivot", "slot", "translation", "composition", "no_slip", "equiprojectivity")
@@ -26,6 +26,11 @@ def equiprojectivity_tells(arm, r2, r3, b, theta1):
     crank = polar(1.0, theta1)
     line = (r2 * crank + b * arm / abs(arm)) / crank
     return abs(line.imag) > 0.35 * abs(line)
+
+
+def vectors_are_long_enough_to_draw(v10, v40, v24, v20, v30):
+    """The shortest is a sixth of the longest at least."""
+    return all_long(1 / 6, *map(on_paper, (v10, v40, v24, v20, v30)))
 
 
 def tells(d, r2, r3, b, theta1):
@@ -65,7 +70,13 @@ EXERCISE = Exercise(
         "omega1": drawn(-20, 20, unit="rad/s"),
     },
     helpers=(arm,),
-    constraints=(guide_turns_fully, crank_off_the_axes, crank_turns_visibly, equiprojectivity_tells),
+    constraints=(
+        guide_turns_fully,
+        crank_off_the_axes,
+        crank_turns_visibly,
+        equiprojectivity_tells,
+        vectors_are_long_enough_to_draw,
+    ),
     parts=(
         _read("kv", "mm/s/mm"),
         _vector("v10"),
@@ -95,5 +106,4 @@ EXERCISE = Exercise(
         "v20": r"\vec V_{2/0}(B_2)",
         "v30": r"\vec V_{3/0}(I)",
     },
-    kept_by_solution=True,
 )

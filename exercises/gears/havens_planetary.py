@@ -16,7 +16,7 @@ from coursework.figures import (
     slot_link,
     vector,
 )
-from coursework.model import Driver, Exercise, Part, drawn, in_turn, loop_equations
+from coursework.model import Driver, Exercise, Part, detectable, drawn, in_turn, loop_equations
 
 REASONS = ("fixed_pivot", "slot", "translation", "composition", "no_slip")
 
@@ -60,6 +60,26 @@ def figure(arm, d, r2, r3, b, theta1, omega1):
     )
 
 
+def guide_turns_visibly(omega4, omega1):
+    return abs(omega4) > 0.1 * abs(omega1)
+
+
+def block_slides_visibly(v_slide, e, omega1):
+    return abs(v_slide) > 0.12 * e * abs(omega1)
+
+
+def pinion_turns_visibly(omega3, omega1):
+    return abs(omega3) > 0.3 * abs(omega1)
+
+
+def B2_moves_visibly(v_B2_x, v_B2_y, e, omega1):
+    least = 0.1 * e * abs(omega1)
+    return (abs(v_B2_x) > least) & (abs(v_B2_y) > least)
+
+
+OF_B2 = ("v_B2_x", "v_B2_y")
+
+
 def _reason(quantity):
     return Part(quantity, kind="choice", choices=REASONS, points=1)
 
@@ -74,7 +94,20 @@ EXERCISE = Exercise(
         "omega1": drawn(-20, 20, unit="rad/s"),
     },
     helpers=(arm,),
-    constraints=(guide_turns_fully, crank_off_the_axes, crank_turns_visibly),
+    constraints=(
+        guide_turns_fully,
+        crank_off_the_axes,
+        crank_turns_visibly,
+        guide_turns_visibly,
+        block_slides_visibly,
+        pinion_turns_visibly,
+        B2_moves_visibly,
+        detectable("omega2_is_omega1", "omega2", "omega3"),
+        detectable("willis_no_arm", "omega3"),
+        *(detectable(mistake, *OF_B2) for mistake in ("B2_with_crank", "B2_guide_only", "slide_sign")),
+        detectable("cosine_rule_sign", "rA", "omega4", "omega3", *OF_B2),
+        detectable("guide_angle_from_O1", "theta4", "omega4", "omega3", *OF_B2),
+    ),
     parts=(
         *in_turn(
             3,
@@ -103,5 +136,4 @@ EXERCISE = Exercise(
         "v_B2_y": "v_{B_2,y}",
     },
     driver=Driver("theta1", "omega1", output="v_slide"),
-    kept_by_solution=True,
 )

@@ -70,6 +70,18 @@ def jack_moves_visibly(L_dot, L_ddot):
     return (abs(L_dot) >= 80) & (abs(L_ddot) >= 20)
 
 
+def jack_pushes_at_a_good_angle(mu):
+    return (mu > 25) & (mu < 155) & (abs(mu - 90) > 10)
+
+
+def jack_turns_visibly(omega2, omega4):
+    return abs(omega2) > 0.1 * abs(omega4)
+
+
+def body_and_jack_accelerate_visibly(alpha2, alpha4, omega4):
+    return (abs(alpha4) > 0.15 * omega4**2) & (abs(alpha2) > 0.1 * omega4**2)
+
+
 def with_the_body_at(driven, foot, a, L_min, L_max):
     """The jack's length that tips the body so far; none beyond its ends."""
     A = polar(a, driven)
@@ -125,6 +137,9 @@ EXERCISE = Exercise(
         body_tips_far,
         jack_stands_between_its_ends,
         jack_moves_visibly,
+        jack_pushes_at_a_good_angle,
+        jack_turns_visibly,
+        body_and_jack_accelerate_visibly,
     ),
     parts=(
         Part("theta4", unit="deg", kind="angle", points=2),
@@ -161,5 +176,4 @@ EXERCISE = Exercise(
     driver=Driver(
         "theta4", poses=with_the_body_at, jack=Jack("L", "L_dot", "L_ddot", limits=("L_min", "L_max"))
     ),
-    kept_by_solution=True,
 )

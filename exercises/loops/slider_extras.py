@@ -82,6 +82,35 @@ def figure(pin_A, pin_B, pin_P, r1, theta2):
     )
 
 
+def coupler_turns_visibly(omega3, omega2):
+    return abs(omega3) > 0.06 * abs(omega2)
+
+
+def rocker_turns_visibly(omega4, omega2):
+    return abs(omega4) > 0.06 * abs(omega2)
+
+
+def rod_turns_visibly(omega5, omega2):
+    return abs(omega5) > 0.03 * abs(omega2)
+
+
+def slider_moves_visibly(r6_dot, r2, omega2):
+    return abs(r6_dot) > 0.15 * r2 * abs(omega2)
+
+
+def links_accelerate_visibly(alpha3, alpha4, alpha5, omega2):
+    bars = (abs(alpha3) > 0.08 * omega2**2) & (abs(alpha4) > 0.08 * omega2**2)
+    return bars & (abs(alpha5) > 0.03 * omega2**2)
+
+
+def slider_accelerates_visibly(r6_ddot, r2, omega2):
+    return abs(r6_ddot) > 0.2 * r2 * omega2**2
+
+
+def rod_normal_acceleration_counts(omega5, r5, theta5, r6_ddot):
+    return abs(omega5**2 * r5 * cos(theta5)) > 0.022 * abs(r6_ddot)
+
+
 LENGTHS = ("r1", "r2", "r3", "r4", "r5")
 
 
@@ -108,7 +137,17 @@ EXERCISE = Exercise(
         "mode": chosen("open", "crossed"),
     },
     helpers=(pin_A, pin_B, pin_P),
-    constraints=(crank_across_the_frame, coefficient_c_not_small),
+    constraints=(
+        crank_across_the_frame,
+        coefficient_c_not_small,
+        coupler_turns_visibly,
+        rocker_turns_visibly,
+        rod_turns_visibly,
+        slider_moves_visibly,
+        links_accelerate_visibly,
+        slider_accelerates_visibly,
+        rod_normal_acceleration_counts,
+    ),
     parts=(
         *in_turn(1, ("r2", "theta2", "omega2"), *(Part(i, kind="integer") for i in ("mobility", "cycles"))),
         *_equations("loop_1"),
@@ -135,5 +174,4 @@ EXERCISE = Exercise(
     version=2,
     symbols={"mobility": "w", "cycles": r"\gamma"},
     driver=Driver("theta2", "omega2", output="r6_dot"),
-    kept_by_solution=True,
 )

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import angle, cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.model import Driver, Exercise, Part, chosen, drawn, in_turn, loop_equations
+from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, in_turn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
     "xC", "yC", "xD", "yD", "r2", "r3", "r4", "r5", "r6", "beta", "r7", "d3",
@@ -111,6 +111,29 @@ def figure(frame, crank, pose, theta2, r3, r6, beta):
     )
 
 
+def links_turn_visibly(omega3, omega4, omega5, omega7, omega2):
+    return np.all([abs(rate) > 0.02 * abs(omega2) for rate in (omega3, omega4, omega5, omega7)], axis=0)
+
+
+def sliders_move_visibly(d5_dot, x8_dot, r2, omega2):
+    least = 0.1 * r2 * abs(omega2)
+    return (abs(d5_dot) > least) & (abs(x8_dot) > least)
+
+
+def links_accelerate_visibly(alpha3, alpha4, alpha5, alpha7, omega2):
+    return np.all([abs(gain) > 0.02 * omega2**2 for gain in (alpha3, alpha4, alpha5, alpha7)], axis=0)
+
+
+def sliders_accelerate_visibly(d5_ddot, x8_ddot, r2, omega2):
+    least = 0.1 * r2 * omega2**2
+    return (abs(d5_ddot) > least) & (abs(x8_ddot) > least)
+
+
+POSITIONS = ("theta3", "theta4", "theta5", "theta7", "d5", "x8")
+RATES = ("omega3", "omega4", "omega5", "d5_dot", "omega7", "x8_dot")
+ACCELERATIONS = ("alpha3", "alpha4", "alpha5", "d5_ddot", "alpha7", "x8_ddot")
+
+
 def _about(share, spread=0.15):
     """Bounds of a length that is about this share of xC."""
     return (lambda xC: (1 - spread) * share * xC), (lambda xC: (1 + spread) * share * xC)
@@ -153,6 +176,17 @@ EXERCISE = Exercise(
         rod_keeps_near_its_line,
         bar_keeps_off_the_line,
         crank_turns_visibly,
+        links_turn_visibly,
+        sliders_move_visibly,
+        links_accelerate_visibly,
+        sliders_accelerate_visibly,
+        *(
+            detectable(mistake, *POSITIONS, *RATES, *ACCELERATIONS)
+            for mistake in ("beta_forgotten", "beta_sign", "r6_is_r5", "D_sign", "other_mode")
+        ),
+        detectable("no_coriolis", "alpha5", "alpha7", "x8_ddot"),
+        detectable("no_centripetal", "d5_ddot"),
+        detectable("x8_rod_left_out", "x8_dot"),
     ),
     parts=(
         *in_turn(1, ("r2", "theta2", "omega2"), *(Part(i, kind="integer") for i in ("w", "gamma"))),
@@ -182,5 +216,4 @@ EXERCISE = Exercise(
     figure=figure,
     version=3,
     driver=Driver("theta2", "omega2", output="x8_dot"),
-    kept_by_solution=True,
 )

@@ -103,6 +103,14 @@ def coupler_leans(A, B):
     return abs(coupler.imag) > sin(8) * abs(coupler)
 
 
+def ram_goes_down(v_C):
+    return v_C < 0
+
+
+def bars_bear_different_forces(F_4, F_5):
+    return abs(F_4 / F_5 - 1) > 0.022
+
+
 def figure(crank_pivot, A, B, C, r2, r4, r5, phi, omega2):
     O, D = crank_pivot, 0j
     turn = 40 if omega2 > 0 else -40
@@ -149,6 +157,8 @@ EXERCISE = Exercise(
         crank_is_clear_of_the_toggle,
         bars_differ_visibly,
         coupler_leans,
+        ram_goes_down,
+        bars_bear_different_forces,
     ),
     parts=(
         Part("psi", unit="deg", atol=0.1, points=1),
@@ -181,5 +191,4 @@ EXERCISE = Exercise(
         "torque": r"\Gamma",
     },
     driver=Driver("theta2", "omega2", effort="torque", output="v_C", poses=with_the_crank_at),
-    kept_by_solution=True,
 )

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import angle, cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.kinematics.dyads import rrr, side_of
-from coursework.model import Driver, Exercise, Part, chosen, drawn, in_turn, loop_equations
+from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, in_turn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
     "xC", "yC", "xF", "yF", "r2", "r3", "r4", "r5", "beta", "r6", "r7",
@@ -127,6 +127,23 @@ def figure(frame, crank, bars, theta2, beta):
     )
 
 
+def links_turn_visibly(omega3, omega4, omega6, omega7, omega2):
+    return np.all([abs(rate) > 0.04 * abs(omega2) for rate in (omega3, omega4, omega6, omega7)], axis=0)
+
+
+def links_accelerate_visibly(alpha3, alpha4, alpha6, alpha7, omega2):
+    return np.all([abs(gain) > 0.03 * omega2**2 for gain in (alpha3, alpha4, alpha6, alpha7)], axis=0)
+
+
+def acceleration_of_the_plate_tells(omega4, omega6, omega7, alpha4, alpha6, alpha7):
+    """In the second loop, beside the terms in the squares of the rates."""
+    share_6, share_7 = abs(omega6 / omega4 * alpha4 / alpha6), abs(omega7 / omega4 * alpha4 / alpha7)
+    return (share_6 > 0.02) & (share_7 > 0.02)
+
+
+MOTION = tuple(f"{symbol}{link}" for symbol in ("theta", "omega", "alpha") for link in (3, 4, 6, 7))
+
+
 def _equations(loop, usual=("x", "y")):
     return loop_equations(
         loop,
@@ -163,6 +180,13 @@ EXERCISE = Exercise(
         angle_at_B_from_30_to_150,
         angle_at_E_from_25_to_155,
         crank_turns_visibly,
+        links_turn_visibly,
+        links_accelerate_visibly,
+        *(
+            detectable(mistake, *MOTION)
+            for mistake in ("beta_forgotten", "beta_sign", "r4_for_r5", "mode_1_other", "mode_2_other")
+        ),
+        acceleration_of_the_plate_tells,
     ),
     parts=(
         *in_turn(
@@ -197,5 +221,4 @@ EXERCISE = Exercise(
         "mode_2": r"\mathrm{mode 2}",
     },
     driver=Driver("theta2", "omega2", output="omega7"),
-    kept_by_solution=True,
 )

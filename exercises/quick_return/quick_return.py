@@ -125,6 +125,27 @@ def angle_OAB_not_square(angle_OAB):
     return abs(angle_OAB - 90) >= 10
 
 
+def bars_turn_visibly(omega3, omega4, omega5, omega2):
+    at_least = abs(omega2)
+    return (abs(omega3) > 0.05 * at_least) & (abs(omega4) > 0.05 * at_least) & (abs(omega5) > 0.02 * at_least)
+
+
+def rod_turning_counts_in_the_speed(v_C, omega5, r5, theta5):
+    return abs(omega5 * r5 * sin(theta5)) > 0.025 * abs(v_C)
+
+
+def rod_turning_counts_in_the_acceleration(a_C, omega5, r5, theta5):
+    return omega5**2 * r5 * cos(theta5) > 0.025 * abs(a_C)
+
+
+def piston_moves_visibly(v_C, r2, omega2):
+    return abs(v_C) > 0.15 * r2 * abs(omega2)
+
+
+def piston_accelerates_visibly(a_C, r2, omega2):
+    return abs(a_C) > 0.15 * r2 * omega2**2
+
+
 def _clearest(*directions):
     """The direction, by steps of 15 degrees, that is farthest from all of these."""
     return max(range(0, 360, 15), key=lambda way: min(abs(wrap(way - taken)) for taken in directions))
@@ -201,6 +222,11 @@ EXERCISE = Exercise(
         two_turning_points,
         return_is_quick,
         angle_OAB_not_square,
+        bars_turn_visibly,
+        rod_turning_counts_in_the_speed,
+        rod_turning_counts_in_the_acceleration,
+        piston_moves_visibly,
+        piston_accelerates_visibly,
     ),
     parts=(
         Part("theta2", unit="deg", kind="angle", points=1),
@@ -236,5 +262,4 @@ EXERCISE = Exercise(
     },
     figure=figure,
     driver=Driver("theta2", "omega2", output="v_C", poses=with_the_crank_at),
-    kept_by_solution=True,
 )

@@ -15,7 +15,9 @@ from coursework.figures import (
     slider,
 )
 from coursework.kinematics.dyads import rrp
-from coursework.model import Driver, Exercise, Part, drawn, loop_equations
+from coursework.model import Driver, Exercise, Part, detectable, drawn, loop_equations
+
+from .quick_return import piston_accelerates_visibly, piston_moves_visibly
 
 
 def rod(r2, r3, e, theta2):
@@ -43,6 +45,10 @@ def strokes_last_unlike(unequal_halves):
 
 def crank_off_the_axes(theta2):
     return theta2 % 90 >= 5
+
+
+def stroke_is_not_twice_the_crank(stroke, r2):
+    return stroke > 2 * 1.021 * r2
 
 
 def _clearest(*directions):
@@ -80,7 +86,19 @@ EXERCISE = Exercise(
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
     helpers=(rod, unequal_halves),
-    constraints=(offset_is_visible, crank_turns_with_room, strokes_last_unlike, crank_off_the_axes),
+    constraints=(
+        offset_is_visible,
+        crank_turns_with_room,
+        strokes_last_unlike,
+        crank_off_the_axes,
+        stroke_is_not_twice_the_crank,
+        piston_moves_visibly,
+        piston_accelerates_visibly,
+        detectable("e_sign", "xC", "v_C"),
+        detectable("e_forgotten", "xC", "v_C"),
+        detectable("rod_forgotten_in_v", "v_C"),
+        detectable("stroke_no_root", "stroke"),
+    ),
     parts=(
         Part("xC", unit="mm", points=1),
         Part("v_C", unit="mm/s", points=2),
@@ -102,5 +120,4 @@ EXERCISE = Exercise(
     figure=figure,
     version=2,
     driver=Driver("theta2", "omega2", output="v_C"),
-    kept_by_solution=True,
 )

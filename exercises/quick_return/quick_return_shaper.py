@@ -18,7 +18,7 @@ from coursework.figures import (
     slider,
     slot_link,
 )
-from coursework.model import Driver, Exercise, Part, drawn, loop_equations
+from coursework.model import Driver, Exercise, Part, detectable, drawn, loop_equations
 
 from ._slotted_ram import (
     C,
@@ -26,6 +26,7 @@ from ._slotted_ram import (
     _clearest,
     arm,
     crank_off_the_axes,
+    ram_accelerates_visibly,
 )
 
 
@@ -45,6 +46,21 @@ def rod_never_in_line_with_the_guide(r1, r2, r4, r5, h):
 
 def pins_can_be_told_apart_on_paper(arm, r4):
     return abs(abs(arm) - r4) > 0.1 * r4
+
+
+def ram_away_from_the_y_axis(xC, r5):
+    return abs(xC) > 0.5 * r5
+
+
+def ram_moves_visibly(v_C, r2, omega2):
+    return abs(v_C) > 0.25 * r2 * abs(omega2)
+
+
+MISTAKES = (
+    detectable("P_at_A", "xC", "v_C"),
+    detectable("guide_turns_with_crank", "xC", "v_C"),
+    detectable("guide_speed_no_projection", "v_C"),
+)
 
 
 def figure(arm, P, C, r1, r2, r4, theta2, omega2):
@@ -92,6 +108,10 @@ EXERCISE = Exercise(
         rod_never_in_line_with_the_guide,
         pins_can_be_told_apart_on_paper,
         crank_off_the_axes,
+        ram_away_from_the_y_axis,
+        ram_moves_visibly,
+        ram_accelerates_visibly,
+        *MISTAKES,
     ),
     parts=(
         Part("xC", unit="mm", points=2),
@@ -115,5 +135,4 @@ EXERCISE = Exercise(
     figure=figure,
     version=2,
     driver=Driver("theta2", "omega2", output="v_C"),
-    kept_by_solution=True,
 )

@@ -18,7 +18,7 @@ from coursework.figures import (
     slider,
     slot_link,
 )
-from coursework.model import Driver, Exercise, Part, drawn, loop_equations
+from coursework.model import Driver, Exercise, Part, detectable, drawn, loop_equations
 
 from ._slotted_ram import (
     C,
@@ -26,7 +26,11 @@ from ._slotted_ram import (
     _clearest,
     arm,
     crank_off_the_axes,
+    ram_accelerates_visibly,
 )
+
+#: What of the two strokes is told by shares: of an angle, the tolerance is the same in every variant.
+STROKES = ("Q", "t_advance", "t_return")
 
 
 def largest_crank(r1):
@@ -43,6 +47,15 @@ def pins_can_be_told_apart_on_paper(arm, r4, r5):
 
 def rod_reaches_with_room(r4, r5, h):
     return r5 > 1.8 * r4 + abs(h)
+
+
+def rod_reaches_from_A(arm, r5, h):
+    """Who takes A for P finds a linkage that closes, and no help there."""
+    return abs(h - arm.imag) <= r5
+
+
+def ram_moves_visibly(v_C, r4, omega2):
+    return abs(v_C) > 0.15 * r4 * abs(omega2)
 
 
 def figure(arm, P, C, r1, r2, r4, theta2, omega2):
@@ -90,6 +103,16 @@ EXERCISE = Exercise(
         pins_can_be_told_apart_on_paper,
         rod_reaches_with_room,
         crank_off_the_axes,
+        ram_moves_visibly,
+        ram_accelerates_visibly,
+        rod_reaches_from_A,
+        detectable("P_at_A", "xC", "v_C"),
+        detectable("guide_turns_with_crank", "xC", "v_C"),
+        detectable("arctan_no_quadrant", "xC", "v_C"),
+        detectable("v_C_rod_left_out", "v_C"),
+        detectable("stroke_2r2", "stroke"),
+        detectable("Q_atan", *STROKES),
+        detectable("line_through_O4", *STROKES),
     ),
     parts=(
         Part("xC", unit="mm", points=2),
@@ -113,5 +136,4 @@ EXERCISE = Exercise(
     figure=figure,
     version=2,
     driver=Driver("theta2", "omega2", output="v_C"),
-    kept_by_solution=True,
 )

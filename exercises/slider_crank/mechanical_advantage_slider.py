@@ -32,7 +32,7 @@ def piston_moves_visibly(r1_dot, r2, omega2):
     return abs(r1_dot) > 0.15 * r2 * abs(omega2)
 
 
-def speeds_of_rod_and_piston_can_be_told_apart(V_BA, V_s):
+def speeds_of_rod_and_output_can_be_told_apart(V_BA, V_s):
     return clearly_apart(V_BA, V_s, 0.01 * V_s)
 
 
@@ -72,7 +72,7 @@ EXERCISE = Exercise(
         rod_turns_visibly,
         piston_moves_visibly,
         detectable("advantage_inverse", "mechanical_advantage"),
-        speeds_of_rod_and_piston_can_be_told_apart,
+        speeds_of_rod_and_output_can_be_told_apart,
         detectable("rod_forgotten_in_v", "r1_dot", "V_s"),
         detectable("one_sign_wrong", "r1_dot", "V_s"),
     ),

@@ -39,6 +39,18 @@ def crank_turns_visibly(omega2):
     return abs(omega2) >= 2
 
 
+def pin_slides_visibly(v_rel, rho, omega2):
+    return abs(v_rel) > 0.15 * rho * abs(omega2)
+
+
+def lever_turns_visibly(omega4, omega2):
+    return abs(omega4) > 0.12 * abs(omega2)
+
+
+def rates_of_sliding_change_visibly(a_rel_t, alpha4, rho, omega2):
+    return (abs(a_rel_t) > 0.1 * rho * omega2**2) & (abs(alpha4) > 0.08 * omega2**2)
+
+
 def figure(bars, ends, r1, r2, rho, theta2):
     O, A, D = 0j, complex(bars[0]), complex(r1)
     C = A + complex(bars[1])
@@ -79,7 +91,15 @@ EXERCISE = Exercise(
         "mode": chosen("open", "crossed"),
     },
     helpers=(bars, ends),
-    constraints=(crank_turns, slot_is_less_than_half_a_circle, crank_off_the_frame, crank_turns_visibly),
+    constraints=(
+        crank_turns,
+        slot_is_less_than_half_a_circle,
+        crank_off_the_frame,
+        crank_turns_visibly,
+        pin_slides_visibly,
+        lever_turns_visibly,
+        rates_of_sliding_change_visibly,
+    ),
     parts=(
         Part("theta3", unit="deg", kind="angle", points=1),
         Part("theta4", unit="deg", kind="angle", points=1),
@@ -102,5 +122,4 @@ EXERCISE = Exercise(
         "a_coriolis": "a_c",
     },
     driver=Driver("theta2", "omega2", output="omega4"),
-    kept_by_solution=True,
 )

@@ -67,6 +67,10 @@ def follower_goes_round_with_the_cam_in_sight(law, h):
     return abs(law[1]) > 0.15 * h
 
 
+def law_bends_visibly(s2, h):
+    return abs(s2) > 0.2 * h
+
+
 def _outline(h, beta, Rb):
     """The cam at the angle 0, where its rise begins on top."""
     lift, slope = law(h, _AROUND, beta)
@@ -115,6 +119,7 @@ EXERCISE = Exercise(
         cam_is_no_larger_than_need_be,
         lift_is_visible,
         follower_goes_round_with_the_cam_in_sight,
+        law_bends_visibly,
     ),
     parts=(
         Part("s", unit="mm", points=1),
@@ -135,5 +140,4 @@ EXERCISE = Exercise(
         "Rb_min": r"R_{b,\min}",
     },
     driver=Driver("theta", "omega", output="v"),
-    kept_by_solution=True,
 )

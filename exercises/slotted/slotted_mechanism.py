@@ -25,6 +25,10 @@ def crank_off_the_axes(theta2):
     return theta2 % 90 >= 5
 
 
+def guide_turns_visibly(omega4, omega2):
+    return abs(omega4) > 0.08 * abs(omega2)
+
+
 def asks_swing(r1, r2, theta2):
     """Half of the oscillating guides are asked their swing, so that the question tells nothing of the type."""
     return r2 < r1 and theta2 % 10 == 0
@@ -61,7 +65,13 @@ EXERCISE = Exercise(
         "alpha2": drawn(-20, 20, unit="rad/s^2", default=0),
     },
     helpers=(arm,),
-    constraints=(crank_unlike_frame, block_away_from_O4, block_slides_visibly, crank_off_the_axes),
+    constraints=(
+        crank_unlike_frame,
+        block_away_from_O4,
+        block_slides_visibly,
+        crank_off_the_axes,
+        guide_turns_visibly,
+    ),
     parts=(
         Part("rA", unit="mm", points=1),
         Part("theta4", unit="deg", kind="angle", points=1),
@@ -90,5 +100,4 @@ EXERCISE = Exercise(
         "a_coriolis": "a_c",
     },
     driver=Driver("theta2", "omega2", "alpha2", output="omega4"),
-    kept_by_solution=True,
 )

@@ -11,7 +11,6 @@ from coursework.mechanics import Body, Mechanism
 from coursework.polygons import Side, crank_v, polygon_of_velocities, turning, two_bars_v
 from coursework.solution import given, mistake, stable
 
-from ._coupler_curve_keep import *
 from ._four_bar import *
 
 UNITS = {"AC": "mm", "phi": "deg", "psi": "deg", "side": "1", "omega4": "rad/s", "theta4": "deg"}

@@ -21,7 +21,6 @@ from coursework.polygons import (
 from coursework.solution import formula, given, mistake, stable
 
 from ._four_bar import *
-from ._four_bar_motion_keep import *
 
 UNITS = {"AC": "mm", "phi": "deg", "psi": "deg", "side": "1"}
 SYMBOLS = {"AC": "AC", "phi": r"\varphi", "psi": r"\psi", "side": r"\varepsilon"}

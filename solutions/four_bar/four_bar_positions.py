@@ -16,8 +16,6 @@ from coursework.mechanics import Body, Mechanism
 from coursework.solution import Moving, formula, given, mistake, stable
 from coursework.structure import grashof
 
-from ._four_bar_positions_keep import *
-
 UNITS = {
     "theta3": "deg",
     "theta4": "deg",

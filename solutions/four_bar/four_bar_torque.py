@@ -26,7 +26,6 @@ from coursework.polygons import (
 from coursework.solution import Moving, formula, given, mistake, stable
 
 from ._four_bar import *
-from ._four_bar_torque_keep import *
 
 GRAVITY = 9.81  #: m/s^2, along -y
 

@@ -14,7 +14,6 @@ from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
 from coursework.solution import Moving, given, mistake
 
 from ._four_bar import *
-from ._mechanical_advantage_keep import *
 
 UNITS = {
     "AC": "mm",

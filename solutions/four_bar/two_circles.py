@@ -28,7 +28,6 @@ from coursework.polygons.hand_drawn import TOLERANCE_MM, on_paper
 from coursework.solution import Judged, given, judge, mistake
 
 from ..polygons._drawn_start import *
-from ._two_circles_keep import *
 
 ANGLES = {"1": ("theta3_open", "theta4_open"), "2": ("theta3_crossed", "theta4_crossed")}
 _WIDTH = 2 * TOLERANCE_MM  #: by which a length on paper may be off

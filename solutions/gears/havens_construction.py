@@ -9,7 +9,6 @@ from coursework.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_p
 from coursework.solution import Judged, given, judge, mistake, stable
 
 from ._havens import *
-from ._havens_construction_keep import *
 
 VECTORS = ("v10", "v40", "v14", "v24", "v20", "v30")
 _WIDTH = 2 * TOLERANCE_MM

@@ -17,7 +17,6 @@ from coursework.polygons import Side, crank_v, guide_v, polygon_of_velocities, t
 from coursework.solution import Moving, given, mistake, stable
 
 from ._havens import *
-from ._havens_planetary_keep import *
 
 UNITS = {"e": "mm"}
 LOOPS = {

@@ -22,8 +22,6 @@ from coursework.polygons import (
 )
 from coursework.solution import Moving, formula, given, mistake, stable
 
-from ._jack_mechanism_keep import *
-
 UNITS = {"OB": "mm", "beta": "deg", "gamma": "deg", "mu": "deg"}
 SYMBOLS = {"OB": "OB", "beta": r"\beta", "gamma": r"\gamma", "mu": r"\mu"}
 LOOPS = {

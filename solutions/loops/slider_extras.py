@@ -29,8 +29,6 @@ from coursework.polygons import (
 )
 from coursework.solution import formula, given, mistake, stable
 
-from ._slider_extras_keep import *
-
 UNITS = {"A": "1", "side": "1"}
 SYMBOLS = {"side": r"\varepsilon"}
 LOOPS = {

@@ -35,7 +35,6 @@ from coursework.polygons import (
 from coursework.solution import formula, given, mistake, stable
 
 from ._first_four_bar import *
-from ._three_loop_shaper_keep import *
 
 UNITS = {
     "AC": "mm",

@@ -19,8 +19,6 @@ from coursework.mechanics import Body, Load, Mechanism, Slide
 from coursework.polygons import Side, crank_v, polygon_of_velocities, turning, two_bars_v
 from coursework.solution import Moving, given, mistake, stable
 
-from ._toggle_press_keep import *
-
 UNITS = {
     "xB": "mm",
     "yB": "mm",

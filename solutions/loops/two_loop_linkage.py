@@ -31,7 +31,6 @@ from coursework.polygons import (
 from coursework.solution import formula, given, mistake, stable
 
 from ._first_four_bar import *
-from ._two_loop_linkage_keep import *
 
 UNITS = {
     "AC": "mm",

@@ -30,7 +30,6 @@ from coursework.polygons import (
 )
 from coursework.solution import formula, given, mistake, stable
 
-from ._quick_return_keep import *
 from ._strokes import *
 
 UNITS = {

@@ -27,7 +27,6 @@ from coursework.polygons import (
 from coursework.solution import formula, given, mistake, stable
 
 from ._in_line import _in_line
-from ._quick_return_offset_keep import *
 from ._strokes import *
 
 UNITS = {

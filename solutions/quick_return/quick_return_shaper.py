@@ -14,7 +14,6 @@ from coursework.errors import Undefined
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin, point, rotation_arrow
 from coursework.solution import given, mistake, stable
 
-from ._quick_return_shaper_keep import *
 from ._slotted_ram import *
 from ._slotted_ram_acceleration import *
 from ._strokes import *

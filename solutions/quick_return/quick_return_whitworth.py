@@ -16,7 +16,6 @@ from coursework.figures import Figure, circle, ground_pivot, line, link, pin, po
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import given, mistake, stable
 
-from ._quick_return_whitworth_keep import *
 from ._slotted_ram import *
 from ._slotted_ram_acceleration import *
 from ._strokes import *

@@ -19,7 +19,6 @@ from coursework.kinematics.vectors import cross, dot
 from coursework.mechanics import Load
 from coursework.solution import formula, given, mistake, stable
 
-from ._shaper_torque_keep import *
 from ._slotted_ram import *
 from ._slotted_ram import MECHANISM as _SHAPER
 from ._swinging import *

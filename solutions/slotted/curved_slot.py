@@ -26,8 +26,6 @@ from coursework.polygons import (
 )
 from coursework.solution import formula, given, mistake, stable
 
-from ._curved_slot_keep import *
-
 UNITS = {"AD": "mm", "phi": "deg", "psi": "deg", "side": "1"}
 SYMBOLS = {"AD": "AD", "phi": r"\varphi", "psi": r"\psi", "side": r"\varepsilon"}
 LOOPS = {

@@ -13,8 +13,6 @@ from coursework.figures import Figure, circle, contact, dimension, ground_pivot,
 from coursework.kinematics.cams import rise_345, rise_dwell_return
 from coursework.solution import Moving, formula, given, mistake, stable
 
-from ._flat_faced_cam_keep import *
-
 UNITS = {
     "DWELL": "deg",
     "TURN": "deg",

@@ -23,8 +23,6 @@ from coursework.polygons import (
 )
 from coursework.solution import formula, given, mistake, stable
 
-from ._slotted_mechanism_keep import *
-
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
 LOOPS = {"loop_1": (Vector("r1", "theta1"), Vector("r2", "theta2"), Vector("rA", "theta4", -1))}
