@@ -477,9 +477,6 @@ class Exercise:
         What drives it when it is simulated; none for an exercise that does not move.
     effects
         The optional effects that the exercise's own parts call for, and a request that names none.
-    kept_by_solution
-        Whether further conditions, those on answers, stand beside the solution, as ``KEEP`` and ``HELPERS`` of
-        ``_NAME_keep.py``, which the solution imports so that it goes where the solution goes.
     drawing_mm
         Width and height of the box of millimetre paper that a printed sheet offers to draw in, whole
         centimetres; none unless told.
@@ -497,7 +494,6 @@ class Exercise:
     driver: Driver | None = None
     effects: tuple[str, ...] = ()
     drawing_mm: tuple[int, int] | None = None
-    kept_by_solution: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parts", tuple(self.parts))

@@ -163,6 +163,11 @@ def on_paper(vector):
     return np.hypot(vector[..., 0], vector[..., 1])
 
 
+def velocities_are_long_enough_to_draw(p, a, ab, pv_b):
+    """The shortest is a third of the longest at least."""
+    return all_long(1 / 3, on_paper(a - p), ab, pv_b)
+
+
 def dot(u, v):
     return u.real * v.real + u.imag * v.imag
 

@@ -145,8 +145,6 @@ class _Copy:
         """Return the target of a file: under the new name if it is the exercise's own, unchanged if it is
         shared."""
         relative = path.relative_to(self.source.root)
-        if path.name == f"_{self.name}_keep.py":
-            return relative.with_name(f"_{self.renamed}_keep.py")  # the conditions beside its solution
         folder = self._folder(relative.parts[0])
         if folder is not None and folder in path.parents:
             return folder.relative_to(self.source.root).with_name(self.renamed) / path.relative_to(folder)

@@ -306,15 +306,7 @@ class CourseExercise(Generic[V]):
     @cached_property
     def drawing(self) -> Drawing:
         """The draws of the exercise's variants."""
-        if not self.spec.kept_by_solution:
-            return Drawing(self.name, self.spec, lambda: self.solution)
-        module = self.folder.keep_module(self.name)
-        retained = getattr(module, "KEEP", ())
-        if not retained:
-            raise BadCourse(f"_{self.name}_keep.py states no KEEP, which {self.name} says that it is kept by")
-        helpers = (*self.spec.helpers, *getattr(module, "HELPERS", ()))
-        spec = replace(self.spec, constraints=(*self.spec.constraints, *retained), helpers=helpers)
-        return Drawing(self.name, spec, lambda: self.solution)
+        return Drawing(self.name, self.spec, lambda: self.solution)
 
     def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
         """Parts by id, in the order of the exercise; None for the usual ones.

@@ -365,22 +365,6 @@ class Folder:
         steps = (kind, name) if home is None else home.relative_to(self.root).with_suffix("").parts
         return self._imported(steps, self.source(kind, name))
 
-    def keep_module(self, name: str) -> ModuleType:
-        """Import the conditions that stand beside a solution, ``_NAME_keep.py``, and not the solution itself.
-
-        Raises
-        ------
-        BadCourse
-            There are none, or they cannot be imported.
-        """
-        home = self.home("solutions", name)
-        path = None if home is None else home.with_name(f"_{name}_keep.py")
-        if path is None or not path.exists():
-            raise BadCourse(
-                f"{name} says that it is kept by its solution; there is no _{name}_keep.py beside it, with KEEP = (…)"
-            )
-        return self._imported(path.relative_to(self.root).with_suffix("").parts, self.relative(path))
-
     def lesson_module(self, name: str) -> ModuleType:
         """Import the module that draws a lesson's figures, ``exercises/lessons/NAME.py``.
 

@@ -57,7 +57,7 @@ class Animation(Reel):
     Raises
     ------
     BadCourse
-        The exercise names no driver or no figure, and no solution at hand states a film.
+        The exercise names no driver or no figure, and the solution states no film.
     UnknownName
         An effect that is none of the four.
     WrongValue

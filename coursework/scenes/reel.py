@@ -32,14 +32,14 @@ class Reel:
     Raises
     ------
     BadCourse
-        The exercise names no driver or no figure, and no solution at hand states a film.
+        The exercise names no driver or no figure, and the solution states no film.
     """
 
     def __init__(self, variant: Variant, count: int):
         exercise = variant.exercise
         if exercise.film is None and exercise.spec.driver is None:
             raise BadCourse(
-                f"{exercise.name} names no driver=Driver(…) and no solution at hand states a FILM, so it cannot be moved"
+                f"{exercise.name} names no driver=Driver(…) and its solution states no FILM, so it cannot be moved"
             )
         if not exercise.is_animated:
             raise BadCourse(f"{exercise.name} has no figure to move")

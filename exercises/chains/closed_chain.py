@@ -5,7 +5,16 @@ import numpy as np
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part
 
-from ._solids import IN_CHAINS, coordinate, direction, joint_kind, table
+from ._solids import (
+    IN_CHAINS,
+    coordinate,
+    direction,
+    evenly,
+    freedoms_of,
+    joint_kind,
+    mobility_of_loop,
+    table,
+)
 
 
 def tells(
@@ -46,6 +55,41 @@ def no_body_passes_through_another_joint(x2, y2, z2, x3, y3, z3, x4, y4, z4):
     return ~hidden
 
 
+def mobility(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+    x2, y2, z2, x3, y3, z3, x4, y4, z4,
+):  # fmt: skip
+    """Of the whole chain, at the given position."""
+    return mobility_of_loop(
+        (joint_1, joint_2, joint_3, joint_4),
+        (direction_1, direction_2, direction_3, direction_4),
+        ((0, 0, 0), (x2, y2, z2), (x3, y3, z3), (x4, y4, z4)),
+    )
+
+
+def moves(mobility):
+    return mobility >= 1
+
+
+def mobility_is_small(mobility):
+    return mobility <= 3
+
+
+#: Share of the draws of each rank that are let through: of 6 most are drawn, and who writes 6 everywhere would be right in most.
+LET_THROUGH = {6: 0.2, 5: 0.5, 4: 0.8}
+
+
+def ranks_are_mixed(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+    x2, y2, z2, x3, y3, z3, x4, y4, z4, mobility,
+):  # fmt: skip
+    joints = (joint_1, joint_2, joint_3, joint_4)
+    rank = sum(freedoms_of(joint) for joint in joints) - mobility
+    share = np.select([rank == n for n in LET_THROUGH], list(LET_THROUGH.values()), 1.0)
+    directions = (direction_1, direction_2, direction_3, direction_4)
+    return evenly(*joints, *directions, x2, y2, z2, x3, y3, z3, x4, y4, z4) < share
+
+
 EXERCISE = Exercise(
     given={
         "joint_1": joint_kind(IN_CHAINS),
@@ -58,8 +102,13 @@ EXERCISE = Exercise(
         "direction_4": direction(),
         **{f"{axis}{k}": coordinate() for k in (2, 3, 4) for axis in "xyz"},
     },
-    helpers=(),
-    constraints=(no_body_passes_through_another_joint,),
+    helpers=(mobility,),
+    constraints=(
+        no_body_passes_through_another_joint,
+        moves,
+        mobility_is_small,
+        ranks_are_mixed,
+    ),
     parts=(
         Part("gamma", kind="integer", points=1, by_request=True),  # one loop, always
         Part("Nc", kind="integer", points=1),
@@ -86,5 +135,4 @@ EXERCISE = Exercise(
         "m_internal": "m_i",
         "m_useful": "m_u",
     },
-    kept_by_solution=True,
 )

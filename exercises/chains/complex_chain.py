@@ -1,9 +1,12 @@
 """A mechanism of several loops: loops, ranks, mobility that is useful and internal, and what constraint entails."""
 
+import numpy as np
+
 from coursework.figures import Figure, ground_pivot, line, link, note, pin, point, rail, slider
 from coursework.model import Exercise, Part, chosen, drawn
 
 from ._complex import DIRECTIONS, LAYOUTS, POINTS, points_of
+from ._solids import mobility_of_loops
 
 ON_FRAME = ("revolute", "cylindrical")
 BETWEEN_BODIES = ("revolute", "cylindrical", "spherical", "annular")
@@ -79,6 +82,31 @@ def figure(layout, xA, yA, xB, yB, xC, xD, yD, xE, yE):
     return Figure(*elements)
 
 
+def mobility(
+    layout, joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8,
+    xA, yA, xB, yB, xC, xD, yD, xE, yE,
+):  # fmt: skip
+    """Of the whole chain, at the given position."""
+    joints = (joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8)
+    points = points_of(xA, yA, xB, yB, xC, xD, yD, xE, yE)
+    layout = np.atleast_1d(layout)
+    found = np.zeros(layout.shape, dtype=int)
+    for name, kind in LAYOUTS.items():
+        rows = layout == name
+        count = len(kind.between)
+        found[rows] = mobility_of_loops(
+            kind.senses,
+            [np.atleast_1d(joint)[rows] for joint in joints[:count]],
+            DIRECTIONS[:count],
+            [[np.broadcast_to(c, layout.shape)[rows] for c in point] for point in points[:count]],
+        )
+    return found
+
+
+def mobility_is_small(mobility):
+    return mobility <= 3
+
+
 def _hidden(low, high):
     return drawn(low, high, step=20, unit="mm", shown=False)
 
@@ -102,8 +130,11 @@ EXERCISE = Exercise(
         "xE": _hidden(300, 340),
         "yE": _hidden(-20, 20),
     },
-    helpers=(),
-    constraints=(four_bar_is_off_its_dead_points,),
+    helpers=(mobility,),
+    constraints=(
+        four_bar_is_off_its_dead_points,
+        mobility_is_small,
+    ),
     parts=(
         Part("n", kind="integer", points=1),
         Part("gamma", kind="integer", points=1),
@@ -127,5 +158,4 @@ EXERCISE = Exercise(
         "m_internal": "m_i",
         "m_useful": "m_u",
     },
-    kept_by_solution=True,
 )

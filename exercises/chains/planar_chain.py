@@ -5,7 +5,7 @@ import numpy as np
 from coursework.figures import Figure, axes, line, note, point
 from coursework.model import Exercise, Part, chosen, drawn
 
-from ._solids import INCLINED, direction, freedoms_of, table
+from ._solids import INCLINED, direction, freedoms_of, mobility_of_loops, table
 
 PLANAR = ("revolute", "prismatic", "point_contact", "free")
 
@@ -107,6 +107,28 @@ def figure(x2, y2, x3, y3, x4, y4):
     return Figure(*elements)
 
 
+def mobility(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+    x2, y2, x3, y3, x4, y4,
+):  # fmt: skip
+    """In the plane, at the given position."""
+    return mobility_of_loops(
+        [[1]] * 4,
+        (joint_1, joint_2, joint_3, joint_4),
+        (direction_1, direction_2, direction_3, direction_4),
+        ((0, 0, 0), (x2, y2, 0), (x3, y3, 0), (x4, y4, 0)),
+        in_plane=True,
+    )
+
+
+def moves(mobility):
+    return mobility >= 1
+
+
+def mobility_is_small(mobility):
+    return mobility <= 3
+
+
 EXERCISE = Exercise(
     given={
         **{
@@ -124,8 +146,14 @@ EXERCISE = Exercise(
         "x4": drawn(80, 140, step=20, unit="mm", shown=False),
         "y4": drawn(-20, 0, step=20, unit="mm", shown=False),
     },
-    helpers=(),
-    constraints=(all_joints_move_in_the_plane, one_joint_at_most_is_free, few_freedoms_in_space),
+    helpers=(mobility,),
+    constraints=(
+        all_joints_move_in_the_plane,
+        one_joint_at_most_is_free,
+        few_freedoms_in_space,
+        moves,
+        mobility_is_small,
+    ),
     parts=(
         *(Part(f"planar_{k}", kind="choice", choices=PLANAR, points=1) for k in (1, 2, 3, 4)),
         Part("gamma", kind="integer", points=1, by_request=True),  # one loop, always
@@ -148,5 +176,4 @@ EXERCISE = Exercise(
         "rs": "r_s",
         "h_space": r"h_{\mathrm{3D}}",
     },
-    kept_by_solution=True,
 )

@@ -5,16 +5,26 @@ from coursework.model import Exercise
 from .._drawn import (
     FOUR_BAR,
     PAPER_MM,
+    all_long,
     bars,
     crank_turns_visibly,
     four_bar_figure,
     known,
     lines_cross_clearly,
     of_drawing,
+    on_paper,
     told_angle,
     told_number,
 )
 from .._told_speeds import rates
+
+
+def vectors_are_long_enough_to_draw(p, a, n, m, bb_t, mb_t, pa_b):
+    """The normal ones a ninth of the longest at least, the tangential ones and that of B two ninths."""
+    of_A, normal_BA, normal_B = map(on_paper, (a - p, n - a, m - p))
+    normal = all_long(1 / 9, of_A, normal_BA, normal_B, bb_t, mb_t, pa_b)
+    longest = (2 * normal_BA, 2 * normal_B)  # two ninths of the others are asked, one of these
+    return normal & all_long(2 / 9, of_A, *longest, bb_t, mb_t, pa_b)
 
 
 def tells(r1, r2, r3, r4, theta2, omega2, mode):
@@ -31,8 +41,12 @@ def tells(r1, r2, r3, r4, theta2, omega2, mode):
 
 EXERCISE = Exercise(
     given=FOUR_BAR,
-    helpers=(bars, rates),
-    constraints=(crank_turns_visibly, lines_cross_clearly),
+    helpers=(bars,),
+    constraints=(
+        crank_turns_visibly,
+        lines_cross_clearly,
+        vectors_are_long_enough_to_draw,
+    ),
     parts=(
         *known("known_BA_n", "known_BA_t", "known_B_n", "known_B_t"),
         of_drawing("ka", "mm/s^2/mm"),
@@ -52,5 +66,4 @@ EXERCISE = Exercise(
     drawing_mm=PAPER_MM,
     version=2,
     symbols={"ka": "k_a", "p": "p_a", "n": "b'", "m": "b''", "bb_t": "b' b", "pa_b": "p_a b", "a_B": "a_B"},
-    kept_by_solution=True,
 )

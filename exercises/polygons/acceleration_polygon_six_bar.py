@@ -1,8 +1,17 @@
 """Acceleration polygon of six links whose velocities are known: two bars that meet, then a rod and its slider."""
 
+import numpy as np
+
 from coursework.model import Exercise, drawn
 
-from .._drawn import PAPER_MM, known, of_drawing, told_number
+from .._drawn import (
+    PAPER_MM,
+    all_long,
+    known,
+    of_drawing,
+    on_paper,
+    told_number,
+)
 from .._told_speeds import six_link_rates
 from ._six_bar import (
     GIVEN,
@@ -17,6 +26,18 @@ from ._six_bar import (
 )
 
 
+def vectors_are_long_enough_to_draw(p, a, b, m, bb_t, pa_c):
+    """An eighth of the longest at least, but for the normal ones and those of C about B."""
+    return all_long(1 / 8, on_paper(a - p), bb_t, on_paper(b - m), pa_c)
+
+
+def drawing_fills_its_paper(p, a, n, m, b, f, c, bb_t, pa_c):
+    """At its round scale the longest vector has 42 mm at least, and the shortest known ones 4.2."""
+    normal = [on_paper(side) for side in (n - a, m - p, f - b)]
+    others = [on_paper(side) for side in (a - p, b - m, c - f)]
+    return (np.maximum.reduce([*normal, *others, bb_t, pa_c]) > 42) & (np.minimum.reduce(normal) > 4.2)
+
+
 def tells(r1, r2, r3, r4, r5, theta2, omega2, mode):
     links = bars(r1, r2, r3, r4, r5, theta2, mode)
     A = pin_A(r1, r2, theta2)
@@ -29,7 +50,11 @@ def tells(r1, r2, r3, r4, r5, theta2, omega2, mode):
 EXERCISE = Exercise(
     given={**GIVEN, "omega2": drawn(4, 20, unit="rad/s")},
     helpers=HELPERS,
-    constraints=(crank_off_the_axes,),
+    constraints=(
+        crank_off_the_axes,
+        vectors_are_long_enough_to_draw,
+        drawing_fills_its_paper,
+    ),
     parts=(
         *known("known_BA_n", "known_BA_t", "known_B_n", "known_C"),
         of_drawing("ka", "mm/s^2/mm"),
@@ -59,5 +84,4 @@ EXERCISE = Exercise(
         "pa_c": "p_a c",
         "r6_ddot": "a_C",
     },
-    kept_by_solution=True,
 )

@@ -6,10 +6,12 @@ from coursework.model import Exercise
 from .._drawn import (
     PAPER_MM,
     SLIDER_CRANK,
+    all_long,
     crank_turns_visibly,
     known,
     of_drawing,
     offset_is_none_or_visible,
+    on_paper,
     rod,
     rod_reaches_all_turn,
     slider_crank_figure,
@@ -17,6 +19,12 @@ from .._drawn import (
     told_number,
 )
 from .._told_speeds import rod_rate
+
+
+def vectors_are_long_enough_to_draw(p, a, n, bb_t, pa_b):
+    """The normal one an eighth of the longest at least, the others a quarter."""
+    of_A = on_paper(a - p)
+    return all_long(1 / 8, of_A, on_paper(n - a), bb_t, pa_b) & all_long(1 / 4, of_A, bb_t, pa_b)
 
 
 def tells(r2, r3, e, theta2, omega2):
@@ -32,7 +40,12 @@ EXERCISE = Exercise(
     version=3,
     given=SLIDER_CRANK,
     helpers=(rod,),
-    constraints=(crank_turns_visibly, offset_is_none_or_visible, rod_reaches_all_turn),
+    constraints=(
+        crank_turns_visibly,
+        offset_is_none_or_visible,
+        rod_reaches_all_turn,
+        vectors_are_long_enough_to_draw,
+    ),
     parts=(
         *known("known_A", "known_BA_n", "known_BA_t", "known_B"),
         of_drawing("ka", "mm/s^2/mm"),
@@ -49,5 +62,4 @@ EXERCISE = Exercise(
     tells=tells,
     drawing_mm=PAPER_MM,
     symbols={"ka": "k_a", "p": "p_a", "n": "b'", "bb_t": "b' b", "pa_b": "p_a b", "r1_ddot": "a_B"},
-    kept_by_solution=True,
 )

@@ -5,15 +5,23 @@ from coursework.model import Exercise
 from .._drawn import (
     PAPER_MM,
     SLOTTED,
+    all_long,
     crank_turns_visibly,
     guided,
     known,
     of_drawing,
+    on_paper,
     slotted_figure,
     told_angle,
     told_number,
 )
 from .._told_speeds import guide_rates
+
+
+def vectors_are_long_enough_to_draw(p, a, k, n, nb_t, bk):
+    """The normal one a ninth of the longest at least, the others two ninths."""
+    others = on_paper(a - p), on_paper(a - k), nb_t, bk
+    return all_long(1 / 9, on_paper(n - p), *others) & all_long(2 / 9, *others)
 
 
 def tells(r1, r2, theta2, omega2):
@@ -30,7 +38,10 @@ def tells(r1, r2, theta2, omega2):
 EXERCISE = Exercise(
     given=SLOTTED,
     helpers=(guided,),
-    constraints=(crank_turns_visibly,),
+    constraints=(
+        crank_turns_visibly,
+        vectors_are_long_enough_to_draw,
+    ),
     parts=(
         *known("known_c", "known_s", "known_n", "known_t"),
         of_drawing("ka", "mm/s^2/mm"),
@@ -58,5 +69,4 @@ EXERCISE = Exercise(
         "nb_t": "a_4' a_4",
         "rA_ddot": r"\ddot r_A",
     },
-    kept_by_solution=True,
 )

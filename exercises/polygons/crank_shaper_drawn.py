@@ -22,7 +22,15 @@ from coursework.figures import (
 from coursework.kinematics.dyads import rrp
 from coursework.model import Exercise, Part, drawn
 
-from .._drawn import crank_turns_visibly, guided, of_drawing, told_angle, told_number
+from .._drawn import (
+    all_long,
+    crank_turns_visibly,
+    guided,
+    of_drawing,
+    on_paper,
+    told_angle,
+    told_number,
+)
 
 
 class Ram(NamedTuple):
@@ -53,6 +61,16 @@ def rod_reaches_with_room(r1, r2, r4, r5, h):
 def rod_never_in_line_with_the_lever(r1, r2, r4, r5, h):
     """The line O-E of a rod stretched out is flatter than the lever ever is."""
     return asin(h / (r4 + r5)) < 87 - asin(np.minimum(r2 / r1, 1))
+
+
+def velocities_are_long_enough_to_draw(p, a, b, d, e, pv_b, pv_e):
+    of_P2, sliding, of_D, of_rod = map(on_paper, (a - p, a - b, d - p, e - d))
+    return all_long(1 / 6, of_P2, pv_b, sliding, of_D, pv_e) & all_long(1 / 12, of_rod, of_P2, pv_b, of_D)
+
+
+def accelerations_are_long_enough_to_draw(q, a2, k, n, b2, d2, m, e2, pa_e):
+    others = *map(on_paper, (a2 - q, a2 - k, b2 - n, b2 - k, d2 - q)), pa_e
+    return all_long(1 / 6, *others) & all_long(1 / 15, on_paper(n - q), on_paper(e2 - m), *others)
 
 
 def tells(r1, r2, r4, r5, h, theta2):
@@ -108,6 +126,8 @@ EXERCISE = Exercise(
         lever_swings_and_carries_P,
         rod_reaches_with_room,
         rod_never_in_line_with_the_lever,
+        velocities_are_long_enough_to_draw,
+        accelerations_are_long_enough_to_draw,
     ),
     parts=(
         of_drawing("kv", "mm/s/mm"),
@@ -163,5 +183,4 @@ EXERCISE = Exercise(
         "a_C": "a_E",
         "mechanical_advantage": r"\lambda",
     },
-    kept_by_solution=True,
 )

@@ -12,6 +12,7 @@ from .._drawn import (
     lines_cross_clearly,
     of_drawing,
     told_angle,
+    velocities_are_long_enough_to_draw,
 )
 
 
@@ -23,7 +24,11 @@ def tells(r1, r2, r3, r4, theta2, mode):
 EXERCISE = Exercise(
     given=FOUR_BAR,
     helpers=(bars,),
-    constraints=(crank_turns_visibly, lines_cross_clearly),
+    constraints=(
+        crank_turns_visibly,
+        lines_cross_clearly,
+        velocities_are_long_enough_to_draw,
+    ),
     parts=(
         *known("known_A", "known_BA", "known_B"),
         of_drawing("kv", "mm/s/mm"),
@@ -41,5 +46,4 @@ EXERCISE = Exercise(
     drawing_mm=PAPER_MM,
     version=2,
     symbols={"kv": "k_v", "p": "p_v", "ab": "a b", "pv_b": "p_v b", "v_B": "V_B"},
-    kept_by_solution=True,
 )

@@ -13,6 +13,7 @@ from .._drawn import (
     rod_reaches_all_turn,
     slider_crank_figure,
     told_angle,
+    velocities_are_long_enough_to_draw,
 )
 
 
@@ -24,7 +25,12 @@ EXERCISE = Exercise(
     version=3,
     given=SLIDER_CRANK,
     helpers=(rod,),
-    constraints=(crank_turns_visibly, offset_is_none_or_visible, rod_reaches_all_turn),
+    constraints=(
+        crank_turns_visibly,
+        offset_is_none_or_visible,
+        rod_reaches_all_turn,
+        velocities_are_long_enough_to_draw,
+    ),
     parts=(
         *known("known_A", "known_BA", "known_B"),
         of_drawing("kv", "mm/s/mm"),
@@ -40,5 +46,4 @@ EXERCISE = Exercise(
     tells=tells,
     drawing_mm=PAPER_MM,
     symbols={"kv": "k_v", "p": "p_v", "ab": "a b", "pv_b": "p_v b", "r1_dot": "V_B"},
-    kept_by_solution=True,
 )

@@ -12,6 +12,7 @@ from .._drawn import (
     slotted_figure,
     told_angle,
     told_number,
+    velocities_are_long_enough_to_draw,
 )
 
 
@@ -28,7 +29,11 @@ def tells(r1, r2, theta2):
 EXERCISE = Exercise(
     given=SLOTTED,
     helpers=(guided,),
-    constraints=(crank_turns_visibly, guide_is_unlike_the_crank),
+    constraints=(
+        crank_turns_visibly,
+        guide_is_unlike_the_crank,
+        velocities_are_long_enough_to_draw,
+    ),
     parts=(
         *known("known_A", "known_B", "known_BA"),
         of_drawing("kv", "mm/s/mm"),
@@ -53,5 +58,4 @@ EXERCISE = Exercise(
         "pv_b": "p_v a_4",
         "rA_dot": r"\dot r_A",
     },
-    kept_by_solution=True,
 )

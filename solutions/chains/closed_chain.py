@@ -9,7 +9,6 @@ from coursework.solids import aligned, each_distinct
 from coursework.solution import given
 
 from ._chains import *
-from ._closed_chain_keep import *
 from ._solids import _sum_of
 
 SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}

@@ -9,7 +9,6 @@ from coursework.solution import given, mistake
 
 from ...exercises.chains._complex import DIRECTIONS, LAYOUTS, points_of
 from ._chains import *
-from ._complex_chain_keep import *
 from ._solids import _planar_chain
 
 SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}

@@ -7,7 +7,6 @@ from coursework.solids import aligned, each_distinct, joints_of, planar_kind
 from coursework.solution import given, mistake
 
 from ._counts import *
-from ._planar_chain_keep import *
 from ._solids import _chain_of, _planar_chain_of
 
 STRUCTURES = ("joints",)

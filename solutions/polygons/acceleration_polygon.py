@@ -10,7 +10,6 @@ from coursework.marking.drawn_polygons import DrawingParts, Read, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, two_bars_a
 from coursework.solution import given, judge, mistake, stable
 
-from ._acceleration_polygon_keep import *
 from ._drawn_acceleration import *
 from ._drawn_rocker import *
 

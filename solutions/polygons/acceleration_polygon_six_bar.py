@@ -16,7 +16,6 @@ from coursework.marking.drawn_polygons import (
 from coursework.polygons import crank_a, polygon_of_accelerations, slider_a, two_bars_a
 from coursework.solution import given, judge, mistake
 
-from ._acceleration_polygon_six_bar_keep import *
 from ._drawn_acceleration import *
 from ._drawn_rocker import *
 from ._six_bar import _linkage, _links, _rates

@@ -10,7 +10,6 @@ from coursework.marking.drawn_polygons import DrawingParts, Read, met, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, slider_a
 from coursework.solution import given, judge, mistake
 
-from ._acceleration_polygon_slider_keep import *
 from ._drawn_acceleration import *
 
 SYMBOLS = {"side_B": "s_B", "sense3": "s_3"}

@@ -16,7 +16,6 @@ from coursework.marking.drawn_polygons import (
 from coursework.polygons import crank_a, guide_a, polygon_of_accelerations
 from coursework.solution import given, judge, mistake
 
-from ._acceleration_polygon_slotted_keep import *
 from ._drawn_start import *
 from ._slotted import *
 from ._slotted import _guide, _vectors

@@ -36,7 +36,6 @@ from coursework.polygons import (
 from coursework.solution import Judged, given, judge, mistake, stable
 
 from ..quick_return._swinging import *
-from ._crank_shaper_drawn_keep import *
 from ._slotted import _guide
 
 UNITS = {"rA": "mm", "sigma": "deg", "stroke": "mm"}

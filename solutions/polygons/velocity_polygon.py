@@ -10,7 +10,6 @@ from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
 from coursework.solution import given, judge, mistake
 
 from ._drawn_velocity import *
-from ._velocity_polygon_keep import *
 
 SYMBOLS = {"turn_3": r"\varepsilon_3", "turn_4": r"\varepsilon_4"}
 

@@ -8,7 +8,6 @@ from coursework.solution import given, judge, mistake
 
 from ._drawn_velocity import *
 from ._six_bar import _linkage, _links, _rates
-from ._velocity_polygon_six_bar_keep import *
 
 SYMBOLS = {
     "turn_3": r"\varepsilon_3", "turn_4": r"\varepsilon_4", "turn_5": r"\varepsilon_5", "way_C": r"\varepsilon_C",

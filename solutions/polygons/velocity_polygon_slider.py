@@ -10,7 +10,6 @@ from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import given, judge, mistake
 
 from ._drawn_velocity import *
-from ._velocity_polygon_slider_keep import *
 
 SYMBOLS = {"way_B": r"\varepsilon_B", "turn_3": r"\varepsilon_3"}
 

@@ -10,7 +10,6 @@ from coursework.solution import given, judge, mistake, stable
 from ._drawn_velocity import *
 from ._slotted import *
 from ._slotted import _guide, _vectors
-from ._velocity_polygon_slotted_keep import *
 
 UNITS = {"rA": "mm"}
 SYMBOLS = {"rA": "r_A", "way": r"\varepsilon", "turn_4": r"\varepsilon_4"}

@@ -18,7 +18,7 @@ from sweeps import sampled
 import coursework
 from coursework.cli import run
 from coursework.cli.options import DONE
-from coursework.errors import BadCourse, NoSolution
+from coursework.errors import BadCourse
 from coursework.rendering.renderer import renderer_of
 
 
@@ -88,14 +88,6 @@ def test_a_build_puts_the_drawings_beside_the_staffs_source_alone(tmp_path, caps
 def test_a_solution_without_polygons_has_none():
     assert COURSE["grashof"].variant(0).polygons() == ()
     assert renderer_of(COURSE.folder).polygons_pdf(COURSE["grashof"].variant(0).answer_sheet()) is None
-
-
-def test_a_course_without_solutions_has_no_polygons(small_course):
-    for path in (small_course / "solutions").iterdir():
-        path.unlink()
-    (small_course / "solutions").rmdir()
-    with pytest.raises(NoSolution):
-        coursework.open_course(small_course)["crank_pin"].variant(1).polygons()
 
 
 @pytest.mark.parametrize(

@@ -123,16 +123,6 @@ def test_a_film_that_is_none_is_refused(small_course):
         coursework.open_course(small_course)["crank_pin"].variant(0).animation()
 
 
-def test_without_solutions_there_is_no_film(small_course):
-    import shutil
-
-    shutil.rmtree(filmed(small_course) / "solutions")
-    exercise = coursework.open_course(small_course)["crank_pin"]
-    assert not exercise.is_animated
-    with pytest.raises(BadCourse, match="no solution at hand states a FILM"):
-        exercise.variant(0).animation()
-
-
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_the_command_writes_a_film_in_both_languages(tmp_path, lang):
     assert (
