@@ -6,7 +6,7 @@
   from a sibling whose name begins with an underscore: ``from ._strokes import *``;
 * a function marked :func:`mistake` is a wrong way to get a quantity;
 * a function marked :func:`judge` says which answers are right, where many are;
-* ``residual`` gives the governing equations, written independently, relative to their terms: 0 when right;
+* ``residual`` gives the governing equations, written independently: 0 when right, but for rounding of their terms;
 * ``KNOWN`` lists pairs (given values, expected values), best written ``given(r1=200).gives(rA=300)``
   (:func:`given`); an expected text such as ``"319.80"`` is right to its last printed digit, a number to 1e-9
   relative; a third item names the case's effects, where they are not those of the exercise's own parts;

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -333,14 +333,51 @@ def check_solves(variant: Variant, key: Key, report: CheckReport) -> None:
         value = key.reference[part.quantity]
         if part.sort.is_number and part.has_margin and part.atol == 0 and value == 0:
             report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
-    graph = variant.exercise.solution.residual_graph
-    values = graph.evaluate(("residual",), variant.used, variant.effects, variant.computed)
-    residual = values["residual"]
-    for number, value in enumerate(residual if isinstance(residual, tuple) else (residual,), start=1):
-        worst = abs(value) if isinstance(value, float) else float(np.max(np.abs(value)))
+    for number, (value, size) in enumerate(_residuals(variant), start=1):
         report.counts["residuals"] += 1
-        if not worst < RESIDUAL:
-            report.fail(f"seed {variant.seed}: residual {number} is {worst:.3g}")
+        if not value <= RESIDUAL * size:
+            report.fail(f"seed {variant.seed}: residual {number} is {value:.3g}, of terms of {size:.3g}")
+
+
+def _residuals(variant: Variant) -> Iterator[tuple[float, float]]:
+    """Yield the largest value of each governing equation, and the size of its terms: the sum of what each number in it
+    contributes, by the change of the equation with that number; 1 where no number contributes."""
+    graph = variant.exercise.solution.residual_graph
+    found = graph.everything(("residual",), variant.used, variant.effects, variant.computed)
+    node = graph.node("residual")
+    known = {**node.defaults, **variant.used, **found}
+    arguments = [known[name] for name in node.arguments]
+    values = _flat(found["residual"])
+    sizes = [0.0 * value for value in values]
+    for place, argument in enumerate(arguments):
+        for near in _slightly_more(argument):
+            changed = _flat(node.function(*arguments[:place], near, *arguments[place + 1 :]))
+            sizes = [
+                s + np.nan_to_num(abs(c - v)) / _STEP for s, c, v in zip(sizes, changed, values, strict=True)
+            ]
+    for value, size in zip(values, sizes, strict=True):
+        worst = int(np.argmax(value - RESIDUAL * size))
+        yield float(value.flat[worst]), float(size.flat[worst]) or 1.0
+
+
+_STEP = 1e-6  #: relative change of a number by which its contribution to an equation is found
+
+
+def _flat(residual: Any) -> list[np.ndarray]:
+    """Return the absolute values of the equations."""
+    equations = residual if isinstance(residual, tuple) else (residual,)
+    return [np.abs(np.atleast_1d(np.asarray(equation, dtype=complex))) for equation in equations]
+
+
+def _slightly_more(argument: Any) -> Iterator[Any]:
+    """Yield the argument with one of its numbers changed, each in turn; nothing of a text or a count."""
+    if isinstance(argument, (float, complex)):
+        yield argument * (1 + _STEP)
+    elif isinstance(argument, np.ndarray) and argument.dtype.kind in "fc":
+        for place in np.ndindex(argument.shape):
+            near = argument.copy()
+            near[place] *= 1 + _STEP
+            yield near
 
 
 def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: CheckReport) -> None:

@@ -10,8 +10,7 @@ from typing import Any
 
 from coursework.issuing.issued import issued_content
 from coursework.issuing.roster import Student
-from coursework.language.words import words
-from coursework.platforms.losses import COLUMNS, Loss, losses
+from coursework.platforms.losses import COLUMNS, Loss, losses, platform_words
 from coursework.platforms.platform import Platform
 from coursework.platforms.pools import DrawnPool
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
@@ -79,5 +78,5 @@ def pool_content(drawn: DrawnPool, students: Sequence[Student]) -> dict[str, Any
 
 def steps(platform: str, lang: str) -> str:
     """Return the steps of the import, one per line."""
-    sentences = words(lang)["platforms"]["steps"][platform]
+    sentences = platform_words("steps", platform, lang)
     return "".join(f"{number}. {step}\n" for number, step in enumerate(sentences, start=1))

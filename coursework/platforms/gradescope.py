@@ -20,6 +20,7 @@ from coursework.issuing.issued import SECRET, Issued, without_secret
 from coursework.language.words import words
 from coursework.platforms._autograder import SETTINGS
 from coursework.platforms.items import Pool
+from coursework.platforms.losses import platform_words
 from coursework.platforms.platform import Platform
 from coursework.system.json_files import json_of
 from coursework.system.tables import json_text
@@ -115,7 +116,7 @@ def points_of(issued: Issued) -> float:
 
 
 def _steps(issued: Issued, lang: str) -> str:
-    sentences = words(lang)["platforms"]["steps"]["gradescope"]
+    sentences = platform_words("steps", "gradescope", lang)
     points = f"{points_of(issued):g}"
     return "".join(
         f"{number}. {step.format(points=points)}\n" for number, step in enumerate(sentences, start=1)

@@ -6,7 +6,7 @@ The table is in ``[platforms.lost.NAME]`` of each language; a feature without an
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from coursework.errors import BadCourse
 from coursework.language.words import words
@@ -57,9 +57,28 @@ def feature_words(feature: str, lang: str) -> str:
 
 def lost_words(platform: str, lang: str) -> Mapping[str, str]:
     """Return a platform's behaviour by feature; a platform may refer to another's."""
-    table = words(lang)["platforms"]["lost"]
-    texts: Mapping[str, str] | str = table[platform]
-    return table[texts] if isinstance(texts, str) else texts
+    texts: Mapping[str, str] | str = platform_words("lost", platform, lang)
+    return platform_words("lost", texts, lang) if isinstance(texts, str) else texts
+
+
+def platform_words(section: str, platform: str, lang: str) -> Any:
+    """Return the words of a platform, of ``lost`` or ``steps``.
+
+    Raises
+    ------
+    BadCourse
+        There are none in this language.
+    """
+    table = words(lang)["platforms"][section]
+    if platform not in table:
+        raise BadCourse(
+            "the platform {platform!r} has no words: language/{lang}.toml lacks platforms.{section}.{platform}; there is: {names}",
+            platform=platform,
+            lang=lang,
+            section=section,
+            names=", ".join(table),
+        )
+    return table[platform]
 
 
 def losses(pool: Pool, platform: str, more: Iterable[Loss] = ()) -> list[Loss]:

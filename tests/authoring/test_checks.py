@@ -10,7 +10,7 @@ import pytest
 
 import coursework
 from coursework.authoring.check_report import CheckReport, notes, table
-from coursework.authoring.checks import agrees, check
+from coursework.authoring.checks import agrees, check, check_solves
 from coursework.cli.printing import print_table
 from coursework.language.words import file_of
 from coursework.solution import given
@@ -147,6 +147,28 @@ def test_a_parameter_that_nothing_gives_is_told_with_the_nearest_name(small_cour
     path.write_text(path.read_text("utf-8").replace("def x(r, theta)", "def x(r, thta)"), "utf-8")
     failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
     assert failures == ["solutions/crank_pin.py: x needs thta, which is not given; did you mean 'theta'?"]
+
+
+#: Given lengths, and how wrong the height is made: by what rounding never does, where it is made at all.
+SIZES = {"4 m": ("2000, 4000, step=5", ""), "4 m, wrong": ("2000, 4000, step=5", " * (1 + 1e-7)"),
+         "microns, wrong": ("0.0001, 0.0002, step=0.00001", " * (1 + 1e-7)")}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", SIZES)
+def test_equations_are_compared_with_the_size_of_their_terms(small_course, case):
+    lengths, wrong = SIZES[case]
+    for path, old, new in (
+        ("exercises", "drawn(50, 200, step=5", f"drawn({lengths}"),
+        ("solutions", "return r * sin(theta)", f"return r * sin(theta){wrong}"),
+    ):
+        file = small_course / path / "crank_pin.py"
+        file.write_text(file.read_text("utf-8").replace(old, new), "utf-8")
+    report = CheckReport("crank_pin")
+    variants = coursework.open_course(small_course)["crank_pin"].variants(range(200))
+    for variant in variants:
+        check_solves(variant, variant.key, report)
+    failing = {failure.split(":")[0] for failure in report.failures}
+    assert len(failing) == (len(variants) if wrong else 0)
 
 
 def test_a_course_without_solutions_is_told_so_once_and_without_numbers_that_are_none(small_course):

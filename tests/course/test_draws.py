@@ -128,6 +128,65 @@ def test_a_constraint_on_something_unknown_is_refused_at_once():
         Drawing("test", exercise)
 
 
+def constrained(small_course, code, *names):
+    """The exercise of a new course, its constraints these beside its own."""
+    import coursework
+
+    path = small_course / "exercises" / "crank_pin.py"
+    text = path.read_text("utf-8").replace("def figure(", f"{code}\n\n\ndef figure(")
+    text = text.replace("import Exercise, Part, drawn", "import Exercise, Part, detectable, drawn")
+    path.write_text(
+        text.replace("constraints=(pin_off_the_axes,", f"constraints=(pin_off_the_axes, {', '.join(names)},")
+    )
+    return coursework.open_course(small_course)["crank_pin"]
+
+
+def test_a_constraint_is_handed_what_the_solution_computes(small_course):
+    exercise = constrained(small_course, "def pin_is_quick(v, r):\n    return v > 10 * r", "pin_is_quick")
+    assert {v.given["omega"] > 10 for v in exercise.variants(range(30))} == {True}
+
+
+def test_a_mistake_that_must_show_does_or_changes_nothing(small_course):
+    exercise = constrained(small_course, "", 'detectable("sine_and_cosine_exchanged", "x", least=90)')
+    cosines = [np.radians(v.given["theta"]) for v in exercise.variants(range(30))]
+    shares = [abs(np.sin(a) / np.cos(a) - 1) for a in cosines]
+    assert {share >= 0.9 or share <= 0.0025 + 1e-12 for share in shares} == {True}
+    assert min(shares) < 1
+
+
+UNUSABLE = {
+    "def f(vv):\n    return vv > 0": "a constraint cannot be evaluated: f needs vv, which is not given",
+    "def f(v):\n    return v > 0\n\n\nf.__name__ = 'x'": "x is a constraint and a quantity; rename the constraint",
+}
+
+
+@pytest.mark.parametrize("code", UNUSABLE)
+def test_a_constraint_that_cannot_be_used_is_told(small_course, code):
+    with pytest.raises(BadCourse) as caught:
+        constrained(small_course, code, "f").variant(0)
+    assert UNUSABLE[code] in str(caught.value)
+
+
+def test_the_solution_computes_for_draws_alone_that_satisfy_the_other_constraints(small_course):
+    code = "SEEN = []\n\n\ndef seen(x, theta):\n    SEEN.extend(theta)\n    return x == x"
+    exercise = constrained(small_course, code, "seen")
+    exercise.variants(range(20))
+    seen = exercise.folder.module("exercises", "crank_pin").SEEN
+    assert len(seen) > 20
+    assert {theta % 90 >= 10 for theta in seen} == {True}
+
+
+def test_variants_are_the_candidates_that_no_constraint_refuses(course):
+    unlike = {}
+    for name in course.names:
+        drawing = course[name].drawing
+        candidates = drawing.first_candidates(256)
+        refused = np.any([np.zeros(256, dtype=bool), *drawing.refused(candidates).values()], axis=0)
+        if not np.array_equal(drawing.accepted(candidates), ~refused):
+            unlike[name] = np.flatnonzero(drawing.accepted(candidates) == refused).tolist()
+    assert unlike == {}
+
+
 def test_population_counts_the_variants_that_exist():
     exercise = exercise_of(
         {"x": ranged(1, 9), "mode": chosen("p", "q"), "c": fixed(3)}, constraints=(rarely,)

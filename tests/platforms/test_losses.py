@@ -6,8 +6,9 @@ import pytest
 from tables import each_row
 
 import coursework
+from coursework.errors import BadCourse
 from coursework.language.words import words
-from coursework.platforms.losses import Loss, feature_words, loss_lines, losses, lost_words
+from coursework.platforms.losses import Loss, feature_words, loss_lines, losses, lost_words, platform_words
 from coursework.platforms.platform import platform_of, platforms
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import COLLECTED
@@ -28,6 +29,12 @@ def test_every_platform_has_its_words(platform, lang):
     assert all(sentence.strip() for sentence in lost_words(platform, lang).values())
     assert len(said["steps"][platform]) == 6
     assert set(lost_words(platform, "fr")) == set(lost_words(platform, "en"))
+
+
+@each_row("section", ("lost", "steps"))
+def test_a_platform_without_words_is_told(section):
+    with pytest.raises(BadCourse, match=rf"'nowhere' has no words.* lacks platforms\.{section}\.nowhere"):
+        platform_words(section, "nowhere", "en")
 
 
 @pytest.fixture(scope="module")
