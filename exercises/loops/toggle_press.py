@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.degrees import angle, asin, cos, polar, sin, sqrt
+from coursework.degrees import angle, cos, polar, sin, sqrt
 from coursework.figures import (
     Figure,
     angle_mark,
@@ -91,9 +91,8 @@ def crank_is_clear_of_the_toggle(crank_pivot, A, r2, r4, r5):
     return (crank_pivot.real < -1.6 * r2) & (crank_pivot.imag > -1.1 * r4) & (crank_pivot.imag < -0.3 * r4)
 
 
-def bars_differ_visibly(r4, r5, phi):
+def bars_differ_visibly(psi, phi):
     """So that the second angle is not that of the first."""
-    psi = asin(r4 * sin(phi) / r5)
     return abs(psi - phi) > 0.05 * psi + 0.2
 
 

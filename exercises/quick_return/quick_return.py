@@ -66,12 +66,6 @@ def rocker_at_the_ends(OB_at_the_ends, r1, theta1, r4, B_side):
     return theta1 + 180 - side_of(B_side) * at_D
 
 
-def unequal_halves(OB_at_the_ends, r1, r4):
-    """(alpha - beta) / 2: the angle between the two directions of OB."""
-    at_O = acos((r1**2 + OB_at_the_ends**2 - r4**2) / (2 * r1 * OB_at_the_ends))
-    return abs(at_O[1] - at_O[0])
-
-
 def _passes(ends, direction):
     """Return whether the swing between two directions, less than half a turn apart, passes near or through
     another one."""
@@ -117,8 +111,10 @@ def two_turning_points(rocker_at_the_ends, r1, theta1, r4, r5, h):
     return ~_passes(rocker_at_the_ends, stretched) & ~_passes(rocker_at_the_ends, folded)
 
 
-def return_is_quick(unequal_halves):
-    return (180 + unequal_halves) > 1.05 * (180 - unequal_halves)
+def return_is_quick(DOB_far, DOB_near):
+    """The angle between the two directions of OB is what one stroke takes beyond half a turn."""
+    beyond = abs(DOB_far - DOB_near)
+    return 180 + beyond > 1.05 * (180 - beyond)
 
 
 def angle_OAB_not_square(angle_OAB):
@@ -213,7 +209,7 @@ EXERCISE = Exercise(
         "angle_OAB": drawn(60, 140, step=5, unit="deg"),
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
-    helpers=(B, A, theta2, C, OB_at_the_ends, rocker_at_the_ends, unequal_halves, greatest_rise),
+    helpers=(B, A, theta2, C, OB_at_the_ends, rocker_at_the_ends, greatest_rise),
     constraints=(
         crank_is_the_shortest,
         crank_turns,

@@ -1,6 +1,6 @@
 """Quick return of a slider-crank whose piston is out of line with the crank (Figure 26 a, equations 22, 23)."""
 
-from coursework.degrees import angle, asin, polar, wrap
+from coursework.degrees import angle, polar, wrap
 from coursework.figures import (
     Figure,
     angle_mark,
@@ -26,11 +26,6 @@ def rod(r2, r3, e, theta2):
     return rrp(crank, r3, e) - crank
 
 
-def unequal_halves(r2, r3, e):
-    """(alpha - beta) / 2, degrees."""
-    return asin(abs(e) / (r3 - r2)) - asin(abs(e) / (r3 + r2))
-
-
 def offset_is_visible(e, r2):
     return abs(e) >= 0.4 * r2
 
@@ -39,8 +34,8 @@ def crank_turns_with_room(r2, r3, e):
     return r3 - r2 > 1.2 * abs(e)
 
 
-def strokes_last_unlike(unequal_halves):
-    return unequal_halves > 8
+def strokes_last_unlike(alpha):
+    return alpha > 188
 
 
 def crank_off_the_axes(theta2):
@@ -85,7 +80,7 @@ EXERCISE = Exercise(
         "theta2": drawn(-175, 180, step=5, unit="deg"),
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
-    helpers=(rod, unequal_halves),
+    helpers=(rod,),
     constraints=(
         offset_is_visible,
         crank_turns_with_room,

@@ -23,11 +23,6 @@ DWELL = 40  #: degrees at the top
 _AROUND = np.arange(0, 360, 3)
 
 
-def rising(theta, beta):
-    """Share of the rise."""
-    return theta / beta
-
-
 def law(h, theta, beta):
     """Lift and its derivative by the cam angle, which is how far to the side the follower is touched."""
     share, way = rise_dwell_return(wrap(theta) / beta, DWELL / beta, 360 / beta)
@@ -43,28 +38,28 @@ def least(h, beta):
     return h * (lift + bend / radians**2).min(axis=-1)
 
 
-def cam_is_in_its_rise(rising):
-    return (rising > 0.1) & (rising < 0.9) & (abs(rising - 0.5) > 0.03)
+def cam_is_in_its_rise(u):
+    return (u > 0.1) & (u < 0.9) & (abs(u - 0.5) > 0.03)
 
 
-def cam_is_tightest_elsewhere(rising):
-    return abs(rising - 0.78) > 0.08
+def cam_is_tightest_elsewhere(u):
+    return abs(u - 0.78) > 0.08
 
 
 def cam_bulges_all_around(Rb, least):
     return Rb + least > 4
 
 
-def lift_is_visible(law, h):
-    return law[0] > 0.05 * h
+def lift_is_visible(s, h):
+    return s > 0.05 * h
 
 
 def cam_is_no_larger_than_need_be(Rb, least):
     return Rb + least < 45
 
 
-def follower_goes_round_with_the_cam_in_sight(law, h):
-    return abs(law[1]) > 0.15 * h
+def follower_goes_round_with_the_cam_in_sight(q, h):
+    return abs(q) > 0.15 * h
 
 
 def law_bends_visibly(s2, h):
@@ -111,7 +106,7 @@ EXERCISE = Exercise(
         "theta": drawn(5, 105, step=1, unit="deg"),
         "omega": drawn(-60, 60, unit="rad/s", nonzero=True),
     },
-    helpers=(rising, law, least),
+    helpers=(law, least),
     constraints=(
         cam_is_in_its_rise,
         cam_is_tightest_elsewhere,

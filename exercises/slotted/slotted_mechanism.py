@@ -1,6 +1,6 @@
 """Slotted mechanism: where is the block on its guide, and how does the guide turn? (chapter 3, exercise 1)."""
 
-from coursework.degrees import angle, polar, sin
+from coursework.degrees import angle, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, note, pin, slider, slot_link
 from coursework.model import Driver, Exercise, Part, drawn, fixed, loop_equations
 
@@ -13,12 +13,12 @@ def crank_unlike_frame(r1, r2):
     return abs(r2 / r1 - 1) > 0.15
 
 
-def block_away_from_O4(arm, r1, r2):
-    return abs(arm) > 0.3 * (r1 + r2)
+def block_away_from_O4(rA, r1, r2):
+    return rA > 0.3 * (r1 + r2)
 
 
-def block_slides_visibly(arm, r1, theta1, theta2):
-    return r1 * abs(sin(theta2 - theta1)) > 0.1 * abs(arm)
+def block_slides_visibly(rA_dot, r2, omega2):
+    return abs(rA_dot) > 0.1 * r2 * abs(omega2)
 
 
 def crank_off_the_axes(theta2):
