@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, nullcontext
+from functools import partial
 
 from anyio.to_thread import current_default_thread_limiter
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
+from starlette.middleware import Middleware as StarletteMiddleware
+from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 from starlette.routing import BaseRoute, Mount
 from starlette.routing import Route as StarletteRoute
 
@@ -61,6 +64,15 @@ ROUTES: tuple[Route, ...] = (
 )
 
 
+#: A CSRF token is masked anew on each page, so that its compressed length reveals nothing. PDF is compressed already.
+_COMPRESSION = StarletteMiddleware(
+    GZipMiddleware,
+    minimum_size=1000,
+    compresslevel=5,
+    exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, "application/pdf"),
+)
+
+
 def application(site: Site, lti: Starlette | None = None) -> Starlette:
     """Return the ASGI application of the site; ``lti`` is the service for learning platforms, by default that
     of the site's folder."""
@@ -69,9 +81,10 @@ def application(site: Site, lti: Starlette | None = None) -> Starlette:
     routes: list[BaseRoute] = [
         StarletteRoute(
             route.path,
-            middleware.endpoint(route),
+            partial(middleware.answer, asked=route),
             methods=["GET", "POST"] if route.takes_forms else ["GET"],
             name=route.path,
+            middleware=[_COMPRESSION],
         )
         for route in ROUTES
     ]
@@ -79,7 +92,7 @@ def application(site: Site, lti: Starlette | None = None) -> Starlette:
         routes.append(Mount("/lti", app=lti))
     app = Starlette(
         routes=routes,
-        exception_handlers={HTTPException: middleware.lost},
+        exception_handlers={HTTPException: middleware.answer},
         lifespan=lambda app: _background_work(site, lti),
     )
     app.add_middleware(Guarded, is_secure=lambda: site.is_secure)

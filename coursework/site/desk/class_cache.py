@@ -11,6 +11,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from sqlalchemy import Connection
+from starlette.responses import Response
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
@@ -37,7 +38,7 @@ from coursework.gradebook.waiting import (
 )
 from coursework.issuing.assignment import text_in
 from coursework.issuing.issued import Issued
-from coursework.site.frame.requests import HTTPException, Request, Response
+from coursework.site.frame.requests import HTTPException, Request
 from coursework.site.frame.settings import Site
 from coursework.site.papers.submission import mark, pass_dates
 

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from starlette.responses import Response
+
 from coursework.database.class_state import ClassState
 from coursework.database.instructor_queries import Stamp, students_since
 from coursework.database.permissions import Permission
@@ -19,7 +21,8 @@ from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import sign_of
-from coursework.site.frame.requests import Request, Response, Route
+from coursework.site.frame.requests import Request, Route
+from coursework.site.frame.responses import redirect
 
 SORTS = ("name", "total", "waits", "late", "tries")
 
@@ -134,7 +137,7 @@ def news(request: Request) -> Response:
         or before.rules != now.stamp.rules
         or str(len(table_rows)) != request.query_params.get("rows")
     ):
-        return Response(redirect=f"/desk/{now.about.id}")
+        return redirect(f"/desk/{now.about.id}")
     with request.site.store.reading() as connection:
         changed = students_since(connection, now.about.id, before)
     return request.render(

@@ -11,6 +11,8 @@ from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from starlette.responses import Response
+
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState
@@ -34,7 +36,8 @@ from coursework.messages import Message, as_message, localised
 from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
 from coursework.site.frame.budgets import DESK_FILES, read_apart
-from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
+from coursework.site.frame.requests import HTTPException, Request, Route, Upload
+from coursework.site.frame.responses import Download
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
 from coursework.system.unzipping import is_zip, unpack
 from coursework.system.zips import zipped
@@ -320,13 +323,11 @@ def table(request: Request) -> Response:
         files = {member: make(request, now) for member, make in _TABLES.items()} | {
             "deliveries.csv": _submissions(request, now)
         }
-        return Response(
-            media_type="application/zip", content=zipped(files), filename=f"{_safe(now.about.name)}.zip"
-        )
+        return Download(zipped(files), "application/zip", f"{_safe(now.about.name)}.zip")
     if name not in _TABLES:
         raise HTTPException("page", 404)
     kind = "application/json" if name.endswith(".json") else "text/csv; charset=utf-8"
-    return Response(media_type=kind, content=_TABLES[name](request, now), filename=name)
+    return Download(_TABLES[name](request, now), kind, name)
 
 
 def _safe(name: str) -> str:
@@ -348,14 +349,8 @@ def feedback(request: Request) -> Response:
     if only and files:
         name, data = next(iter(files.items()))
         if len(files) == 1:
-            return Response(
-                media_type="application/pdf",
-                content=data,
-                filename=f"feedback-{_safe(name.removesuffix('.pdf'))}.pdf",
-            )
-    return Response(
-        media_type="application/zip", content=zipped(files), filename=f"feedback-{_safe(now.about.name)}.zip"
-    )
+            return Download(data, "application/pdf", f"feedback-{_safe(name.removesuffix('.pdf'))}.pdf")
+    return Download(zipped(files), "application/zip", f"feedback-{_safe(now.about.name)}.zip")
 
 
 def _book_of_student(now: ClassState, student: str) -> Any:

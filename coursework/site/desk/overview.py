@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import PurePath
 
+from starlette.responses import Response
+
 from coursework.database.assignments import put_issued
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState
@@ -17,7 +19,8 @@ from coursework.site.desk.class_cache import assignment_of, assignment_title, by
 from coursework.site.desk.question_cards import moment, question_card
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.clock import Leap, last_leap
-from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
+from coursework.site.frame.requests import HTTPException, Request, Route, Upload
+from coursework.site.frame.responses import redirect
 from coursework.site.frame.times import length_text, moment_text
 
 
@@ -102,7 +105,7 @@ def bring(request: Request) -> Response:
     with request.site.store.begin() as connection:
         number = put_issued(connection, _content(file), request.form.text("name").strip())
         note(connection, request.received_at, by_whom(request), "issued", assignment=number)
-    return Response(redirect=f"/desk/{number}")
+    return redirect(f"/desk/{number}")
 
 
 def _content(file: Upload) -> dict[str, object]:

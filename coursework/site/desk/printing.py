@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from sqlalchemy import Connection
+from starlette.responses import Response
 
 from coursework.database.permissions import Permission
 from coursework.database.publication import student_assignments
@@ -13,7 +14,8 @@ from coursework.errors import BadInput
 from coursework.issuing.booklets import parted
 from coursework.issuing.students import file_stems
 from coursework.rendering.renderer import renderer_of
-from coursework.site.frame.requests import Request, Response, Route
+from coursework.site.frame.requests import Request, Route
+from coursework.site.frame.responses import Download
 from coursework.site.papers.student_paper import StudentPaper, student_paper
 from coursework.site.publication.publishing import assignment_here, holders
 from coursework.system.zips import zipped
@@ -37,8 +39,8 @@ def sheets(request: Request) -> Response:
     files = dict(_printed(request, papers, stem))
     if len(files) == 1:
         name, data = next(iter(files.items()))
-        return Response(media_type="application/pdf", content=data, filename=name)
-    return Response(media_type="application/zip", content=zipped(files), filename=f"{stem}.zip")
+        return Download(data, "application/pdf", name)
+    return Download(zipped(files), "application/zip", f"{stem}.zip")
 
 
 def _papers(request: Request, connection: Connection, number: int) -> list[StudentPaper]:

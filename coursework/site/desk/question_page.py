@@ -7,6 +7,8 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from starlette.responses import HTMLResponse, Response
+
 from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
 from coursework.gradebook.waiting import written
@@ -15,7 +17,8 @@ from coursework.rendering.feedback import verdict_word
 from coursework.rendering.renderer import renderer_of
 from coursework.site.desk.class_cache import assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import question_card, sign_of
-from coursework.site.frame.requests import HTTPException, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.frame.responses import Download
 from coursework.statistics.captions import Names
 from coursework.statistics.measures import PartStatistics, Statistics, measure
 from coursework.statistics.of_class import marks_of_class
@@ -142,10 +145,8 @@ def statistics(request: Request) -> Response:
     document = report(now.course, statistics_of(now), request.lang)
     renderer = renderer_of(now.course.folder)
     if request.path.endswith(".pdf"):
-        return Response(
-            media_type="application/pdf", content=renderer.report_pdf(document), filename="report.pdf"
-        )
-    return Response(renderer.report_html(document))
+        return Download(renderer.report_pdf(document), "application/pdf", "report.pdf")
+    return HTMLResponse(renderer.report_html(document))
 
 
 ROUTES = (

@@ -9,6 +9,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from starlette.responses import Response
+
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState, OpenGroup, UnplacedRow
 from coursework.database.decisions import DecidedAnswer, decide
@@ -23,7 +25,7 @@ from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, Ans
 from coursework.language.numbers import localise, significant
 from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import QuestionCard, decided_words, question_card, raw_texts, steps
-from coursework.site.frame.requests import HTTPException, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Request, Route
 
 REJECTED = "rejected"
 LONGEST = 2000  #: characters of a comment

@@ -7,6 +7,8 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from starlette.responses import Response
+
 from coursework.course.course import Course
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState
@@ -16,7 +18,8 @@ from coursework.database.states import exercise_state
 from coursework.language.numbers import localise
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
-from coursework.site.frame.requests import Request, Response, Route
+from coursework.site.frame.requests import Request, Route
+from coursework.site.frame.responses import Download
 from coursework.site.frame.settings import Site
 from coursework.system.tables import SPREADSHEETS, csv_file
 
@@ -109,7 +112,7 @@ def changes(request: Request) -> Response:
     result = would_change(_current_course(request.site, now), request.site.store, now.about.id)
     spreadsheet = SPREADSHEETS["comma" if request.lang == "fr" else "point"]
     data = csv_file((change.row() for change in result.changes), Change._fields, spreadsheet)
-    return Response(media_type="text/csv; charset=utf-8", content=data, filename="changes.csv")
+    return Download(data, "text/csv; charset=utf-8", "changes.csv")
 
 
 ROUTES = (

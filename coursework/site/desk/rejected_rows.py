@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from starlette.responses import Response
+
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState, UnplacedRow
 from coursework.database.instructor_queries import Placing, drop_placing, put_placing
@@ -13,7 +15,7 @@ from coursework.gradebook.rows import AnswerRow, RowOrigin
 from coursework.site.desk.class_cache import assignment_of, by_whom, class_now
 from coursework.site.desk.files import files_page
 from coursework.site.desk.queue import Filters, card_response
-from coursework.site.frame.requests import HTTPException, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Request, Route
 
 _LONGEST = 500  #: characters of a reason
 

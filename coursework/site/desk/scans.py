@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from starlette.responses import Response
+
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
@@ -24,7 +26,7 @@ from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, 
 from coursework.site.desk.class_scans import ClassScans, class_scans, hand_over
 from coursework.site.desk.files import file_name
 from coursework.site.frame.budgets import DESK_FILES
-from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
+from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 
 LONGEST = 4000  #: characters of an answer
 _ID = re.compile(r"[0-9a-f]{16}-\d{4,6}")

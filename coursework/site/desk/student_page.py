@@ -12,6 +12,8 @@ from datetime import datetime
 from itertools import groupby
 from typing import Any
 
+from starlette.responses import Response
+
 from coursework.database.audit import note
 from coursework.database.class_state import ClassState
 from coursework.database.decisions import (
@@ -39,7 +41,7 @@ from coursework.site.desk.question_cards import (
     sign_of,
     steps,
 )
-from coursework.site.frame.requests import HTTPException, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Request, Route
 
 _LONGEST = 2000  #: characters of a comment
 

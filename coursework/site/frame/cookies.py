@@ -16,6 +16,7 @@ from itsdangerous import BadSignature, TimestampSigner
 from coursework.database.sessions import TOKEN_LENGTH
 
 COOKIE = "coursework"
+LANG = "coursework-lang"  #: the cookie of the language that somebody chose
 ANONYMOUS_SECONDS = 30 * 24 * 3600  #: lifetime of an anonymous cookie
 _HALF = 16  #: bytes of a CSRF token, and of the mask before it
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Mapping
-from typing import Any
 
 from sqlalchemy import Connection
+from starlette.responses import JSONResponse, Response
 
 from coursework.database.drafts import BLANK, DraftBox, DraftChange, drafts, save
 from coursework.database.people import lock_person
-from coursework.site.frame.requests import FormData, HTTPException, Request, Response
+from coursework.site.frame.requests import FormData, HTTPException, Request
 
 LONGEST = 4000  #: characters of one answer
 _TEXT, _OVER = "text.", "over."
@@ -37,7 +37,7 @@ def save_drafts(
     sent = sent_boxes(request.form, boxes)
     with request.site.store.begin() as connection:
         if not is_open and _is_new(drafts(connection, request.user.id, sheet), sent):
-            return json_response({"told": request.words["keeping"]["closed"]}, 409)
+            return JSONResponse({"told": request.words["keeping"]["closed"]}, 409)
         now, others = save(connection, request.user.id, sheet, sent, request.received_at)
     mine = [name for name in sent if name not in others]
     answer = {
@@ -45,7 +45,7 @@ def save_drafts(
         "others": {name: box._asdict() for name, box in others.items()},
     }
     reads = {"read": {name: read(name, sent[name].text) for name in mine}} if read else {}
-    return json_response({**answer, **reads})
+    return JSONResponse({**answer, **reads})
 
 
 def _is_new(stood: Mapping[str, DraftBox], sent: Mapping[str, DraftChange]) -> bool:
@@ -74,14 +74,6 @@ def save_form_drafts(
         if name in stored or text != before.get(name, "")
     }
     return save(connection, request.user.id, sheet, sent, request.received_at, stored)
-
-
-def json_response(content: Mapping[str, Any], status: int = 200) -> Response:
-    return Response(
-        media_type="application/json",
-        content=json.dumps(content, ensure_ascii=False).encode(),
-        status_code=status,
-    )
 
 
 def sent_boxes(form: FormData, boxes: Collection[str]) -> dict[str, DraftChange]:

@@ -15,7 +15,7 @@ from starlette.formparsers import FormParser, MultiPartException, MultiPartParse
 from starlette.requests import Request
 
 from coursework.site.frame.budgets import KILOBYTE, MEGABYTE, Budget
-from coursework.site.frame.requests import FormData, HTTPException, Upload
+from coursework.site.frame.requests import FormData, HTTPException, Upload, clean
 
 _TYPED = 1024 * 1024  #: bytes of a form without files, and of one field in a form with files
 _SECONDS, _RATE = 30.0, 20_000  #: time limit of a form: a fixed part, and the lowest rate in bytes per second
@@ -119,12 +119,6 @@ async def _form(items: Sequence[tuple[str, Any]], most: int) -> FormData:
     if len(items) > most:
         raise HTTPException("bad_request", 400)
     return FormData(texts, files)
-
-
-def clean(text: str) -> str:
-    """Return a text that databases and pages can contain: with uniform line ends, without NUL and lone
-    surrogates."""
-    return text.replace("\r\n", "\n").replace("\0", "").encode("utf-8", "replace").decode()
 
 
 def size_text(count: int) -> str:

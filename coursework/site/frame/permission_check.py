@@ -6,15 +6,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from sqlalchemy import Connection
+from starlette.responses import Response
 
 from coursework.database.areas import areas_for_role
 from coursework.database.audit import note
 from coursework.database.people import person_by_id
 from coursework.database.permissions import STAFF, STUDENT, is_of_staff, may
-from coursework.site.frame.requests import HTTPException, Person, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Person, Request, Route
+from coursework.site.frame.responses import Download
 from coursework.site.frame.settings import Site
 
-_GREATEST = 2**31 - 1  #: greatest id of a database
+GREATEST = 2**31 - 1  #: greatest id of a database
 
 
 def person_of(connection: Connection, row: Any) -> Person:
@@ -59,7 +61,7 @@ def check_permission(
 
 def note_export(route: Route, request: Request, response: Response) -> None:
     """Record the download of a file by staff."""
-    if not response.filename or not is_of_staff(route.permission):
+    if not isinstance(response, Download) or not is_of_staff(route.permission):
         return
     about: dict[str, Any] = {"file": response.filename}
     if (assignment := _assignment(request.path_params)) is not None:
@@ -88,6 +90,6 @@ def _number(value: Any) -> int | None:
     text = str(value)
     return (
         int(text)
-        if text.isascii() and text.isdecimal() and len(text) < 11 and int(text) <= _GREATEST
+        if text.isascii() and text.isdecimal() and len(text) < 11 and int(text) <= GREATEST
         else None
     )

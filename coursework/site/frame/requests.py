@@ -1,16 +1,25 @@
-"""Request and response of a page: the current user with the input, and the content sent back."""
+"""Request of a page: that of starlette with the current user and the content of a form, and the table of routes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from starlette.datastructures import QueryParams
+from starlette.exceptions import HTTPException as StarletteException
+from starlette.requests import Request as StarletteRequest
+from starlette.responses import HTMLResponse, Response
 
 from coursework.database.audit import Actor
 from coursework.database.permissions import STAFF, Area, Permission, is_of_staff, may
 from coursework.errors import CourseworkError
 from coursework.language.words import words
+from coursework.site.frame.arrivals import arrived
 from coursework.site.frame.budgets import DESK, PLAIN, Budget
+from coursework.site.frame.cookies import Session, cookie_name
+from coursework.site.frame.devices import DEVICE
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -19,19 +28,16 @@ if TYPE_CHECKING:
     from coursework.site.frame.settings import Site
 
 
-def local(address: str, usual: str = "/") -> str:
-    """Return an address of this site; the first page if the given address leads elsewhere."""
-    seen = "".join(letter for letter in address if ord(letter) >= 32)  # browsers ignore the others
-    leads_away = seen.startswith("//") or "\\" in seen.partition("?")[0]
-    return seen if seen.startswith("/") and not leads_away else usual
+class HTTPException(StarletteException, CourseworkError):
+    """Refusal of a request: the key of a message in ``[refused]``, and the status code.
 
-
-class HTTPException(CourseworkError):
-    """Refusal of a request: the key of a message in ``[refused]``, and the status code."""
+    The first part of a refusal for a time is the number of seconds to wait.
+    """
 
     def __init__(self, sentence: str, status_code: int, *parts: object):
-        self.sentence, self.status_code, self.parts = sentence, status_code, parts
-        super().__init__(sentence)
+        wait = {"retry-after": str(parts[0])} if status_code in (429, 503) and parts else None
+        super().__init__(status_code, sentence, wait)
+        self.sentence, self.parts = sentence, parts
 
 
 class Person(NamedTuple):
@@ -70,24 +76,71 @@ class FormData:
         return next(iter(self.texts.get(name, ())), usual)
 
 
-@dataclass(frozen=True)
-class Request:
-    """Request of a page, with the current user and the input."""
+class Request(StarletteRequest):
+    """Request of a page, with the current user and the content of its form.
 
-    site: Site
-    person: Person | None
-    lang: str
-    received_at: datetime  #: UTC; for a form, the time at which its bytes arrived
-    path: str  #: as the browser sees it
-    path_params: Mapping[str, Any] = field(default_factory=dict)
-    query_params: Mapping[str, str] = field(default_factory=dict)
-    form: FormData = field(default_factory=FormData)
-    is_post: bool = False
-    csrf_token: str = ""  #: value of the form field ``_seal``
-    is_fragment: bool = False  #: a script asks for a fragment of the page
-    client_address: str = ""  #: network address of the client
-    session: int = 0  #: id of the session; 0 if there is none
-    device: str = ""  #: value of the device cookie
+    The middleware finds the current user and reads the form before the page sees the request.
+    """
+
+    form: FormData  # type: ignore[assignment]  # the middleware reads it, within its limits
+
+    def __init__(self, site: Site, *http: Any):
+        super().__init__(*http)
+        self.site = site
+        self.person: Person | None = None
+        self.lang = site.languages[0]
+        self.browser = Session("")  #: session of the browser
+        self.is_new = False  #: the browser has no cookie of the session yet
+        self.form = FormData()
+        self.events: list[tuple[str, int]] = []  #: of the security log
+
+    @classmethod
+    def of_person(
+        cls, site: Site, person: Person, lang: str, path: str, path_params: Mapping[str, Any], form: FormData
+    ) -> Request:
+        """Return a request of a person who is signed in elsewhere; a form if it has texts."""
+        method = "POST" if form.texts else "GET"
+        scope = {"type": "http", "method": method, "path": path, "path_params": path_params, "headers": []}
+        request = cls(site, scope)
+        request.person, request.lang, request.form = person, lang, form
+        return request
+
+    @cached_property
+    def received_at(self) -> datetime:
+        """Time in UTC; for a form, the time at which its bytes arrived."""
+        return arrived(self.site.clock)
+
+    @property
+    def path(self) -> str:
+        """Path as the browser sees it."""
+        return clean(self.scope["path"])
+
+    @property
+    def query_params(self) -> QueryParams:
+        return QueryParams([(clean(n), clean(text)) for n, text in super().query_params.multi_items()])
+
+    @property
+    def is_post(self) -> bool:
+        return self.method == "POST"
+
+    @property
+    def is_fragment(self) -> bool:
+        """True if a script asks for a fragment of the page."""
+        return self.headers.get("hx-request") == "true" and self.headers.get("hx-boosted") != "true"
+
+    @property
+    def client_address(self) -> str:
+        """Address of the client as the server states it: headers of the request count only behind a configured
+        proxy."""
+        return self.client.host if self.client else ""
+
+    def cookie(self, name: str) -> str:
+        """Return the value of a cookie of the site; empty if there is none."""
+        return self.cookies.get(cookie_name(self.site.is_secure, name), "")
+
+    @property
+    def device(self) -> str:
+        return self.cookie(DEVICE)
 
     @property
     def user(self) -> Person:
@@ -127,25 +180,11 @@ class Request:
         return words(self.lang, "site")
 
     def render(self, template: str, status_code: int = 200, **names: Any) -> Response:
-        """Return the page of a template such as ``site_practice``, with the frame of all pages."""
-        common = {"request": self, "person": self.person, "csrf_token": self.csrf_token}
-        return Response(self.site.pages.page(template, self.lang, {**common, **names}), status_code)
-
-
-@dataclass(frozen=True)
-class Response:
-    """Response of a page: a page or a part of one, a redirect, or a file."""
-
-    html: str = ""
-    status_code: int = 200
-    redirect: str = ""  #: address to which the browser goes on
-    media_type: str = "text/html; charset=utf-8"
-    content: bytes = b""
-    filename: str = ""  #: name of a download
-    max_age: int = 0  #: seconds for which a browser may cache it
-    device: str = ""  #: new value of the device cookie
-    signed_in: int | None = None  #: id of the user who signs in; 0 to sign out
-    lang: str = ""  #: language to store in a cookie
+        """Return the page of a template such as ``site/practice``, with the frame of all pages."""
+        csrf_token = self.site.cookies.csrf_token(self.browser) if self.browser.token else ""
+        common = {"request": self, "person": self.person, "csrf_token": csrf_token}
+        html = self.site.pages.page(template, self.lang, {**common, **names})
+        return HTMLResponse(html.encode("utf-8", "replace"), status_code)
 
 
 class Route(NamedTuple):
@@ -173,3 +212,9 @@ class Route(NamedTuple):
     def request_budget(self) -> Budget:
         """Budget of its requests; the smallest if none is stated."""
         return self.budget or (DESK if is_of_staff(self.permission) else PLAIN)
+
+
+def clean(text: str) -> str:
+    """Return a text that databases and pages can contain: with uniform line ends, without NUL and lone
+    surrogates."""
+    return text.replace("\r\n", "\n").replace("\0", "").encode("utf-8", "replace").decode()

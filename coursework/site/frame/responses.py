@@ -1,58 +1,22 @@
-"""Sending of responses: headers, browser caching, and compression."""
+"""Responses of the site that starlette lacks: downloads, redirects within the site, and cookies."""
 
 from __future__ import annotations
 
-import gzip
-from functools import lru_cache
-from hashlib import sha256
 from urllib.parse import quote
 
-from starlette.requests import Request as HTTPRequest
-from starlette.responses import RedirectResponse
-from starlette.responses import Response as HTTPResponse
+from starlette.responses import RedirectResponse, Response
 
-from coursework.site.frame.requests import Response, local
-from coursework.system.headers import security_headers
-
-_COMPRESSED_FROM = 1000  #: bytes from which a response is compressed
-_COMPRESSED_TYPES = ("text/", "application/json", "image/svg+xml")
+from coursework.site.frame.cookies import cookie_name
+from coursework.site.frame.requests import Request
 
 
-def to_http_response(http_request: HTTPRequest, response: Response, is_secure: bool) -> HTTPResponse:
-    """Return the HTTP response of a page's response."""
-    headers = security_headers(is_secure)
-    headers["cache-control"] = (
-        f"public, max-age={response.max_age}, immutable" if response.max_age else "no-store"
-    )
-    if response.redirect and http_request.headers.get("hx-request") == "true":
-        return HTTPResponse("", 200, {**headers, "hx-redirect": _written(local(response.redirect))})
-    if response.redirect:
-        return RedirectResponse(_written(local(response.redirect)), 303, headers)
-    if response.filename:
-        headers["content-disposition"] = attached(response.filename)
-    return _response_with_body(
-        http_request, response, response.content or response.html.encode("utf-8", "replace"), headers
-    )
+class Download(Response):
+    """File to store; the audit records those that staff take."""
 
-
-def _response_with_body(
-    http_request: HTTPRequest, response: Response, data: bytes, headers: dict[str, str]
-) -> HTTPResponse:
-    if response.max_age:
-        headers["etag"] = f'"{sha256(data).hexdigest()[:20]}"'
-        if headers["etag"] in http_request.headers.get("if-none-match", ""):
-            return HTTPResponse(status_code=304, headers=headers)
-    if response.media_type.startswith(_COMPRESSED_TYPES) and len(data) > _COMPRESSED_FROM:
-        headers["vary"] = "accept-encoding"
-        if "gzip" in http_request.headers.get("accept-encoding", ""):
-            headers["content-encoding"] = "gzip"
-            data = _compressed(data) if response.max_age else gzip.compress(data, 5, mtime=0)
-    return HTTPResponse(data, response.status_code, headers, media_type=response.media_type)
-
-
-@lru_cache(maxsize=64)
-def _compressed(data: bytes) -> bytes:
-    return gzip.compress(data, 9, mtime=0)
+    def __init__(self, content: bytes, media_type: str, filename: str):
+        self.filename = filename
+        super().__init__(content, media_type=media_type)
+        self.headers["content-disposition"] = attached(filename)
 
 
 def attached(name: str) -> str:
@@ -65,6 +29,21 @@ def attached(name: str) -> str:
     return f"attachment; filename=\"{plain}\"; filename*=UTF-8''{encoded}"
 
 
-def _written(address: str) -> str:
-    """Return an address in the form that a header requires."""
-    return quote(address, safe="/:%#?=@[]!$&'()*+,;~")
+def local(address: str, usual: str = "/") -> str:
+    """Return an address of this site; the first page if the given address leads elsewhere."""
+    seen = "".join(letter for letter in address if ord(letter) >= 32)  # browsers ignore the others
+    leads_away = seen.startswith("//") or "\\" in seen.partition("?")[0]
+    return seen if seen.startswith("/") and not leads_away else usual
+
+
+def redirect(address: str) -> Response:
+    """Return a redirect to an address of this site."""
+    return RedirectResponse(local(address), 303)
+
+
+def set_cookie(request: Request, response: Response, name: str, value: str, seconds: int) -> None:
+    """Set a cookie of the site that no script can read."""
+    secure = request.site.is_secure
+    response.set_cookie(
+        cookie_name(secure, name), value, max_age=seconds, httponly=True, samesite="lax", secure=secure
+    )

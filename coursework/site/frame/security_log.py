@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import logging
 
-from starlette.requests import Request
-
-from coursework.site.frame.requests import HTTPException
+from coursework.site.frame.requests import HTTPException, Request
 from coursework.system.allowances import network
 
 LOG = logging.getLogger("coursework.security")
@@ -34,15 +32,9 @@ def event_of(why: HTTPException) -> str:
     return _BY_SENTENCE.get(why.sentence) or _BY_STATUS.get(why.status_code, "")
 
 
-def happened(request: Request, event: str, person: int = 0) -> None:
-    """Record an event of a request, to be logged with the response; ``person`` is an id, 0 for nobody."""
-    if event:
-        request.state.events = [*getattr(request.state, "events", ()), (event, person)]
-
-
-def log_events(request: Request, path: str, address: str) -> None:
+def log_events(request: Request, path: str) -> None:
     """Write the events of a request, one line each, with the path of the route."""
-    for event, person in getattr(request.state, "events", ()):
+    for event, person in request.events:
         level = logging.INFO if event in (SIGNED_IN, SIGNED_OUT) else logging.WARNING
-        by = f"person {person}" if person else "nobody"
-        LOG.log(level, "security: %s, %s %s, %s, from %s", event, request.method, path, by, network(address))
+        by, address = f"person {person}" if person else "nobody", network(request.client_address)
+        LOG.log(level, "security: %s, %s %s, %s, from %s", event, request.method, path, by, address)

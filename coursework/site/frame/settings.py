@@ -19,6 +19,7 @@ from coursework.course.folder import course_folder
 from coursework.database.settings import course_reloads, request_reload, secret
 from coursework.database.store import Store
 from coursework.site.frame.clock import SteadyClock
+from coursework.site.frame.cookies import Cookies
 from coursework.site.frame.limits import Limits
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.pages import SitePages
@@ -81,6 +82,10 @@ class Site:
         """Key that signs cookies and CSRF tokens: stored in the database, the same for all workers."""
         with self.store.begin() as connection:
             return secret(connection)
+
+    @cached_property
+    def cookies(self) -> Cookies:
+        return Cookies(self.secret)
 
     def take(self, course: Course[Any]) -> None:
         """Switch all processes to the current files of the course; the practice pool stays until the next

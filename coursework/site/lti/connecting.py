@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 from itsdangerous import BadSignature, URLSafeTimedSerializer
+from starlette.responses import Response
 
 from coursework.database.accounts import account_of
 from coursework.database.audit import note
@@ -14,7 +15,8 @@ from coursework.database.identities import link_identity
 from coursework.database.permissions import Permission
 from coursework.site.frame.attempts import Attempt
 from coursework.site.frame.budgets import PLAIN
-from coursework.site.frame.requests import HTTPException, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.frame.responses import redirect
 from coursework.site.frame.settings import Site
 from coursework.site.people import guessing, passwords
 
@@ -52,7 +54,7 @@ def connect(request: Request) -> Response:
     elif request.is_post:
         guessing.fitted(request, mine.login)
         _tie(request, issuer, subject, platform)
-        return Response(redirect="/account")
+        return redirect("/account")
     names = {"platform": platform, "name": name or subject, "login": mine.login, "missed": missed}
     return request.render("site/connect", 422 if missed else 200, **names)
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from starlette.responses import Response
+
 from coursework.database.permissions import Permission
 from coursework.lti.storage import Storage
-from coursework.site.frame.requests import Request, Response, Route
+from coursework.site.frame.requests import Request, Route
 from coursework.site.lti.scores import number_text
 
 

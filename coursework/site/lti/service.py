@@ -42,7 +42,6 @@ from coursework.site.frame.budgets import Budget
 from coursework.site.frame.forms import read_form
 from coursework.site.frame.requests import FormData
 from coursework.site.frame.requests import HTTPException as RefusedForm
-from coursework.site.frame.requests import Response as SiteResponse
 from coursework.site.frame.settings import Site
 from coursework.site.lti.launch_request import LTIRequest
 from coursework.site.lti.offers import offer_groups
@@ -350,17 +349,10 @@ class _Service:
         elif lti_request.path == "roster.csv":
             response = self._roster_file(lti_request)
         else:
-            response = self._replied(
-                self.host.answer(lti_request, form if request.method == "POST" else None)
-            )
+            response = self.host.answer(lti_request, form if request.method == "POST" else None)
         platform = self._platform(launch)
         request.state.frames = platform.frames
         return response
-
-    def _replied(self, reply: SiteResponse) -> Response:
-        if reply.redirect:
-            return RedirectResponse(reply.redirect, 303)
-        return Response(reply.html, reply.status_code, media_type="text/html")
 
     def _lti_request(self, launch: Launch, name: str, request: Request | None = None) -> LTIRequest:
         csrf_token = hmac.new(self._secret, f"form {name}".encode(), hashlib.sha256).hexdigest()

@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
 from coursework.database.assignments import issued_of
 from coursework.database.publication import Phase, Publication, published, student_assignments
 from coursework.database.submissions import rows_of
@@ -29,8 +31,7 @@ from coursework.lti.services import SCORE, Member, NotServed
 from coursework.lti.storage import Storage
 from coursework.messages import as_message, localised
 from coursework.site.desk.class_cache import assignment_title, class_now
-from coursework.site.frame.arrivals import arrived
-from coursework.site.frame.requests import FormData, HTTPException, Person, Response
+from coursework.site.frame.requests import FormData, HTTPException, Person
 from coursework.site.frame.requests import Request as SiteRequest
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import exact_text, moment_text
@@ -105,7 +106,7 @@ class SiteHost:
         }  # fmt: skip
         if why.sentence == "connect":
             names |= {"connect": str(why.parts[0]), "connect_word": texts["connect"]["title"]}
-        return Response(self.pages.page("platform/lti_message", request.lang, names), why.status_code)
+        return HTMLResponse(self.pages.page("platform/lti_message", request.lang, names), why.status_code)
 
     def _student_page(self, request: LTIRequest, linked: LinkedAssignment) -> Response:
         site_request = self._site_request(request, linked, FormData())
@@ -115,7 +116,7 @@ class SiteHost:
         if not state.may_hand_in:
             raise HTTPException("closed", 409)
         texts = self._handed_in(state, paper) if state.done else {}
-        return Response(self._sheet(request, state, paper, texts))
+        return HTMLResponse(self._sheet(request, state, paper, texts))
 
     # ------------------------------------------------------------------- a student
 
@@ -137,16 +138,8 @@ class SiteHost:
         number = self._assigned(request, linked, row)
         if self._storage.record(launch, row.id, number):
             self._queue_score(launch, row.id, number)
-        return SiteRequest(
-            site,
-            Person(row.id, row.name, "student", request.lang),
-            request.lang,
-            arrived(site.clock),
-            request.home,
-            {"number": number},
-            form=form,
-            is_post=bool(form.texts),
-        )
+        person = Person(row.id, row.name, "student", request.lang)
+        return SiteRequest.of_person(site, person, request.lang, request.home, {"number": number}, form)
 
     def _assigned(self, request: LTIRequest, linked: LinkedAssignment, person: Any) -> int:
         """Return the assignment's id, after a paper was assigned to the person, if they have none."""
@@ -235,7 +228,7 @@ class SiteHost:
             document, notes = feedback_of(site_request, state, paper, last)
             notes = [f"{arrival}. {receipt}", *notes, *self._rules(request, state), self._sent(request)]
             form = SheetForm("", "", notes=tuple(notes), more=tuple(more), leave=request.launch.return_url)
-            return Response(self.pages.feedback(document, form))
+            return HTMLResponse(self.pages.feedback(document, form))
         notes = [
             f"{arrival}.",
             receipt,
@@ -247,7 +240,7 @@ class SiteHost:
             "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": request.launch.return_url,
             "handed_in": site_request.words["lti"]["handed_in"],
         }  # fmt: skip
-        return Response(self.pages.page("platform/lti_site_handed_in", request.lang, names))
+        return HTMLResponse(self.pages.page("platform/lti_site_handed_in", request.lang, names))
 
     def _sent(self, request: LTIRequest, state: AssignmentState | None = None) -> str:
         """Return the state of the score on its way to the platform."""
@@ -268,10 +261,10 @@ class SiteHost:
         state, paper = state_and_paper(site_request)
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):
-            return Response(redirect=request.home)  # repeated form
+            return RedirectResponse(request.home, 303)  # repeated form
         back = self._doubts(request, paper, texts, form)
         if back:
-            return Response(self._sheet(request, state, paper, texts, **back), 422)
+            return HTMLResponse(self._sheet(request, state, paper, texts, **back), 422)
         number, person_id = state.assignment.id, site_request.user.id
         received_at = site_request.received_at
         done = submit(
@@ -280,7 +273,7 @@ class SiteHost:
         if linked.link and done.is_new:
             mark(self._site, done.delivery.id, at_once=True)
         self._queue_score(request.launch, person_id, number)
-        return Response(redirect=request.home)
+        return RedirectResponse(request.home, 303)
 
     def _doubts(
         self, request: LTIRequest, paper: StudentPaper, texts: Mapping[str, str], form: FormData
@@ -317,7 +310,7 @@ class SiteHost:
             "rules": rules_rows(request, stated.get("sittings", _BEST), publication), "rows": rows, "missing": missing,
             "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
         }  # fmt: skip
-        return Response(self.pages.page("platform/lti_site_class", lang, names))
+        return HTMLResponse(self.pages.page("platform/lti_site_class", lang, names))
 
     def _preview(self, request: LTIRequest, linked: LinkedAssignment, form: FormData | None) -> Response:
         """Return the paper as a student sees it, with variants that are issued to nobody, or the marks of a
@@ -328,14 +321,14 @@ class SiteHost:
         links = ((home, texts["to_class"]),)
         if form is None:
             form_names = SheetForm(sheet, request.csrf_token, notes=notes, more=links)
-            return Response(self.pages.sheet(paper.paper, form_names))
+            return HTMLResponse(self.pages.sheet(paper.paper, form_names))
         typed = paper.texts(form)
         if back := self._doubts(request, paper, typed, form):
             again = SheetForm(
                 sheet, request.csrf_token, filled=_filled(typed), notes=(*notes, *back.get("notes", ())),
                 unread=tuple(back.get("unread", ())), may_insist="unread" in back, more=links,
             )  # fmt: skip
-            return Response(self.pages.sheet(paper.paper, again), 422)
+            return HTMLResponse(self.pages.sheet(paper.paper, again), 422)
         rows = rows_for(paper, typed, 1, site.clock(), FROM_A_PLATFORM)
         sheets = placed_sheets(site.course, paper.issued, rows)
         graded = [
@@ -343,7 +336,7 @@ class SiteHost:
         ]
         document = feedback_paper(site.course, paper.issued, paper.student, graded, request.lang)
         told = SheetForm("", "", notes=notes, more=((sheet, texts["again"]), *links))
-        return Response(self.pages.feedback(document, told))
+        return HTMLResponse(self.pages.feedback(document, told))
 
     def _definition(self, linked: LinkedAssignment) -> Assignment:
         if linked.link:

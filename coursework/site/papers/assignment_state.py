@@ -82,11 +82,15 @@ class AssignmentState:
         return "" if ends is None else length_text(ends - self.now, self.lang)
 
 
-def state_of(request: Request, assignment: StudentAssignment, connection: Connection) -> AssignmentState:
+def state_of(
+    request: Request, assignment: StudentAssignment, connection: Connection, person: int = 0
+) -> AssignmentState:
+    """Return the state of an assignment for a person, by default the current user."""
     assert assignment.publication is not None
-    done = submissions_of(connection, assignment.id, request.user.id)
+    person = person or request.user.id
+    done = submissions_of(connection, assignment.id, person)
     ends = last_end(assignment.publication, list(extensions(connection, assignment.id).values()))
-    used = attempts_used(connection, assignment.id, request.user.id, done)
+    used = attempts_used(connection, assignment.id, person, done)
     now = assignment.publication.counted(request.received_at, request.site.clock())
     return AssignmentState(assignment, request.lang, now, done, ends, used)
 

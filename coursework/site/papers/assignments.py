@@ -9,6 +9,7 @@ from datetime import timedelta
 from pathlib import Path
 
 from markupsafe import Markup
+from starlette.responses import Response
 
 from coursework.database.drafts import DraftBox, drafts
 from coursework.database.people import lock_person
@@ -25,7 +26,8 @@ from coursework.issuing.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, read_apart
 from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts, versions_of
-from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
+from coursework.site.frame.requests import HTTPException, Request, Route, Upload
+from coursework.site.frame.responses import Download, redirect
 from coursework.site.frame.times import exact_text, length_text, zone_name
 from coursework.site.papers import receipts, submission
 from coursework.site.papers.assignment_state import (
@@ -77,7 +79,7 @@ def paper_page(request: Request) -> Response:
     if request.is_post:
         return _read_back(request, state, paper)
     if not state.may_hand_in and state.done:
-        return Response(redirect=f"{state.address}/receipts/{state.done[-1].receipt}")
+        return redirect(f"{state.address}/receipts/{state.done[-1].receipt}")
     return _paper_response(request, state, paper)
 
 
@@ -172,12 +174,10 @@ def files(request: Request) -> Response:
     state, paper = state_and_paper(request)
     renderer, stem = renderer_of(request.site.course.folder), _stem(state, paper)
     if request.path_params["file"] == "paper.pdf":
-        return Response(
-            media_type="application/pdf", content=renderer.paper_pdf(paper.paper), filename=f"{stem}.pdf"
-        )
+        return Download(renderer.paper_pdf(paper.paper), "application/pdf", f"{stem}.pdf")
     if request.path_params["file"] == "notebook.ipynb":
         data = renderer.paper_notebook(paper.paper).encode()
-        return Response(media_type="application/x-ipynb+json", content=data, filename=f"{stem}.ipynb")
+        return Download(data, "application/x-ipynb+json", f"{stem}.ipynb")
     raise HTTPException("page", 404)
 
 
@@ -267,7 +267,7 @@ def confirm(request: Request) -> Response:
     if result.is_new:
         submission.mark(site, result.delivery.id)
     again = "" if result.is_new else "?again=other" if result.differs else "?again=same"
-    return Response(redirect=f"/assignments/{assignment.id}/receipts/{result.delivery.receipt}{again}")
+    return redirect(f"/assignments/{assignment.id}/receipts/{result.delivery.receipt}{again}")
 
 
 def receipt(request: Request) -> Response:
@@ -314,7 +314,7 @@ def feedback(request: Request) -> Response:
         raise HTTPException("nothing_handed_in", 404)
     chosen = _chosen(request, state)
     if pending_marking(request, chosen.id) is not None:
-        return Response(redirect=f"{state.address}/receipts/{chosen.receipt}")
+        return redirect(f"{state.address}/receipts/{chosen.receipt}")
     document, notes = feedback_of(request, state, paper, chosen)
     return request.render(
         "site/student/assignment_feedback",

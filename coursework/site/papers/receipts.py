@@ -8,6 +8,7 @@ from datetime import timedelta
 from typing import Any
 
 from sqlalchemy import Connection
+from starlette.responses import Response
 
 from coursework.database.areas import may_for
 from coursework.database.audit import note
@@ -15,7 +16,8 @@ from coursework.database.instructor_queries import people_of
 from coursework.database.permissions import Permission
 from coursework.database.submissions import Submission, answers_of
 from coursework.language.words import words
-from coursework.site.frame.requests import HTTPException, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.frame.responses import Download
 from coursework.site.frame.times import exact_text, length_text, zone_name
 from coursework.site.papers.submission import digest, submission_of_receipt
 
@@ -80,13 +82,11 @@ def file(request: Request) -> Response:
         content = receipt_content(connection, row, row.assignment, row.student)
     if request.path_params["ending"] == "json":
         data = json.dumps(content, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
-        return Response(media_type="application/json", content=data, filename=f"receipt-{row.receipt}.json")
+        return Download(data, "application/json", f"receipt-{row.receipt}.json")
     if request.path_params["ending"] != "txt":
         raise HTTPException("page", 404)
     data = as_text(request, content, row).encode("utf-8", "backslashreplace")
-    return Response(
-        media_type="text/plain; charset=utf-8", content=data, filename=f"receipt-{row.receipt}.txt"
-    )
+    return Download(data, "text/plain; charset=utf-8", f"receipt-{row.receipt}.txt")
 
 
 def verify(request: Request) -> Response:

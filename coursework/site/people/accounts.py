@@ -8,6 +8,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from sqlalchemy import Connection
+from starlette.responses import Response
 
 from coursework.database.accounts import (
     accept_invitation,
@@ -22,13 +23,17 @@ from coursework.database.accounts import (
 from coursework.database.audit import OF_ACCOUNTS, Actor, note, noted
 from coursework.database.people import put_person
 from coursework.database.permissions import ADMINISTRATOR, Permission
-from coursework.database.sessions import end_session, end_sessions, sessions_of
+from coursework.database.sessions import LONGEST, begin_session, end_session, end_sessions, sessions_of
 from coursework.errors import BadInput
 from coursework.lti.storage import end_launch_sessions
 from coursework.site.frame.attempts import Attempt
+from coursework.site.frame.browsers import described
 from coursework.site.frame.budgets import PLAIN
-from coursework.site.frame.devices import Devices
-from coursework.site.frame.requests import HTTPException, Request, Response, Route, local
+from coursework.site.frame.cookies import ANONYMOUS_SECONDS, COOKIE
+from coursework.site.frame.devices import DEVICE, DEVICE_SECONDS, Devices
+from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.frame.responses import local, redirect, set_cookie
+from coursework.site.frame.security_log import SIGNED_IN, SIGNED_OUT
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.frame.times import moment_text
 from coursework.site.people import guessing, passwords
@@ -51,7 +56,7 @@ def sign_in(request: Request) -> Response:
         return _without_account(request)
     after = local(request.form.text("after") or request.query_params.get("after", ""))
     if not request.is_post:
-        return Response(redirect=after) if request.person else _sign_in_page(request, after)
+        return redirect(after) if request.person else _sign_in_page(request, after)
     login, password = as_login(request.form.text("login")), request.form.text("password")
     with request.site.store.reading() as connection:
         match = account_by_login(connection, login)
@@ -63,7 +68,7 @@ def sign_in(request: Request) -> Response:
         with request.site.store.begin() as connection:
             set_secret(connection, match.id, passwords.hashed(password))
     device = Devices(request.site.secret).after_sign_in(request.device, login)
-    return Response(redirect=after, signed_in=match.person_id, device=device)
+    return signed_in(request, after, match.person_id, device)
 
 
 def sign_in_attempt(request: Request) -> Attempt:
@@ -73,10 +78,31 @@ def sign_in_attempt(request: Request) -> Attempt:
     return guessing.attempt_of(request, as_login(request.form.text("login")))
 
 
+def signed_in(request: Request, address: str, person: int, device: str = "") -> Response:
+    """End the browser's session and begin one of a person, or an anonymous one for person 0; return the redirect
+    to an address. ``device`` is the new device cookie."""
+    before = request.person.id if request.person else 0
+    request.events.append((SIGNED_IN if person else SIGNED_OUT, person or before))
+    token, seconds, request.is_new = request.site.cookies.anonymous().token, ANONYMOUS_SECONDS, False
+    if person or request.browser.id:
+        with request.site.store.begin() as connection:
+            if before:
+                end_session(connection, request.browser.id, before)
+            if person:
+                browser = described(request.headers.get("user-agent", ""))
+                token = begin_session(connection, person, browser, datetime.now(UTC))
+                seconds = int(LONGEST.total_seconds())
+    response = redirect(address)
+    set_cookie(request, response, COOKIE, token, seconds)
+    if device:
+        set_cookie(request, response, DEVICE, device, DEVICE_SECONDS)
+    return response
+
+
 def _without_account(request: Request) -> Response:
     if request.site.entrance is Entrance.DEMO:
-        return Response(redirect="/who")
-    return Response(redirect="/")  # on a local site the user is always signed in
+        return redirect("/who")
+    return redirect("/")  # on a local site the user is always signed in
 
 
 def _sign_in_page(
@@ -88,7 +114,7 @@ def _sign_in_page(
 
 def sign_out(request: Request) -> Response:
     """Sign out, by a form only, so that no link of another page signs anybody out."""
-    return Response(redirect="/", signed_in=0) if request.is_post else Response(redirect="/")
+    return signed_in(request, "/", 0) if request.is_post else redirect("/")
 
 
 # ------------------------------------------------------------------- invitations
@@ -133,7 +159,7 @@ def invitation(request: Request) -> Response:
         by = Actor(mine.name, person, request.client_address)
         note(connection, request.received_at, by, "invitation taken up", person=person)
     device = Devices(request.site.secret).after_sign_in(request.device, mine.login)
-    return Response(redirect="/", signed_in=person, device=device)
+    return signed_in(request, "/", person, device)
 
 
 def _invitation_page(request: Request, mine: Any, status: int = 200, **names: Any) -> Response:
@@ -160,7 +186,7 @@ def account(request: Request) -> Response:
         with request.site.store.begin() as connection:
             end_sessions(connection, request.user.id)
             end_launch_sessions(connection, request.user.id)
-        return Response(redirect="/", signed_in=0)
+        return signed_in(request, "/", 0)
     if "session" in request.form.texts:
         return _end_chosen_session(request)
     return _other_password(request, mine)
@@ -180,11 +206,11 @@ def _end_chosen_session(request: Request) -> Response:
     number = request.form.text("session")
     if not (number.isascii() and number.isdecimal() and len(number) < 10):
         raise HTTPException("bad_request", 422)
-    if int(number) == request.session:
-        return Response(redirect="/", signed_in=0)
+    if int(number) == request.browser.id:
+        return signed_in(request, "/", 0)
     with request.site.store.begin() as connection:
         end_session(connection, int(number), request.user.id)  # it may have ended meanwhile
-    return Response(redirect="/account")
+    return redirect("/account")
 
 
 def _account_page(request: Request, mine: Any, status: int = 200, **names: Any) -> Response:
@@ -217,7 +243,7 @@ def _other_password(request: Request, mine: Any) -> Response:
         set_secret(connection, mine.id, secret)
         end_sessions(connection, request.user.id)
         note(connection, request.received_at, request.actor, "password changed", person=request.user.id)
-    return Response(redirect="/account?changed=1", signed_in=request.user.id)
+    return signed_in(request, "/account?changed=1", request.user.id)
 
 
 # ----------------------------------------------------------------- by command

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from hashlib import sha256
 from urllib.parse import quote
+
+from starlette.responses import Response
 
 from coursework.database.people import people, person_by_identifier, put_account, put_person
 from coursework.database.permissions import ADMINISTRATOR, Permission
 from coursework.site.frame.budgets import PLAIN
+from coursework.site.frame.cookies import LANG
 from coursework.site.frame.limits import FREE
-from coursework.site.frame.requests import HTTPException, Request, Response, Route, local
+from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.frame.responses import redirect, set_cookie
 from coursework.site.frame.settings import Entrance, Site
+from coursework.site.people.accounts import signed_in
 
 _YEAR = 365 * 24 * 3600
 
@@ -17,8 +23,8 @@ _YEAR = 365 * 24 * 3600
 def first(request: Request) -> Response:
     """Redirect to the first page of the current user."""
     if request.person is None:
-        return Response(redirect=door_to(request))
-    return Response(redirect="/desk" if request.person.may(Permission.DESK) else "/practice")
+        return redirect(door_to(request))
+    return redirect("/desk" if request.person.may(Permission.DESK) else "/practice")
 
 
 def door_to(request: Request) -> str:
@@ -29,10 +35,16 @@ def door_to(request: Request) -> str:
 
 
 def shared_file(request: Request) -> Response:
+    """Return a static file, whose address changes with it."""
     static_file = request.site.pages.static(str(request.path_params["name"]))
     if static_file is None:
         raise HTTPException("page", 404)
-    return Response(media_type=static_file[0], content=static_file[1], max_age=_YEAR)
+    media_type, data = static_file
+    tag = f'"{sha256(data).hexdigest()[:20]}"'
+    headers = {"cache-control": f"public, max-age={_YEAR}, immutable", "etag": tag}
+    if tag in request.headers.get("if-none-match", ""):
+        return Response(status_code=304, headers=headers)
+    return Response(data, headers=headers, media_type=media_type)
 
 
 def choose_person(request: Request) -> Response:
@@ -45,17 +57,19 @@ def choose_person(request: Request) -> Response:
         chosen = next((person for person in persons if str(person.id) == request.form.text("person")), None)
         if chosen is None:
             raise HTTPException("own", 404)
-        return Response(redirect="/", signed_in=chosen.id)
+        return signed_in(request, "/", chosen.id)
     return request.render("site/who", people=persons)
 
 
 def choose_language(request: Request) -> Response:
     """Switch to the next language; redirect to the page before."""
     if not request.is_post:
-        return Response(redirect="/")
+        return redirect("/")
     languages = request.site.languages
     after = languages[(languages.index(request.lang) + 1) % len(languages)]
-    return Response(redirect=local(request.form.text("back")), lang=after)
+    response = redirect(request.form.text("back"))
+    set_cookie(request, response, LANG, after, _YEAR)
+    return response
 
 
 def owner(site: Site) -> int:

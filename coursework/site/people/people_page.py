@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
 from sqlalchemy import Connection
+from starlette.responses import Response
 
 from coursework.database.accounts import account_by_login, accounts, is_last_administrator, set_role
 from coursework.database.areas import areas_of, groups_known, put_areas
@@ -22,7 +23,8 @@ from coursework.issuing.roster import Student, read_roster
 from coursework.lti.storage import drop_launches
 from coursework.site.desk.class_cache import assignment_title
 from coursework.site.frame.budgets import DESK_FILE, read_apart
-from coursework.site.frame.requests import HTTPException, Request, Response, Route, Upload
+from coursework.site.frame.requests import HTTPException, Request, Route, Upload
+from coursework.site.frame.responses import Download, redirect
 from coursework.site.people.accounts import DAYS, as_login, invited
 from coursework.system.tables import csv_file
 
@@ -109,9 +111,7 @@ def _invite(request: Request) -> Response:
             }
         links = [_link(request, connection, row) for row in lines if str(row.id) in wanted]
     if request.form.text("do").endswith("file"):
-        return Response(
-            media_type="text/csv; charset=utf-8", content=_as_csv(links), filename="invitations.csv"
-        )
+        return Download(_as_csv(links), "text/csv; charset=utf-8", "invitations.csv")
     return request.render("site/instructor/links", links=links, days=DAYS)
 
 
@@ -153,7 +153,7 @@ def add(request: Request) -> Response:
         ids = [_add_student(request, connection, entry) for entry in students]
         new = sorted(set(ids) - before)
         note(connection, request.received_at, request.actor, "people added", people=new)
-    return Response(redirect=f"/desk/people?added={len(new)}")
+    return redirect(f"/desk/people?added={len(new)}")
 
 
 def _add_student(request: Request, connection: Connection, student: Student) -> int:
@@ -252,7 +252,7 @@ def separate_tie(request: Request) -> Response:
         drop_launches(connection, person.id, *gone)
         about = {"person": person.id, "platform": urlsplit(gone[0]).hostname or gone[0]}
         note(connection, request.received_at, request.actor, "separated from a platform", **about)
-    return Response(redirect=f"/desk/people/{person.id}")
+    return redirect(f"/desk/people/{person.id}")
 
 
 def invite_person(request: Request) -> Response:
@@ -292,7 +292,7 @@ def change_role(request: Request) -> Response:
         link = _link(request, connection, line._replace(role=role)) if needs_link else None
     if link is not None:
         return request.render("site/instructor/links", links=[link], days=DAYS, chooses_anew=True)
-    return Response(redirect=f"/desk/people/{line.id}")
+    return redirect(f"/desk/people/{line.id}")
 
 
 def _areas_of_form(request: Request, connection: Connection) -> list[Area]:

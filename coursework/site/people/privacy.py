@@ -11,6 +11,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 from sqlalchemy import Connection
+from starlette.responses import Response
 
 from coursework.database.accounts import is_last_administrator
 from coursework.database.audit import Actor, kinds, note, noted
@@ -20,7 +21,8 @@ from coursework.database.permissions import Permission
 from coursework.database.personal_data import identifiers_of, personal_data
 from coursework.issuing.students import file_stems
 from coursework.language.words import words
-from coursework.site.frame.requests import HTTPException, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.frame.responses import Download, redirect
 from coursework.site.papers.release import Release, full_release, release_to
 from coursework.site.people import scrubbing
 from coursework.site.people.people_page import number, somebody
@@ -56,9 +58,7 @@ def _given(
         raise HTTPException("own", 404)
     tables = _withheld(personal_data(connection, owner), release_of)
     name = next(iter(file_stems([owner.name or "me"])))
-    return Response(
-        media_type="application/zip", content=_zip(request, tables, owner.name), filename=f"{name}.zip"
-    )
+    return Download(_zip(request, tables, owner.name), "application/zip", f"{name}.zip")
 
 
 def _withheld(tables: Mapping[str, Rows], release_of: Callable[[int], Release]) -> dict[str, Rows]:
@@ -138,8 +138,8 @@ def erase_person(request: Request) -> Response:
         note(connection, request.received_at, by, "erased", person=person.id, rows=sum(gone.values()))
     if not scrubbing.scrub(request.site):
         scrubbing.scrub_until_done(request.site)
-        return Response(redirect="/desk/people?left=1")
-    return Response(redirect="/desk/people")
+        return redirect("/desk/people?left=1")
+    return redirect("/desk/people")
 
 
 # ---------------------------------------------------------------------- audit

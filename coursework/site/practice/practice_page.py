@@ -6,6 +6,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+from starlette.responses import HTMLResponse, Response
+
 from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.marking.marking import mark
@@ -17,7 +19,8 @@ from coursework.selfstudy.progress import is_blank
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.site.frame.budgets import BOXES, PLAIN
 from coursework.site.frame.drafts import save_drafts
-from coursework.site.frame.requests import HTTPException, Request, Response, Route
+from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.frame.responses import redirect
 from coursework.site.papers.assignment_state import to_hand_in
 from coursework.site.practice.begun_variants import begun
 from coursework.site.practice.contents import contents, exercise_title, next_of
@@ -47,9 +50,9 @@ def exercise(request: Request) -> Response:
     progress = PersonProgress(site.store, request.user.id, site.clock, name).progress
     going = None if request.is_post else next(begun(request, progress, name), None)
     if going is not None:
-        return Response(redirect=going.address)
+        return redirect(going.address)
     seeds = {int(entry["seed"]) for entry in progress}
-    return Response(redirect=f"/practice/{name}/{site.pool.choose_seed(name, request.user.id, seeds)}")
+    return redirect(f"/practice/{name}/{site.pool.choose_seed(name, request.user.id, seeds)}")
 
 
 def sheet(request: Request) -> Response:
@@ -104,7 +107,7 @@ def _gone(request: Request, work: Worksheet, target: str) -> Response:
         return exercise(request)
     if target not in ("solution", "motion"):
         raise HTTPException("bad_request", 400)
-    return Response(redirect=f"{work.address}/{target}")
+    return redirect(f"{work.address}/{target}")
 
 
 def _checked(request: Request, work: Worksheet) -> tuple[CheckedAnswers, tuple[str, ...]]:
@@ -191,7 +194,7 @@ def read(request: Request) -> Response:
     _only_posted(request)
     work = _worksheet(request)
     part = work.part(request.form.text("part"))
-    return Response(str(work.read_as(part.id, work.typed[part.id])))
+    return HTMLResponse(str(work.read_as(part.id, work.typed[part.id])))
 
 
 def _only_posted(request: Request) -> None:
@@ -207,7 +210,7 @@ def solution(request: Request) -> Response:
     work = _worksheet(request)
     if request.is_post:
         work.attempt.reveal()
-        return Response(redirect=f"{work.address}/solution")
+        return redirect(f"{work.address}/solution")
     names: dict[str, Any] = {"sheet_page": work, "title": work.variant.text.title}
     if not work.attempt.is_example:
         return request.render("site/student/practice_sure", **names)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from markupsafe import Markup
+from starlette.responses import Response
 
 from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
@@ -11,7 +12,8 @@ from coursework.markup import markdown
 from coursework.selfstudy.mastery import told_skills
 from coursework.selfstudy.progress import FILE, LaterVersion, TooLong, read_brought
 from coursework.site.frame.budgets import PROGRESS_FILE, read_apart
-from coursework.site.frame.requests import Request, Response, Route
+from coursework.site.frame.requests import Request, Route
+from coursework.site.frame.responses import Download
 from coursework.site.practice.contents import contents, exercise_title, next_of
 
 _MOST = 6_000  #: entries of an uploaded file
@@ -69,7 +71,7 @@ def _brought(request: Request, store: PersonProgress) -> int:
 def file(request: Request) -> Response:
     """Return all the progress, in the format of notebooks."""
     entries = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
-    return Response(media_type="application/json", content=entries.text().encode(), filename=FILE)
+    return Download(entries.text().encode(), "application/json", FILE)
 
 
 ROUTES = (

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from datetime import datetime
 from typing import Any, NamedTuple
 
 from markupsafe import Markup
 from sqlalchemy import Connection, Select, func, select
+from starlette.responses import Response
 
 from coursework.course.course import Course
 from coursework.course.secrecy import Secret
@@ -50,7 +50,8 @@ from coursework.issuing.roster import Student
 from coursework.issuing.variant_assignment import assign_variants
 from coursework.language.words import words
 from coursework.site.frame.budgets import DESK_FILE
-from coursework.site.frame.requests import FormData, HTTPException, Request, Response, Route
+from coursework.site.frame.requests import FormData, HTTPException, Request, Route
+from coursework.site.frame.responses import Download, redirect
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import exact_text, field_text, from_field, moment_text, zone_name
 from coursework.site.papers.assignment_state import AssignmentState, state_of
@@ -146,10 +147,10 @@ def new(request: Request) -> Response:
     except BadInput as fault:
         return _new_page(request, str(fault), 422)
     if form.issued is not None:
-        return Response(redirect=f"/desk/assignments/{_take_in(request, form)}")
+        return redirect(f"/desk/assignments/{_take_in(request, form)}")
     assert form.wanted is not None
     token = assigning.begin(request.site, form.wanted, request.user.name, "assignment dealt")
-    return Response(redirect=f"/desk/assignments/dealing/{token}")
+    return redirect(f"/desk/assignments/dealing/{token}")
 
 
 def _new_page(request: Request, problem: str = "", status: int = 200) -> Response:
@@ -177,7 +178,7 @@ def assigning_page(request: Request) -> Response:
     if job is None:
         raise HTTPException("page", 404)
     if job.state == assigning.DONE and not job.messages:
-        return Response(redirect=f"/desk/assignments/{job.number}")
+        return redirect(f"/desk/assignments/{job.number}")
     return request.render("site/instructor/publish_dealing", dealing=job)
 
 
@@ -255,7 +256,7 @@ def _note(
 
 
 def _redirect(listed: ListedAssignment) -> Response:
-    return Response(redirect=f"/desk/assignments/{listed.id}")
+    return redirect(f"/desk/assignments/{listed.id}")
 
 
 # --------------------------------------------------------------------- publishing
@@ -410,8 +411,8 @@ def _deal_more(request: Request, students: Sequence[Student], names: Sequence[st
     wanted = AssignmentRequest(
         listed.name, listed.definition, everybody, request.site.languages[0], content, tuple(names)
     )
-    return Response(
-        redirect=f"/desk/assignments/dealing/{assigning.begin(request.site, wanted, request.user.name, event)}"
+    return redirect(
+        f"/desk/assignments/dealing/{assigning.begin(request.site, wanted, request.user.name, event)}"
     )
 
 
@@ -469,7 +470,7 @@ def as_somebody(request: Request) -> Response:
         _note(request, connection, listed, "seen as a student", student=matches[0].student)
         personal = matches[0]._replace(publication=matches[0].publication or Publication())
         paper = student_paper(connection, request.site.course, personal, person_id, request.lang)
-        theirs = state_of(replace(request, person=request.user._replace(id=person_id)), personal, connection)
+        theirs = state_of(request, personal, connection, person_id)
     look = request.words["publishing"]["look_as"].format(personal.student)
     if theirs.phase is Phase.TO_COME or listed.publication is None:
         look += " " + request.words["publishing"]["look_hidden"]
@@ -494,7 +495,7 @@ def issued_file(request: Request) -> Response:
         may_draw = request.user.may(Permission.ASSIGNMENTS_PUBLISH, number, "")
         content = issued_content(connection, number, secret=may_draw)
     data = json.dumps(content, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
-    return Response(media_type="application/json", content=data, filename="issued.json")
+    return Download(data, "application/json", "issued.json")
 
 
 ROUTES = (
