@@ -408,4 +408,4 @@ def test_a_hand_in_and_its_receipt_take_few_statements(site_class):
         page = browser.get(reply.headers["location"])
     assert (reply.status_code, page.status_code) == (303, 200)
     is_sqlite = store.has_one_writer  # where no row needs to be locked
-    assert [count_of(found)[0] for found in (to_hand_in, to_show)] == [9 if is_sqlite else 10, 7]
+    assert [count_of(found)[0] for found in (to_hand_in, to_show)] == [8 if is_sqlite else 9, 7]

@@ -148,23 +148,9 @@ def _measured(
     return dict(zip(numbers, measures(course, issued, graded), strict=True))
 
 
-def assignment_of(request: Request) -> int:
-    """Return the id of the assignment that the address names.
-
-    Raises
-    ------
-    HTTPException
-        It is not a number.
-    """
-    text = str(request.path_params.get("assignment", ""))
-    if not text.isascii() or not text.isdecimal() or len(text) > 9:
-        raise HTTPException("own", 404)
-    return int(text)
-
-
-def by_whom(request: Request) -> str:
-    """Return the name under which a decision is recorded."""
-    return request.user.name or str(request.words["site"]["local"])
+def class_here(request: Request) -> ClassState:
+    """Return the current state of the class that the address names."""
+    return class_now(request.site, request.path_params["assignment"])
 
 
 def class_page_of(request: Request, now: ClassState, template: str, tab: str, **names: Any) -> Response:

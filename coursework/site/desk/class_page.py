@@ -19,7 +19,7 @@ from coursework.issuing.students import folded
 from coursework.language.numbers import localise
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_cache import assignment_of, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import sign_of
 from coursework.site.frame.requests import Request, Route
 from coursework.site.frame.responses import redirect
@@ -114,7 +114,7 @@ def _row(
 
 def class_page(request: Request) -> Response:
     """Return the table of the class."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     table_rows = rows(now)
     sort, sought = request.query_params.get("sort", ""), request.query_params.get("find", "").strip()
     selected = sorted((row for row in table_rows if _matches(row, sought)), key=_sorting(now, sort))
@@ -127,7 +127,7 @@ def class_page(request: Request) -> Response:
 
 def news(request: Request) -> Response:
     """Return the rows that changed since a stamp; an empty response if none did."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     before = Stamp.read(request.query_params.get("stamp", ""))
     if before == now.stamp:
         return Response(status_code=204)

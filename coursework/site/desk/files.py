@@ -14,7 +14,6 @@ from typing import Any
 from starlette.responses import Response
 
 from coursework.database.assignments import issued_content, put_issued
-from coursework.database.audit import note
 from coursework.database.class_state import ClassState
 from coursework.database.instructor_queries import decided_since
 from coursework.database.marking import mark_submission
@@ -31,11 +30,11 @@ from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebo
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.submissions import find, read_file
 from coursework.issuing.issued import COLUMNS
-from coursework.issuing.roster import roster_and_notes
+from coursework.issuing.roster import Student, roster_and_notes
 from coursework.messages import Message, as_message, localised
-from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
-from coursework.site.frame.budgets import DESK_FILES, read_apart
+from coursework.site.frame.budgets import DESK_FILES, read_apart, read_upload
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 from coursework.site.frame.responses import Download
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
@@ -56,7 +55,7 @@ def files_page(
     request: Request, messages: Sequence[str] = (), filled: Filled | None = None, name: str = ""
 ) -> Response:
     """Return the page of uploads and downloads."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     with request.site.store.reading() as connection:
         submissions = submissions_of(connection, now.about.id)
     files = [
@@ -78,8 +77,8 @@ def answers_in(request: Request) -> Response:
     BadInput
         No file was sent, or an archive exceeds the limits.
     """
-    number = class_now(request.site, assignment_of(request)).about.id
-    sent = [item for item in request.form.files.get("answers", ()) if item.data]
+    number = class_here(request).about.id
+    sent = request.form.uploads("answers")
     texts = request.words["files"]
     if not sent:
         raise BadInput(texts["none_sent"])
@@ -90,15 +89,7 @@ def answers_in(request: Request) -> Response:
         submission = insert_submission(
             connection, number, rows, source=source, received_at=request.received_at
         )
-        note(
-            connection,
-            request.received_at,
-            by_whom(request),
-            "answers",
-            assignment=number,
-            rows=len(rows),
-            source=source,
-        )
+        request.note(connection, "answers", assignment=number, rows=len(rows), source=source)
     if not submission.is_new:
         return files_page(request, [texts["again"].format(moment(submission.received_at, request.lang))])
     marked = mark_submission(request.site.course, request.site.store, submission.id)
@@ -183,21 +174,12 @@ def roster_in(request: Request) -> Response:
     BadInput
         The file is not a roster.
     """
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     texts = request.words["files"]
-    sent = next((entry for entry in request.form.files.get("roster", ()) if entry.data), None)
+    sent = request.form.upload("roster")
     if sent is None:
         raise BadInput(texts["none_sent"])
-    messages: list[str] = []
-    with TemporaryDirectory(prefix="coursework-") as temporary:
-        path = Path(temporary) / file_name(sent)
-        path.write_bytes(sent.data)
-        try:
-            students, messages = read_apart(
-                DESK_FILES, request.words["refused"]["too_much"], roster_and_notes, path
-            )
-        except BadInput as fault:
-            raise BadInput(as_message(fault).replacing(f"{temporary}/", "")) from fault
+    students, notes = read_upload(request, DESK_FILES, _roster, file_name(sent), sent.data)
     issued_names = {
         entry.name: now.issued.student(entry.name, tuple(entry.columns.items())) for entry in students
     }
@@ -210,20 +192,19 @@ def roster_in(request: Request) -> Response:
         content = issued_content(connection, now.about.id)
         content["students"] = {**content.get("students", {}), **_merged(content.get("students", {}), columns)}
         put_issued(connection, content, now.about.name)
-        note(
-            connection,
-            request.received_at,
-            by_whom(request),
-            "roster",
-            assignment=now.about.id,
-            students=len(columns),
-        )
+        request.note(connection, "roster", assignment=now.about.id, students=len(columns))
     strangers = [entry.name for entry in students if not issued_names[entry.name]]
-    messages = [localised(as_message(note).replacing(f"{temporary}/", "")) for note in messages]
-    messages.insert(0, texts["roster_came"].format(len(students) - len(strangers), len(students)))
+    messages = [texts["roster_came"].format(len(students) - len(strangers), len(students))]
+    messages += [localised(line) for line in notes]
     if strangers:
         messages.append(texts["roster_strangers"].format(_list(strangers)))
     return files_page(request, messages)
+
+
+def _roster(path: Path) -> tuple[Sequence[Student], list[Message]]:
+    """Return the students of a roster, and the messages about it, which name the file alone."""
+    students, notes = roster_and_notes(path)
+    return students, [as_message(line).replacing(f"{path.parent}/", "") for line in notes]
 
 
 def _merged(
@@ -317,7 +298,7 @@ _TABLES: Mapping[str, Callable[[Request, ClassState], bytes]] = {
 
 def table(request: Request) -> Response:
     """Return one table, or all of them in an archive."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     name = str(request.path_params["file"])
     if name == "archive.zip":
         files = {member: make(request, now) for member, make in _TABLES.items()} | {
@@ -336,7 +317,7 @@ def _safe(name: str) -> str:
 
 def feedback(request: Request) -> Response:
     """Return the feedback of a student, or of all students in an archive."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     only = request.query_params.get("student", "")
     selected = [graded for graded in now.graded.values() if not only or graded.student == only]
     if not selected:
@@ -374,9 +355,9 @@ def gradebook(request: Request) -> Response:
     BadInput
         No file was sent, or it cannot be filled in.
     """
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     texts, form = request.words["files"], request.form
-    sent = next((upload for upload in form.files.get("template", ()) if upload.data), None)
+    sent = form.upload("template")
     if sent is None:
         raise BadInput(texts["none_sent"])
     score = form.text("score", "points")

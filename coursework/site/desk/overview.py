@@ -9,13 +9,12 @@ from pathlib import PurePath
 from starlette.responses import Response
 
 from coursework.database.assignments import put_issued
-from coursework.database.audit import note
 from coursework.database.class_state import ClassState
 from coursework.database.instructor_queries import listed_assignments
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput, CourseworkError
 from coursework.issuing.issued import Issued
-from coursework.site.desk.class_cache import assignment_of, assignment_title, by_whom, class_now
+from coursework.site.desk.class_cache import assignment_title, class_here, class_now
 from coursework.site.desk.question_cards import moment, question_card
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.clock import Leap, last_leap
@@ -94,7 +93,7 @@ def bring(request: Request) -> Response:
     BadInput
         The file is not an ``issued.json``, or belongs to another course.
     """
-    file = next(iter(request.form.files.get("issued", ())), None)
+    file = request.form.upload("issued")
     if file is None:
         raise BadInput(request.words["desk"]["bring"])
     issued = read_apart(
@@ -104,7 +103,7 @@ def bring(request: Request) -> Response:
         request.site.course[exercise]
     with request.site.store.begin() as connection:
         number = put_issued(connection, _content(file), request.form.text("name").strip())
-        note(connection, request.received_at, by_whom(request), "issued", assignment=number)
+        request.note(connection, "issued", assignment=number)
     return redirect(f"/desk/{number}")
 
 
@@ -118,7 +117,7 @@ def _content(file: Upload) -> dict[str, object]:
 
 def figure(request: Request) -> Response:
     """Return the figure of somebody's variant."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     exercise, seed = request.query_params.get("exercise", ""), request.query_params.get("seed", "")
     sheet = next(
         (

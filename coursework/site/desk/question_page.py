@@ -15,7 +15,7 @@ from coursework.gradebook.waiting import written
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.renderer import renderer_of
-from coursework.site.desk.class_cache import assignment_of, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import question_card, sign_of
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import Download
@@ -47,7 +47,7 @@ class QuestionRow:
 
 def questions(request: Request) -> Response:
     """Return the page of the questions, in the order of the sheets or the hardest first."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     class_statistics = statistics_of(now)
     names = Names(now.course, class_statistics, request.lang)
     by_question = {(item.exercise, item.part): item for item in class_statistics.parts}
@@ -82,7 +82,7 @@ class DistinctAnswer:
 
 def question(request: Request) -> Response:
     """Return the page of one question: its figures, its mistakes, and the answers, the most frequent first."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     exercise, part = request.query_params.get("exercise", ""), request.query_params.get("part", "")
     if (exercise, part) not in now.questions:
         raise HTTPException("own", 404)
@@ -141,7 +141,7 @@ def _verdicts(request: Request, part_statistics: PartStatistics | None) -> list[
 
 def statistics(request: Request) -> Response:
     """Return the report of the statistics as a page, or as a PDF."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     document = report(now.course, statistics_of(now), request.lang)
     renderer = renderer_of(now.course.folder)
     if request.path.endswith(".pdf"):

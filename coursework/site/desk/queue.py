@@ -11,7 +11,6 @@ from typing import Any
 
 from starlette.responses import Response
 
-from coursework.database.audit import note
 from coursework.database.class_state import ClassState, OpenGroup, UnplacedRow
 from coursework.database.decisions import DecidedAnswer, decide
 from coursework.database.instructor_queries import (
@@ -23,7 +22,7 @@ from coursework.errors import BadInput
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Decision, points_of
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
 from coursework.language.numbers import localise, significant
-from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import QuestionCard, decided_words, question_card, raw_texts, steps
 from coursework.site.frame.requests import HTTPException, Request, Route
 
@@ -156,14 +155,14 @@ def _alike(now: ClassState, group: AnswerGroup) -> list[OpenGroup]:
 def queue(request: Request) -> Response:
     """Return the requested card, or else the first."""
     filters = Filters.of(request.query_params)
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     return card_response(request, now, filters, request.query_params.get("at", ""))
 
 
 def decided(request: Request) -> Response:
     """Apply the decision of a form and return the next card."""
     filters = Filters.of({k: request.form.text(k) for k in ("why", "exercise", "part")})
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     asked_for = request.form.text("do")
     if asked_for == "undo":
         return _undone(request, now, filters)
@@ -186,7 +185,7 @@ def queue_page(request: Request) -> Response:
 
 def watch(request: Request) -> Response:
     """Return a message if somebody else has decided on a card meanwhile; otherwise an empty response."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     name = request.query_params.get("group", "")
     group = next((candidate for candidate in now.groups if candidate.id == name), None)
     if group is None or name in now.open:
@@ -280,7 +279,7 @@ def _can_undo(request: Request, now: ClassState) -> bool:
     if not now.stamp.decisions[0]:
         return False
     with request.site.store.reading() as connection:
-        return bool(undoable(connection, now.about.id, by_whom(request)))
+        return bool(undoable(connection, now.about.id, request.actor.name))
 
 
 def _by_question(now: ClassState, filters: Filters) -> list[tuple[str, str, str, int]]:
@@ -312,18 +311,10 @@ def _decide(request: Request, now: ClassState, group: AnswerGroup, asked_for: st
         )
         free = [answer for answer in members if _key(answer) not in decided_meanwhile]
         comment = request.form.text("comment").strip()[:LONGEST]
-        decide(connection, now.about.id, map(_target, free), kind, points, comment, by_whom(request))
+        decide(connection, now.about.id, map(_target, free), kind, points, comment, request.actor.name)
         about = {"assignment": now.about.id, "exercise": group.exercise, "part": group.part, "kind": kind}
         if free:
-            note(
-                connection,
-                request.received_at,
-                by_whom(request),
-                "decision",
-                count=len(free),
-                points=points,
-                **about,
-            )
+            request.note(connection, "decision", count=len(free), points=points, **about)
     others = [decided_meanwhile[_key(answer)].by for answer in members if _key(answer) in decided_meanwhile]
     return _decision_message(request, kind, points, len(free), others)
 
@@ -403,19 +394,18 @@ def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
     """Withdraw the last decision and return its card."""
     texts = request.words["queue"]
     with request.site.store.begin() as connection:
-        batch = undoable(connection, now.about.id, by_whom(request))
+        batch = undoable(connection, now.about.id, request.actor.name)
         if batch:
             decide(
-                connection, now.about.id, map(DecidedAnswer.of, batch), WITHDRAWN, None, "", by_whom(request)
-            )
-            note(
                 connection,
-                request.received_at,
-                by_whom(request),
-                "undo",
-                assignment=now.about.id,
-                count=len(batch),
+                now.about.id,
+                map(DecidedAnswer.of, batch),
+                WITHDRAWN,
+                None,
+                "",
+                request.actor.name,
             )
+            request.note(connection, "undo", assignment=now.about.id, count=len(batch))
     later = class_now(request.site, now.about.id)
     if not batch:
         return card_response(

@@ -10,14 +10,13 @@ from typing import Any, NamedTuple
 from starlette.responses import Response
 
 from coursework.course.course import Course
-from coursework.database.audit import note
 from coursework.database.class_state import ClassState
 from coursework.database.marking import Change, MarkedNow, mark_new, would_change
 from coursework.database.permissions import Permission
 from coursework.database.states import exercise_state
 from coursework.language.numbers import localise
 from coursework.rendering.feedback import verdict_word
-from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.frame.requests import Request, Route
 from coursework.site.frame.responses import Download
 from coursework.site.frame.settings import Site
@@ -41,7 +40,7 @@ class ChangeRow(NamedTuple):
 
 def regrade(request: Request) -> Response:
     """Return the marks that would change; after confirmation, mark again and return the marks that changed."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     course = _current_course(request.site, now)
     done = request.is_post and request.form.text("do") == "regrade"
     if done:
@@ -49,7 +48,7 @@ def regrade(request: Request) -> Response:
         request.site.take(course)
         with request.site.store.begin() as connection:
             about = {"assignment": now.about.id, "sheets": result.marked, "changes": len(result.changes)}
-            note(connection, request.received_at, by_whom(request), "regrade", **about)
+            request.note(connection, "regrade", **about)
         now = class_now(request.site, now.about.id)
     else:
         result = would_change(course, request.site.store, now.about.id)
@@ -108,7 +107,7 @@ def _number(points: str) -> float:
 
 def changes(request: Request) -> Response:
     """Return the table of changed marks as a file."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     result = would_change(_current_course(request.site, now), request.site.store, now.about.id)
     spreadsheet = SPREADSHEETS["comma" if request.lang == "fr" else "point"]
     data = csv_file((change.row() for change in result.changes), Change._fields, spreadsheet)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from starlette.responses import Response
 
-from coursework.database.audit import note
 from coursework.database.class_state import ClassState, UnplacedRow
 from coursework.database.instructor_queries import Placing, drop_placing, put_placing
 from coursework.database.marking import mark_submission
@@ -12,7 +11,7 @@ from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission
 from coursework.errors import BadInput
 from coursework.gradebook.rows import AnswerRow, RowOrigin
-from coursework.site.desk.class_cache import assignment_of, by_whom, class_now
+from coursework.site.desk.class_cache import class_here, class_now
 from coursework.site.desk.files import files_page
 from coursework.site.desk.queue import Filters, card_response
 from coursework.site.frame.requests import HTTPException, Request, Route
@@ -22,7 +21,7 @@ _LONGEST = 500  #: characters of a reason
 
 def rejected(request: Request) -> Response:
     """Decide on a rejected row; return the page from which the form came."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     row = next((candidate for candidate in now.rejected if candidate.id == request.form.text("row")), None)
     if row is None:
         raise HTTPException("own", 404)
@@ -55,21 +54,16 @@ def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
     if asked_for == "aside":
         with request.site.store.begin() as connection:
             put_placing(
-                connection, now.about.id, Placing(row.id, None, reason, by_whom(request), request.received_at)
-            )
-            note(
                 connection,
-                request.received_at,
-                by_whom(request),
-                "row put aside",
-                assignment=now.about.id,
-                row=row.id,
+                now.about.id,
+                Placing(row.id, None, reason, request.actor.name, request.received_at),
             )
+            request.note(connection, "row put aside", assignment=now.about.id, row=row.id)
         return str(texts["aside_done"])
     if asked_for != "place":
         raise HTTPException("bad_request", 400)
     answer = _answer(request, now, row)
-    source = f"{row.row.source} ({texts['by_hand'].format(by_whom(request))})"
+    source = f"{row.row.source} ({texts['by_hand'].format(request.actor.name)})"
     with request.site.store.begin() as connection:
         submission = insert_submission(
             connection,
@@ -82,16 +76,9 @@ def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
         put_placing(
             connection,
             now.about.id,
-            Placing(row.id, submission.id, reason, by_whom(request), request.received_at),
+            Placing(row.id, submission.id, reason, request.actor.name, request.received_at),
         )
-        note(
-            connection,
-            request.received_at,
-            by_whom(request),
-            "row placed",
-            assignment=now.about.id,
-            row=row.id,
-        )
+        request.note(connection, "row placed", assignment=now.about.id, row=row.id)
     mark_submission(request.site.course, request.site.store, submission.id)
     return str(texts["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
 

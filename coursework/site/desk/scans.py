@@ -10,7 +10,6 @@ from typing import Any
 
 from starlette.responses import Response
 
-from coursework.database.audit import note
 from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
 from coursework.database.scans import TypedRow, name_scanned, picture_scanned, put_typed
@@ -22,7 +21,7 @@ from coursework.scanning.queue import place_of_card
 from coursework.scanning.sources import ENDINGS
 from coursework.scanning.typed import NAME, PAGE
 from coursework.site.desk import scan_jobs
-from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.class_scans import ClassScans, class_scans, hand_over
 from coursework.site.desk.files import file_name
 from coursework.site.frame.budgets import DESK_FILES
@@ -49,7 +48,7 @@ class ScanCard:
 
 def scans_page(request: Request, message: str = "") -> Response:
     """Return the page of scans and their state; store an upload, if a form brings one."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     if request.is_post:
         message = _sent(request, now)
     job = scan_jobs.job(request.site, now.about.id)
@@ -73,10 +72,10 @@ def _sent(request: Request, now: ClassState) -> str:
     """
     if request.form.text("do") == "hand over":
         return ""
-    sent = [upload for upload in request.form.files.get("scans", ()) if upload.data]
+    sent = request.form.uploads("scans")
     if not sent:
         raise BadInput(request.words["files"]["none_sent"])
-    scan_jobs.begin(request.site, now.about.id, _by_names(sent), by_whom(request))
+    scan_jobs.begin(request.site, now.about.id, _by_names(sent), request.actor.name)
     return ""
 
 
@@ -97,7 +96,7 @@ def _absent(now: ClassState, scans: ClassScans) -> list[str]:
 
 def cards_page(request: Request) -> Response:
     """Return one card after another; a form decides on one."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     scans = class_scans(request.site, now.about.id)
     if not request.is_post:
         return _card_response(request, now, scans, request.query_params.get("at", ""))
@@ -145,7 +144,7 @@ def _typed(request: Request, now: ClassState, scans: ClassScans, card: AnswerCar
         coordinate,
         answer,
         " ".join(card.pages),
-        by_whom(request),
+        request.actor.name,
         request.received_at,
     )
     code, _, number = answer.partition(" ")
@@ -156,7 +155,7 @@ def _typed(request: Request, now: ClassState, scans: ClassScans, card: AnswerCar
         if exercise == PAGE and answer:
             name_scanned(connection, now.about.id, part, scans.papers.papers[code].student)
         about = {"assignment": now.about.id, "exercise": exercise, "part": part if exercise != PAGE else ""}
-        note(connection, request.received_at, by_whom(request), "scan typed", **about)
+        request.note(connection, "scan typed", **about)
     return str(request.words["scans"]["kept"])
 
 
@@ -207,7 +206,7 @@ def picture(request: Request) -> Response:
 def crop(request: Request) -> Response:
     """Return the picture of a field of a page."""
     name, data = _picture(request)
-    scans = class_scans(request.site, assignment_of(request))
+    scans = class_scans(request.site, int(request.path_params["assignment"]))
     index_text, page = request.query_params.get("field", ""), scans.by_id[name].page
     number = (
         int(index_text) if index_text.isascii() and index_text.isdecimal() and len(index_text) < 5 else -1
@@ -221,7 +220,7 @@ def crop(request: Request) -> Response:
 
 def _picture(request: Request) -> tuple[str, bytes]:
     """Return the page of this assignment that the address names, and its picture."""
-    number, name = assignment_of(request), request.query_params.get("page", "")
+    number, name = int(request.path_params["assignment"]), request.query_params.get("page", "")
     if _ID.fullmatch(name):
         with request.site.store.reading() as connection:
             data = picture_scanned(connection, number, name)

@@ -14,7 +14,6 @@ from typing import Any
 
 from starlette.responses import Response
 
-from coursework.database.audit import note
 from coursework.database.class_state import ClassState
 from coursework.database.decisions import (
     DecidedAnswer,
@@ -32,7 +31,7 @@ from coursework.gradebook.scale import mark_of
 from coursework.issuing.students import folded
 from coursework.language.numbers import localise
 from coursework.marking.mark import Mark
-from coursework.site.desk.class_cache import assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import (
     QuestionCard,
     decided_words,
@@ -82,7 +81,7 @@ class PracticeSummary:
 
 def student_page(request: Request) -> Response:
     """Return the page of a student; a form decides on one of the answers."""
-    now = class_now(request.site, assignment_of(request))
+    now = class_here(request)
     student = _student(request, now)
     message = ""
     if request.is_post:
@@ -221,12 +220,9 @@ def _decided(request: Request, now: ClassState, student: str) -> str:
             kind,
             points,
             form.text("comment").strip()[:_LONGEST],
-            by_whom(request),
+            request.actor.name,
         )
-        note(
-            connection, request.received_at, by_whom(request), "decision", assignment=now.about.id, exercise=exercise, part=part,
-            kind=kind, points=points, count=1,
-        )  # fmt: skip
+        request.note(connection, "decision", assignment=now.about.id, exercise=exercise, part=part, kind=kind, points=points, count=1)  # fmt: skip
     return str(texts["decided"][kind]).format(1, f"{points or 0:g}")
 
 

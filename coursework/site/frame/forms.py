@@ -42,6 +42,8 @@ async def read_form(request: Request, budget: Budget) -> FormData:
             return await _read(request, kind, budget)
     except TimeoutError:
         raise HTTPException("too_slow", 408) from None
+    except HTTPException:  # a file over its budget
+        raise
     except (MultiPartException, StarletteException, ValueError):
         raise HTTPException("bad_request", 400) from None
 

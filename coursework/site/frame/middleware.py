@@ -113,6 +113,8 @@ class Middleware:
         try:
             if request.is_post:
                 self._check_csrf_token(request)
+            elif not route.has_page:
+                raise HTTPException("method", 405)
             with messages_in(request.lang):
                 response = route.endpoint(request)
             note_export(route, request, response)

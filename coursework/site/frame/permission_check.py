@@ -9,7 +9,6 @@ from sqlalchemy import Connection
 from starlette.responses import Response
 
 from coursework.database.areas import areas_for_role
-from coursework.database.audit import note
 from coursework.database.people import person_by_id
 from coursework.database.permissions import STAFF, STUDENT, is_of_staff, may
 from coursework.site.frame.requests import HTTPException, Person, Request, Route
@@ -69,7 +68,7 @@ def note_export(route: Route, request: Request, response: Response) -> None:
     if (person := _number(request.path_params.get("person"))) is not None:
         about["person"] = person
     with request.site.store.begin() as connection:
-        note(connection, request.received_at, request.actor, route.audit_event, **about)
+        request.note(connection, route.audit_event, **about)
 
 
 def _is_staff(site: Site, path: Mapping[str, Any]) -> bool:

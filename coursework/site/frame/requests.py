@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException as StarletteException
 from starlette.requests import Request as StarletteRequest
 from starlette.responses import HTMLResponse, Response
 
-from coursework.database.audit import Actor
+from coursework.database.audit import Actor, note
 from coursework.database.permissions import STAFF, Area, Permission, is_of_staff, may
 from coursework.errors import CourseworkError
 from coursework.language.words import words
@@ -23,6 +23,8 @@ from coursework.site.frame.devices import DEVICE
 
 if TYPE_CHECKING:
     from datetime import datetime
+
+    from sqlalchemy import Connection
 
     from coursework.site.frame.attempts import Attempt
     from coursework.site.frame.settings import Site
@@ -74,6 +76,14 @@ class FormData:
 
     def text(self, name: str, usual: str = "") -> str:
         return next(iter(self.texts.get(name, ())), usual)
+
+    def uploads(self, name: str) -> list[Upload]:
+        """Return the files of a field that are not empty."""
+        return [upload for upload in self.files.get(name, ()) if upload.data]
+
+    def upload(self, name: str) -> Upload | None:
+        """Return the first of these files; None if there is none."""
+        return next(iter(self.uploads(name)), None)
 
 
 class Request(StarletteRequest):
@@ -161,6 +171,10 @@ class Request(StarletteRequest):
         name = self.user.name or str(self.words["site"]["local"])
         return Actor(name, self.user.id, self.client_address)
 
+    def note(self, connection: Connection, what: str, **about: Any) -> None:
+        """Record in the audit what the current user does."""
+        note(connection, self.received_at, self.actor, what, **about)
+
     def require(
         self, permission: Permission, assignment: int | None = None, group: str | None = None
     ) -> None:
@@ -197,6 +211,7 @@ class Route(NamedTuple):
     endpoint: Callable[[Request], Response]
     permission: Permission
     takes_forms: bool = False  #: POST requests are allowed
+    has_page: bool = True  #: GET requests are allowed
     limit: str = "usual"  #: kind of page (:mod:`coursework.site.frame.limits`)
     budget: Budget | None = None  #: budget of its forms; required if students send them
     is_short: bool = False  #: it only stores data, and is answered before pages

@@ -10,7 +10,6 @@ from itsdangerous import BadSignature, URLSafeTimedSerializer
 from starlette.responses import Response
 
 from coursework.database.accounts import account_of
-from coursework.database.audit import note
 from coursework.database.identities import link_identity
 from coursework.database.permissions import Permission
 from coursework.site.frame.attempts import Attempt
@@ -76,7 +75,7 @@ def _tie(request: Request, issuer: str, subject: str, platform: str) -> None:
         if not link_identity(connection, request.user.id, issuer, subject):
             raise HTTPException("connect_over", 410)
         about = {"person": request.user.id, "platform": platform, "how": "password"}
-        note(connection, request.received_at, request.actor, "connected a platform", **about)
+        request.note(connection, "connected a platform", **about)
 
 
 def _attempt(request: Request) -> Attempt:

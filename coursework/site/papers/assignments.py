@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import re
-import tempfile
 from collections.abc import Mapping, Sequence
 from datetime import timedelta
-from pathlib import Path
 
 from markupsafe import Markup
 from starlette.responses import Response
@@ -24,7 +22,7 @@ from coursework.gradebook.rows import AnswerRow
 from coursework.gradebook.submissions import read_rows
 from coursework.issuing.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
-from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, read_apart
+from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, read_upload
 from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts, versions_of
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 from coursework.site.frame.responses import Download, redirect
@@ -108,8 +106,6 @@ def _paper_response(
 
 def save_draft(request: Request) -> Response:
     """Store drafts while the assignment can be submitted."""
-    if not request.is_post:
-        raise HTTPException("method", 405)
     state, paper = state_and_paper(request)
     sheet = sheet_of(state.assignment, paper)
     return save_drafts(
@@ -187,8 +183,6 @@ def _stem(state: AssignmentState, paper: StudentPaper) -> str:
 
 def take_file(request: Request) -> Response:
     """Read a completed notebook or file of answers, without running it, and return its reading."""
-    if not request.is_post:
-        raise HTTPException("method", 405)
     state, paper = state_and_paper(request)
     messages = request.words["assignments"]
     if not state.may_hand_in:
@@ -221,10 +215,8 @@ def _of_file(request: Request, paper: StudentPaper, sent: Upload) -> tuple[dict[
         The file needs too many resources, or has more rows than a paper.
     """
     messages, warnings = request.words["assignments"], []
-    with tempfile.TemporaryDirectory(prefix="coursework-") as folder:
-        path = Path(folder) / f"answers{_ending(sent)}"  # not the uploaded name, which is untrusted
-        path.write_bytes(sent.data)
-        rows = read_apart(ANSWER_FILE, request.words["refused"]["too_much"], read_rows, path, MOST_ROWS)
+    name = f"answers{_ending(sent)}"  # not the uploaded name, which is untrusted
+    rows = read_upload(request, ANSWER_FILE, read_rows, name, sent.data, MOST_ROWS)
     if rows is None:
         raise BadInput(messages["file_too_long"].format(MOST_ROWS))
     names = {row.student for row in rows if isinstance(row, AnswerRow) and row.student}
@@ -250,8 +242,6 @@ def _of_file(request: Request, paper: StudentPaper, sent: Upload) -> tuple[dict[
 
 def confirm(request: Request) -> Response:
     """Submit the confirmed answers, once."""
-    if not request.is_post:
-        raise HTTPException("method", 405)
     site, person_id, number = request.site, request.user.id, request.form.text("_number")
     source = IN_A_FILE if request.form.text("_source") == IN_A_FILE else ON_THE_PAGE
     pass_dates(site, int(request.path_params["number"]), request.received_at)
@@ -340,6 +330,7 @@ ROUTES = (
         save_draft,
         Permission.OWN,
         takes_forms=True,
+        has_page=False,
         limit="paper",
         budget=BOXES,
         is_short=True,
@@ -349,6 +340,7 @@ ROUTES = (
         confirm,
         Permission.OWN,
         takes_forms=True,
+        has_page=False,
         limit="hand_in",
         budget=HAND_IN,
         is_short=True,
@@ -358,6 +350,7 @@ ROUTES = (
         take_file,
         Permission.OWN,
         takes_forms=True,
+        has_page=False,
         limit="upload",
         budget=ANSWER_FILE,
     ),

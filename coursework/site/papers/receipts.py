@@ -11,7 +11,6 @@ from sqlalchemy import Connection
 from starlette.responses import Response
 
 from coursework.database.areas import may_for
-from coursework.database.audit import note
 from coursework.database.instructor_queries import people_of
 from coursework.database.permissions import Permission
 from coursework.database.submissions import Submission, answers_of
@@ -101,14 +100,7 @@ def verify(request: Request) -> Response:
             row = submission_of_receipt(connection, code)
             if row is not None and not _is_theirs(request, connection, row):
                 row = None
-            note(
-                connection,
-                request.received_at,
-                request.actor,
-                "receipt looked up",
-                code=code,
-                found=row is not None,
-            )
+            request.note(connection, "receipt looked up", code=code, found=row is not None)
             content = None if row is None else receipt_content(connection, row, row.assignment, row.student)
     names: dict[str, Any] = {"code": code, "row": row, "told": content, "digest": told_digest}
     if row is not None:

@@ -242,7 +242,7 @@ def _other_password(request: Request, mine: Any) -> Response:
     with request.site.store.begin() as connection:
         set_secret(connection, mine.id, secret)
         end_sessions(connection, request.user.id)
-        note(connection, request.received_at, request.actor, "password changed", person=request.user.id)
+        request.note(connection, "password changed", person=request.user.id)
     return signed_in(request, "/account?changed=1", request.user.id)
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
@@ -13,19 +11,20 @@ from starlette.responses import Response
 
 from coursework.database.accounts import account_by_login, accounts, is_last_administrator, set_role
 from coursework.database.areas import areas_of, groups_known, put_areas
-from coursework.database.audit import note, noted
+from coursework.database.audit import noted
 from coursework.database.identities import links_of, unlink_identity
 from coursework.database.instructor_queries import listed_assignments
 from coursework.database.people import people, person_by_id, person_by_identifier, put_person
 from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Area, Permission, may, to_invite
 from coursework.issuing.identity import EMAIL, LOGIN, plain
-from coursework.issuing.roster import Student, read_roster
+from coursework.issuing.roster import Student
 from coursework.lti.storage import drop_launches
 from coursework.site.desk.class_cache import assignment_title
-from coursework.site.frame.budgets import DESK_FILE, read_apart
-from coursework.site.frame.requests import HTTPException, Request, Route, Upload
+from coursework.site.frame.budgets import DESK_FILE
+from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
 from coursework.site.people.accounts import DAYS, as_login, invited
+from coursework.site.publication.new_assignment import uploaded_roster
 from coursework.system.tables import csv_file
 
 _ANY = "*"  #: value of a form for every assignment or the whole class
@@ -126,7 +125,7 @@ def _link(request: Request, connection: Connection, row: PersonRow) -> Invitatio
     request.require(to_invite(row.role))
     _check_login(connection, row.login, row.id)
     address = invited(request.site, connection, row.id, row.login, row.role)
-    note(connection, request.received_at, request.actor, "invited", person=row.id, role=row.role)
+    request.note(connection, "invited", person=row.id, role=row.role)
     return InvitationLink(row.name, row.login, address)
 
 
@@ -146,13 +145,12 @@ def _as_csv(links: Sequence[InvitationLink]) -> bytes:
 
 def add(request: Request) -> Response:
     """Add the people of a roster, or one person by name and login, as students."""
-    uploads = request.form.files.get("roster", ())
-    students = _of_roster(request, uploads[0]) if uploads else [_of_fields(request)]
+    students = uploaded_roster(request) or [_of_fields(request)]
     with request.site.store.begin() as connection:
         before = {entry.id for entry in people(connection)}
         ids = [_add_student(request, connection, entry) for entry in students]
         new = sorted(set(ids) - before)
-        note(connection, request.received_at, request.actor, "people added", people=new)
+        request.note(connection, "people added", people=new)
     return redirect(f"/desk/people?added={len(new)}")
 
 
@@ -170,16 +168,6 @@ def _add_student(request: Request, connection: Connection, student: Student) -> 
     return put_person(connection, student.draw_key, student.name, student.lang, student.columns)
 
 
-def _of_roster(request: Request, upload: Upload) -> list[Student]:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "roster.csv"
-        path.write_bytes(upload.data)
-        students: list[Student] = read_apart(
-            DESK_FILE, request.words["refused"]["too_much"], read_roster, path
-        )
-        return students
-
-
 def _of_fields(request: Request) -> Student:
     name, login = " ".join(request.form.text("name").split())[:200], as_login(request.form.text("login"))
     if not name or not login:
@@ -189,13 +177,12 @@ def _of_fields(request: Request) -> Student:
 
 def add_staff(request: Request) -> Response:
     """Add a member of staff by name and login; return the invitation link."""
-    _check_is_post(request)
     student, role = _of_fields(request), request.form.text("role")
     if role not in STAFF:
         raise HTTPException("bad_request", 422)
     with request.site.store.begin() as connection:
         person = _add_student(request, connection, student)
-        note(connection, request.received_at, request.actor, "people added", people=[person])
+        request.note(connection, "people added", people=[person])
         account = accounts(connection).get(person)
         if account is not None:
             raise HTTPException("login_taken", 409, account.login)
@@ -243,7 +230,6 @@ def _ties(connection: Connection, person: int) -> list[tuple[Any, str]]:
 
 def separate_tie(request: Request) -> Response:
     """Separate an account of a platform from a person, and end its sessions."""
-    _check_is_post(request)
     with request.site.store.begin() as connection:
         person = somebody(request, connection)
         gone = unlink_identity(connection, person.id, number(request.form.text("tie")))
@@ -251,13 +237,12 @@ def separate_tie(request: Request) -> Response:
             raise HTTPException("own", 404)
         drop_launches(connection, person.id, *gone)
         about = {"person": person.id, "platform": urlsplit(gone[0]).hostname or gone[0]}
-        note(connection, request.received_at, request.actor, "separated from a platform", **about)
+        request.note(connection, "separated from a platform", **about)
     return redirect(f"/desk/people/{person.id}")
 
 
 def invite_person(request: Request) -> Response:
     """Make a link by which one person chooses a password."""
-    _check_is_post(request)
     with request.site.store.begin() as connection:
         person = somebody(request, connection)
         link = _link(request, connection, _line(request, person, accounts(connection).get(person.id)))
@@ -266,7 +251,6 @@ def invite_person(request: Request) -> Response:
 
 def change_role(request: Request) -> Response:
     """Give a person another role, and an assistant the groups and assignments that are ticked."""
-    _check_is_post(request)
     role = request.form.text("role")
     with request.site.store.begin() as connection:
         person = somebody(request, connection)
@@ -279,16 +263,7 @@ def change_role(request: Request) -> Response:
         areas = _areas_of_form(request, connection) if role == ASSISTANT else []
         put_areas(connection, line.id, areas)
         about = {"areas": "; ".join(map(_area_text, areas)) or "–"} if role == ASSISTANT else {}
-        note(
-            connection,
-            request.received_at,
-            request.actor,
-            "role",
-            person=line.id,
-            before=line.role,
-            role=role,
-            **about,
-        )
+        request.note(connection, "role", person=line.id, before=line.role, role=role, **about)
         link = _link(request, connection, line._replace(role=role)) if needs_link else None
     if link is not None:
         return request.render("site/instructor/links", links=[link], days=DAYS, chooses_anew=True)
@@ -338,26 +313,21 @@ def _count(text: str) -> int | None:
     return number(text) if text else None
 
 
-def _check_is_post(request: Request) -> None:
-    if not request.is_post:
-        raise HTTPException("method", 405)
-
-
 ROUTES = (
     Route(
         "/desk/people", everybody, Permission.PEOPLE_READ, takes_forms=True,
         form_permission=Permission.PEOPLE_INVITE_STUDENTS, audit_event="links taken",
     ),
     Route("/desk/people/add", add, Permission.PEOPLE_ADD, takes_forms=True, limit="upload", budget=DESK_FILE),
-    Route("/desk/people/add-staff", add_staff, Permission.PEOPLE_INVITE_STAFF, takes_forms=True),
+    Route("/desk/people/add-staff", add_staff, Permission.PEOPLE_INVITE_STAFF, takes_forms=True, has_page=False),
     Route("/desk/people/{person}", person_page, Permission.PEOPLE_READ),
     Route(
-        "/desk/people/{person}/invitation", invite_person, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True,
+        "/desk/people/{person}/invitation", invite_person, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True, has_page=False,
         staff_permission=Permission.PEOPLE_INVITE_STAFF,
     ),
     Route(
-        "/desk/people/{person}/separate", separate_tie, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True,
+        "/desk/people/{person}/separate", separate_tie, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True, has_page=False,
         staff_permission=Permission.PEOPLE_INVITE_STAFF,
     ),
-    Route("/desk/people/{person}/role", change_role, Permission.PEOPLE_ROLES, takes_forms=True),
+    Route("/desk/people/{person}/role", change_role, Permission.PEOPLE_ROLES, takes_forms=True, has_page=False),
 )  # fmt: skip

@@ -184,22 +184,15 @@ def _after(request: Request, summary: dict[str, Any]) -> dict[str, Any]:
 
 def draft(request: Request) -> Response:
     """Store the drafts that a script sends during typing."""
-    _only_posted(request)
     work = _worksheet(request)
     return save_drafts(request, work.name, work.parts)
 
 
 def read(request: Request) -> Response:
     """Return the reading of a box; store nothing."""
-    _only_posted(request)
     work = _worksheet(request)
     part = work.part(request.form.text("part"))
     return HTMLResponse(str(work.read_as(part.id, work.typed[part.id])))
-
-
-def _only_posted(request: Request) -> None:
-    if not request.is_post:
-        raise HTTPException("method", 405)
 
 
 # ---------------------------------------------------------- the solution, the motion
@@ -243,8 +236,22 @@ ROUTES = (
     Route("/practice", course, Permission.OWN),
     Route("/practice/{exercise}", exercise, Permission.OWN, takes_forms=True, budget=PLAIN),
     Route("/practice/{exercise}/{seed}", sheet, Permission.OWN, takes_forms=True, budget=BOXES),
-    Route("/practice/{exercise}/{seed}/draft", draft, Permission.OWN, takes_forms=True, budget=BOXES),
-    Route("/practice/{exercise}/{seed}/read", read, Permission.OWN, takes_forms=True, budget=BOXES),
+    Route(
+        "/practice/{exercise}/{seed}/draft",
+        draft,
+        Permission.OWN,
+        takes_forms=True,
+        has_page=False,
+        budget=BOXES,
+    ),
+    Route(
+        "/practice/{exercise}/{seed}/read",
+        read,
+        Permission.OWN,
+        takes_forms=True,
+        has_page=False,
+        budget=BOXES,
+    ),
     Route(
         "/practice/{exercise}/{seed}/solution",
         solution,

@@ -8,11 +8,10 @@ from __future__ import annotations
 import json
 import math
 import re
-import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from datetime import date, time
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
 from coursework.course.course import Course
@@ -22,8 +21,7 @@ from coursework.errors import BadInput
 from coursework.issuing.assignment import FILES, OPTIONS, Assignment, assignment_of, table_of
 from coursework.issuing.issued import Issued
 from coursework.issuing.roster import Student, read_roster
-from coursework.messages import as_message
-from coursework.site.frame.budgets import DESK_FILE, read_apart
+from coursework.site.frame.budgets import DESK_FILE, read_upload
 from coursework.site.frame.requests import Request, Upload
 from coursework.site.frame.settings import Site
 from coursework.site.publication.assigning import AssignmentRequest
@@ -55,12 +53,12 @@ def read(request: Request) -> NewAssignment:
         The form is inconsistent, or the assignment exists already.
     """
     texts = request.words["publishing"]["faults"]
-    if sent := _sent(request, "issued"):
+    if sent := request.form.upload("issued"):
         return _issued(request, sent)
     name, table, source = _stated(request)
     _check_new(request, name)
     definition = assignment_of(name, table, request.site.course, source)
-    students = roster(request)
+    students = students_of(request)
     if not students:
         raise BadInput(texts["nobody"])
     return NewAssignment(
@@ -72,10 +70,6 @@ def spoken(site: Site, definition: Assignment, lang: str) -> str:
     """Return the reader's language if all the exercises have it, or else the course's default."""
     all_have = all(lang in site.course[name].languages for name in definition.names)
     return lang if all_have else site.languages[0]
-
-
-def _sent(request: Request, field: str) -> Upload | None:
-    return next((upload for upload in request.form.files.get(field, ()) if upload.data), None)
 
 
 def _issued(request: Request, sent: Upload) -> NewAssignment:
@@ -101,7 +95,7 @@ def _check_new(request: Request, name: str) -> None:
 
 def _stated(request: Request) -> tuple[str, dict[str, Any], str]:
     """Return name, table and source text of the assignment, from a file or else from the chosen exercises."""
-    if sent := _sent(request, "file"):
+    if sent := request.form.upload("file"):
         name = _name(PurePosixPath(sent.name.replace("\\", "/")).stem)
         try:
             source = sent.data.decode("utf-8-sig")
@@ -158,26 +152,22 @@ def _as_json(value: Any) -> Any:
 # ------------------------------------------------------------------------- students
 
 
-def roster(request: Request) -> list[Student]:
-    """Return the students of the uploaded roster, or else, if the form states so, all who sign in as
-    students.
+def uploaded_roster(request: Request) -> list[Student]:
+    """Return the students of the uploaded roster; nobody if there is none.
 
     Raises
     ------
     BadInput
         The roster cannot be read.
     """
-    if sent := _sent(request, "roster"):
-        with tempfile.TemporaryDirectory(prefix="coursework-") as folder:
-            path = Path(folder) / "roster.csv"
-            path.write_bytes(sent.data)
-            try:
-                students: list[Student] = read_apart(
-                    DESK_FILE, request.words["refused"]["too_much"], read_roster, path
-                )
-                return students
-            except BadInput as fault:
-                raise BadInput(as_message(fault).replacing(str(path), "roster.csv")) from None
+    sent = request.form.upload("roster")
+    return list(read_upload(request, DESK_FILE, read_roster, "roster.csv", sent.data)) if sent else []
+
+
+def students_of(request: Request) -> list[Student]:
+    """Return the students of the roster, or else, if the form states so, all who sign in as students."""
+    if students := uploaded_roster(request):
+        return students
     return students_with_accounts(request) if request.form.text("accounts") else []
 
 

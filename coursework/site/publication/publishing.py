@@ -15,7 +15,6 @@ from starlette.responses import Response
 from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.database.assignments import issued_content, issued_of, put_issued
-from coursework.database.audit import note
 from coursework.database.permissions import Permission
 from coursework.database.prepared import drop_prepared
 from coursework.database.publication import (
@@ -166,9 +165,7 @@ def _take_in(request: Request, new_one: new_assignment.NewAssignment) -> int:
     assert new_one.issued is not None
     with request.site.store.begin() as connection:
         number = put_issued(connection, new_one.issued, new_one.name)
-        note(
-            connection, request.received_at, request.user.name, "assignment taken in", assignment=new_one.name
-        )
+        request.note(connection, "assignment taken in", assignment=new_one.name)
     return number
 
 
@@ -252,7 +249,7 @@ def _noted(connection: Connection, name: str) -> list[Any]:
 def _note(
     request: Request, connection: Connection, listed: ListedAssignment, event: str, **about: Any
 ) -> None:
-    note(connection, request.received_at, request.user.name, event, assignment=listed.name, **about)
+    request.note(connection, event, assignment=listed.name, **about)
 
 
 def _redirect(listed: ListedAssignment) -> Response:
@@ -264,7 +261,6 @@ def _redirect(listed: ListedAssignment) -> Response:
 
 def publish_assignment(request: Request) -> Response:
     """Publish the assignment with the dates and rules of the form, or return the form with its faults."""
-    _check_is_post(request)
     with request.site.store.reading() as connection:
         listed = assignment_here(request, connection)
     publication, faults = publication_of(request.form)
@@ -329,7 +325,6 @@ def publication_of(form: FormData) -> tuple[Publication, list[Fault]]:
 
 def unpublish(request: Request) -> Response:
     """Unpublish the assignment: no student sees it any more; submissions remain."""
-    _check_is_post(request)
     with request.site.store.begin() as connection:
         listed = assignment_here(request, connection)
         publish(connection, listed.id, None)
@@ -340,7 +335,6 @@ def unpublish(request: Request) -> Response:
 
 def extend_assignment(request: Request) -> Response:
     """Give one person an extension, with its reason."""
-    _check_is_post(request)
     with request.site.store.reading() as connection:
         listed = assignment_here(request, connection)
         holder = next(
@@ -374,23 +368,16 @@ def extend_assignment(request: Request) -> Response:
     return _redirect(listed)
 
 
-def _check_is_post(request: Request) -> None:
-    if not request.is_post:
-        raise HTTPException("method", 405)
-
-
 # ------------------------------------------------------------------- late students
 
 
 def add_late(request: Request) -> Response:
     """Assign variants to the new students of a longer roster; all other papers remain as they are."""
-    _check_is_post(request)
-    return _deal_more(request, new_assignment.roster(request), (), "late ones added")
+    return _deal_more(request, new_assignment.students_of(request), (), "late ones added")
 
 
 def make_up(request: Request) -> Response:
     """Assign another variant to one person, for a second sitting."""
-    _check_is_post(request)
     return _deal_more(request, [], (request.form.text("student"),), "make-up dealt")
 
 
@@ -515,29 +502,37 @@ ROUTES = (
         publish_assignment,
         Permission.ASSIGNMENTS_PUBLISH,
         takes_forms=True,
+        has_page=False,
     ),
     Route(
         "/desk/assignments/{number:int}/unpublish",
         unpublish,
         Permission.ASSIGNMENTS_PUBLISH,
         takes_forms=True,
+        has_page=False,
     ),
     Route(
         "/desk/assignments/{number:int}/extend",
         extend_assignment,
         Permission.ASSIGNMENTS_PUBLISH,
         takes_forms=True,
+        has_page=False,
     ),
     Route(
         "/desk/assignments/{number:int}/roster",
         add_late,
         Permission.ASSIGNMENTS_PUBLISH,
         takes_forms=True,
+        has_page=False,
         limit="upload",
         budget=DESK_FILE,
     ),
     Route(
-        "/desk/assignments/{number:int}/make-up", make_up, Permission.ASSIGNMENTS_PUBLISH, takes_forms=True
+        "/desk/assignments/{number:int}/make-up",
+        make_up,
+        Permission.ASSIGNMENTS_PUBLISH,
+        takes_forms=True,
+        has_page=False,
     ),
     Route("/desk/assignments/{number:int}/preview", preview, Permission.ASSIGNMENTS_READ),
     Route("/desk/assignments/{number:int}/as/{person:int}", as_somebody, Permission.ASSIGNMENTS_READ),
