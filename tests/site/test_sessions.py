@@ -14,9 +14,9 @@ from coursework.database import sessions as kept
 from coursework.database.dump import dump, restore
 from coursework.database.store import Store
 from coursework.database.tables import METADATA, account, session
-from coursework.site.frame.browsers import described
 from coursework.site.frame.cookies import COOKIE
 from coursework.site.frame.settings import Entrance
+from coursework.site.people.accounts import described
 
 
 def cookie_of(browser):

@@ -44,7 +44,7 @@ from coursework.site.lti.scores import score_of
 from coursework.site.papers.assignment_state import AssignmentState, state_and_paper
 from coursework.site.papers.assignments import feedback_from
 from coursework.site.papers.feedback import feedback_of
-from coursework.site.papers.pending_marking import pending_marking
+from coursework.site.papers.receipts import pending_marking
 from coursework.site.papers.student_paper import StudentPaper, read_lines
 from coursework.site.papers.submission import mark, rows_for, submit
 from coursework.site.publication.publishing import definition_of, listed_assignments, preview_paper

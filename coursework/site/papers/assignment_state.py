@@ -95,13 +95,16 @@ def state_of(
     return AssignmentState(assignment, request.lang, now, done, ends, used)
 
 
+def published_states(request: Request, connection: Connection) -> list[AssignmentState]:
+    """Return the published assignments of the current user."""
+    assignments = student_assignments(connection, request.user.id)
+    return [state_of(request, item, connection) for item in assignments if item.publication is not None]
+
+
 def to_hand_in(request: Request) -> list[AssignmentState]:
     """Return the assignments that a person may submit now and has not submitted yet."""
     with request.site.store.reading() as connection:
-        published = [
-            item for item in student_assignments(connection, request.user.id) if item.publication is not None
-        ]
-        states = [state_of(request, item, connection) for item in published]
+        states = published_states(request, connection)
     return [item for item in states if item.may_hand_in and not item.done]
 
 

@@ -31,12 +31,13 @@ from coursework.site.papers import receipts, submission
 from coursework.site.papers.assignment_state import (
     AssignmentState,
     assignment_and_paper,
+    published_states,
     state_and_paper,
     state_of,
 )
 from coursework.site.papers.feedback import charged_text, feedback_of
 from coursework.site.papers.opening import filled_in, make_pieces
-from coursework.site.papers.pending_marking import pending_marking
+from coursework.site.papers.receipts import pending_marking
 from coursework.site.papers.student_paper import StudentPaper, counts, read_lines
 from coursework.site.papers.submission import IN_A_FILE, ON_THE_PAGE, pass_dates, sheet_of
 
@@ -58,10 +59,7 @@ def list_page(request: Request) -> Response:
     for number in numbers:
         pass_dates(request.site, number, request.received_at)
     with request.site.store.reading() as connection:
-        assignments = [
-            item for item in student_assignments(connection, request.user.id) if item.publication is not None
-        ]
-        states = [state_of(request, item, connection) for item in assignments]
+        states = published_states(request, connection)
     groups = [(phase.value, [item for item in states if item.phase is phase]) for phase in _ORDER]
     return request.render(
         "site/student/assignments", groups=[g for g in groups if g[1]], zone=zone_name(request.received_at)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from datetime import timedelta
-from typing import Any
+from typing import Any, NamedTuple
 
 from sqlalchemy import Connection
 from starlette.responses import Response
 
 from coursework.database.areas import may_for
 from coursework.database.instructor_queries import people_of
+from coursework.database.jobs import job_of, jobs_before
 from coursework.database.permissions import Permission
 from coursework.database.submissions import Submission, answers_of
 from coursework.language.words import words
@@ -68,6 +69,35 @@ def find(done: Sequence[Submission], code: str) -> Submission:
         if submission.receipt and submission.receipt == code.strip().upper():
             return submission
     raise HTTPException("own", 404)
+
+
+_SOON, _EACH, _LONGEST = (
+    3.0,
+    0.2,
+    60.0,
+)  #: seconds until a page reloads: minimum, addition for each earlier submission, maximum
+
+
+class PendingMarking(NamedTuple):
+    """Submission without marks."""
+
+    message: str
+    seconds: int  #: until the page reloads; 0 if reloading is useless
+
+
+def pending_marking(request: Request, delivery: int) -> PendingMarking | None:
+    """Return the message for a submission that waits for its marks; None if it is marked."""
+    messages = request.words["assignments"]
+    with request.site.store.reading() as connection:
+        job = job_of(connection, delivery)
+        if job is None or not request.site.has_worker:
+            return None
+        if job.fault:
+            return PendingMarking(str(messages["not_marked"]), 0)
+        seconds = round(min(_LONGEST, _SOON + _EACH * jobs_before(connection, job)))
+    return PendingMarking(
+        str(messages["being_marked"]).format(length_text(timedelta(seconds=seconds), request.lang)), seconds
+    )
 
 
 def file(request: Request) -> Response:

@@ -18,15 +18,19 @@ from coursework.database.states import page_state
 from coursework.gradebook.feedback_sheets import heading_of
 from coursework.issuing.assignment import text_in
 from coursework.issuing.issued import Issued
+from coursework.language.words import words
+from coursework.marking.answers import read
+from coursework.marking.feedback import say_not_read
+from coursework.markup.markdown import plain_line
 from coursework.model import Part
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
+from coursework.selfstudy.attempt import read_back as readings
 from coursework.sheets.paper import FeedbackPaper, Paper, PaperHeading
 from coursework.site.frame.drafts import LONGEST
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.requests import FormData, HTTPException
-from coursework.site.papers.read_back import ReadBack, read_back
 
 _VARIANTS = 100  #: items of the cache of one paper
 Texts = Mapping[str, str]  #: texts of the boxes, by name
@@ -49,6 +53,32 @@ class PaperBox(NamedTuple):
     exercise: str  #: its title
     variant: Any
     part: Part
+
+
+class ReadBack(NamedTuple):
+    """Reading of a text."""
+
+    status: str  #: ``read``, ``waits`` for a person, ``missing``, ``unreadable`` or ``wrong_unit``
+    message: str  #: plain text; empty for an empty box
+
+    @property
+    def is_in_doubt(self) -> bool:
+        return self.status in ("unreadable", "wrong_unit")
+
+
+def read_back(variant: Any, part: Part, text: str) -> ReadBack:
+    """Return the reading of an answer, or the reason for which it cannot be read. Two plausible readings are
+    both returned: the choice between them depends on the reference, which is not used here."""
+    reading, texts = read(variant, part, text), words(variant.lang, "site")["read_back"]
+    if reading.status == "missing":
+        return ReadBack("missing", "")
+    if reading.status != "read":
+        return ReadBack(reading.status, say_not_read(variant, part, reading).plain(variant.lang))
+    if part.sort.is_open:
+        return ReadBack("waits", texts["waits"])
+    lines = [plain_line(line, variant.lang) for line in readings(variant, part, text)[1]]
+    form = texts["two"] if len(lines) > 1 else texts["read_as"]
+    return ReadBack("read", form.format(*lines))
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,6 @@ from coursework.database.sessions import LONGEST, begin_session, end_session, en
 from coursework.errors import BadInput
 from coursework.lti.storage import end_launch_sessions
 from coursework.site.frame.attempts import Attempt
-from coursework.site.frame.browsers import described
 from coursework.site.frame.budgets import PLAIN
 from coursework.site.frame.cookies import ANONYMOUS_SECONDS, COOKIE
 from coursework.site.frame.devices import DEVICE, DEVICE_SECONDS, Devices
@@ -110,6 +109,27 @@ def _sign_in_page(
 ) -> Response:
     names = {"after": after, "login": login, "missed": missed, "waits": waits}
     return request.render("site/sign_in", 401 if missed else 200, **names)
+
+
+#: Parts of the header ``User-Agent``, the most specific first, since many browsers also name others.
+_PROGRAMS = (
+    ("Edg", "Edge"), ("OPR/", "Opera"), ("SamsungBrowser", "Samsung Internet"), ("FxiOS", "Firefox"), ("Firefox/", "Firefox"),
+    ("CriOS", "Chrome"), ("Chrome/", "Chrome"), ("Safari/", "Safari"),
+)  # fmt: skip
+_SYSTEMS = (
+    ("iPhone", "iPhone"), ("iPad", "iPad"), ("Android", "Android"), ("CrOS", "ChromeOS"), ("Windows", "Windows"),
+    ("Mac OS X", "macOS"), ("Linux", "Linux"),
+)  # fmt: skip
+
+
+def described(user_agent: str) -> str:
+    """Return a description such as ``Firefox, Linux`` from the header of a browser; empty for an unusual
+    one."""
+    names = (
+        next((name for piece, name in table if piece in user_agent[:500]), "")
+        for table in (_PROGRAMS, _SYSTEMS)
+    )
+    return ", ".join(filter(None, names))
 
 
 def sign_out(request: Request) -> Response:

@@ -7,7 +7,7 @@ import json
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
 from sqlalchemy import Connection
@@ -19,11 +19,12 @@ from coursework.database.erasing import erase
 from coursework.database.people import people
 from coursework.database.permissions import Permission
 from coursework.database.personal_data import identifiers_of, personal_data
+from coursework.database.publication import Phase
 from coursework.issuing.students import file_stems
 from coursework.language.words import words
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
-from coursework.site.papers.release import Release, full_release, release_to
+from coursework.site.papers.assignment_state import published_states
 from coursework.site.people import scrubbing
 from coursework.site.people.people_page import number, somebody
 from coursework.system.tables import csv_text
@@ -48,6 +49,33 @@ def their_data(request: Request) -> Response:
     with request.site.store.reading() as connection:
         person = somebody(request, connection)
         return _given(request, connection, person.id, full_release)
+
+
+class Release(NamedTuple):
+    """Released content of an assignment."""
+
+    paper: bool = True
+    marks: bool = True
+
+
+def full_release(number: int) -> Release:
+    """Return the content that staff may see: all of it."""
+    return Release()
+
+
+def release_to(connection: Connection, request: Request) -> Callable[[int], Release]:
+    """Return the function that gives the released content of an assignment to the current user; nothing of an
+    unpublished one."""
+    if request.user.may(Permission.ASSIGNMENTS_READ):
+        return full_release
+    # A mark's sentence may say what is right.
+    releases = {
+        item.assignment.id: Release(
+            item.phase is not Phase.TO_COME, item.releases("feedback") and item.releases("answers")
+        )
+        for item in published_states(request, connection)
+    }
+    return lambda number: releases.get(number, Release(False, False))
 
 
 def _given(

@@ -3,11 +3,14 @@ together."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from datetime import datetime
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from starlette.responses import HTMLResponse, Response
 
+from coursework.database.drafts import sheets
 from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.marking.marking import mark
@@ -15,14 +18,14 @@ from coursework.rendering import motion_page, views
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.scenes.gauges import EFFECTS
 from coursework.selfstudy.attempt import CheckedAnswers
-from coursework.selfstudy.progress import is_blank
+from coursework.selfstudy.mastery import RIGHT
+from coursework.selfstudy.progress import ANSWER, EXAMPLE, Progress, date_of, is_blank
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.site.frame.budgets import BOXES, PLAIN
 from coursework.site.frame.drafts import save_drafts
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import redirect
 from coursework.site.papers.assignment_state import to_hand_in
-from coursework.site.practice.begun_variants import begun
 from coursework.site.practice.contents import contents, exercise_title, next_of
 from coursework.site.practice.worksheet import BOX_PREFIX, QuestionHints, Worksheet
 
@@ -63,6 +66,54 @@ def sheet(request: Request) -> Response:
         return _form_response(request, work)
     _warm(request, work)
     return _page(request, work, work.attempt.marked(), work.box_contents())
+
+
+class BegunVariant(NamedTuple):
+    """Variant that was begun and is not finished."""
+
+    exercise: str
+    seed: int
+    right: int
+    questions: int
+
+    @property
+    def address(self) -> str:
+        return f"/practice/{self.exercise}/{self.seed}"
+
+
+def begun(request: Request, progress: Progress, exercise: str = "") -> Iterator[BegunVariant]:
+    """Yield the variants to continue with, of one exercise if given."""
+    for name, seed in _touched(request, progress, exercise):
+        if name not in request.site.course or not request.site.pool.holds(name, seed):
+            continue
+        variant = _standing(request, progress, name, seed)
+        if variant is not None and variant.right < variant.questions:
+            yield variant
+
+
+def _touched(request: Request, progress: Progress, exercise: str) -> list[tuple[str, int]]:
+    with request.site.store.reading() as connection:
+        typed = sheets(connection, request.user.id, f"practice/{exercise}/" if exercise else "practice/")
+    when: dict[tuple[str, int], datetime] = {}
+    for sheet, changed in typed.items():
+        _, name, seed = sheet.split("/")
+        when[name, int(seed)] = changed
+    for entry in progress:
+        if exercise in ("", entry["exercise"]):
+            variant = str(entry["exercise"]), int(entry["seed"])
+            when[variant] = max(when.get(variant, date_of(entry)), date_of(entry))
+    return sorted(when, key=lambda variant: when[variant], reverse=True)
+
+
+def _standing(request: Request, progress: Progress, exercise: str, seed: int) -> BegunVariant | None:
+    """Return the progress on a variant; None if it was shown with its solution."""
+    mine = [e for e in progress.of(exercise) if e["seed"] == seed]
+    if any(e["what"] == EXAMPLE for e in mine):
+        return None
+    last = {e["part"]: e.get("verdict") for e in mine if e["what"] == ANSWER}
+    variant = request.site.variant(exercise, seed, request.lang)
+    questions = [part.id for part in variant.parts if not part.sort.is_open]
+    return BegunVariant(exercise, seed, sum(last.get(name) in RIGHT for name in questions), len(questions))
 
 
 def _worksheet(request: Request) -> Worksheet:

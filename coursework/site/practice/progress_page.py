@@ -48,7 +48,7 @@ def _brought(request: Request, store: PersonProgress) -> int:
         The file is not one of progress, is of a later version, or is too long.
     """
     texts = request.words["progress"]
-    upload = request.form.upload("file")
+    upload = next(iter(request.form.files.get("file", ())), None)
     if upload is None:
         raise BadInput(texts["no_file"])
     fault, theirs = read_apart(
