@@ -4,9 +4,7 @@ are never run."""
 from __future__ import annotations
 
 import base64
-import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import islice
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -24,24 +22,21 @@ from coursework.gradebook.book import marks_rows, rejected_rows, summary_rows
 from coursework.gradebook.class_points import SCORES, class_points
 from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
 from coursework.gradebook.feedback_sheets import write_feedback
-from coursework.gradebook.filling import Filled, fill
+from coursework.gradebook.filling import Filled
 from coursework.gradebook.placing import as_texts
 from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebook
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
-from coursework.gradebook.submissions import find, read_file
 from coursework.issuing.issued import COLUMNS
-from coursework.issuing.roster import Student, roster_and_notes
-from coursework.messages import Message, as_message, localised
+from coursework.messages import as_message, localised
+from coursework.site.desk import uploads
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
 from coursework.site.frame.budgets import DESK_FILES, read_apart, read_upload
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 from coursework.site.frame.responses import Download
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
-from coursework.system.unzipping import is_zip, unpack
 from coursework.system.zips import zipped
 
-MOST_ROWS = 500_000  #: of one upload
 _NAME = 120  #: bytes of a file's name; longer names lose their beginning
 _NAMED = 10  #: students named in a message
 _DECISIONS = ("made", "by", "kind", "student", "exercise", "seed", "part", "points", "reason", "answer")
@@ -82,7 +77,7 @@ def answers_in(request: Request) -> Response:
     texts = request.words["files"]
     if not sent:
         raise BadInput(texts["none_sent"])
-    rows = _rows(sent, texts["too_many"].format(MOST_ROWS), request.words["refused"]["too_much"])
+    rows = _rows(sent, texts["too_many"].format(uploads.MOST_ROWS), request.words["refused"]["too_much"])
     answers = sum(isinstance(item, AnswerRow) for item in rows)
     source = ", ".join(file_name(item) for item in sent)[:500]
     with request.site.store.begin() as connection:
@@ -108,22 +103,12 @@ def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[AnswerRo
             subfolder = folder / str(number)
             subfolder.mkdir()
             (subfolder / file_name(upload)).write_bytes(upload.data)
-        rows: list[AnswerRow | Rejected | PlatformFile] = read_apart(DESK_FILES, too_much, _rows_in, folder)
-    if len(rows) > MOST_ROWS:
+        rows: list[AnswerRow | Rejected | PlatformFile] = read_apart(
+            DESK_FILES, too_much, uploads.rows_in, folder
+        )
+    if len(rows) > uploads.MOST_ROWS:
         raise BadInput(too_many)
     return rows
-
-
-def _rows_in(folder: Path) -> list[AnswerRow | Rejected | PlatformFile]:
-    """Return the rows of the files below a folder, archives included; one more than the limit if there are
-    too many."""
-    for path in sorted(folder.glob("*/*")):
-        if path.suffix.lower() == ".zip" and is_zip(path.read_bytes()[:4]):
-            inside = path.parent / "zip"
-            inside.mkdir()
-            unpack(path, inside)
-            path.unlink()
-    return list(islice(_read(folder), MOST_ROWS + 1))
 
 
 def file_name(upload: Upload) -> str:
@@ -131,39 +116,6 @@ def file_name(upload: Upload) -> str:
     base = PurePath(upload.name.replace("\\", "/")).name
     plain = "".join(c for c in base if c.isprintable() and c not in '/:*?"<>|').lstrip(".")
     return plain.encode("utf-8", "ignore")[-_NAME:].decode("utf-8", "ignore") or "answers"
-
-
-def _read(folder: Path) -> Iterator[AnswerRow | Rejected | PlatformFile]:
-    for item in find([folder]):
-        rows = [item] if isinstance(item, (Rejected, PlatformFile)) else read_file(item, [folder])
-        for row in rows:
-            yield _with_short_source(row, folder)
-
-
-def _with_short_source(
-    row: AnswerRow | Rejected | PlatformFile, folder: Path
-) -> AnswerRow | Rejected | PlatformFile:
-    """Return a row without the temporary folder in its source."""
-    paths = re.compile(rf"{re.escape(str(folder))}(?:/\d+/(?:zip/)?)?")
-
-    def shortened(text: str) -> str:
-        return paths.sub("", text)
-
-    if isinstance(row, AnswerRow):
-        return row._replace(
-            source=shortened(row.source), warning=shortened(row.warning) if row.warning else ""
-        )
-    if isinstance(row, Rejected):
-        return Rejected(shortened(row.source), _without(row.reason, paths), row.row)
-    return row._replace(source=shortened(row.source))
-
-
-def _without(text: object, parts: re.Pattern[str]) -> Message:
-    """Return a message without the parts that match a pattern, longest first."""
-    message = as_message(text)
-    for part in sorted(set(parts.findall(message)), key=len, reverse=True):
-        message = message.replacing(part, "")
-    return message
 
 
 def roster_in(request: Request) -> Response:
@@ -179,7 +131,7 @@ def roster_in(request: Request) -> Response:
     sent = request.form.upload("roster")
     if sent is None:
         raise BadInput(texts["none_sent"])
-    students, notes = read_upload(request, DESK_FILES, _roster, file_name(sent), sent.data)
+    students, notes = read_upload(request, DESK_FILES, uploads.roster_in, file_name(sent), sent.data)
     issued_names = {
         entry.name: now.issued.student(entry.name, tuple(entry.columns.items())) for entry in students
     }
@@ -199,12 +151,6 @@ def roster_in(request: Request) -> Response:
     if strangers:
         messages.append(texts["roster_strangers"].format(_list(strangers)))
     return files_page(request, messages)
-
-
-def _roster(path: Path) -> tuple[Sequence[Student], list[Message]]:
-    """Return the students of a roster, and the messages about it, which name the file alone."""
-    students, notes = roster_and_notes(path)
-    return students, [as_message(line).replacing(f"{path.parent}/", "") for line in notes]
 
 
 def _merged(
@@ -374,7 +320,7 @@ def gradebook(request: Request) -> Response:
             scored = class_points(folder / "summary.csv", score if score in SCORES else "points")
             most = form.text("most").strip().replace(",", ".")
             filled = read_apart(
-                DESK_FILES, request.words["refused"]["too_much"], _filled_in, platform.name, path, form.text("item").strip(), scored,
+                DESK_FILES, request.words["refused"]["too_much"], uploads.filled_in, platform.name, path, form.text("item").strip(), scored,
                 float(most) if most else None, bool(form.text("zeros")),
             )  # fmt: skip
         except ValueError as fault:
@@ -389,12 +335,6 @@ def gradebook(request: Request) -> Response:
     }  # fmt: skip
     messages += [texts[key].format(len(names), _list(names)) for key, names in outcomes.items() if names]
     return files_page(request, messages, filled, file_name(sent))
-
-
-def _filled_in(
-    platform: str, path: Path, item: str, scored: Sequence[Any], most: float | None, zeros: bool
-) -> Filled:
-    return fill(platform_gradebook(platform), path, item, scored, most=most, zeros=zeros)
 
 
 def _filled(request: Request, filled: Filled | None, name: str) -> Mapping[str, str] | None:
