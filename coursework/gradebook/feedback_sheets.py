@@ -94,6 +94,10 @@ def _line(variant: Variant, question: Question, line: Mark, right: str) -> Feedb
     )
 
 
+#: Messages of wrong numbers, which list what these are computed from.
+_LISTING = ("wrong", "wrong_place", "wrong_count")
+
+
 def _is_looked_for(part: Part, verdict: str) -> bool:
     """Return whether it helps to hear from what a quantity follows.
 
@@ -102,7 +106,7 @@ def _is_looked_for(part: Part, verdict: str) -> bool:
     """
     if part.sort.is_open or part.judge or verdict in _NOT_ABOUT_IT:
         return False
-    return kind_of(verdict) != "slip" and (verdict != "wrong" or part.sort.wrong != "wrong")
+    return kind_of(verdict) != "slip" and (verdict != "wrong" or part.sort.wrong not in _LISTING)
 
 
 def _with_formulas(question: Question, read_as: str, lang: str) -> str:

@@ -296,13 +296,13 @@ def _without_margin(text: str) -> str:
 
 
 def _refuse_two_values(text: str) -> None:
-    """``5 ± 0.1`` and ``3 to 4`` are two values."""
+    """``5 ± 0.1`` and ``3 to 4`` are two values; ``to do`` is none."""
     if (
         not _RANGE.match(text)
         and _TWO_VALUES.search(text)
         and "atan2" not in text.replace("arctan2", "atan2")
     ):
-        raise Stop("two_values", text)
+        raise Stop("two_values" if any(map(str.isdigit, text)) else "not_a_number", text)
 
 
 def _refuse_ranges(text: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
@@ -52,13 +53,14 @@ _MOST = 7  #: names that a sentence lists
 
 
 def follows_from(variant: Variant, quantity: str) -> str:
-    """Return the quantities from which a quantity follows, as Markdown: given ones by symbol, asked ones by
-    question.
+    """Return the quantities from which a quantity follows, as Markdown: given ones by symbol, those asked
+    before by question.
 
     What is given as a case, such as an assembly mode, has no symbol and is left out. Nothing where it takes none of these,
     so many that a list of them says nothing, or numbers that stand elsewhere than among the data.
     """
-    numbers = {part.quantity: number for number, part in enumerate(variant.parts, start=1)}
+    places = {part.quantity: number for number, part in enumerate(variant.parts, start=1)}
+    numbers = {name: number for name, number in places.items() if number < places.get(quantity, math.inf)}
     needed = _on_the_sheet(variant, quantity, numbers)
     given = [_symbol(variant, name) for name in variant.stated if name in needed]
     before = [(name, numbers[name]) for name in needed if name in numbers and name not in variant.given]

@@ -226,3 +226,16 @@ def test_a_right_answer_is_read_in_every_spelling(exercise_of, name, seeds):
                 assert is_right(variant, part, reading), (part.id, answer, reading)
                 tried += 1
     assert tried
+
+
+@each_row(
+    ("text", "code"),
+    [
+        ("3 à 4", "two_values"),
+        ("12 or 13", "two_values"),
+        ("à refaire", "not_a_number"),
+        ("ou", "not_a_number"),
+    ],
+)
+def test_words_without_a_number_are_not_two_values(text, code):
+    assert read_number(text, "mm").code == code
