@@ -12,6 +12,7 @@ from pathlib import Path
 from zlib import crc32
 
 import pytest
+from hypothesis import settings
 from sweeps import mark_sweeps
 
 import coursework
@@ -21,6 +22,11 @@ from coursework.course.secrecy import Secret
 MEMORY = Path("/dev/shm")  #: files that are in memory, where a system has such a place
 ROOM = 6 << 30  #: bytes that must be free there, and of memory
 _PLACE = pytest.StashKey[str]()
+
+# What a run finds another finds as well; `--hypothesis-profile searching` looks elsewhere each time.
+settings.register_profile("same", derandomize=True, deadline=None, print_blob=True)
+settings.register_profile("searching", deadline=None, print_blob=True)
+settings.load_profile("same")
 
 
 def pytest_addoption(parser):

@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 import pytest
+from sweeps import whole_course
 from tables import each_row
 
 from coursework.cli import run
@@ -376,6 +377,7 @@ def test_any_name_in_the_marks_is_printed(course, folder, name):
     assert renderer_of(course.folder).report_html(page).count("<figure>") == 3
 
 
+@whole_course
 def test_every_symbol_of_the_course_is_a_label_of_a_chart(course):
     for name in course.names:
         for part in course[name].spec.parts:
