@@ -11,7 +11,7 @@ import click
 
 from coursework.cli.database import keeping
 from coursework.cli.options import opened, print_notes, shared_by_cluster, writes
-from coursework.cli.printing import progress_bar
+from coursework.cli.printing import progress_bar, say
 from coursework.errors import BadInput, counted, nearest
 from coursework.system.extras import libraries
 
@@ -165,14 +165,26 @@ def build_assignment(
         notes += unprinted_names(renderer_of(course.folder), names if only is None else only)
     print_notes(notes)
     count = len({(i.stem, i.sitting) for i in dealt.issues if only is None or i.student in only})
-    description = (
-        "as it was issued" if is_unchanged or again else "to give away, issued.json and answers.csv to keep"
+    as_issued = is_unchanged or again
+    say(
+        "{papers} in {out}: {files}, as it was issued"
+        if as_issued
+        else "{papers} in {out}: {files}, to give away, issued.json and answers.csv to keep",
+        papers=counted(count, "paper"),
+        out=out,
+        files=counted(len(wanted), "file"),
     )
-    click.echo(f"{counted(count, 'paper')} in {out}: {counted(len(wanted), 'file')}, {description}")
-    click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
-    if with_nbgrader:
-        click.echo(
-            f"a course of nbgrader: {out / 'nbgrader'}; how to go on stands there, in {assignment.name}.md"
+    say_staff_half(out, assignment.name if with_nbgrader else "")
+
+
+def say_staff_half(out: Path, name: str) -> None:
+    """Print where the staff's half of a build is, and the nbgrader course of a name; an empty name stands for none."""
+    say("worked solutions and the key, for the staff alone: {folder}", folder=out / "instructor")
+    if name:
+        say(
+            "a course of nbgrader: {folder}; how to go on stands there, in {name}.md",
+            folder=out / "nbgrader",
+            name=name,
         )
 
 

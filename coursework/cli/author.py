@@ -25,7 +25,7 @@ from coursework.cli.options import (
     unknown_language,
     writes,
 )
-from coursework.cli.printing import print_json, print_note, print_table, progress_bar
+from coursework.cli.printing import print_json, print_note, print_table, progress_bar, say
 from coursework.errors import BadInput
 from coursework.system.limits import MOST_VARIANTS
 
@@ -60,7 +60,7 @@ def check(
             for failure in report.failures[:20]:
                 click.echo(f"{report.name}: {failure}")
             if len(report.failures) > 20:
-                click.echo(f"{report.name}: and {len(report.failures) - 20} more")
+                say("{name}: and {count} more", name=report.name, count=len(report.failures) - 20)
     return DONE if all(r.passed for r in reports) else FOUND
 
 
@@ -141,10 +141,10 @@ def new(
     else:
         written = new_course(folder, spoken)
     for path in written:
-        click.echo(f"wrote {path}")
+        say("wrote {path}", path=path)
     for path in there:
-        click.echo(f"{path} is there already, the same")
-    click.echo(f"try: coursework --course {folder} check")
+        say("{path} is there already, the same", path=path)
+    say("try: coursework --course {folder} check", folder=folder)
 
 
 def _new_example(folder: Path, name: str, more: object) -> None:
@@ -155,8 +155,8 @@ def _new_example(folder: Path, name: str, more: object) -> None:
             "an example is copied whole: coursework new {folder} --example {name}", folder=folder, name=name
         )
     for path in new_example(folder, name):
-        click.echo(f"wrote {path}")
-    click.echo(f"try: coursework --course {folder} check")
+        say("wrote {path}", path=path)
+    say("try: coursework --course {folder} check", folder=folder)
 
 
 def _new_assignment(
@@ -167,8 +167,8 @@ def _new_assignment(
 
     written = new_assignment(path, opened(context), exercises, langs, language_of(os.environ))
     course_option = f"--course {context.obj} " if context.obj else ""
-    click.echo(f"wrote {written}")
-    click.echo(f"try: coursework {course_option}build {written}")
+    say("wrote {path}", path=written)
+    say("try: coursework {option}build {path}", option=course_option, path=written)
 
 
 def _copied(

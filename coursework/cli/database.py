@@ -21,7 +21,7 @@ from coursework.cli.options import (
     print_notes,
     writes,
 )
-from coursework.cli.printing import print_json, print_table, progress_bar
+from coursework.cli.printing import print_json, print_table, progress_bar, say, warn
 from coursework.errors import BadInput, closest, counted
 from coursework.messages import Message
 
@@ -149,11 +149,18 @@ def _tell_new(now: GradedNow) -> None:
     """Print the submissions that arrived, and how many answers of them were marked."""
     earlier = [delivery for delivery in now.submissions if not delivery.is_new]
     if now.submissions:
-        click.echo(f"{counted(now.new, 'new file')}{f', {len(earlier)} that came before' if earlier else ''}")
+        files = counted(now.new, "new file")
+        if earlier:
+            say("{files}, {count} that came before", files=files, count=len(earlier))
+        else:
+            say("{files}", files=files)
     if now.decided:
-        click.echo(f"{counted(now.decided, 'decision')} taken in")
-    click.echo(
-        f"{counted(now.marked.sheets, 'sheet')}: {now.marked.marked} marked now, {now.marked.new} of them for the first time"
+        say("{decisions} taken in", decisions=counted(now.decided, "decision"))
+    say(
+        "{sheets}: {marked} marked now, {new} of them for the first time",
+        sheets=counted(now.marked.sheets, "sheet"),
+        marked=now.marked.marked,
+        new=now.marked.new,
     )
 
 
@@ -164,20 +171,21 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     for change in now.marked.changes[:_TOLD]:
         click.echo(_change(change))
     if len(now.marked.changes) > _TOLD:
-        click.echo(f"and {len(now.marked.changes) - _TOLD} more; coursework database history tells them all")
+        say(
+            "and {count} more; coursework database history tells them all",
+            count=len(now.marked.changes) - _TOLD,
+        )
     sheets = now.work.sheets
     print_notes(sheets.warnings)
     rejected = sheets.rejected
     for row in rejected[:_TOLD]:
         click.echo(f"coursework: {row.source}: {row.reason}", err=True)
     if len(rejected) > _TOLD:
-        click.echo(
-            f"coursework: and {len(rejected) - _TOLD} more rejected rows: grade with --out DIR", err=True
-        )
+        warn("and {count} more rejected rows: grade with --out DIR", count=len(rejected) - _TOLD)
     with store.reading() as connection:
         waits = len(waiting(connection, number))
     if waits:
-        click.echo(f"{counted(waits, 'answer')} for a person to look at")
+        say("{answers} for a person to look at", answers=counted(waits, "answer"))
     return FOUND if waits or rejected else DONE
 
 
@@ -241,7 +249,7 @@ def show(context: click.Context, url: str, as_json: bool) -> None:
     elif rows:
         print_table(rows)
     else:
-        click.echo("the database holds no assignment")
+        say("the database holds no assignment")
 
 
 @database.command(cls=NeedingExtra, ready=database_ready)
@@ -280,7 +288,7 @@ def history(
         )
         return
     if not entries:
-        click.echo("nothing was marked")
+        say("nothing was marked")
     for author, where, of, entry in entries:
         click.echo(
             f"{entry.at:%Y-%m-%d %H:%M:%S} UTC  {author}, {where} {entry.seed}, {of}: {_happened(entry)}".rstrip()
@@ -323,9 +331,7 @@ def new_key(context: click.Context, url: str) -> None:
         renew_secret(connection)
         secret(connection)
         note(connection, datetime.now(UTC), "command line", "signing key replaced")
-    click.echo(
-        "a new key was drawn: start the site again, and forms of pages that are open are to be loaded anew"
-    )
+    say("a new key was drawn: start the site again, and forms of pages that are open are to be loaded anew")
 
 
 @database.command("sign-out", cls=NeedingExtra, ready=database_ready)
@@ -345,14 +351,14 @@ def sign_out(context: click.Context, url: str, login: str | None) -> None:
         if login is None:
             count = end_all_sessions(connection)
             note(connection, datetime.now(UTC), "command line", "signed out")
-            click.echo(f"{counted(count, 'session')} ended")
+            say("{sessions} ended", sessions=counted(count, "session"))
             return
         account = account_by_login(connection, login.strip().casefold())
         if account is None:
             raise BadInput("nobody signs in as {login!r}", login=login)
         end_sessions(connection, account.person_id)
         note(connection, datetime.now(UTC), "command line", "signed out", person=account.person_id)
-    click.echo(f"the sessions of {login} ended")
+    say("the sessions of {login} ended", login=login)
 
 
 @database.command(cls=NeedingExtra, ready=database_ready)
@@ -366,7 +372,12 @@ def dump(context: click.Context, url: str, folder: Path) -> None:
 
     writes(context, folder)
     rows = dump_to(store, folder)
-    click.echo(f"{counted(sum(rows.values()), 'row')} of {counted(len(rows), 'table')} in {folder}")
+    say(
+        "{rows} of {tables} in {folder}",
+        rows=counted(sum(rows.values()), "row"),
+        tables=counted(len(rows), "table"),
+        folder=folder,
+    )
 
 
 @database.command(cls=NeedingExtra, ready=database_ready)
@@ -379,4 +390,9 @@ def restore(context: click.Context, folder: Path, url: str) -> None:
     from coursework.database.dump import restore as restore_from
 
     rows = restore_from(folder, store)
-    click.echo(f"{counted(sum(rows.values()), 'row')} of {counted(len(rows), 'table')} from {folder}")
+    say(
+        "{rows} of {tables} from {folder}",
+        rows=counted(sum(rows.values()), "row"),
+        tables=counted(len(rows), "table"),
+        folder=folder,
+    )

@@ -13,7 +13,9 @@ from coursework.cli.options import (
     FOUND,
     FilePath,
 )
+from coursework.cli.printing import say, warn
 from coursework.errors import BadInput, counted
+from coursework.messages import Message
 
 if TYPE_CHECKING:
     from coursework.gradebook.class_points import Scored
@@ -87,8 +89,12 @@ def gradebook(
     _check_out(out, template)
     filled = fill(chosen, template, item, scored, most=out_of, decimal=_SIGNS[decimal], zeros=zeros)
     write_whole(out, filled.data)
-    click.echo(
-        f"{counted(filled.written, 'mark')} in the column {filled.column!r} of {out}{_of(filled, scored)}"
+    say(
+        "{marks} in the column {column!r} of {out}{total}",
+        marks=counted(filled.written, "mark"),
+        column=filled.column,
+        out=out,
+        total=_of(filled, scored),
     )
     return _print_filled(filled, out)
 
@@ -103,25 +109,40 @@ def _check_out(out: Path, template: Path) -> None:
 
 def _of(filled: Filled, scored: Sequence[Scored]) -> str:
     if filled.most is not None:
-        return f", out of {filled.most:g}"
+        return Message(", out of {most:g}", most=filled.most)
     totals = {score.out_of for score in scored if score.out_of}
-    return (
-        f", out of {totals.pop()}: that must be the item's maximum (--out-of says another)" if totals else ""
+    if not totals:
+        return ""
+    return Message(
+        ", out of {most}: that must be the item's maximum (--out-of says another)", most=totals.pop()
     )
 
 
 def _print_filled(filled: Filled, out: Path) -> int:
     """Say who is left as they were, and why; whether somebody must look."""
     for description, names in (
-        ("marks, but no line in the export, and not written", filled.strangers),
-        ("marks, but several lines or none that is surely theirs, and not written", filled.unclear),
-        ("no marks, and left as they were", filled.absent),
-        ("what stays as the platform has it", filled.unchanged),
+        (Message("marks, but no line in the export, and not written"), filled.strangers),
+        (Message("marks, but several lines or none that is surely theirs, and not written"), filled.unclear),
+        (Message("no marks, and left as they were"), filled.absent),
+        (Message("what stays as the platform has it"), filled.unchanged),
     ):
         if names:
-            listed = ", ".join(names[:10]) + (f", and {len(names) - 10} more" if len(names) > 10 else "")
-            click.echo(f"coursework: {counted(len(names), 'student')} with {description}: {listed}", err=True)
+            warn(
+                "{students} with {description}: {listed}",
+                students=counted(len(names), "student"),
+                description=description,
+                listed=_listed(names),
+            )
     return FOUND if filled.strangers or filled.unclear else DONE
+
+
+def _listed(names: Sequence[str]) -> str:
+    listed = ", ".join(names[:10])
+    return (
+        Message("{first} and {count} more", first=listed, count=len(names) - 10)
+        if len(names) > 10
+        else listed
+    )
 
 
 def _write_xml(out: Path, item: str, scored: Sequence[Scored], out_of: float | None) -> int:
@@ -130,10 +151,16 @@ def _write_xml(out: Path, item: str, scored: Sequence[Scored], out_of: float | N
 
     data, left = moodle_xml(item, scored, out_of, out.stem)
     write_whole(out, data)
-    click.echo(f"{counted(len(scored) - len(left), 'mark')} of the item with ID number {item!r} in {out}")
+    say(
+        "{marks} of the item with ID number {item!r} in {out}",
+        marks=counted(len(scored) - len(left), "mark"),
+        item=item,
+        out=out,
+    )
     if left:
-        click.echo(
-            f"coursework: {counted(len(left), 'student')} without an ID number, not written: {', '.join(left[:10])}",
-            err=True,
+        warn(
+            "{students} without an ID number, not written: {listed}",
+            students=counted(len(left), "student"),
+            listed=_listed(left),
         )
     return FOUND if left else DONE

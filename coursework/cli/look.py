@@ -11,7 +11,6 @@ from coursework.cli.options import (
     DONE,
     FOUND,
     WholeNumber,
-    complain,
     exercise_argument,
     json_option,
     lang_option,
@@ -21,7 +20,7 @@ from coursework.cli.options import (
     settings_given,
     split_list,
 )
-from coursework.cli.printing import print_json, print_table
+from coursework.cli.printing import print_json, print_table, say, warn
 from coursework.errors import BadInput, MissingQuantity, WrongValue
 from coursework.system.limits import MOST_VARIANTS
 
@@ -49,9 +48,13 @@ def list_exercises(context: click.Context, as_json: bool) -> int:
                 f"{chapter.number}. {_titled(folder, chapter)}" if chapter else "",
             )
         if not folder.names:
-            click.echo("This course has no exercise yet.")
+            say("This course has no exercise yet.")
     for name, fault in faults.items():
-        complain(f"{name} cannot be listed: {fault.removeprefix(f'{name}: ')}")
+        warn(
+            "{name} cannot be listed: {fault}",
+            name=name,
+            fault=" ".join(fault.removeprefix(f"{name}: ").split()),
+        )
     return FOUND if faults else DONE
 
 

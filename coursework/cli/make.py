@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.assignments import build_assignment, check_scan, codes_ready, for_practice, is_assignment
+from coursework.cli.assignments import (
+    build_assignment,
+    check_scan,
+    codes_ready,
+    for_practice,
+    is_assignment,
+    say_staff_half,
+)
 from coursework.cli.database import keeping
 from coursework.cli.options import (
     UNLESS_TOLD,
@@ -35,7 +42,7 @@ from coursework.cli.options import (
     unknown_language,
     writes,
 )
-from coursework.cli.printing import print_table, progress_bar
+from coursework.cli.printing import print_table, progress_bar, say
 from coursework.errors import BadInput, counted
 from coursework.system.limits import MOST_VARIANTS
 
@@ -194,11 +201,14 @@ def build(
     )
     if roster:
         print_notes([for_practice(langs[0])])
-    away = "handouts/ to give away, " if set(formats) - {"nbgrader"} else ""
-    click.echo(f"{counted(written, 'file')} in {out}: {away}issued.json and answers.csv to keep")
-    click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
-    if "nbgrader" in formats:
-        click.echo(f"a course of nbgrader: {out / 'nbgrader'}; how to go on stands there, in {names[0]}.md")
+    say(
+        "{files} in {out}: handouts/ to give away, issued.json and answers.csv to keep"
+        if set(formats) - {"nbgrader"}
+        else "{files} in {out}: issued.json and answers.csv to keep",
+        files=counted(written, "file"),
+        out=out,
+    )
+    say_staff_half(out, names[0] if "nbgrader" in formats else "")
 
 
 def _is_untold(context: click.Context, option: str) -> bool:

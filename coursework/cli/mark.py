@@ -26,9 +26,9 @@ from coursework.cli.options import (
     tell_lack_of_charts,
     writes,
 )
-from coursework.cli.printing import print_json, progress_bar
+from coursework.cli.printing import print_json, progress_bar, say, warn
 from coursework.errors import BadInput, counted
-from coursework.messages import Message
+from coursework.messages import Message, localised
 from coursework.system.extras import libraries
 from coursework.system.visible import one_line
 
@@ -194,35 +194,47 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
     """Say what a folder of marks holds."""
     for line in book.seen:
         click.echo(one_line(line))
-    summary = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
-    summary += f", {book.blanks} blank beside another" if book.blanks else ""
-    click.echo(f"{summary}; see {out}")
+    say(
+        "{rows}: {marked} marked, {rejected} rejected, {blanks} blank beside another; see {out}"
+        if book.blanks
+        else "{rows}: {marked} marked, {rejected} rejected; see {out}",
+        rows=counted(book.rows_in, "row"),
+        marked=book.marked,
+        rejected=len(book.rejected),
+        out=out,
+        **({"blanks": book.blanks} if book.blanks else {}),
+    )
     if book.unreadable:
-        unreadable = (
-            "1 unreadable answer" if book.unreadable == 1 else f"{book.unreadable} unreadable answers"
+        say(
+            "{count} unreadable answer to look at: verdict unreadable in {file}"
+            if book.unreadable == 1
+            else "{count} unreadable answers to look at: verdict unreadable in {file}",
+            count=book.unreadable,
+            file=out / "marks.csv",
         )
-        click.echo(f"{unreadable} to look at: verdict unreadable in {out / 'marks.csv'}")
     if book.waiting:
-        unreadable = "1 answer waits" if book.waiting == 1 else f"{book.waiting} answers wait"
-        click.echo(
-            f"{unreadable} to be marked by a person: give points in {out / 'decisions.csv'}, and grade again"
+        say(
+            "{count} answer waits to be marked by a person: give points in {file}, and grade again"
+            if book.waiting == 1
+            else "{count} answers wait to be marked by a person: give points in {file}, and grade again",
+            count=book.waiting,
+            file=out / "decisions.csv",
         )
     if book.changes:
-        unreadable = (
-            "1 mark is not what it was"
+        say(
+            "{count} mark is not what it was before; see {file}"
             if book.changes == 1
-            else f"{book.changes} marks are not what they were"
+            else "{count} marks are not what they were before; see {file}",
+            count=book.changes,
+            file=out / "changes.csv",
         )
-        click.echo(f"{unreadable} before; see {out / 'changes.csv'}")
-    for warning in book.warnings:
-        click.echo(f"coursework: note: {one_line(warning)}", err=True)
+    _print_warnings(book)
     for fault in book.faults:
-        click.echo(f"coursework: {one_line(fault)}", err=True)
+        click.echo(f"coursework: {one_line(localised(fault))}", err=True)
     for rejected in book.rejected[:10]:
         click.echo(f"coursework: {one_line(f'{rejected.source}: {rejected.reason}')}", err=True)
     if len(book.rejected) > 10:
-        more = len(book.rejected) - 10
-        click.echo(f"coursework: and {more} more in {out / 'rejected.csv'}", err=True)
+        warn("and {count} more in {file}", count=len(book.rejected) - 10, file=out / "rejected.csv")
     return FOUND if book.review_count else DONE
 
 
@@ -276,13 +288,27 @@ def _grade_standing(
 
 
 def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
-    click.echo(f"{counted(book.rows_in, 'mark')} as they stand in {marks}; see {out}")
+    say(
+        "{marks} as they stand in {source}; see {out}",
+        marks=counted(book.rows_in, "mark"),
+        source=marks,
+        out=out,
+    )
     if book.changes:
-        changed = "1 mark was" if book.changes == 1 else f"{book.changes} marks were"
-        click.echo(f"{changed} changed by hand; see {out / 'changes.csv'}")
-    for warning in book.warnings:
-        click.echo(f"coursework: note: {one_line(warning)}", err=True)
+        say(
+            "{count} mark was changed by hand; see {file}"
+            if book.changes == 1
+            else "{count} marks were changed by hand; see {file}",
+            count=book.changes,
+            file=out / "changes.csv",
+        )
+    _print_warnings(book)
     return FOUND if book.review_count else DONE
+
+
+def _print_warnings(book: Gradebook) -> None:
+    for warning in book.warnings:
+        click.echo(f"coursework: note: {one_line(localised(warning))}", err=True)
 
 
 def grade_with_bar(
@@ -394,9 +420,12 @@ def _report(
         _tell_alike(folder, target, decimal)
         tell_lack_of_charts()
     if not as_json:
-        click.echo(
-            f"{counted(measures.students, 'student')}, {counted(measures.answers, 'answer')}, {measures.needs_a_look} to be looked at; "
-            f"see {target / 'report'}.html, .pdf, parts.csv, mistakes.csv"
+        say(
+            "{students}, {answers}, {count} to be looked at; see {stem}.html, .pdf, parts.csv, mistakes.csv",
+            students=counted(measures.students, "student"),
+            answers=counted(measures.answers, "answer"),
+            count=measures.needs_a_look,
+            stem=target / "report",
         )
 
 

@@ -18,7 +18,7 @@ from coursework.cli.options import (
     tell_lack_of_charts,
     writes,
 )
-from coursework.cli.printing import print_json
+from coursework.cli.printing import print_json, say
 
 if TYPE_CHECKING:
     from coursework.sheets.report import ReportContent
@@ -71,7 +71,7 @@ def accuracy(
     if out is not None:
         _write(course, rows, page(), out)
         if not as_json:
-            click.echo(f"page and rows: {out / 'accuracy'}.html, .pdf, .json")
+            say("page and rows: {stem}.html, .pdf, .json", stem=out / "accuracy")
 
 
 def _in_detail(course: Any, names: Sequence[str], quick: bool, lang: str, silent: bool) -> tuple[list, Any]:
@@ -114,7 +114,7 @@ def _overview(course: Any, quick: bool, lang: str, silent: bool) -> tuple[list, 
         if not silent:
             click.echo(overview_text(line))
     if not silent and without:
-        click.echo(f"no numbers to lose digits: {', '.join(without)}")
+        say("no numbers to lose digits: {names}", names=", ".join(without))
     return [line.as_json() for line in lines], lambda: overview_report(course, lines, without, lang)
 
 

@@ -25,9 +25,8 @@ from coursework.cli.options import (
     tell_lack_of_charts,
     writes,
 )
-from coursework.cli.printing import print_json, print_table
+from coursework.cli.printing import print_json, print_table, say
 from coursework.errors import WrongValue
-from coursework.messages import localised
 from coursework.system.limits import MOST_STEPS
 
 if TYPE_CHECKING:
@@ -165,16 +164,16 @@ def _tell_table(scene_file: SceneFile, out: Path | None, decimal: str, as_json: 
             {"exercise": name, "evaluated": table.evaluated, "rows": table.rows(), "notes": table.notes}
         )
     else:
-        click.echo(f"evaluated: {', '.join(table.evaluated)}")
+        say("evaluated: {effects}", effects=", ".join(table.evaluated))
         for note in table.notes:
-            click.echo(f"note: {localised(note)}")
+            say("note: {note}", note=note)
     if out is not None:
         stem = out / f"{scene_file.name}-{'cycle' if scene_file.drive is None else 'motion'}"
         _write_rows(table.rows(), stem, decimal)
         if not (bare := tell_lack_of_charts()):
             _write_plot(table, scene_file.name, stem)
         if not as_json:
-            click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
+            say("table: {stem}.csv" if bare else "table and plot: {stem}.csv, .svg", stem=stem)
     elif not as_json:
         shown_rows = table.rows(max(1, len(table) // 12))
         print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
@@ -208,7 +207,7 @@ def _tell_budget(
         )
     else:
         print_table(list(_each_effect_once(rows)))
-        click.echo(f"the whole scene: {1e3 * effect_budget.seconds:.3g} ms")
+        say("the whole scene: {milliseconds:.3g} ms", milliseconds=1e3 * effect_budget.seconds)
         for sentence in summary:
             click.echo(sentence)
     if out is not None:
@@ -217,7 +216,7 @@ def _tell_budget(
         if not (bare := tell_lack_of_charts()):
             _write_budget_plot(effect_budget, scene_file.name, stem)
         if not as_json:
-            click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
+            say("table: {stem}.csv" if bare else "table and plot: {stem}.csv, .svg", stem=stem)
 
 
 def _each_effect_once(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, str]]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coursework.cli import completion
+from coursework.cli.printing import warn
 from coursework.errors import BadInput, WrongValue
 from coursework.messages import localised
 from coursework.system.extras import libraries
@@ -30,7 +31,7 @@ def print_notes(notes: Sequence[str]) -> None:
     for note in notes[:10]:
         click.echo(f"coursework: note: {one_line(localised(note))}", err=True)
     if len(notes) > 10:
-        click.echo(f"coursework: note: and {len(notes) - 10} more such", err=True)
+        warn("note: and {count} more such", count=len(notes) - 10)
 
 
 def tell_lack_of_charts() -> bool:

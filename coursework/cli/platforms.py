@@ -28,7 +28,7 @@ from coursework.cli.options import (
     unknown_language,
     writes,
 )
-from coursework.cli.printing import progress_bar
+from coursework.cli.printing import progress_bar, say
 from coursework.errors import BadInput, counted
 from coursework.system.limits import MOST_VARIANTS
 
@@ -170,9 +170,13 @@ def export(
     print_notes(notes)
     for line in lines:
         click.echo(line)
-    click.echo(
-        f"{counted(len(drawn.issues), 'variant')} for {platform} in {out}, with the answers, for the staff alone: "
-        f"how to import them is in IMPORT.{drawn.langs[0]}.txt, what is lost part by part in lost.csv"
+    say(
+        "{variants} for {platform} in {out}, with the answers, for the staff alone: how to import them is in "
+        "IMPORT.{lang}.txt, what is lost part by part in lost.csv",
+        variants=counted(len(drawn.issues), "variant"),
+        platform=platform,
+        out=out,
+        lang=drawn.langs[0],
     )
 
 
@@ -201,9 +205,13 @@ def _export_autograder(
         files.append(File(Path("issued.json"), lambda: data))
     with progress_bar("exporting", len(files)) as advance:
         print_notes(write_tree(out, files, advance))
-    click.echo(f"{out / 'autograder.zip'}, for the staff alone; how to put it up is in {files[1].path}")
+    say(
+        "{archive}, for the staff alone; how to put it up is in {file}",
+        archive=out / "autograder.zip",
+        file=files[1].path,
+    )
     if issued is None:
-        click.echo("the sheets are those of 'coursework build' with the same exercises, roster and options")
+        say("the sheets are those of 'coursework build' with the same exercises, roster and options")
 
 
 def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student]) -> bytes:

@@ -12,6 +12,7 @@ from typing import Any
 
 import click
 
+from coursework.messages import Message, localised
 from coursework.system.visible import plain, visible, visible_streams
 
 
@@ -20,6 +21,24 @@ def print_json(content: Any) -> None:
     import json
 
     click.echo(json.dumps(content, ensure_ascii=False))
+
+
+def say(template: str, /, **values: Any) -> None:
+    """Print a line in the reader's language.
+
+    Parameters
+    ----------
+    template
+        English text with places for the values, the key of its translations.
+    values
+        Fill the places; messages among them are translated.
+    """
+    click.echo(localised(Message(template, **values)))
+
+
+def warn(template: str, /, **values: Any) -> None:
+    """Print a line in the reader's language on the error stream, after the name of the program."""
+    click.echo(f"coursework: {localised(Message(template, **values))}", err=True)
 
 
 def print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:

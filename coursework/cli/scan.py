@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import click
 
 from coursework.cli.options import DONE, FOUND, FilePath, NeedingExtra, decimal_option, opened, writes
-from coursework.cli.printing import progress_bar
+from coursework.cli.printing import progress_bar, say, warn
 from coursework.errors import BadInput, counted
+from coursework.messages import Message, localised
 from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
@@ -94,28 +95,38 @@ def scan(
 
 def _print_scan_book(book: ScanBook, out: Path) -> int:
     """Say what a folder of scans holds."""
-    counts = [(book.statements, "of statements"), (book.blank, "blank"), (book.copies, "copied")]
-    more = "".join(f", {number} {waiting}" for number, waiting in counts if number)
-    click.echo(
-        f"{counted(book.pages, 'page')}{more}: {counted(book.answers, 'answer')}; see {out / 'answers.csv'}"
+    counts = [
+        Message("{count} of statements", count=book.statements) if book.statements else "",
+        Message("{count} blank", count=book.blank) if book.blank else "",
+        Message("{count} copied", count=book.copies) if book.copies else "",
+    ]
+    say(
+        "{pages}: {answers}; see {file}",
+        pages=", ".join(localised(one) for one in (counted(book.pages, "page"), *counts) if one),
+        answers=counted(book.answers, "answer"),
+        file=out / "answers.csv",
     )
     if book.waiting:
-        waiting = "1 place waits" if book.waiting == 1 else f"{book.waiting} places wait"
-        click.echo(f"{waiting} for a person: open {out / 'queue' / 'index.html'}")
-    if book.absent:
-        click.echo(f"{counted(book.absent, 'paper')} not scanned; see {out / 'missing.csv'}")
-    if book.unused:
-        click.echo(
-            f"coursework: note: {counted(book.unused, 'line')} of typed.csv fit nothing that was scanned",
-            err=True,
+        say(
+            "{count} place waits for a person: open {page}"
+            if book.waiting == 1
+            else "{count} places wait for a person: open {page}",
+            count=book.waiting,
+            page=out / "queue" / "index.html",
         )
-    _told_some([f"{owner} missing" for owner in book.missing], out / "missing.csv")
+    if book.absent:
+        say(
+            "{papers} not scanned; see {file}", papers=counted(book.absent, "paper"), file=out / "missing.csv"
+        )
+    if book.unused:
+        warn("note: {lines} of typed.csv fit nothing that was scanned", lines=counted(book.unused, "line"))
+    _told_some([Message("{owner} missing", owner=owner) for owner in book.missing], out / "missing.csv")
     _told_some([f"{row}: {why}" for row, why in book.rejected], out / "rejected.csv")
     return FOUND if book.needs_a_look else DONE
 
 
 def _told_some(lines: Sequence[str], rest: Path) -> None:
     for line in lines[:_TOLD]:
-        click.echo(f"coursework: {line}", err=True)
+        click.echo(f"coursework: {localised(line)}", err=True)
     if len(lines) > _TOLD:
-        click.echo(f"coursework: and {len(lines) - _TOLD} more in {rest}", err=True)
+        warn("and {count} more in {file}", count=len(lines) - _TOLD, file=rest)

@@ -28,7 +28,7 @@ from coursework.cli.options import (
     unknown_language,
     writes,
 )
-from coursework.cli.printing import progress_bar
+from coursework.cli.printing import progress_bar, say
 from coursework.errors import BadInput, counted, unknown
 from coursework.system.limits import MOST_SEED
 
@@ -97,8 +97,10 @@ def _check_lessons(course: Course, chosen: Sequence[str]) -> int:
     for fault in order:
         click.echo(fault)
     if not order:
-        click.echo(
-            f"{counted(len(names), 'lesson')} read, drawn and run in {', '.join(course.folder.languages)}"
+        say(
+            "{lessons} read, drawn and run in {languages}",
+            lessons=counted(len(names), "lesson"),
+            languages=", ".join(course.folder.languages),
         )
     return FOUND if order else DONE
 

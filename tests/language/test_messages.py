@@ -17,7 +17,17 @@ from coursework.messages import CATALOGUES, Message, as_message, localised, mess
 PACKAGE = Path(coursework.__file__).resolve().parent
 
 #: What takes a template first, and is read by those who use the product; errors in the code of a course stay English.
-FOR_USERS = {"BadInput", "Message", "UnplacedError", "Lost", "NotAtHand", "NotServed", "NoSolution"}
+FOR_USERS = {
+    "BadInput",
+    "Message",
+    "UnplacedError",
+    "Lost",
+    "NotAtHand",
+    "NotServed",
+    "NoSolution",
+    "say",
+    "warn",
+}
 
 
 def calls():
@@ -26,7 +36,9 @@ def calls():
             continue
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") in FOR_USERS and node.args:
-                yield f"{path.relative_to(PACKAGE)}:{node.lineno}", node
+                first = node.args[0]
+                for template in (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,):
+                    yield f"{path.relative_to(PACKAGE)}:{template.lineno}", template, node.keywords
 
 
 def places(template):
@@ -37,8 +49,7 @@ def places(template):
 def test_each_message_has_a_translation_with_the_same_places(lang):
     known = translations(lang)
 
-    def fault(place, node):
-        first = node.args[0]
+    def fault(first, keywords):
         if not isinstance(first, ast.Constant):
             # A message passed on whole, a variable, or a text of words in the reader's language: never one put together on the spot.
             return (
@@ -46,14 +57,14 @@ def test_each_message_has_a_translation_with_the_same_places(lang):
                 if isinstance(first, ast.Name | ast.Call | ast.Attribute | ast.Subscript)
                 else "put together, not a template"
             )
-        template, given = first.value, sorted(word.arg or "**" for word in node.keywords)
+        template, given = first.value, sorted(word.arg or "**" for word in keywords)
         if template not in known:
             return f"not translated: {template!r}"
         if "**" not in given and given and places(template) != given:
             return f"places {places(template)}, values {given}"
         return None
 
-    found = {place: why for place, node in calls() if (why := fault(place, node))}
+    found = {place: why for place, *call in calls() if (why := fault(*call))}
     assert found == {}
 
 
