@@ -19,11 +19,13 @@ import numpy as np
 from coursework.api import Variant, open_course
 from coursework.course.answer_key import Key
 from coursework.course.answer_keys import answer_keys
+from coursework.errors import counted
 from coursework.issuing.issued import COLUMNS, Issued
 from coursework.issuing.roster import read_roster
 from coursework.language.numbers import significant
 from coursework.language.words import languages
 from coursework.markup.markdown import to_text
+from coursework.messages import Message, localised
 from coursework.model import Part
 from coursework.rendering.renderer import renderer_of
 from coursework.system.writing import File, write_tree
@@ -172,17 +174,27 @@ def class_of_twelve(
             }
         )
     marked = sum(r["answers"] for r in rows)
+    folders = {
+        Message("sheets and notebooks to give away"): "handouts",
+        Message("worked solutions and key"): "instructor",
+        Message("answers as they came"): "submissions",
+        Message("marks, summary, rejected, feedback"): "marks",
+    }
+    width = max(len(localised(words)) for words in folders)
     report = [
-        *(f"note: {note}" for note in notes),
-        f"{written} files built, {book.rows_in} rows handed in: {marked} marked, {len(book.rejected)} rejected.",
-        *(f"  rejected: {r.source}: {r.reason}" for r in book.rejected),
-        "  a second answer, a stranger and a damaged notebook are among the answers on purpose.",
-        f"sheets and notebooks to give away   {out / 'handouts'}",
-        f"worked solutions and key            {out / 'instructor'}",
-        f"answers as they came                {out / 'submissions'}",
-        f"marks, summary, rejected, feedback  {out / 'marks'}",
+        *(Message("note: {note}", note=note) for note in notes),
+        Message(
+            "{files} built, {rows} handed in: {marked} marked, {rejected} rejected.",
+            files=counted(written, "file"),
+            rows=counted(book.rows_in, "row"),
+            marked=marked,
+            rejected=len(book.rejected),
+        ),
+        *(Message("  rejected: {source}: {reason}", source=r.source, reason=r.reason) for r in book.rejected),
+        Message("  a second answer, a stranger and a damaged notebook are among the answers on purpose."),
+        *(f"{localised(words):{width}}  {out / folder}" for words, folder in folders.items()),
     ]
-    return rows, report
+    return rows, [localised(line) for line in report]
 
 
 def _hand_in(course: Any, issued: Issued, folder: Path) -> list[str]:

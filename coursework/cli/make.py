@@ -44,6 +44,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_table, progress_bar, say
 from coursework.errors import BadInput, counted
+from coursework.messages import Message, localised
 from coursework.system.limits import MOST_VARIANTS
 
 if TYPE_CHECKING:
@@ -308,6 +309,6 @@ def demo(context: click.Context, out: Path) -> None:
 
     writes(context, out)
     rows, lines = class_of_twelve(out, build_files, grade_with_bar)
-    print_table(rows, title="What became of the answers")
+    print_table(rows, title=localised(Message("What became of the answers")))
     for line in lines:
         click.echo(line)

@@ -12,7 +12,7 @@ import click
 from coursework.cli import completion
 from coursework.cli.printing import warn
 from coursework.errors import BadInput, WrongValue
-from coursework.messages import localised
+from coursework.messages import Message, localised
 from coursework.system.extras import libraries
 from coursework.system.limits import MOST_SEED
 from coursework.system.visible import one_line
@@ -39,7 +39,7 @@ def tell_lack_of_charts() -> bool:
     from coursework.figures.charts import lacking
 
     why = lacking()
-    print_notes([f"all is written but the charts: {why}"] if why else [])
+    print_notes([Message("all is written but the charts: {why}", why=why)] if why else [])
     return bool(why)
 
 
