@@ -7,9 +7,7 @@ its line and the remedy.
 from __future__ import annotations
 
 import datetime
-import re
 import reprlib
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,12 +20,11 @@ from coursework.errors import BadCourse, BadInput, nearest
 from coursework.language.words import languages
 from coursework.messages import Message
 from coursework.sheets.paper import Logo
+from coursework.system.toml_files import TomlReader, line_of, source_of, table_of
 
 Texts = Mapping[str, str]  #: by language
 EACH = "each"  #: a variant a student
 MOST_VERSIONS = 26
-_LARGEST = 1_000_000  #: characters of an assignment's file
-_MOST_DOTS = 200  #: before an equals sign: the reader takes minutes for a key of thousands of names
 SITTINGS = ("best", "last")
 ANSWERS = ("shown", "never")
 #: Options of ``build`` that the file may contain; the command line takes precedence.
@@ -153,64 +150,8 @@ def read_assignment(path: Path, course: Exercises) -> Assignment:
     BadInput
         The file cannot be read, or a key or value is wrong; the message has the line and the nearest name.
     """
-    try:
-        source = path.read_text("utf-8-sig")
-    except OSError as fault:
-        raise BadInput(
-            "the assignment {file} cannot be read: {reason}", file=path, reason=fault.strerror or fault
-        ) from fault
-    except UnicodeDecodeError as fault:
-        raise BadInput(
-            "{file} is not UTF-8: {reason} at byte {position}",
-            file=path,
-            reason=fault.reason,
-            position=fault.start,
-        ) from fault
+    source = source_of(path)
     return _AssignmentReader(path, source, course).assignment(table_of(source, str(path)))
-
-
-def table_of(source: str, source_name: str) -> dict[str, Any]:
-    """Return the table of the text of an assignment's file.
-
-    Raises
-    ------
-    BadInput
-        The text is no TOML, or too large, nested too deep, or has a number of more than 64 bits.
-    """
-    if len(source) > _LARGEST:
-        raise BadInput(
-            "{source_name} has {count} characters; an assignment has at most {most}",
-            source_name=source_name,
-            count=len(source),
-            most=_LARGEST,
-        )
-    for number, line in enumerate(source.splitlines(), start=1):
-        if line.partition("=")[0].count(".") > _MOST_DOTS:
-            raise BadInput(
-                "{source_name}, line {number}: more than {most} dots before what is said; a key has one or two",
-                source_name=source_name,
-                number=number,
-                most=_MOST_DOTS,
-            )
-    try:
-        table = tomllib.loads(source)
-    except RecursionError:
-        raise BadInput(
-            "{source_name}: brackets within brackets, too many to be read", source_name=source_name
-        ) from None
-    except ValueError as fault:
-        raise BadInput("{source_name}: {problem}", source_name=source_name, problem=fault) from fault
-    if _holds_huge(table):
-        raise BadInput(
-            "{source_name}: a whole number of more than 64 bits, which TOML has not", source_name=source_name
-        )
-    return table
-
-
-def _holds_huge(value: Any) -> bool:
-    if isinstance(value, (dict, list)):
-        return any(map(_holds_huge, value.values() if isinstance(value, dict) else value))
-    return isinstance(value, int) and value.bit_length() > 64
 
 
 _MOST_QUOTED = 100  #: characters of a refused value in a message
@@ -236,31 +177,16 @@ def assignment_of(name: str, table: Mapping[str, Any], course: Exercises, source
     return _AssignmentReader(Path(f"{name}.toml"), source, course).assignment(fields)
 
 
-class _AssignmentReader:
-    """Reader of the table of one file; its errors name the line."""
+class _AssignmentReader(TomlReader):
+    """Reader of the table of an assignment."""
 
     def __init__(self, path: Path, source: str, course: Exercises):
-        self.path, self.lines, self.course = path, source.splitlines(), course
+        super().__init__(path, source)
+        self.course = course
 
-    def refused(self, key: str, why: Message, exercise: int = -1) -> BadInput:
-        line = self._line(key, exercise)
-        if line:
-            return BadInput("{file}, line {line}: {problem}", file=self.path, line=line, problem=why)
-        return BadInput("{file}: {problem}", file=self.path, problem=why)
-
-    def _line(self, key: str, exercise: int) -> int:
-        """Return the line of a key, at the top level or in a table of exercises; 0 if it is not found."""
-        table, count = "", -1
-        for number, line in enumerate(self.lines, start=1):
-            if heading := re.match(r"\s*\[\[?\s*([\w.]+)", line):
-                table = heading[1]
-                count += table == "exercises"
-                if key in (table, f"[{table}]") and exercise in (-1, count):
-                    return number
-            at_home = (table == "exercises" and count == exercise) if exercise >= 0 else table != "exercises"
-            if at_home and re.match(rf"\s*[\"']?{re.escape(key)}[\"']?\s*(=|\.)", line):
-                return number
-        return 0
+    def refused_key(self, key: str, why: Message, exercise: int = -1) -> BadInput:
+        """Return the error of a key, at the top level or in a table of exercises."""
+        return self.refused(["exercises", exercise, key] if exercise >= 0 else [key], why)
 
     def assignment(self, table: Mapping[str, Any]) -> Assignment:
         readers: dict[str, Callable[[Any], Any]] = {
@@ -291,7 +217,7 @@ class _AssignmentReader:
             elif key in readers:
                 values[key] = readers[key](value)
             else:
-                raise self.refused(
+                raise self.refused_key(
                     key,
                     Message("no key {key}{near}", key=_short(key), near=nearest(key, [*readers, *OPTIONS])),
                 )
@@ -303,12 +229,14 @@ class _AssignmentReader:
                 names=names,
             )
         if "solutions_after" in values and values.get("answers") == "never":
-            raise self.refused(
+            raise self.refused_key(
                 "solutions_after",
                 Message('answers = "never" keeps the solutions back for good; leave one of the two out'),
             )
         if "logo" in values and not values.get("logo_alt"):
-            raise self.refused("logo", Message('a logo needs words for who cannot see it: logo_alt = "…"'))
+            raise self.refused_key(
+                "logo", Message('a logo needs words for who cannot see it: logo_alt = "…"')
+            )
         return Assignment(self.path.stem, options=options, **values)
 
     # ------------------------------------------------------------------ values
@@ -318,7 +246,7 @@ class _AssignmentReader:
             if isinstance(value, str):
                 return {"": value}
             if not isinstance(value, Mapping) or not all(isinstance(v, str) for v in value.values()):
-                raise self.refused(
+                raise self.refused_key(
                     key,
                     Message(
                         '{key} is a text, or one a language: {{ fr = "…", en = "…" }}; found {found}',
@@ -328,7 +256,7 @@ class _AssignmentReader:
                 )
             for lang in value:
                 if lang not in languages():
-                    raise self.refused(
+                    raise self.refused_key(
                         key,
                         Message(
                             "{key}: no language {lang!r}{near}",
@@ -344,7 +272,7 @@ class _AssignmentReader:
     def _truth(self, key: str) -> Callable[[Any], bool]:
         def read(value: Any) -> bool:
             if not isinstance(value, bool):
-                raise self.refused(
+                raise self.refused_key(
                     key, Message("{key} is true or false; found {found}", key=key, found=reprlib.repr(value))
                 )
             return value
@@ -354,7 +282,7 @@ class _AssignmentReader:
     def _word(self, key: str, allowed: Sequence[str]) -> Callable[[Any], str]:
         def read(value: Any) -> str:
             if value not in allowed:
-                raise self.refused(
+                raise self.refused_key(
                     key,
                     Message(
                         "{key} is {allowed}; found {found}{near}",
@@ -377,7 +305,7 @@ class _AssignmentReader:
             try:
                 return datetime.date.fromisoformat(str(value))
             except ValueError:
-                raise self.refused(
+                raise self.refused_key(
                     key,
                     Message(
                         "{key} is a day such as 2026-12-04; found {found}", key=key, found=reprlib.repr(value)
@@ -389,25 +317,25 @@ class _AssignmentReader:
     def _logo(self, value: Any) -> Path:
         path = self.path.parent / str(value)
         if path.suffix.lower() not in (".svg", ".png"):
-            raise self.refused(
+            raise self.refused_key(
                 "logo", Message("logo is an SVG or a PNG file; found {found}", found=reprlib.repr(value))
             )
         if not path.is_file():
-            raise self.refused("logo", Message("logo: there is no file {file}", file=path))
+            raise self.refused_key("logo", Message("logo: there is no file {file}", file=path))
         return path
 
     def _mark(self, value: Any) -> Scale:
         if not isinstance(value, Mapping):
-            raise self.refused(
+            raise self.refused_key(
                 "mark", Message("mark is {{ of = 20, step = 0.5 }}; found {found}", found=reprlib.repr(value))
             )
         for key, number in value.items():
             if key not in ("of", "step"):
-                raise self.refused(
+                raise self.refused_key(
                     "mark", Message("mark has no {key!r}{near}", key=key, near=nearest(key, ("of", "step")))
                 )
             if isinstance(number, bool) or not isinstance(number, (int, float)) or not number > 0:
-                raise self.refused(
+                raise self.refused_key(
                     "mark",
                     Message("mark: {key} is a number above 0; found {number!r}", key=key, number=number),
                 )
@@ -417,7 +345,7 @@ class _AssignmentReader:
         if value == EACH:
             return None
         if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_VERSIONS:
-            raise self.refused(
+            raise self.refused_key(
                 "versions",
                 Message(
                     'versions is "{each}", or a number from 1 to {most}; found {found}',
@@ -432,7 +360,7 @@ class _AssignmentReader:
         if not isinstance(value, list) or not all(
             isinstance(column, str) and column.strip() for column in value
         ):
-            raise self.refused(
+            raise self.refused_key(
                 "identity",
                 Message(
                     'identity lists columns of the roster: ["number", "group"]; found {found}',
@@ -443,7 +371,7 @@ class _AssignmentReader:
 
     def _sort(self, value: Any) -> str:
         if not isinstance(value, str) or not value.strip():
-            raise self.refused(
+            raise self.refused_key(
                 "sort",
                 Message('sort is a column of the roster: "group"; found {found}', found=reprlib.repr(value)),
             )
@@ -451,7 +379,7 @@ class _AssignmentReader:
 
     def _marking(self, value: Any) -> Mapping[str, Any]:
         try:
-            Rules.of(value, f"{self.path}, line {self._line('marking', -1)}")
+            Rules.of(value, f"{self.path}, line {line_of(self.source, ['marking'])}")
         except BadCourse as fault:
             raise BadInput(str(fault)) from fault
         return dict(value)
@@ -460,7 +388,7 @@ class _AssignmentReader:
         try:
             return Secret.of(value)
         except ValueError as fault:
-            raise self.refused(
+            raise self.refused_key(
                 "secret",
                 Message("{problem}; delete the line, and 'coursework build' creates one", problem=fault),
             ) from None
@@ -473,12 +401,12 @@ class _AssignmentReader:
             or not value
             or not all(isinstance(exercise, Mapping) for exercise in value)
         ):
-            raise self.refused("exercises", Message("exercises are tables: [[exercises]], then name = …"))
+            raise self.refused_key("exercises", Message("exercises are tables: [[exercises]], then name = …"))
         exercises = tuple(self._exercise(number, exercise) for number, exercise in enumerate(value))
         names = [exercise.name for exercise in exercises]
         for number, name in enumerate(names):
             if name in names[:number]:
-                raise self.refused(
+                raise self.refused_key(
                     "name",
                     Message("{name} stands twice; an assignment asks an exercise once", name=name),
                     number,
@@ -489,7 +417,7 @@ class _AssignmentReader:
         keys = ("name", "parts", "points", "seed")
         for key in table:
             if key not in keys:
-                raise self.refused(
+                raise self.refused_key(
                     key,
                     Message("no key {key} in [[exercises]]{near}", key=_short(key), near=nearest(key, keys)),
                     number,
@@ -500,7 +428,7 @@ class _AssignmentReader:
             lacks = Message("[[exercises]] without name = …")
             if "name" in table:
                 lacks = Message("no exercise {name}", name=_short(name))
-            raise self.refused(
+            raise self.refused_key(
                 "name" if "name" in table else "exercises",
                 Message("{lacks}{near}", lacks=lacks, near=near),
                 number,
@@ -509,7 +437,7 @@ class _AssignmentReader:
         points = self._points(number, str(name), table.get("points"))
         seed = table.get("seed")
         if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
-            raise self.refused(
+            raise self.refused_key(
                 "seed",
                 Message("a seed is a whole number from 0 on; found {found}", found=_short(seed)),
                 number,
@@ -521,7 +449,7 @@ class _AssignmentReader:
             return None
         parts = [value] if isinstance(value, str) else value
         if not isinstance(parts, list) or not parts or not all(isinstance(part_id, str) for part_id in parts):
-            raise self.refused(
+            raise self.refused_key(
                 "parts",
                 Message('parts is a list of ids: ["rA", "theta4"]; found {found}', found=reprlib.repr(value)),
                 number,
@@ -536,7 +464,7 @@ class _AssignmentReader:
         message = Message(
             "{name} has no part {part}{near}", name=name, part=_short(part), near=nearest(part, ids)
         )
-        return self.refused(key, message, number)
+        return self.refused_key(key, message, number)
 
     def _points(self, number: int, name: str, value: Any) -> float | Mapping[str, float] | None:
         if value is None:
@@ -551,7 +479,7 @@ class _AssignmentReader:
 
     def _number(self, number: int, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < float("inf"):
-            raise self.refused(
+            raise self.refused_key(
                 "points",
                 Message("points are a number above 0; found {found}", found=reprlib.repr(value)),
                 number,

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import ipaddress
 import json
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from coursework.errors import BadInput, nearest
+from coursework.errors import BadInput
 from coursework.messages import Message, as_message
-from coursework.system.toml_lines import line_of
+from coursework.system.toml_files import TomlReader, source_of, table_of
 
 FILE = "platforms.toml"
 _HOUR = 3600.0
@@ -176,42 +175,19 @@ def read_settings(folder: Path) -> Settings:
     path = folder / FILE
     if not path.exists():
         return Settings(folder)
-    try:
-        source = path.read_text("utf-8-sig")
-        table = tomllib.loads(source)
-    except (OSError, ValueError, RecursionError) as fault:
-        raise BadInput("{file} cannot be read: {problem}", file=path, problem=fault) from fault
-    return _SettingsReader(path, source).settings(table)
+    source = source_of(path)
+    return _SettingsReader(path, source).settings(table_of(source, str(path)))
 
 
-class _SettingsReader:
-    """Reader of ``platforms.toml``; its errors name the line."""
-
-    def __init__(self, path: Path, source: str):
-        self.path, self.source = path, source
-
-    def refused(self, key_path: Sequence[str | int], why: Message) -> BadInput:
-        line = line_of(self.source, key_path)
-        if line:
-            return BadInput("{file}, line {line}: {problem}", file=self.path, line=line, problem=why)
-        return BadInput("{file}: {problem}", file=self.path, problem=why)
+class _SettingsReader(TomlReader):
+    """Reader of ``platforms.toml``."""
 
     def settings(self, table: Mapping[str, Any]) -> Settings:
-        for key in table:
-            if key not in ("service", "platforms"):
-                raise self.refused(
-                    [key],
-                    Message("no key {key!r}{near}", key=key, near=nearest(key, ("service", "platforms"))),
-                )
+        self.only(table, ("service", "platforms"))
         service, listed = table.get("service", {}), table.get("platforms", [])
         if not isinstance(service, Mapping) or not isinstance(listed, list):
             raise self.refused(["service"], Message("write [service] with url = …, then [[platforms]]"))
-        for key in service:
-            if key not in _SERVICE:
-                raise self.refused(
-                    ["service", key],
-                    Message("no key {key!r} in [service]{near}", key=key, near=nearest(key, _SERVICE)),
-                )
+        self.only(service, _SERVICE, ["service"], "[service]")
         platforms = tuple(self.platform(number, entry) for number, entry in enumerate(listed))
         self._check_twice(platforms)
         hours = service.get("session_hours", 12)
@@ -231,12 +207,7 @@ class _SettingsReader:
         key_path: list[str | int] = ["platforms", number]
         if not isinstance(table, Mapping):
             raise self.refused(key_path, Message("platforms are tables: [[platforms]], then issuer = …"))
-        for key in table:
-            if key not in _KEYS:
-                raise self.refused(
-                    [*key_path, key],
-                    Message("no key {key!r} in [[platforms]]{near}", key=key, near=nearest(key, _KEYS)),
-                )
+        self.only(table, _KEYS, key_path, "[[platforms]]")
         for key in ("issuer", "client_id", "deployments", "auth_url", "token_url", "jwks_url"):
             if not table.get(key):
                 raise self.refused(

@@ -25,7 +25,6 @@ from __future__ import annotations
 import cmath
 import math
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -38,13 +37,13 @@ from coursework.errors import BadInput, CourseworkError, nearest
 from coursework.mechanics.loads import STROKES
 from coursework.mechanics.statement import Load, Place
 from coursework.mechanics.wrenches import GRAVITY
-from coursework.messages import Message
+from coursework.messages import as_message
 from coursework.parsing.numbers import read_number
 from coursework.parsing.units import same_dimension
 from coursework.scenes.added import BodyMass, Flywheel, Motor, SceneData
 from coursework.scenes.effects import REFUSED, check_effect, check_turns, refusal
 from coursework.scenes.scenes import Scene
-from coursework.system.toml_lines import line_of
+from coursework.system.toml_files import TomlReader, source_of, table_of
 
 _KEYS = (
     "exercise", "seed", "given", "effects", "over", "steps", "drive", "duration", "show", "gravity", "bodies", "loads",
@@ -76,35 +75,22 @@ def read_scene(path: Path, course: Course) -> SceneFile:
     BadInput
         It cannot be read, or says what makes no sense: with the line, and the nearest right name.
     """
+    source = source_of(path)
     try:
-        text = path.read_text("utf-8-sig")
-        table = tomllib.loads(text)
-    except OSError as fault:
+        table = table_of(source, str(path))
+    except BadInput as fault:
         raise BadInput(
-            "the scene {path} cannot be read: {value}", path=path, value=fault.strerror or fault
+            '{problem}; a value with a unit is a text: mass = "3 kg"', problem=as_message(fault)
         ) from fault
-    except UnicodeDecodeError as fault:
-        raise BadInput(
-            "{path} is not UTF-8: {reason} at byte {start}", path=path, reason=fault.reason, start=fault.start
-        ) from fault
-    except (ValueError, RecursionError) as fault:
-        raise BadInput(
-            '{path}: {fault}; a value with a unit is a text: mass = "3 kg"', path=path, fault=fault
-        ) from fault
-    return _SceneReader(path, text, table, course).scene_file()
+    return _SceneReader(path, source, table, course).scene_file()
 
 
-class _SceneReader:
-    """Reader of the tables of one file; its errors give the line."""
+class _SceneReader(TomlReader):
+    """Reader of the tables of a scene."""
 
-    def __init__(self, path: Path, text: str, table: Mapping[str, Any], course: Course) -> None:
-        self.path, self.text, self.table, self.course = path, text, table, course
-
-    def refused(self, at: Path_, why: str) -> BadInput:
-        line = line_of(self.text, at)
-        if not line:
-            return BadInput("{path}: {why}", path=self.path, why=Message(why))
-        return BadInput("{path}, line {line}: {why}", path=self.path, line=line, why=Message(why))
+    def __init__(self, path: Path, source: str, table: Mapping[str, Any], course: Course) -> None:
+        super().__init__(path, source)
+        self.table, self.course = table, course
 
     def scene_file(self) -> SceneFile:
         self._only(self.table, _KEYS, ())
@@ -182,8 +168,7 @@ class _SceneReader:
         for key in table:
             if key in REFUSED:
                 raise self.refused((*at, key), refusal(key))
-            if key not in names:
-                raise self.refused((*at, key), f"no key {key!r}{nearest(key, names)}")
+        self.only(table, names, at)
 
     def _at(self, at: Path_) -> Any:
         """Return the value at a path; None where there is none."""

@@ -5,9 +5,10 @@ from tables import each_row
 
 from coursework import open_course
 from coursework.errors import BadInput
-from coursework.issuing.assignment import assignment_of, table_of
+from coursework.issuing.assignment import assignment_of
 from coursework.rendering.papers import logo_svg
 from coursework.sheets.paper import Logo
+from coursework.system.toml_files import table_of
 
 
 @pytest.fixture(scope="module")

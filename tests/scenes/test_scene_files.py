@@ -14,7 +14,7 @@ from coursework.mechanics.statement import Load
 from coursework.scenes.added import BodyMass, Flywheel, Motor, SceneData
 from coursework.scenes.scene_files import read_scene
 from coursework.scenes.scenes import Scene
-from coursework.system.toml_lines import line_of
+from coursework.system.toml_files import line_of
 
 SCENE = """\
 exercise = "three_loop_shaper"

@@ -18,13 +18,14 @@ from coursework.course.course import Course
 from coursework.database.assignments import names
 from coursework.database.people import people
 from coursework.errors import BadInput
-from coursework.issuing.assignment import FILES, OPTIONS, Assignment, assignment_of, table_of
+from coursework.issuing.assignment import FILES, OPTIONS, Assignment, assignment_of
 from coursework.issuing.issued import Issued
 from coursework.issuing.roster import Student, read_roster
 from coursework.site.frame.budgets import DESK_FILE, read_upload
 from coursework.site.frame.requests import Request, Upload
 from coursework.site.frame.settings import Site
 from coursework.site.publication.assigning import AssignmentRequest
+from coursework.system.toml_files import table_of
 
 _LONGEST = 80  #: characters of a name
 
