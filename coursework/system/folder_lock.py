@@ -8,15 +8,11 @@ from __future__ import annotations
 import os
 import socket
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from coursework.errors import BadInput
 from coursework.system.writing import writing
-
-if TYPE_CHECKING:
-    from filelock import FileLock
 
 LOCK = ".coursework.lock"
 _RELEASING = 0.2  #: seconds in which another command may release the lock that it has
@@ -34,41 +30,23 @@ def only_writer(folder: Path, command: str = "") -> Iterator[None]:
     BadInput
         Another command writes into it, or nobody can.
     """
-    from filelock import FileLock
-
     created = _missing(folder)
     path = folder.resolve() / LOCK
-    lock = FileLock(path, timeout=_RELEASING, poll_interval=_POLL, mode=0o644)
-    with writing(folder):
-        _acquire(lock, folder)
     try:
-        with writing(folder):
-            path.write_text(f"coursework {command}, PID {os.getpid()}, {socket.gethostname()}", "utf-8")
-        yield
+        with ExitStack() as locked:
+            with writing(folder):
+                if not locked.enter_context(file_lock(path, _RELEASING)):
+                    raise BadInput(
+                        "another command is writing into {folder}: {owner}; wait until it has ended, or choose another folder",
+                        folder=folder,
+                        owner=_owner(path),
+                    )
+                path.write_text(f"coursework {command}, PID {os.getpid()}, {socket.gethostname()}", "utf-8")
+            yield
     finally:
-        with suppress(OSError):  # the folder may be gone
-            path.unlink()  # before its release: who waits for the lock makes another file
-        lock.release()
         for made in created:
             with suppress(OSError):  # not empty
                 made.rmdir()
-
-
-def _acquire(lock: FileLock, folder: Path) -> None:
-    from filelock import Timeout
-
-    while not lock.is_locked:
-        folder.mkdir(parents=True, exist_ok=True)
-        try:
-            lock.acquire()
-        except FileNotFoundError:
-            continue  # another command made the folder and has removed it
-        except Timeout:
-            raise BadInput(
-                "another command is writing into {folder}: {owner}; wait until it has ended, or choose another folder",
-                folder=folder,
-                owner=_owner(Path(lock.lock_file)),
-            ) from None
 
 
 def _owner(path: Path) -> str:
@@ -82,15 +60,18 @@ def file_lock(path: Path, seconds: float) -> Iterator[bool]:
     """Lock a file, which is made and removed, while the context lasts; yield whether it was free within some seconds."""
     from filelock import FileLock, Timeout
 
-    lock = FileLock(path, timeout=seconds, poll_interval=_POLL)
+    lock = FileLock(path, timeout=seconds, poll_interval=_POLL, mode=0o644)
     with suppress(Timeout):
-        lock.acquire()
+        while not lock.is_locked:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with suppress(FileNotFoundError):  # another process made the folder and has removed it
+                lock.acquire()
     try:
         yield lock.is_locked
     finally:
         if lock.is_locked:
-            with suppress(OSError):
-                path.unlink()
+            with suppress(OSError):  # the folder may be gone
+                path.unlink()  # before its release: who waits for the lock makes another file
             lock.release()
 
 
