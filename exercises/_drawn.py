@@ -19,6 +19,7 @@ from coursework.figures import (
     slot_link,
 )
 from coursework.kinematics.dyads import rrp, rrr, side_of
+from coursework.kinematics.vectors import cross
 from coursework.language.numbers import significant
 from coursework.model import Part, chosen, drawn, in_turn
 
@@ -64,14 +65,6 @@ def bars(r1, r2, r3, r4, theta2, mode):
     A, C = polar(r2, theta2), r1 + 0j
     B = rrr(A, C, r3, r4, side_of(mode))
     return A, B - A, B - C
-
-
-def cross(u, v):
-    return u.real * v.imag - u.imag * v.real
-
-
-def linkage_assembles(bars):
-    return np.isfinite(bars[1].real)
 
 
 def crank_turns_visibly(omega2):
@@ -166,10 +159,6 @@ def on_paper(vector):
 def velocities_are_long_enough_to_draw(p, a, ab, pv_b):
     """The shortest is a third of the longest at least."""
     return all_long(1 / 3, on_paper(a - p), ab, pv_b)
-
-
-def dot(u, v):
-    return u.real * v.real + u.imag * v.imag
 
 
 # ------------------------------------------------------------------------ slotted guide

@@ -1,9 +1,6 @@
-"""The speeds that statements tell: those of a drawing of accelerations, where velocities are known. Over the rate of the crank.
+"""The speeds that statements tell: those of a drawing of accelerations, where velocities are known. Over the rate of the crank."""
 
-Only exercises whose statement tells them import these: where they are asked, they stand with the solution's conditions.
-"""
-
-from ._drawn import cross, dot
+from coursework.kinematics.vectors import cross, dot
 
 
 def rates(bars):

@@ -17,8 +17,6 @@ from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn
 
 from ._crank_rocker import bars, crank_off_the_frame, crank_turns, transmission_angle_from_30_to_150
 
-WEIGHT = 9.81j  #: N/kg, upwards: what a body at rest is held by
-
 
 def bars_point_their_own_ways(bars):
     """Their letters and centres of mass have room, and no projection nearly vanishes."""

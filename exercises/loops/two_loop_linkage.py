@@ -23,18 +23,14 @@ def crank(r2, theta2):
     return polar(r2, theta2)
 
 
-def bars_of(frame, crank, r3, r4, r5, beta, r6, r7, side_1, side_2):
+def bars(frame, crank, r3, r4, r5, beta, r6, r7, mode_1, mode_2):
     """Vectors AB, CB, DE and FE, and CD."""
     C, F = frame
-    B = rrr(crank, C, r3, r4, side_1)
+    B = rrr(crank, C, r3, r4, side_of(mode_1))
     CB = B - C
     CD = CB * polar(r5 / r4, beta)
-    E = rrr(C + CD, F, r6, r7, side_2)
+    E = rrr(C + CD, F, r6, r7, side_of(mode_2))
     return B - crank, CB, E - (C + CD), E - F, CD
-
-
-def bars(frame, crank, r3, r4, r5, beta, r6, r7, mode_1, mode_2):
-    return bars_of(frame, crank, r3, r4, r5, beta, r6, r7, side_of(mode_1), side_of(mode_2))
 
 
 def _about(share, spread=0.15):

@@ -2,14 +2,13 @@
 
 import numpy as np
 
+from coursework.kinematics.vectors import cross, dot
 from coursework.model import Exercise
 
 from .._drawn import (
     PAPER_MM,
     all_long,
     crank_turns_visibly,
-    cross,
-    dot,
     known,
     of_drawing,
     on_paper,

@@ -19,6 +19,7 @@ from coursework.figures import (
     slider,
 )
 from coursework.kinematics.dyads import rrp, rrr, side_of
+from coursework.kinematics.vectors import cross
 from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
 
 
@@ -44,16 +45,12 @@ def with_the_crank_at(driven, A, B, r1, theta1, r2, r3, r4):
     """The same assembly at another crank angle, told as the data tell it."""
     D = polar(r1, theta1)
     crank = polar(r2, driven)
-    pin_B = rrr(crank, D, r3, r4, np.sign(_cross(D - A, B - A)))
+    pin_B = rrr(crank, D, r3, r4, np.sign(cross(D - A, B - A)))
     return {
         "angle_OAB": abs(angle((pin_B - crank) / -crank)),
-        "B_side": np.where(_cross(D, pin_B) > 0, "left", "right")[()],
-        "A_side": np.where(_cross(pin_B, crank) > 0, "left", "right")[()],
+        "B_side": np.where(cross(D, pin_B) > 0, "left", "right")[()],
+        "A_side": np.where(cross(pin_B, crank) > 0, "left", "right")[()],
     }
-
-
-def _cross(u, v):
-    return u.real * v.imag - u.imag * v.real
 
 
 def OB_at_the_ends(r2, r3):

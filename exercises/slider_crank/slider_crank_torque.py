@@ -20,8 +20,6 @@ from coursework.figures import (
 from coursework.kinematics.dyads import rrp
 from coursework.model import Driver, Exercise, Part, detectable, drawn
 
-WEIGHT = 9.81j  #: N/kg, upwards: what a body at rest is held by
-
 
 def rod(r2, r3, e, theta2):
     """Vector AB."""

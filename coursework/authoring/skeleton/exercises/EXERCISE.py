@@ -10,7 +10,7 @@ from coursework.model import Exercise, Part, drawn
 
 
 def pin_off_the_axes(theta):
-    """Return whether the draw is accepted; the parameters are given quantities, on arrays."""
+    """Return whether the draw is accepted; the parameters are quantities, given or computed, on arrays."""
     return theta % 90 >= 10
 
 
