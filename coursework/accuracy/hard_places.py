@@ -171,7 +171,7 @@ class Terrain:
     @cached_property
     def _drawn(self) -> dict[str, tuple[float, float]]:
         """Least and largest drawn value of each quantity, without regard to constraints."""
-        values = self.exercise.drawing.first_candidates(512)
+        values = self.exercise.draws.first_candidates(512)
         return {n: (float(np.nanmin(values[n])), float(np.nanmax(values[n]))) for n in self.names}
 
     @cached_property

@@ -134,7 +134,7 @@ def _check_one(course: Course[Any], name: str, variants: int) -> CheckReport:
 
 
 def _check_variants(exercise: CourseExercise, count: int, report: CheckReport) -> None:
-    report.acceptance = exercise.drawing.acceptance()
+    report.acceptance = exercise.draws.acceptance()
     lang = exercise.languages[0]
     try:
         drawn = distinct_variants(exercise, 0, count, lang, report.refused, (ALL,))

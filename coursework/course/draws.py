@@ -1,4 +1,4 @@
-"""Drawing variants: the same values for ever from (exercise, version, seed), on any platform.
+"""Draws variants: the same values for ever from (exercise, version, seed), on any platform.
 
 Bits come from SHAKE-128 keyed by exercise, version, seed and a block counter, so no seed and no
 exercise disturbs another. For an assignment, what keys them passes through an HMAC of its secret: then the
@@ -128,7 +128,7 @@ def _empty_ranges(drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     return refused
 
 
-class Drawing:
+class Draws:
     """Draws of an exercise: its given quantities, and its constraints joined with what computes the quantities that
     they need.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from coursework.course.draws import Drawing
+from coursework.course.draws import Draws
 from coursework.course.folder import Folder
 from coursework.course.lettering import printed_order
 from coursework.course.records import Records
@@ -291,7 +291,7 @@ class CourseExercise(Generic[V]):
             if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
                 raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
         seeds = [int(seed) for seed in seeds]
-        drawn = self.drawing.draw(seeds, secret)
+        drawn = self.draws.draw(seeds, secret)
         return [
             self._variant(self, seed, given, lang, chosen, None, self._orders(seed, secret))
             for seed, given in zip(seeds, drawn, strict=True)
@@ -304,9 +304,9 @@ class CourseExercise(Generic[V]):
         return {p.id: printed_order(self.name, code, p, secret) for p in self.spec.parts if p.choices}
 
     @cached_property
-    def drawing(self) -> Drawing:
+    def draws(self) -> Draws:
         """The draws of the exercise's variants."""
-        return Drawing(self.name, self.spec, lambda: self.solution)
+        return Draws(self.name, self.spec, lambda: self.solution)
 
     def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
         """Parts by id, in the order of the exercise; None for the usual ones.

@@ -79,7 +79,7 @@ def distinct_variants(
                 break
         seed = batch.stop
     if len(by_values) < count:
-        exist = exercise.drawing.population()
+        exist = exercise.draws.population()
         reason = (
             Message("{count} found", count=len(by_values))
             if exist is None or refused

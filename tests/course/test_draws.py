@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tables import each_row
 
-from coursework.course.draws import Drawing, _words
+from coursework.course.draws import Draws, _words
 from coursework.errors import BadCourse, Starved
 from coursework.issuing.issuing import distinct_variants
 from coursework.model import Exercise, Part, chosen, fixed
@@ -48,7 +48,7 @@ def exercise_of(given, **more):
 
 
 def values(name, exercise, count=4000):
-    return [v[name] for v in Drawing("test", exercise).draw(range(count))]
+    return [v[name] for v in Draws("test", exercise).draw(range(count))]
 
 
 @given(st.integers(-400, 400), st.integers(1, 300), st.sampled_from(["0.1", "0.25", "0.5", "1", "2", "5"]))
@@ -71,7 +71,7 @@ def test_both_ends_of_a_range_are_drawn_and_all_is_equally_likely():
 
 def test_a_range_may_depend_on_what_was_drawn_before():
     exercise = exercise_of({"a": ranged(10, 20), "b": ranged(lambda a: 2 * a, lambda a: 3 * a)})
-    for variant in Drawing("test", exercise).draw(range(500)):
+    for variant in Draws("test", exercise).draw(range(500)):
         assert 2 * variant["a"] <= variant["b"] <= 3 * variant["a"]
 
 
@@ -113,19 +113,19 @@ def rarely(x):
 def test_starving_names_the_constraint_that_refuses():
     exercise = exercise_of({"x": ranged(1, 9)}, constraints=(rarely, never))
     with pytest.raises(Starved, match=r"refused by never \(4096 times\), rarely"):
-        Drawing("test", exercise).draw([3])
+        Draws("test", exercise).draw([3])
 
 
 def test_an_empty_range_is_named():
     given = {"x": ranged(1, 9), "y": ranged(lambda x: x + 10, 9), "z": ranged(lambda y: y, 9)}
     with pytest.raises(Starved, match=r"refused by range of y is empty \(4096 times\); widen"):
-        Drawing("test", exercise_of(given)).draw([3, 4])
+        Draws("test", exercise_of(given)).draw([3, 4])
 
 
 def test_a_constraint_on_something_unknown_is_refused_at_once():
     exercise = exercise_of({"r": ranged(1, 9)}, constraints=(never,))
     with pytest.raises(BadCourse, match="never needs x"):
-        Drawing("test", exercise)
+        Draws("test", exercise)
 
 
 def constrained(small_course, code, *names):
@@ -179,7 +179,7 @@ def test_the_solution_computes_for_draws_alone_that_satisfy_the_other_constraint
 def test_variants_are_the_candidates_that_no_constraint_refuses(course):
     unlike = {}
     for name in course.names:
-        drawing = course[name].drawing
+        drawing = course[name].draws
         candidates = drawing.first_candidates(256)
         refused = np.any([np.zeros(256, dtype=bool), *drawing.refused(candidates).values()], axis=0)
         if not np.array_equal(drawing.accepted(candidates), ~refused):
@@ -191,9 +191,9 @@ def test_population_counts_the_variants_that_exist():
     exercise = exercise_of(
         {"x": ranged(1, 9), "mode": chosen("p", "q"), "c": fixed(3)}, constraints=(rarely,)
     )
-    assert Drawing("test", exercise).population() == 7 * 2
+    assert Draws("test", exercise).population() == 7 * 2
     fine = exercise_of({"x": ranged(1, 9, step=0.001), "y": ranged(1, 9, step=0.001)})
-    assert Drawing("test", fine).population() is None
+    assert Draws("test", fine).population() is None
 
 
 def test_distinct_variants_are_distinct_or_the_error_says_how_many_exist(small_course):
@@ -206,7 +206,7 @@ def test_distinct_variants_are_distinct_or_the_error_says_how_many_exist(small_c
         text.replace("drawn(2, 20", "drawn(2, 3").replace("drawn(-175, 180, step=5", "drawn(20, 60, step=20")
     )
     exercise = coursework.open_course(small_course)["crank_pin"]
-    assert exercise.drawing.population() == 3 * 2 * 3
+    assert exercise.draws.population() == 3 * 2 * 3
     drawn = distinct_variants(exercise, 0, 18, "fr")
     assert len({tuple(v.given.values()) for v in drawn}) == 18
     with pytest.raises(Starved, match="19 different variants asked, only 18 exist"):

@@ -133,7 +133,7 @@ def test_a_request_computes_what_it_needs_and_nothing_else(name):
 
 @every_exercise
 def test_at_least_one_draw_in_ten_is_a_variant(name):
-    assert COURSE[name].drawing.acceptance() > 0.1
+    assert COURSE[name].draws.acceptance() > 0.1
 
 
 @every_exercise

@@ -47,7 +47,7 @@ def papers(content):
 
 def known_by_luck(name):
     """Whether an exercise has so few variants that two draws are often the same."""
-    found = COURSE[name].drawing.population(_LARGE * 20)
+    found = COURSE[name].draws.population(_LARGE * 20)
     return found is not None and found < _LARGE
 
 

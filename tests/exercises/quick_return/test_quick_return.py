@@ -130,10 +130,10 @@ def test_closed_form_conditions_are_those_of_a_swept_turn():
     words = np.concatenate(
         [draws._words("quick_return", 1, s, 0, len(EXERCISE.spec.given)) for s in range(60)]
     )
-    drawn = EXERCISE.drawing.candidates(words)
+    drawn = EXERCISE.draws.candidates(words)
     number = np.arange(len(words))
     drawn |= {"theta1": number * 37.0 % 360 - 180, "h": number * 53.0 % 1000 - 500}
-    refused = EXERCISE.drawing.refused(drawn)
+    refused = EXERCISE.draws.refused(drawn)
     turns = ~refused["crank_turns"] & ~refused["transmission_angle_from_30_to_150"]
     counts = []
     for i in np.flatnonzero(turns):
