@@ -75,11 +75,11 @@ class CannotTell(CourseworkError, ValueError):
 
 
 class Starved(CourseworkError, RuntimeError):
-    """No variant was found within the allowed draws; names the condition that refuses."""
+    """No variant was found within the allowed draws; names the constraint that refuses."""
 
 
 class NoSolution(CourseworkError, LookupError):
-    """An answer was asked of a course folder that has no ``solutions/``."""
+    """An answer was asked of an exercise that has no solution."""
 
 
 class BadCourse(CourseworkError, ValueError):

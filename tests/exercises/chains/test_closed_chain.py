@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 from exact_joints import exact_rank, motions
+from tables import each_row
 
 import coursework
 from coursework.errors import CannotTell, WrongValue
+from coursework.quantities.graph import Graph
 
 EXERCISE = coursework.open_course()["closed_chain"]
 
@@ -14,6 +16,15 @@ def motions_of(given, number):
     """What a joint of the chain leaves free, in whole numbers."""
     point = [int(given[f"{a}{number}"]) for a in "xyz"] if number > 1 else (0, 0, 0)
     return motions(given[f"joint_{number}"], given[f"direction_{number}"], point)
+
+
+@each_row("name", ("closed_chain", "complex_chain", "planar_chain"))
+def test_the_mobility_by_which_variants_are_drawn_is_that_of_the_solution(name, course):
+    candidates = course[name].draws.first_candidates(128)
+    helpers = Graph({f.__name__: f for f in course[name].spec.helpers})
+    known = {n: v for n, v in candidates.items() if n in helpers.leaves}
+    mobility = helpers.evaluate(("mobility",), known)["mobility"]
+    np.testing.assert_array_equal(mobility, course[name].solve(**candidates, only="m")["m"])
 
 
 def test_ranks_are_those_of_whole_numbers():
