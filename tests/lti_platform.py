@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import secrets
 import tempfile
@@ -15,6 +14,7 @@ import httpx
 import jwt
 from cryptography.hazmat.primitives.asymmetric import rsa
 from jwt.algorithms import RSAAlgorithm
+from starlette.testclient import TestClient
 
 from coursework.lti.keys import KeyFolder
 from coursework.lti.settings import LTIPlatform
@@ -158,41 +158,12 @@ class FakePlatform:
         return jwt.encode(claims, self.private, "RS256", headers={"kid": self.kid, **headers})
 
 
-class Browser:
-    """Asks an ASGI application, and keeps its cookies."""
-
-    def __init__(self, app):
-        self._app = app
-        self.cookies = httpx.Cookies()
-
-    def get(self, path, **asked):
-        return self._ask("GET", path, asked)
-
-    def post(self, path, **asked):
-        return self._ask("POST", path, asked)
-
-    def put(self, path, **asked):
-        return self._ask("PUT", path, asked)
-
-    def _ask(self, method, path, asked):
-        async def ask():
-            transport = httpx.ASGITransport(self._app, raise_app_exceptions=True)
-            async with httpx.AsyncClient(
-                transport=transport, base_url=TOOL, cookies=self.cookies, headers=ENGLISH
-            ) as client:
-                answer = await client.request(method, path, **asked)
-                self.cookies = client.cookies
-                return answer
-
-        return asyncio.run(ask())
-
-
 class Visitor:
     """A browser that follows links from the platform."""
 
     def __init__(self, app, platform, base="/lti"):
         self.platform, self.base = platform, base
-        self.browser = Browser(app)
+        self.browser = TestClient(app, base_url=TOOL, headers=ENGLISH, follow_redirects=False)
 
     def login(self, **changed):
         """What the tool asks the platform for: the parameters of the authentication request."""

@@ -22,6 +22,7 @@ from coursework.lti.storage import Storage
 from coursework.site.application import application
 from coursework.site.desk.class_cache import class_now
 from coursework.site.desk.class_page import rows
+from coursework.site.frame.settings import Site
 from coursework.site.lti.service import mounted
 
 AT_ONCE_TOLD = replace(USUAL, feedback=AT_ONCE)
@@ -47,7 +48,13 @@ class Linked(Class):
         made = _pristine()
         shutil.copy(Path(made.site.store.display_name), folder / "site.db")
         self.at, self.ids, self.number = made.at, made.ids, made.number
-        self.site = replace(made.site, store=Store(f"sqlite:///{folder}/site.db"), clock=lambda: self.at)
+        self.site = Site(
+            made.site.course,
+            Store(f"sqlite:///{folder}/site.db"),
+            made.site.entrance,
+            made.site.url,
+            lambda: self.at,
+        )
         if publication != AT_ONCE_TOLD:
             self.publish(publication)
         self.platform, self.site.lti, self.ahead = FakePlatform(), folder / "lti", 0.0

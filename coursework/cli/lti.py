@@ -75,7 +75,7 @@ def lti() -> None:
 @click.option(
     "--deployment", "deployments", multiple=True, help="A deployment ID; may be told several times."
 )
-@click.option("--url", help="Where browsers find this service: https://exercises.example.org.")
+@click.option("--url", help="Where browsers find the links of the site: https://exercises.example.org/lti.")
 @click.option("--name", default="", help="What logs call the platform.")
 @click.option("--issuer", help="Unless the platform's kind says it.")
 @click.option("--auth-url", help="Unless the platform's kind says it.")
@@ -166,7 +166,7 @@ def _write(settings: Settings) -> None:
 
 def _tell_registration(settings: Settings, kind: str) -> None:
     """Print the values to fill in on the page where a platform registers a tool."""
-    url = settings.url or "https://WHERE-THIS-SERVICE-IS"
+    url = settings.url or "https://WHERE-THE-SITE-IS/lti"
     click.echo("On the platform, register an LTI 1.3 tool with:")
     rows = [
         ("tool URL", f"{url}/launch"),
@@ -183,7 +183,11 @@ def _tell_registration(settings: Settings, kind: str) -> None:
         f"It then shows a client ID and a deployment ID: coursework lti platform {kind} … --client-id ID --deployment ID"
     )
     if not settings.url:
-        print_notes(["say where browsers find this service: --url https://exercises.example.org"])
+        print_notes(
+            [
+                "say where browsers find it: --url https://exercises.example.org/lti, the address of the site with /lti behind it"
+            ]
+        )
 
 
 def _list(settings: Settings, check: bool, as_json: bool) -> int:

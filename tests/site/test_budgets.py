@@ -26,9 +26,8 @@ from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABY
 from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON
 from coursework.site.frame.requests import Response as SiteResponse
-from coursework.site.lti import service
 from coursework.site.lti.service import AT_ONCE as LINKS_AT_ONCE
-from coursework.site.lti.service import LARGEST, PROCESSOR
+from coursework.site.lti.service import LARGEST
 from coursework.site.lti.site_host import SiteHost
 from coursework.site.papers import assignments
 from coursework.system.allowances import Allowances
@@ -422,7 +421,7 @@ def test_who_took_much_of_a_processor_by_a_link_waits_and_still_hands_in(linked)
     visitor, page, path = linked.enter(name="Ada Byron")
     who = json.dumps([SITE, "ada"])
     other, _, theirs = linked.enter(sub="max", name="Max")
-    linked.lti.state.processor.spend((who, False), PROCESSOR[0] + 12 * PROCESSOR[1])
+    linked.site.limits.add_processor_time("link GET", who, AT_ONCE + 12 * BACK)
     for lang, said in (("en", "asked too often"), ("fr", "Trop de demandes")):
         reply = visitor.browser.get(path, headers={"accept-language": lang})
         assert (reply.status_code, said in reply.text) == (429, True)
@@ -431,21 +430,21 @@ def test_who_took_much_of_a_processor_by_a_link_waits_and_still_hands_in(linked)
         )  # with what the opening itself took of a processor
     assert other.browser.get(theirs).status_code == 200
     assert visitor.hand_in(path, page, linked.right("Ada Byron")).status_code == 303
-    linked.lti.state.processor.spend((who, True), PROCESSOR[0])
+    linked.site.limits.add_processor_time("link POST", who, AT_ONCE)
     assert visitor.hand_in(path, page, {}).status_code == 429
 
 
 def test_each_page_of_a_link_is_counted_by_what_it_takes_of_a_processor(linked):
     visitor, page, path = linked.enter()
-    spent = linked.lti.state.processor._spent
-    assert {is_sent: seconds > 0 for (_, is_sent), (seconds, _) in spent.items()} == {False: True}
+    spent = linked.site.limits._processor._spent
+    assert {kind for (kind, _), (seconds, _) in spent.items() if seconds > 0} == {"link GET"}
     visitor.hand_in(path, page, {})
-    assert {is_sent: seconds > 0 for (_, is_sent), (seconds, _) in spent.items()} == {False: True, True: True}
+    assert {kind for (kind, _), (seconds, _) in spent.items() if seconds > 0} == {"link GET", "link POST"}
 
 
 def test_links_that_are_opened_without_end_are_refused(tmp_path, monkeypatch):
     """By an address, where nobody is known yet; who is in is counted by person."""
-    monkeypatch.setattr(service, "ADDRESSES", (5.5, 0.001))
+    monkeypatch.setitem(ADDRESS, "usual", "6/minute")
     linked = Linked(tmp_path)
     visitor, _, path = linked.enter()  # a login and a launch
     assert [visitor.browser.get("/lti/login").status_code for _ in range(6)] == [403] * 4 + [429] * 2

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Hashable
 
 from limits import RateLimitItem, parse
 from limits.storage import MemoryStorage
@@ -45,7 +46,8 @@ class Limits:
         self._processor = Allowances(AT_ONCE, BACK)
 
     def wait_for_rate(self, kind: str, person: int, address: str, browser: str = "") -> int:
-        """Count a request of a kind of page by a person or, for person 0, by known browser or address;
+        """Count a request of a kind of page by a person or, for person 0, by known browser, or person on a
+        platform, or address;
         return the seconds to wait."""
         if kind == FREE:
             return 0
@@ -55,11 +57,11 @@ class Limits:
             return self._count(parse(PERSON[kind]), kind, f"browser {browser}")
         return self._count(parse(ADDRESS[kind]), kind, f"address {network(address)}")
 
-    def add_processor_time(self, kind: str, person: int, seconds: float) -> None:
+    def add_processor_time(self, kind: str, person: Hashable, seconds: float) -> None:
         """Count the processor time of a page, in seconds."""
         self._processor.spend((kind, person), seconds)
 
-    def wait_for_processor(self, kind: str, person: int) -> int:
+    def wait_for_processor(self, kind: str, person: Hashable) -> int:
         """Return the seconds to wait because of the processor time of earlier pages."""
         return self._processor.wait((kind, person))
 

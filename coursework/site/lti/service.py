@@ -47,7 +47,6 @@ from coursework.site.lti.launch_request import LTIRequest
 from coursework.site.lti.offers import offer_groups
 from coursework.site.lti.scores import ScoreWatch
 from coursework.site.lti.site_host import SiteHost
-from coursework.system.allowances import Allowances, network
 from coursework.system.headers import Guarded, security_headers
 from coursework.system.processes import processor_time
 from coursework.system.request_slots import Crowded
@@ -56,10 +55,6 @@ LOG = logging.getLogger("coursework.lti")
 LARGEST = 256 * 1024  #: bytes of a form
 AT_ONCE = 2  #: requests of one person that are answered at once; the others wait
 _BUDGET = Budget("lti", LARGEST, 400, AT_ONCE)
-#: Allowed requests of a person, or of an unknown person's address: at once, and refilled per second.
-PERSONS, ADDRESSES = (600.0, 10.0), (6000.0, 100.0)
-#: Allowed processor seconds of a student, likewise; separately for reading pages and for sending forms.
-PROCESSOR = (30.0, 0.1)
 _AGAIN = 2  #: seconds until another attempt if too many requests wait
 _ROSTER_SECONDS = 60.0  #: for which a roster is cached
 _SECONDS = 8.0  #: time limit of a platform's response
@@ -131,9 +126,7 @@ def mounted(
     is_secure = settings.url.startswith("https:")
     app.add_middleware(Guarded, is_secure=lambda: is_secure, frames=settings.frames)
     app.router.redirect_slashes = False  # it would redirect to any host that a request names
-    app.state.sender, app.state.processor, app.state.watch = (
-        lti_service.sender, lti_service.processor, watch,
-    )  # fmt: skip
+    app.state.sender, app.state.watch = lti_service.sender, watch
     return app
 
 
@@ -157,8 +150,6 @@ class _Service:
         self._secret = self.keys.secret
         self._login = Login(settings, self._secret, clock)
         self._rosters: dict[str, tuple[float, list[Member]]] = {}
-        self._request_allowances = {"person": Allowances(*PERSONS), "address": Allowances(*ADDRESSES)}
-        self.processor = Allowances(*PROCESSOR)
 
     # ------------------------------------------------------------------ requests
 
@@ -202,17 +193,17 @@ class _Service:
         """
         launch = await run_in_threadpool(self._launch_of, request)
         if launch is None:
-            self._count("address", network(request.client.host if request.client else ""))
+            self._count(request, "")
             return await run_in_threadpool(work, request, await _form(request))
         person = json.dumps([launch.issuer, launch.person])
-        self._count("person", person)
-        key = person, request.method == "POST"
-        if launch.role is Role.STUDENT and (wait := self.processor.wait(key)):
+        self._count(request, person)
+        kind = f"link {request.method}"  # pages are counted apart from forms, which a page never keeps back
+        if launch.role is Role.STUDENT and (wait := self.site.limits.wait_for_processor(kind, person)):
             raise LTIRefusal("too_often", 429, f"{wait} s", wait=wait)
         try:
             async with self.site.places.slot(person, AT_ONCE):
                 form = await _form(request)
-                return await run_in_threadpool(self._charged, key, work, request, form)
+                return await run_in_threadpool(self._charged, (kind, person), work, request, form)
         except Crowded:
             raise LTIRefusal("too_often", 429, "too many at once", wait=_AGAIN) from None
 
@@ -227,14 +218,15 @@ class _Service:
         )
         return launch
 
-    def _count(self, kind: str, key: str) -> None:
-        if wait := self._request_allowances[kind].wait(key):
+    def _count(self, request: Request, person: str) -> None:
+        """Count a request of a person, or of the address of an unknown one."""
+        address = request.client.host if request.client else ""
+        if wait := self.site.limits.wait_for_rate("usual", 0, address, person):
             raise LTIRefusal("too_often", 429, f"{wait} s", wait=wait)
-        self._request_allowances[kind].spend(key, 1.0)
 
     def _charged(
         self,
-        key: tuple[str, bool],
+        key: tuple[str, str],
         work: Callable[[Request, FormData], Response],
         request: Request,
         form: FormData,
@@ -243,7 +235,7 @@ class _Service:
         try:
             return work(request, form)
         finally:
-            self.processor.spend(key, processor_time() - begun)
+            self.site.limits.add_processor_time(*key, processor_time() - begun)
 
     def _guard(self, response: Response, request: Request) -> None:
         """Add the security headers; registered platforms may show the page in a frame."""

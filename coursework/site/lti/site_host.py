@@ -240,7 +240,7 @@ class SiteHost:
             "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": request.launch.return_url,
             "handed_in": site_request.words["lti"]["handed_in"],
         }  # fmt: skip
-        return HTMLResponse(self.pages.page("platform/lti_site_handed_in", request.lang, names))
+        return HTMLResponse(self.pages.page("platform/lti_handed_in", request.lang, names))
 
     def _sent(self, request: LTIRequest, state: AssignmentState | None = None) -> str:
         """Return the state of the score on its way to the platform."""
@@ -310,7 +310,7 @@ class SiteHost:
             "rules": rules_rows(request, stated.get("sittings", _BEST), publication), "rows": rows, "missing": missing,
             "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
         }  # fmt: skip
-        return HTMLResponse(self.pages.page("platform/lti_site_class", lang, names))
+        return HTMLResponse(self.pages.page("platform/lti_class", lang, names))
 
     def _preview(self, request: LTIRequest, linked: LinkedAssignment, form: FormData | None) -> Response:
         """Return the paper as a student sees it, with variants that are issued to nobody, or the marks of a
