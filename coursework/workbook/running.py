@@ -182,7 +182,7 @@ class CellSession:
             raise BadCourse(self._message(fault, cell)) from fault
         displayed, text = shows(value), tuple(self._clean(PrintedPiece(printed.getvalue()), cell))
         if isinstance(value, PredictionTable):  # what it prints would tell what is to be predicted
-            return CellOutput((), (*map(_listed, text), *displayed.later))
+            return CellOutput((), _joined((*displayed.later, *map(_listed, text))))
         now = (piece for item in displayed.now for piece in self._clean(item, cell))
         return CellOutput((*text, *now), displayed.later)
 
@@ -255,6 +255,13 @@ def _listed(piece: Piece) -> Piece:
         return piece
     lines = (" ".join(line.split()) for line in piece.text.splitlines() if line.strip())
     return ProsePiece("\n".join(f"- {_MARKUP.sub(_ESCAPED, line)}" for line in lines))
+
+
+def _joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
+    """Return the lists of an answer as one: what was to be predicted, then what the cell prints besides."""
+    lists = [piece.text for piece in pieces if isinstance(piece, ProsePiece)]
+    others = (piece for piece in pieces if not isinstance(piece, ProsePiece))
+    return (ProsePiece("\n".join(lists)), *others)
 
 
 def shows(value: Any) -> CellOutput:
