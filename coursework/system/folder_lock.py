@@ -12,7 +12,6 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from coursework.errors import BadInput
-from coursework.system.writing import writing
 
 LOCK = ".coursework.lock"
 _RELEASING = 0.2  #: seconds in which another command may release the lock that it has
@@ -30,6 +29,8 @@ def only_writer(folder: Path, command: str = "") -> Iterator[None]:
     BadInput
         Another command writes into it, or nobody can.
     """
+    from coursework.system.writing import writing  # processes with it, which a notebook's lock does without
+
     created = _missing(folder)
     path = folder.resolve() / LOCK
     try:
