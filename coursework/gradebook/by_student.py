@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -14,6 +13,7 @@ from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.issuing.issued import Issued
 from coursework.marking.marking import mark
+from coursework.messages import Message, as_message
 
 
 class OwnMarks(NamedTuple):
@@ -72,9 +72,10 @@ def _blank(course: Course, issued: Issued, student: str, exercise: str) -> Grade
     return Graded(name, exercise, seeds[-1], dict(mark(course[exercise].from_record(record), {})), (), record)
 
 
-_NAMES = re.compile(r"(has no part '[^']*').*", re.DOTALL)
-
-
-def for_student(reason: str) -> str:
+def for_student(reason: str) -> Message:
     """Return the reason for a rejection without the names of other parts, which may reveal questions."""
-    return _NAMES.sub(r"\1", reason)
+    message = as_message(reason)
+    values = {n: for_student(v) if isinstance(v, Message) else v for n, v in message.values.items()}
+    if "part" in values and "nearest" in values:
+        values["nearest"] = ""
+    return Message(message.template, **values)

@@ -474,10 +474,13 @@ class _IssuedParts:
             except UnplacedError as why:
                 return as_message(why)
             parts = self._parts[exercise, str(seed)]
-        return (
-            ""
-            if decision.part in parts
-            else f"{decision.exercise} has no part {decision.part!r}{nearest(decision.part, parts)}"
+        if decision.part in parts:
+            return ""
+        return Message(
+            "{exercise} has no part {part!r}{nearest}",
+            exercise=decision.exercise,
+            part=decision.part,
+            nearest=nearest(decision.part, parts),
         )
 
     def points(self, decision: Decision) -> float | None:

@@ -12,11 +12,14 @@ from collected_pools import EXERCISE, RECORDED, graded, pool
 from tables import each_row
 
 from coursework.cli import run
+from coursework.errors import nearest
+from coursework.gradebook.by_student import for_student
 from coursework.gradebook.item_label import label_in
 from coursework.gradebook.moodle_responses import columns_of, parts_of
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.submissions import find, read_file
 from coursework.issuing.issued import Issued
+from coursework.messages import Message, localised
 
 
 def rows_of(path, data=None):
@@ -402,3 +405,17 @@ def test_a_response_without_a_word_is_as_many_blank_rows_as_the_variant_asks(tmp
     book = graded(tmp_path, path)
     assert (book.rows_in, book.marked, book.rejected) == (27, 27, [])
     assert table(tmp_path / "marks/summary.csv")[0]["missing"] == "9"
+
+
+def test_a_student_reads_why_a_row_was_rejected_without_the_names_of_other_parts():
+    reason = Message(
+        "{exercise} has no part {part!r}{nearest}",
+        exercise="coil",
+        part="Y",
+        nearest=nearest("thta4", ["theta4"]),
+    )
+    assert "theta4" in localised(reason, "fr")
+    for lang in ("en", "fr"):
+        told = localised(for_student(Message("{file}: {reason}", file="a.csv", reason=reason)), lang)
+        assert "theta4" not in told
+        assert "Y" in told
