@@ -40,7 +40,9 @@ def build(
     course = coursework.open_course()
     wall, processors = time.perf_counter(), used()[0]
     issues = issuing.issue(course, [name], first_seed=0, count=students, langs=["fr"])
-    writing.write(out, list(building.files(course, issues, formats, polygons=polygons)))
+    writing.write(
+        out, list(building.files(course, issues, [*formats, *([] if polygons else ["no-polygons"])]))
+    )
     return time.perf_counter() - wall, used()[0] - processors
 
 

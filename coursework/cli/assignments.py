@@ -1,22 +1,26 @@
-"""Building an assignment from its file, for ``build``."""
+"""Building papers, of exercises or of an assignment, for ``build``."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import json
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from coursework.cli.database import keeping
-from coursework.cli.options import opened, print_notes, shared_by_cluster, writes
+from coursework.cli.options import exercise_names, opened, print_notes, shared_by_cluster, split_list, writes
 from coursework.cli.printing import progress_bar, say
 from coursework.errors import BadInput, counted, nearest
 from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
+    from coursework.course.course import Course
     from coursework.issuing.assignment import Assignment
+    from coursework.issuing.roster import Student
+    from coursework.issuing.variant_assignment import AssignedVariants
 
 
 def is_assignment(exercises: Sequence[str]) -> bool:
@@ -24,168 +28,285 @@ def is_assignment(exercises: Sequence[str]) -> bool:
     return len(exercises) == 1 and exercises[0].endswith(".toml")
 
 
-@dataclass(frozen=True)
-class _Settings:
-    """The options of a build: those that were given win over those of the file."""
+#: Keys of an assignment's file that are additions to its formats, with the kind of their values.
+_ADDED: Mapping[str, tuple[click.ParamType, Mapping[Any, str]]] = {
+    "booklet": (click.BOOL, {True: "booklet"}),
+    "scan": (click.BOOL, {True: "scan"}),
+    "practice": (click.BOOL, {True: "practice"}),
+    "polygons": (click.BOOL, {False: "no-polygons"}),
+    "paper": (click.Choice(["a4", "letter"]), {"letter": "letter"}),
+    "decimal": (click.Choice(["point", "comma"]), {"comma": "decimal-comma"}),
+}
 
-    context: click.Context
-    assignment: Assignment
-    base: Path  #: the file's folder, from which its paths are told
+
+class BuildSettings:
+    """Options of a build: those of the command line, and those of its assignment's file."""
+
+    def __init__(self, context: click.Context, file: Path | None, options: Mapping[str, Any]):
+        self.context, self.file, self.options = context, file, options
+
+    def is_given(self, option: str) -> bool:
+        """Return True for an option of the command line."""
+        return self.context.get_parameter_source(option) is not click.core.ParameterSource.DEFAULT
 
     def of(self, name: str, option: str = "") -> Any:
         """Return an option's value; ``option`` is what the command calls it."""
         option = option or name
-        given = self.context.params[option]
-        default = click.core.ParameterSource.DEFAULT
-        if self.context.get_parameter_source(option) is not default or name not in self.assignment.options:
-            return given
+        if self.is_given(option) or name not in self.options:
+            return self.context.params[option]
         parameter = next(p for p in self.context.command.params if p.name == option)
-        value = self.assignment.options[name]
-        value = ",".join(map(str, value)) if isinstance(value, list) else value
+        return self._cast(name, lambda value: parameter.type_cast_value(self.context, value))
+
+    def path(self, name: str) -> Path | None:
+        """Return the path of an option; one of the file is relative to it."""
+        path_text = self.of(name)
+        if path_text is None:
+            return None
+        return Path(path_text) if self.is_given(name) or self.file is None else self.file.parent / path_text
+
+    @property
+    def formats(self) -> tuple[str, ...]:
+        """Formats, with what is added to them."""
+        added = set[str]()
+        for name in _ADDED.keys() & self.options.keys():
+            kind, words = _ADDED[name]
+            added.add(words.get(self._cast(name, partial(kind.convert, param=None, ctx=self.context)), ""))
+        given = (*self.of("formats"), *self.of("additions"), *sorted(filter(None, added)))
+        return tuple(dict.fromkeys(given))
+
+    def _cast(self, name: str, cast: Callable[[Any], Any]) -> Any:
+        value = self.options[name]
         try:
-            return parameter.type_cast_value(self.context, value)
+            return cast(",".join(map(str, value)) if isinstance(value, list) else value)
         except click.BadParameter as fault:
             raise BadInput(
                 "{value}.toml: {name}: {message}",
-                value=self.base / self.assignment.name,
+                value=self.file and self.file.with_suffix(""),
                 name=name,
                 message=fault.message,
             ) from fault
 
-    def path(self, name: str) -> Path | None:
-        path_text = self.of(name)
-        if path_text is None:
-            return None
-        is_given = self.context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
-        return Path(path_text) if is_given else self.base / path_text
-
 
 def codes_ready() -> None:
     """Refuse answer pages where what draws their codes is missing."""
-    libraries(("zxingcpp",), "--scan draws codes with", "scan")
+    libraries(("zxingcpp",), "scan draws codes with", "scan")
 
 
-def check_scan(formats: Sequence[str], *, booklet: bool) -> None:
-    """Refuse answer pages where nothing is printed, or what draws their codes is missing."""
-    codes_ready()
-    if "pdf" not in formats and not booklet:
-        raise BadInput(
-            "--scan adds answer pages to PDFs, and none is asked (--formats {formats}): add pdf, or --booklet",
-            formats=",".join(formats),
-        )
-
-
-def build_assignment(
-    context: click.Context, path: Path, *, again: Sequence[str], make_up: Sequence[str], overwrite: bool
-) -> None:
-    """Issue an assignment and write its files."""
-    from coursework.issuing import papers
+def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
+    """Issue the papers of exercises, or of an assignment, and write their files."""
     from coursework.issuing.assignment import read_assignment
-    from coursework.issuing.issued import issued_content, secret_of
-    from coursework.issuing.letters import unprinted_names
-    from coursework.issuing.roster import Student, read_roster
-    from coursework.issuing.variant_assignment import assign_variants
-    from coursework.rendering.renderer import renderer_of
-    from coursework.system.tables import SPREADSHEETS, json_text
-    from coursework.system.writing import write_tree
 
+    file = Path(exercises[0]) if is_assignment(exercises) else None
+    given = context.params
+    if "scan" in given["additions"]:
+        codes_ready()
     course = opened(context)
-    assignment = read_assignment(path, course)
-    settings = _Settings(context, assignment, path.parent)
-    out = settings.path("out")
-    if out is None:
-        raise BadInput('{path} says no folder to write: --out DIR, or out = "…" in the file', path=path)
-    if settings.of("practice"):
-        raise BadInput(
-            "self-study notebooks are built by naming exercises: coursework build EXERCISE … --practice"
-        )
-    if settings.of("scan"):
-        check_scan(settings.of("formats"), booklet=settings.of("booklet"))
-    writes(context, out)
-    stood = _issued_before(out / "issued.json", anew=overwrite)
-    before = None if overwrite else stood
-    if before is None and (again or make_up):
-        which = "--again" if again else "--make-up"
-        raise BadInput(
-            "{which} is for what was issued: there is no {value}", which=which, value=out / "issued.json"
-        )
-    notes: list[str] = []
-    roster = settings.path("roster")
-    if roster is not None and not again:
-        students = read_roster(roster, notes.append, settings.of("columns"))
-        _check_identity(assignment, students, notes)
-    elif before is not None and before.get("roster"):
-        students = []
-        if not again and not make_up:
+    assignment = None if file is None else read_assignment(file, course)
+    settings = BuildSettings(context, file, {} if assignment is None else assignment.options)
+    formats = settings.formats
+    if (out := settings.path("out")) is None:
+        if assignment is None:
+            raise BadInput("no folder to write: --out DIR")
+        raise BadInput('{path} says no folder to write: --out DIR, or out = "…" in the file', path=file)
+    if "scan" in formats:
+        codes_ready()
+        if not {"pdf", "booklet"} & {*formats}:
             raise BadInput(
-                "papers were issued by a roster: name it, --roster FILE.csv ({value})",
-                value=out / "issued.json",
+                "scan adds answer pages to PDFs, and none is asked (--formats {formats}): add pdf, or --with booklet",
+                formats=",".join(formats),
             )
+    names = () if assignment else exercise_names(course, exercises)
+    writes(context, out)
+    record = out / "issued.json"
+    stood = _issued_before(record, anew=given["overwrite"])
+    before = None if given["overwrite"] else stood
+    if before is None and (given["again"] or given["make_up"]):
+        which = "--again" if given["again"] else "--make-up"
+        raise BadInput("{which} is for what was issued: there is no {value}", which=which, value=record)
+    if assignment is not None and file is not None:
+        issued = _issued_assignment(course, assignment, file, settings, record, before, stood)
     else:
-        students = [Student("") for _ in range(settings.of("variants", "count") or 1)]
-    langs = settings.of("lang", "langs")
-    dealt = assign_variants(
-        course, assignment, students, langs, before, make_up, secret_of(stood, str(out / "issued.json"))
+        issued = _issued_exercises(course, names, settings, before)
+    names_issued = {issue.student for issue in issued.issues}
+    only = {_student_column(name, names_issued) for name in given["again"]} or None
+    shared_by_cluster(context, given["cluster"])
+    written, is_unchanged = write_build(
+        course,
+        issued,
+        formats,
+        out,
+        assignment,
+        before=before,
+        only=only,
+        overwrite=given["overwrite"],
+        store=keeping(
+            context, given["db"], "" if assignment else out.resolve().name, course.folder.root.name
+        ),
     )
-    if dealt.is_new:
-        notes.append(secret_made(path, out / "issued.json", langs[0]))
-    names = {issue.student for issue in dealt.issues}
-    only = None if not again else {_student_column(name, names) for name in again}
-    wanted = list(
-        papers.files(
-            course,
-            assignment,
-            dealt.issues,
-            settings.of("formats"),
-            paper=settings.of("paper"),
-            booklet=settings.of("booklet"),
-            scan=settings.of("scan"),
-            polygons=settings.of("polygons"),
-            spreadsheet=SPREADSHEETS[settings.of("decimal")],
-            only=only,
-            secret=dealt.secret,
+    files = counted(written, "file")
+    if assignment is None:
+        say(
+            "{files} in {out}: handouts/ to give away, issued.json and answers.csv to keep"
+            if {*formats} - {"nbgrader"}
+            else "{files} in {out}: issued.json and answers.csv to keep",
+            files=files,
+            out=out,
         )
-    )
-    with_nbgrader = "nbgrader" in settings.of("formats") and only is None
-    if with_nbgrader:
-        from coursework.nbgrader import tree as nbgrader
-
-        wanted[:0] = nbgrader.files(course, dealt.issues, assignment, out)
-    if not again and not make_up:
-        notes += dealt.notes
-    print_notes(notes)
-    content = issued_content(dealt.issues, assignment, dealt.secret)
-    keeping(context, settings.of("db"), settings.of("name"), course.folder.root.name)(content)
-    same = json_text(content).encode("utf-8")
-    is_unchanged = before is not None and (out / "issued.json").read_bytes() == same
-    shared_by_cluster(context, context.params["cluster"])
-    with progress_bar("building", len(wanted)) as advance:
-        notes = list(write_tree(out, wanted, advance, anew=overwrite))
-    if settings.of("booklet") or "pdf" in settings.of("formats"):
-        notes += unprinted_names(renderer_of(course.folder), names if only is None else only)
-    print_notes(notes)
-    count = len({(i.stem, i.sitting) for i in dealt.issues if only is None or i.student in only})
-    as_issued = is_unchanged or again
-    say(
-        "{papers} in {out}: {files}, as it was issued"
-        if as_issued
-        else "{papers} in {out}: {files}, to give away, issued.json and answers.csv to keep",
-        papers=counted(count, "paper"),
-        out=out,
-        files=counted(len(wanted), "file"),
-    )
-    say_staff_half(out, assignment.name if with_nbgrader else "")
-
-
-def say_staff_half(out: Path, name: str) -> None:
-    """Print where the staff's half of a build is, and the nbgrader course of a name; an empty name stands for none."""
+    else:
+        count = len({(i.stem, i.sitting) for i in issued.issues if only is None or i.student in only})
+        say(
+            "{papers} in {out}: {files}, as it was issued"
+            if is_unchanged or only
+            else "{papers} in {out}: {files}, to give away, issued.json and answers.csv to keep",
+            papers=counted(count, "paper"),
+            out=out,
+            files=files,
+        )
     say("worked solutions and the key, for the staff alone: {folder}", folder=out / "instructor")
-    if name:
+    if "nbgrader" in formats and only is None:
+        title = assignment.name if assignment else names[0]
         say(
             "a course of nbgrader: {folder}; how to go on stands there, in {name}.md",
             folder=out / "nbgrader",
-            name=name,
+            name=title,
         )
+
+
+def _roster(settings: BuildSettings, notes: list[str]) -> list[Student]:
+    from coursework.issuing.roster import read_roster
+
+    roster = settings.path("roster")
+    return [] if roster is None else read_roster(roster, notes.append, settings.of("columns"))
+
+
+def _issued_exercises(
+    course: Course,
+    names: Sequence[str],
+    settings: BuildSettings,
+    before: Mapping[str, Any] | None,
+) -> AssignedVariants:
+    """Issue exercises, each on a paper of its own; or repeat what was issued, with papers of who makes up."""
+    from coursework.issuing.issued import Issued
+    from coursework.issuing.issued_again import issued_again, made_up
+    from coursework.issuing.issuing import issue
+    from coursework.issuing.variant_assignment import AssignedVariants
+
+    given, langs, notes = settings.context.params, settings.of("lang", "langs"), list[str]()
+    if given["roster"] and given["count"]:
+        raise BadInput("--variants and --roster exclude each other: a roster has one variant a student")
+    if given["again"] or given["make_up"]:
+        assert before is not None
+        issues = issued_again(
+            course, Issued(before, "issued.json"), langs if settings.is_given("langs") else ()
+        )
+        absent = [_student_column(name, {i.student for i in issues}) for name in given["make_up"]]
+        return AssignedVariants([*issues, *made_up(course, issues, absent, given["seed"])])
+    students = _roster(settings, notes)
+    with_language = sum(bool(student.lang) for student in students)
+    if with_language and settings.is_given("langs"):
+        notes.append(
+            f"the roster says the language of {with_language} of its {counted(len(students), 'student')}, which counts; "
+            f"--lang {','.join(langs)} is for those of whom it says none"
+        )
+    parts = split_list(given["parts"]) or None
+    count, seed = given["count"] or 1, given["seed"]
+    print_notes(notes)
+    issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
+    return AssignedVariants(issues, [for_practice(langs[0])] if students else [])
+
+
+def _issued_assignment(
+    course: Course,
+    assignment: Assignment,
+    file: Path,
+    settings: BuildSettings,
+    record: Path,
+    before: Mapping[str, Any] | None,
+    stood: Mapping[str, Any] | None,
+) -> AssignedVariants:
+    """Issue the papers of an assignment; those issued ``before`` stay."""
+    from coursework.issuing.issued import secret_of
+    from coursework.issuing.roster import Student
+    from coursework.issuing.variant_assignment import assign_variants
+
+    given, langs, notes = settings.context.params, settings.of("lang", "langs"), list[str]()
+    if settings.path("roster") is not None and not given["again"]:
+        students = _roster(settings, notes)
+        _check_identity(assignment, students, notes)
+    elif before is not None and before.get("roster"):
+        students = []
+        if not given["again"] and not given["make_up"]:
+            raise BadInput(
+                "papers were issued by a roster: name it, --roster FILE.csv ({value})", value=record
+            )
+    else:
+        students = [Student("") for _ in range(given["count"] or 1)]
+    secret = secret_of(stood, str(record))
+    issued = assign_variants(course, assignment, students, langs, before, given["make_up"], secret)
+    if issued.is_new:
+        notes.append(secret_made(file, record, langs[0]))
+    if not given["again"] and not given["make_up"]:
+        notes += issued.notes
+    print_notes(notes)
+    issued.notes = []
+    return issued
+
+
+def write_build(
+    course: Course,
+    issued: AssignedVariants,
+    formats: Sequence[str],
+    out: Path,
+    assignment: Assignment | None = None,
+    *,
+    before: Mapping[str, Any] | None = None,
+    only: Collection[str] | None = None,
+    overwrite: bool = False,
+    store: Callable[[Mapping[str, Any]], None] = lambda content: None,
+) -> tuple[int, bool]:
+    """Write the files of a build; return their number, and whether the record is what it was ``before``. ``store`` is handed what
+    ``issued.json`` says, before anything is written."""
+    from coursework.issuing.build import files
+    from coursework.issuing.issued import issued_content
+    from coursework.issuing.letters import unprinted_names
+    from coursework.rendering.renderer import renderer_of
+    from coursework.system.tables import json_text
+    from coursework.system.writing import write_tree
+
+    content = issued_content(issued.issues, assignment, issued.secret)
+    text, record = json_text(content), out / "issued.json"
+    if before is not None and assignment is None and not _goes_on(before, json.loads(text)):
+        raise BadInput(
+            "{before} holds other variants, issued before; choose another --out, or --overwrite to replace them (files that were filled in or changed are set aside, not lost)",
+            before=record,
+        )
+    wanted = list(files(course, issued.issues, formats, assignment, only=only, secret=issued.secret))
+    if "nbgrader" in formats and only is None:
+        from coursework.nbgrader import tree as nbgrader
+
+        wanted[:0] = nbgrader.files(course, issued.issues, assignment, out)
+    store(content)
+    is_unchanged = before is not None and record.read_bytes() == text.encode("utf-8")
+    with progress_bar("building", len(wanted)) as advance:
+        notes = [*write_tree(out, wanted, advance, anew=overwrite)]
+    if {"booklet", "pdf"} & {*formats}:
+        names = dict.fromkeys(issue.student for issue in issued.issues)
+        notes += unprinted_names(renderer_of(course.folder), names if only is None else only)
+    print_notes([*notes, *issued.notes])
+    return len(wanted), is_unchanged
+
+
+def _goes_on(before: Mapping[str, Any], now: Mapping[str, Any]) -> bool:
+    """Return whether every sheet that was issued before is unchanged in the new record, which may have more
+    students."""
+    old, new = _by_place(before), _by_place(now)
+    return all(new.get(index) == record for index, record in old.items())
+
+
+def _by_place(content: Mapping[str, Any]) -> dict[tuple[Any, ...], Any]:
+    """Return the records by student, exercise and seed."""
+    records = ((item.get("student", ""), item["record"]) for item in content["issued"])
+    return {(student, record["exercise"], record["seed"]): record for student, record in records}
 
 
 def secret_made(path: Path, secret_path: Path, lang: str) -> str:

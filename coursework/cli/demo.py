@@ -21,7 +21,9 @@ from coursework.course.answer_key import Key
 from coursework.course.answer_keys import answer_keys
 from coursework.errors import counted
 from coursework.issuing.issued import COLUMNS, Issued
+from coursework.issuing.issuing import issue
 from coursework.issuing.roster import read_roster
+from coursework.issuing.variant_assignment import AssignedVariants
 from coursework.language.numbers import significant
 from coursework.language.words import languages
 from coursework.markup.markdown import to_text
@@ -147,7 +149,7 @@ SHOWN_VERDICTS = (
 
 
 def class_of_twelve(
-    out: Path, build: Callable[..., int], grade: Callable[..., Any]
+    out: Path, build: Callable[..., tuple[int, bool]], grade: Callable[..., Any]
 ) -> tuple[list[Mapping[str, Any]], list[str]]:
     """Build, answer and mark; gives a table, a line an exercise, and where the files are.
 
@@ -156,9 +158,9 @@ def class_of_twelve(
     course = open_course()
     names = (CLASS / "exercises.txt").read_text("utf-8").split()
     formats = ("pdf", "ipynb", "html")
-    written = build(
-        course, names, 1, FIRST_SEED, read_roster(ROSTER), formats, languages()[:1], out, overwrite=True
-    )
+    langs, roster = languages()[:1], read_roster(ROSTER)
+    issues = issue(course, names, first_seed=FIRST_SEED, count=1, langs=langs, roster=roster)
+    written, _ = build(course, AssignedVariants(issues), formats, out, overwrite=True)
     issued = Issued.read(out / "issued.json")
     notes = _hand_in(course, issued, out / "submissions")
     book = grade(course, [out / "submissions"], out / "issued.json", out / "marks", feedback=True)

@@ -356,12 +356,12 @@ def _decision(
         problem = Message(
             "no kind of decision {kind!r}{nearest}", kind=kind[:40], nearest=nearest(kind, KINDS)
         )
-        raise BadInput("{place}: {problem}", place=location, problem=problem)
+        raise BadInput("{file}: {problem}", file=location, problem=problem)
     if kind == GIVEN and points is None:
         if listed:
             return None
         problem = Message("points are given, or the answer is accepted: say how many")
-        raise BadInput("{place}: {problem}", place=location, problem=problem)
+        raise BadInput("{file}: {problem}", file=location, problem=problem)
     if missing := [c for c in _NEEDED if not row.get(c)]:
         raise BadInput(
             "{place}: {columns} missing; name the answer to accept",

@@ -13,16 +13,10 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from coursework.course.course import Course
-from coursework.issuing.answer_papers import printed_handout
-from coursework.issuing.issuing import Issue
-from coursework.rendering.renderer import Renderer
-from coursework.sheets.sheet import AnswerSheet
-from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file
+from coursework.system.tables import Spreadsheet, csv_file
 from coursework.system.writing import File
 
 SHEETS = 50  #: limit of sheets or papers in one booklet
-PAGE_COLUMNS = ("student", "exercise", "seed", "lang", "first page", "last page", "file")
 
 Pages = tuple[tuple[int, int], ...]  #: the first and the last of each sheet
 _Sheet = TypeVar("_Sheet")
@@ -51,9 +45,7 @@ def parted(name: str, sheets: Sequence[_Sheet]) -> Iterator[tuple[str, Sequence[
         yield f"{name}{which}", part
 
 
-def bound(
-    course: Course, booklets: Iterable[Booklet], columns: Sequence[str], spreadsheet: Spreadsheet
-) -> Iterator[File]:
+def bound(booklets: Iterable[Booklet], columns: Sequence[str], spreadsheet: Spreadsheet) -> Iterator[File]:
     """Yield the files of booklets, and after them the table of the students' pages.
 
     The files are to be made in this order, by one thread or several.
@@ -78,46 +70,3 @@ def _printed(booklet: Booklet, result: Future[Pages]) -> bytes:
         raise
     result.set_result(pages)
     return pdf
-
-
-# ------------------------------------------------------------- of single exercises
-
-
-def files(
-    course: Course,
-    renderer: Renderer,
-    issues: Sequence[Issue],
-    *,
-    polygons: bool = True,
-    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
-    scan: bool = False,
-) -> Iterator[File]:
-    """Yield the booklets of a build, one per exercise and language, and the table of the students' pages."""
-    groups: dict[tuple[str, str], list[Issue]] = {}
-    for issue in issues:
-        for lang in issue.langs:
-            groups.setdefault((issue.variant.exercise.name, lang), []).append(issue)
-    booklets = (
-        _of_sheets(renderer, name, part, lang, polygons, renderer.paper if scan else "")
-        for (exercise, lang), group in groups.items()
-        for name, part in parted(f"{exercise}.{lang}", group)
-    )
-    return bound(course, booklets, PAGE_COLUMNS, spreadsheet)
-
-
-def _of_sheets(
-    renderer: Renderer, name: str, issues: Sequence[Issue], lang: str, polygons: bool, scan: str
-) -> Booklet:
-    def solution(issue: Issue) -> AnswerSheet:
-        return issue.variant.in_language(lang).answer_sheet(issue.student, polygons=polygons)
-
-    cells = [
-        {"student": i.student, "exercise": i.variant.exercise.name, "seed": i.variant.seed, "lang": lang}
-        for i in issues
-    ]
-    return Booklet(
-        name,
-        lambda: renderer.booklet([printed_handout(issue, lang, scan) for issue in issues]),
-        lambda: renderer.booklet([solution(issue) for issue in issues])[0],
-        cells,
-    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -10,15 +10,19 @@ from typing import Any, TypeAlias
 from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.issuing import booklets
-from coursework.issuing.answer_papers import printed_handout
 from coursework.issuing.assignment import Assignment
+from coursework.issuing.booklets import Booklet
 from coursework.issuing.issued import COLUMNS, form_rows, issued_content, key_content, key_rows
 from coursework.issuing.issuing import Issue
+from coursework.issuing.papers import IssuedPaper, papers
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
 from coursework.system.writing import File
 
+#: Columns of the tables of pages in booklets, of papers and of exercises that are handed out alone.
+PAPER_COLUMNS = ("student", "version", "lang", "first page", "last page", "file")
+SHEET_COLUMNS = ("student", "exercise", "seed", "lang", "first page", "last page", "file")
 KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
 
 
@@ -32,33 +36,41 @@ def _text(make: Callable[[], str]) -> Callable[[], bytes]:
 def files(
     course: Course,
     issues: Sequence[Issue],
-    formats: Sequence[str],
+    formats: Collection[str],
+    assignment: Assignment | None = None,
     *,
-    practice: bool = False,
-    paper: str = "a4",
-    booklet: bool = False,
-    polygons: bool = True,
-    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
-    scan: bool = False,
+    only: Collection[str] | None = None,
+    secret: Secret | None = None,
 ) -> Iterator[File]:
-    """Yield every file of a build, in order.
+    """Yield every file of a build, in order: one paper for each student and sitting of an assignment, one for
+    each exercise without one.
 
-    ``practice`` makes the notebooks self-study notebooks, which check answers with the installed package. ``paper`` is
-    ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
-    language. Without ``polygons`` the worked solutions leave out the drawn velocity and acceleration polygons.
-    The tables are written for the ``spreadsheet``. With ``scan`` the PDFs have answer pages that a scanner reads.
+    Parameters
+    ----------
+    course, issues, assignment
+        The issued variants, with their course and assignment.
+    formats
+        Of :data:`coursework.issuing.formats.FORMATS` and :data:`~coursework.issuing.formats.ADDITIONS`.
+    only
+        Students whose papers alone are written, without tables.
+    secret
+        Secret to store in ``issued.json``.
     """
+    paper = "letter" if "letter" in formats else "a4"
+    spreadsheet = SPREADSHEETS["comma" if "decimal-comma" in formats else "point"]
     renderer = renderer_of(course.folder).on(paper)
-    for issue in issues:
-        for lang in issue.langs:
-            yield from _sheets(
-                course, renderer, issue, lang, formats, practice, polygons, paper if scan else ""
-            )
-    if booklet:
-        yield from booklets.files(
-            course, renderer, issues, polygons=polygons, spreadsheet=spreadsheet, scan=scan
-        )
-    yield from tables(course, issues, None, spreadsheet)
+    polygons, scan = "no-polygons" not in formats, paper if "scan" in formats else ""
+    issued_papers = papers(assignment, issues, polygons=polygons, scan=scan)
+    for issued_paper in issued_papers:
+        if only is None or issued_paper.first.student in only:
+            for lang in issued_paper.first.langs:
+                yield from _paper(renderer, issued_paper, lang, formats)
+    if only is not None:
+        return
+    if "booklet" in formats:
+        columns = SHEET_COLUMNS if assignment is None else PAPER_COLUMNS
+        yield from booklets.bound(_booklets(renderer, issued_papers), columns, spreadsheet)
+    yield from tables(course, issues, assignment, spreadsheet, secret)
 
 
 def tables(
@@ -84,58 +96,80 @@ def key_files(issues: Sequence[Issue], spreadsheet: Spreadsheet = SPREADSHEETS["
     yield File(folder / "key.csv", lambda: csv_file(key_rows(key), KEY_COLUMNS, spreadsheet))
 
 
-def _sheets(
-    course: Course,
-    renderer: Renderer,
-    issue: Issue,
-    lang: str,
-    formats: Sequence[str],
-    practice: bool,
-    polygons: bool,
-    scan: str,
+def _paper(
+    renderer: Renderer, issued_paper: IssuedPaper, lang: str, formats: Collection[str]
 ) -> Iterator[File]:
-    variant = issue.variant.in_language(lang)
-    name = variant.exercise.name
-    for_student = Path("handouts") / name / f"{issue.stem}.{lang}"
-    for_staff = Path("instructor") / name / f"{issue.stem}.{lang}"
-    handout = partial(variant.handout, issue.student)
-    solution = partial(variant.answer_sheet, issue.student, polygons=polygons)
-
+    for_student, for_staff = (
+        Path(folder) / issued_paper.folder / f"{issued_paper.first.stem}.{lang}"
+        for folder in ("handouts", "instructor")
+    )
+    pdf, html, notebook = issued_paper.renders(renderer)
+    paper, solution = partial(issued_paper.paper, lang), partial(issued_paper.solution, lang)
     if "pdf" in formats:
-        yield rendered(for_student, ".pdf", renderer.pdf, partial(printed_handout, issue, lang, scan))
+        yield rendered(for_student, ".pdf", pdf, partial(issued_paper.printed, lang))
     if "html" in formats:
-        yield rendered(for_student, ".html", renderer.html, handout)
-    if "ipynb" in formats and practice:
-        yield rendered(for_student, ".ipynb", renderer.study, partial(variant.study_sheet, issue.student))
+        yield rendered(for_student, ".html", html, paper)
+    if "ipynb" in formats and "practice" in formats:
+        for issue in issued_paper.issues:
+            variant = issue.variant.in_language(lang)
+            path = Path("handouts") / variant.exercise.name / for_student.name
+            yield rendered(path, ".ipynb", renderer.study, partial(variant.study_sheet, issue.student))
     elif "ipynb" in formats:
-        yield rendered(for_student, ".ipynb", renderer.notebook, handout)
+        yield rendered(for_student, ".ipynb", notebook, paper)
     if "tex" in formats:
-        yield from _tex(renderer, for_student, ".tex", "figure", handout)
+        yield from _tex(renderer, issued_paper, lang, for_student, solved=False)
     if "pdf" in formats:
-        yield rendered(for_staff, ".solution.pdf", renderer.pdf, solution)
+        yield rendered(for_staff, ".solution.pdf", pdf, solution)
     if "html" in formats:
-        yield rendered(for_staff, ".solution.html", renderer.html, solution)
+        yield rendered(for_staff, ".solution.html", html, solution)
     if "tex" in formats:
-        drawn = polygons and variant.exercise.solution.polygons is not None
-        yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution, polygons=drawn)
+        yield from _tex(renderer, issued_paper, lang, for_staff, solved=True)
 
 
 def _tex(
-    renderer: Renderer,
-    path: Path,
-    ending: str,
-    figure_name: str,
-    sheet: Callable[[], Handout | AnswerSheet],
-    *,
-    polygons: bool = False,
+    renderer: Renderer, issued_paper: IssuedPaper, lang: str, path: Path, *, solved: bool
 ) -> Iterator[File]:
-    """Yield a LaTeX source and its drawings."""
-    stem = tex_stem(path)
-    figure, pages = f"{stem}-{figure_name}.pdf", f"{stem}-polygons.pdf"
-    yield rendered(path, ending, partial(renderer.tex, figure=figure, polygons=pages), sheet)
-    yield rendered(path.with_name(figure), "", renderer.figure_pdf, sheet)
-    if polygons:
-        yield rendered(path.with_name(pages), "", renderer.polygons_pdf, sheet)
+    """Yield a LaTeX source and the drawings of each exercise."""
+    stem, numbers = tex_stem(path), issued_paper.drawing_numbers
+    figures = [f"{stem}-{'solution-figure' if solved else 'figure'}{number}.pdf" for number in numbers]
+    polygons = [f"{stem}-polygons{number}.pdf" for number in numbers]
+    yield rendered(
+        path,
+        ".solution.tex" if solved else ".tex",
+        issued_paper.tex(renderer, figures, polygons),
+        partial(issued_paper.solution if solved else issued_paper.paper, lang),
+    )
+    for issue, figure, drawn in zip(issued_paper.issues, figures, polygons, strict=True):
+        variant = issue.variant.in_language(lang)
+        sheet: Callable[[], Handout | AnswerSheet] = (
+            partial(variant.answer_sheet, issue.student, polygons=issued_paper.polygons)
+            if solved
+            else partial(variant.handout, issue.student)
+        )
+        yield rendered(path.with_name(figure), "", renderer.figure_pdf, sheet)
+        if solved and issued_paper.polygons and variant.exercise.solution.polygons is not None:
+            yield rendered(path.with_name(drawn), "", renderer.polygons_pdf, sheet)
+
+
+def _booklets(renderer: Renderer, issued_papers: Sequence[IssuedPaper]) -> Iterator[Booklet]:
+    """Yield the booklets of a build: of each language, and of each exercise that is handed out alone."""
+    groups: dict[tuple[str, str], list[IssuedPaper]] = {}
+    for issued_paper in sorted(issued_papers, key=lambda issued_paper: issued_paper.sorted_by):
+        for lang in issued_paper.first.langs:
+            groups.setdefault((issued_paper.folder or "class", lang), []).append(issued_paper)
+    for (group_name, lang), group in groups.items():
+        for name, part in booklets.parted(f"{group_name}.{lang}", group):
+            yield _booklet(renderer, name, part, lang)
+
+
+def _booklet(renderer: Renderer, name: str, issued_papers: Sequence[IssuedPaper], lang: str) -> Booklet:
+    bind = issued_papers[0].binds(renderer)
+    return Booklet(
+        name,
+        lambda: bind([issued_paper.printed(lang) for issued_paper in issued_papers]),
+        lambda: bind([issued_paper.solution(lang) for issued_paper in issued_papers])[0],
+        [{**issued_paper.cells, "lang": lang} for issued_paper in issued_papers],
+    )
 
 
 def tex_stem(path: Path) -> str:

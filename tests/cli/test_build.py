@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 
+import click
 from class_of_three import filled, table, tree
+
+from coursework.cli.make import build
 
 
 def test_build_writes_the_tree_of_the_contract(built):
@@ -103,3 +106,29 @@ def test_a_build_that_fails_leaves_what_was_there(built, cli, monkeypatch):
     monkeypatch.setattr(Renderer, "notebook", fails)
     assert cli("build", "slotted_mechanism", "--variants", 2, "--out", built, "--overwrite")[0] == 2
     assert tree(built) == before
+
+
+def test_a_lost_sheet_comes_again_and_who_makes_up_has_another(cli, tmp_path):
+    """A build of exercises is a paper as that of an assignment is: papers come again, and have further sittings."""
+    (tmp_path / "class.csv").write_text("student\nAna\nBen\n", "utf-8")
+    out = tmp_path / "out"
+    usual = ["build", "slotted_mechanism", "--formats", "html", "--lang", "en", "--out", out]
+    assert cli(*usual, "--again", "Ana")[0] == 2
+    assert cli(*usual, "--roster", tmp_path / "class.csv")[0] == 0
+    handouts = out / "handouts" / "slotted_mechanism"
+    page, record = (handouts / "ana.en.html").read_bytes(), (out / "issued.json").read_bytes()
+    (handouts / "ana.en.html").unlink()
+    assert cli(*usual, "--again", "ana")[0] == 0
+    assert (handouts / "ana.en.html").read_bytes() == page
+    assert (out / "issued.json").read_bytes() == record
+    assert cli(*usual, "--make-up", "Ben")[0] == 0
+    items = json.loads((out / "issued.json").read_bytes())["issued"]
+    assert items[:2] == json.loads(record)["issued"]
+    assert [(item["student"], item["sitting"]) for item in items[2:]] == [("Ben", 2)]
+    assert len({str(item["record"]["given"]) for item in items}) == 3
+    assert (handouts / "ben.sitting-2.en.html").exists()
+    assert (handouts / "ana.en.html").read_bytes() == page
+
+
+def test_build_has_few_options():
+    assert len([p for p in build.params if isinstance(p, click.Option)]) <= 14

@@ -20,7 +20,7 @@ WITHOUT = {
         "build nosuch --db nowhere/x.db", "grade nothere.csv --issued nope.json --db nowhere/x.db", "report --db nope.db",
     ],
     "lti": ["lti keys new", "lti platform", "lti roster", "lti scores"],
-    "scan": ["scan", "scan nothere.pdf --issued nope.json", "build nosuch --scan"],
+    "scan": ["scan", "scan nothere.pdf --issued nope.json", "build nosuch --with scan"],
     "cluster": [
         "build nosuch --cluster local:2", "grade nothere.csv --issued nope.json --cluster tcp://127.0.0.1:1",
         "check nosuch --cluster local:2", "report nowhere --cluster local:2",

@@ -48,8 +48,9 @@ def answered(out):
 def whole_job(out, *options):
     """Build, two markings, report and scene; the exit status is 1 for the row of nobody."""
     (out / "class.csv").write_text("student\nÉmilie Lefèvre\nZoë\n", "utf-8")
-    made = ["slotted_mechanism", "--roster", out / "class.csv", "--formats", "html", "--booklet", "--out", out / "sheets"]  # fmt: skip
-    assert command("build", *made, *options) == 0
+    made = ["slotted_mechanism", "--roster", out / "class.csv", "--formats", "html", "--out", out / "sheets"]  # fmt: skip
+    with_commas = ["--with", "booklet,decimal-comma"] if options else ["--with", "booklet"]
+    assert command("build", *made, *with_commas) == 0
     rows = answered(out)
     for last in ("0", "12.5 mm"):
         rows[2]["answer"] = last

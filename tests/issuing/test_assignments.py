@@ -13,8 +13,9 @@ import pytest
 import coursework
 from coursework.errors import BadInput
 from coursework.issuing.assignment import read_assignment
+from coursework.issuing.build import files
 from coursework.issuing.issued import issued_content
-from coursework.issuing.papers import date_text, files, papers
+from coursework.issuing.papers import date_text, papers
 from coursework.issuing.roster import Student, read_roster
 from coursework.issuing.variant_assignment import assign_variants, distributed_points
 
@@ -273,7 +274,7 @@ def test_a_booklet_is_sorted_by_the_column_that_the_file_names_and_else_as_the_r
 
 def test_latex_of_a_paper_stands_beside_the_drawings_that_it_names(midterm):
     issues = dealt(midterm, CLASS[:1]).issues
-    written = {f.path.as_posix(): f.make() for f in files(COURSE, midterm, issues, ["tex"])}
+    written = {f.path.as_posix(): f.make() for f in files(COURSE, issues, ["tex"], midterm)}
     sources = {name: made.decode() for name, made in written.items() if name.endswith(".tex")}
     assert len(sources) == 2 * len(issues[0].langs)
     for name, source in sources.items():

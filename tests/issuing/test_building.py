@@ -56,7 +56,7 @@ def test_processes_write_what_threads_write(tmp_path, monkeypatch, count):
     told = []
     for folder, enough in (("threads", 10**6), ("processes", 1)):
         monkeypatch.setattr(writing, "WORTH_PROCESSES", enough)
-        wanted = list(building.files(COURSE, issues, ("pdf", "html"), booklet=True))
+        wanted = list(building.files(COURSE, issues, ("pdf", "html", "booklet")))
         writing.write_tree(tmp_path / folder, wanted, told.append)
         assert sorted(told) == sorted(file.path for file in wanted)
         told.clear()

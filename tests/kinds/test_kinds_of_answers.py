@@ -399,7 +399,7 @@ def test_a_student_alone_is_told_of_each(root, tmp_path):
 
 
 def test_a_practice_notebook_is_made(root, tmp_path):
-    job = ["build", "--variants", "1", "--formats", "ipynb", "--practice", "--lang", "en"]
+    job = ["build", "--variants", "1", "--formats", "ipynb", "--with", "practice", "--lang", "en"]
     assert run(["--course", str(root), *job, "--out", str(tmp_path / "out")]) == 0
 
 

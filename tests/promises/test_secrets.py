@@ -301,9 +301,8 @@ def test_nothing_that_is_handed_out_or_only_marks_holds_the_secret(tmp_path, in_
         *asked,
         "--formats",
         "pdf,ipynb,html,tex,nbgrader",
-        "--scan",
-        "--booklet",
-        "--no-polygons",
+        "--with",
+        "scan,booklet,no-polygons",
     ]
     assert run([*build, "--out", str(out)]) == 0
     secret = json.loads((out / "issued.json").read_bytes()).get("secret", HEAD)

@@ -196,7 +196,7 @@ def built(tmp_path_factory):
     usual = ["build", "grashof", "coriolis", "--roster", str(roster), "--formats", "pdf,html"]
     assert run([*usual, "--out", str(folder / "plain")]) == 0
     for out in ("scan", "again"):
-        assert run([*usual, "--scan", "--booklet", "--out", str(folder / out)]) == 0
+        assert run([*usual, "--with", "scan,booklet", "--out", str(folder / out)]) == 0
     return folder
 
 
@@ -264,6 +264,6 @@ def test_papers_of_an_assignment_are_known_again_with_and_without_names(tmp_path
 
 def test_answer_pages_without_a_pdf_are_refused(tmp_path, capsys):
     out = tmp_path / "out"
-    assert run(["build", "grashof", "--scan", "--formats", "html", "--out", str(out)]) != 0
-    assert "add pdf, or --booklet" in capsys.readouterr().err
+    assert run(["build", "grashof", "--with", "scan", "--formats", "html", "--out", str(out)]) != 0
+    assert "add pdf, or --with booklet" in capsys.readouterr().err
     assert not out.exists()

@@ -16,9 +16,9 @@ from coursework.cli import run
 from coursework.cli.options import DONE
 from coursework.course.builtin import builtin_root
 from coursework.errors import BadStatement, UnknownName
-from coursework.issuing import booklets, issuing
+from coursework.issuing import booklets, build, issuing
 from coursework.rendering.pdf import source
-from coursework.rendering.renderer import PAPERS, Renderer, renderer_of
+from coursework.rendering.renderer import PAPERS, Renderer
 from coursework.system import writing
 
 TEMPLATES = [builtin_root() / "templates"]
@@ -77,9 +77,14 @@ def issues_of(course, count, langs=("fr",)):
     return issuing.issue(course, ["slotted_mechanism"], first_seed=0, count=count, langs=langs)
 
 
+def bound_files(course, issues):
+    tables = {"issued.json", "answers.csv", "key.json", "key.csv"}
+    return [file for file in build.files(course, issues, ["booklet"]) if file.path.name not in tables]
+
+
 def test_a_large_class_has_several_booklets_named_with_their_sheets(course, monkeypatch):
     monkeypatch.setattr(booklets, "SHEETS", 4)
-    names = [str(f.path) for f in booklets.files(course, renderer_of(course.folder), issues_of(course, 10))]
+    names = [str(f.path) for f in bound_files(course, issues_of(course, 10))]
     assert names == [
         "handouts/slotted_mechanism.fr.01-04.pdf",
         "instructor/slotted_mechanism.fr.01-04.solutions.pdf",
@@ -96,7 +101,7 @@ def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it
 ):
     monkeypatch.setattr(booklets, "SHEETS", 2)
     issues = issues_of(course, 3, ("fr", "en"))
-    writing.write(tmp_path, list(booklets.files(course, renderer_of(course.folder), issues)))
+    writing.write(tmp_path, bound_files(course, issues))
     rows = list(csv.DictReader(io.StringIO((tmp_path / "handouts" / "pages.csv").read_text("utf-8-sig"))))
     assert [(r["lang"], int(r["seed"])) for r in rows] == [
         (lang, issue.variant.seed) for lang in ("fr", "en") for issue in issues
@@ -108,8 +113,17 @@ def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it
 def test_build_writes_booklets_beside_the_single_files(tmp_path):
     roster = tmp_path / "class.csv"
     roster.write_text("student,lang\nZoé,fr\nJohn & Mary,en\nÉlodie #1,fr\n", "utf-8")
-    command = ["build", "slotted_mechanism", "--roster", str(roster), "--formats", "pdf", "--paper", "letter"]
-    assert run([*command, "--booklet", "--out", str(tmp_path / "out")]) == DONE
+    command = [
+        "build",
+        "slotted_mechanism",
+        "--roster",
+        str(roster),
+        "--formats",
+        "pdf",
+        "--with",
+        "letter,booklet",
+    ]
+    assert run([*command, "--out", str(tmp_path / "out")]) == DONE
     made = {str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").rglob("*.pdf")}
     assert made >= {
         "handouts/slotted_mechanism.fr.pdf",
@@ -126,11 +140,15 @@ def test_build_writes_booklets_beside_the_single_files(tmp_path):
     ]
 
 
-def test_a_sheet_that_cannot_be_made_ends_the_build_with_its_fault(course, tmp_path):
+def test_a_sheet_that_cannot_be_made_ends_the_build_with_its_fault(course, tmp_path, monkeypatch):
     class Broken(Renderer):
+        def on(self, paper):
+            return self
+
         def booklet(self, sheets):
             raise BadStatement("no")
 
-    wanted = list(booklets.files(course, Broken(TEMPLATES), issues_of(course, 1)))
+    monkeypatch.setattr(build, "renderer_of", lambda folder: Broken(TEMPLATES))
+    wanted = bound_files(course, issues_of(course, 1))
     with pytest.raises(BadStatement, match="no"):
         writing.write(tmp_path, wanted)

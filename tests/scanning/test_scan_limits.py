@@ -90,7 +90,8 @@ def built(tmp_path_factory):
     told = [
         "--roster",
         str(folder / "class.csv"),
-        "--scan",
+        "--with",
+        "scan",
         "--formats",
         "pdf",
         "--lang",

@@ -116,7 +116,10 @@ def test_a_notebook_to_hand_in_holds_no_answer_and_no_way_to_one(name):
 
 def test_a_filled_self_study_notebook_is_marked(tmp_path, capsys):
     assert (
-        run(["build", "slotted_mechanism", "--practice", "--formats", "ipynb", "--out", str(tmp_path)]) == 0
+        run(
+            ["build", "slotted_mechanism", "--with", "practice", "--formats", "ipynb", "--out", str(tmp_path)]
+        )
+        == 0
     )
     (path,) = (tmp_path / "handouts").rglob("*.ipynb")
     book = json.loads(path.read_text("utf-8"))

@@ -84,7 +84,8 @@ def test_a_build_is_the_same_in_all_formats(capsys, machines, course_of_one, tmp
         "fr,en",
         "--formats",
         FORMATS,
-        "--booklet",
+        "--with",
+        "booklet",
     )
     one, cluster = both(capsys, machines, *build, out=tmp_path)
     assert one == cluster
