@@ -90,7 +90,7 @@ class CourseExercise(Generic[V]):
 
         if self.folder.home("solutions", self.name) is None:
             raise NoSolution(
-                "no solution of {name!r} in {folder}: it lacks {name}.py",
+                "no solution of {name!r} in {folder}: write solutions/{name}.py",
                 name=self.name,
                 folder=self.folder.label,
             )
