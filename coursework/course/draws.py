@@ -128,6 +128,10 @@ def _empty_ranges(drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     return refused
 
 
+def _none() -> Solution:
+    raise BadCourse("a constraint names a mistake of the solution, and there is none")
+
+
 class Draws:
     """Draws of an exercise: its given quantities, and its constraints joined with what computes the quantities that
     they need.
@@ -149,7 +153,7 @@ class Draws:
     def __init__(self, name: str, spec: Exercise, solution: Callable[[], Solution] | None = None):
         self.name = name
         self.spec = spec
-        self._solution = solution
+        self._solution = _none if solution is None else solution
         helpers = {f.__name__: f for f in spec.helpers}
         stated = {f.__name__: f for f in spec.constraints if not isinstance(f, Detectable)}
         own = Graph({**helpers, **stated})
@@ -182,14 +186,13 @@ class Draws:
         BadCourse
             Says which constraint needs something unknown, and what.
         """
-        assert self._solution is not None, "without a solution every constraint was checked"
         graph = self._solution().graph
         twice = graph.names & self._computed.keys()
         if twice:
             raise BadCourse(
                 f"{self.name}: {min(twice)} is a constraint and a quantity; rename the constraint"
             )
-        # A helper that bears the name of a quantity says it of the figure; the constraints take the reference.
+        # A helper that bears the name of a quantity says it of the figure; these constraints take the reference.
         helpers = {f.__name__: f for f in self.spec.helpers if f.__name__ not in graph.names}
         graph = graph.with_functions({**helpers, **self._computed})
         self._check(graph, tuple(self._computed))
@@ -222,7 +225,7 @@ class Draws:
     def _refused_by_answers(self, drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         if not self._computed and not self._detectable:
             return {}
-        graph, solution = self._graph, self._solution()  # type: ignore[misc]  # the graph is made of it
+        graph, solution = self._graph, self._solution()
         effects = self.spec.effects
         known = {n: v for n, v in drawn.items() if n in graph.leaves or n in graph.quantities}
         requested = dict.fromkeys(q for constraint in self._detectable for q in constraint.quantities)
@@ -240,7 +243,7 @@ class Draws:
     def _part_of(self, quantity: str) -> Part:
         """Return the part that asks a quantity; one with the usual tolerance where none does."""
         part = next((p for p in self.spec.parts if p.quantity == quantity), None)
-        return part or Part(quantity, unit=self._solution().units.get(quantity, "1"))  # type: ignore[misc]
+        return part or Part(quantity, unit=self._solution().units.get(quantity, "1"))
 
     # -------------------------------------------------------------------- draws
 
