@@ -166,7 +166,7 @@ def _tell_new(now: GradedNow) -> None:
 
 def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     """Print the changed marks and the pending decisions."""
-    from coursework.database.current_marks import waiting
+    from coursework.database.current_marks import answers_waiting
 
     for change in now.marked.changes[:_TOLD]:
         click.echo(_change(change))
@@ -183,7 +183,7 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     if len(rejected) > _TOLD:
         warn("and {count} more rejected rows: grade with --out DIR", count=len(rejected) - _TOLD)
     with store.reading() as connection:
-        waits = len(waiting(connection, number))
+        waits = answers_waiting(connection, number)
     if waits:
         say("{answers} for a person to look at", answers=counted(waits, "answer"))
     return FOUND if waits or rejected else DONE

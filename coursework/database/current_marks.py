@@ -7,18 +7,12 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Select, func, select
 
-from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.decisions import read_decisions
-from coursework.database.publication import late_penalties
-from coursework.database.submissions import rows_of
 from coursework.database.tables import mark, marking
-from coursework.gradebook.book import Gradebook
-from coursework.gradebook.class_marking import rejecting
-from coursework.gradebook.decisions import TO_MARK, Decision
+from coursework.gradebook.decisions import TO_MARK
 from coursework.gradebook.graded_sheet import Graded
-from coursework.gradebook.placing import SheetKey, placed_sheets
-from coursework.gradebook.platform_files import platform_file_lines
+from coursework.gradebook.placing import SheetKey
 from coursework.issuing.issued import Issued
 from coursework.marking.mark import Mark
 
@@ -133,72 +127,11 @@ def graded(connection: Connection, assignment_id: int, student: str | None = Non
     return [decisions.apply(result) for _, result in results if not isinstance(result, str)]
 
 
-def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gradebook:
-    """Return the current gradebook of a class.
-
-    Raises
-    ------
-    CourseworkError
-        The course cannot mark what was issued.
-    """
-    issued = issued_of(connection, assignment_id)
-    sheets = placed_sheets(course, issued, rows_of(connection, assignment_id))
-    standing = last_markings(connection, assignment_id)
-    marked = [standing[key] for key in sheets.sheets if key in standing]
-    results = machine_marks(issued, marked, lines_of(connection, marked))
-    decisions = read_decisions(connection, assignment_id)
-    book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
-    for sheet in map(decisions.apply, rejecting(sheets, results)):
-        book.add(sheet)
-        book.waiting += sum(line.verdict == TO_MARK for line in sheet.lines.values())
-    book.seen, book.charged = platform_file_lines(sheets.seen), late_penalties(connection, assignment_id)
-    return book
-
-
-class WaitingAnswer(NamedTuple):
-    """Answer that a person reviews."""
-
-    student: str
-    exercise: str
-    seed: int
-    sitting: int
-    part: str
-    answer: str
-    verdict: str  #: of the marking
-    points: float
-    out_of: float
-    message: str  #: Markdown
-    lang: str
-    decision: Decision | None  #: that counts; None while it waits
-
-
-#: Verdicts of answers that wait for a person.
-WAIT = (TO_MARK, "unreadable")
-
-
-def waiting(
-    connection: Connection, assignment_id: int, verdicts: Sequence[str] = WAIT, *, decided: bool = False
-) -> list[WaitingAnswer]:
-    """Return the answers that wait for a person, question by question; on request, including those that are
-    ``decided``."""
+def answers_waiting(connection: Connection, assignment_id: int) -> int:
+    """Return the number of answers that wait for a person: unreadable, or to be marked by hand, and not decided."""
     last = _last(assignment_id, None).subquery()
-    query = (
-        select(marking, *_LINE)
-        .join(mark)
-        .join(last, marking.c.id == last.c.last)
-        .order_by(last.c.first, mark.c.place)
-    )
+    query = select(marking, *_LINE).join(mark).join(last, marking.c.id == last.c.last)
     decisions = read_decisions(connection, assignment_id)
-    waits = []
-    for row in connection.execute(query.where(mark.c.verdict.in_(verdicts))):
-        sheet, line = _last_marking(row), _line(row[len(marking.c) :])
-        waits.append(_waits(sheet, line, next(decisions.counting(sheet.key[:3], line), None)))
-    return sorted(
-        (answer for answer in waits if decided or answer.decision is None),
-        key=lambda answer: (answer.exercise, answer.part),
-    )
-
-
-def _waits(sheet: LastMarking, line: Mark, decision: Decision | None) -> WaitingAnswer:
-    columns = *sheet.key[:3], sheet.sitting, line.part, line.answer
-    return WaitingAnswer(*columns, line.verdict, line.points, line.out_of, line.says, line.lang, decision)
+    rows = connection.execute(query.where(mark.c.verdict.in_((TO_MARK, "unreadable"))))
+    lines = ((_last_marking(row), _line(row[len(marking.c) :])) for row in rows)
+    return sum(next(decisions.counting(sheet.key[:3], line), None) is None for sheet, line in lines)

@@ -33,8 +33,6 @@ _CHUNK = 5000  #: rows that are written at once
 FORMAT = "coursework database dump 2"
 _BEFORE = "coursework database dump 1"  #: which left cells as they are, whatever a spreadsheet makes of them
 _ABOUT = "dump.json"
-#: Columns, all of which may be empty, that dumps of before do not have, by table.
-_NEWER: Mapping[str, set[str]] = {"assignment": {"secret", "link"}, "audit": {"actor", "subject", "address"}}
 
 
 # --------------------------------------------------------------------------- out
@@ -247,8 +245,9 @@ def _chunks(table: Table, path: Path, cell_text: CellText) -> Iterator[list[dict
 
 
 def _has_columns(table: Table, names: Sequence[str]) -> bool:
-    """Return True if a dump has the columns of a table, each once; an older one may lack recent columns."""
-    wanted = {*table.c.keys()} - _NEWER.get(table.name, set())
+    """Return True if a dump has the columns of a table, each once; an older one may lack columns that
+    may be empty."""
+    wanted = {column.name for column in table.c if not column.nullable}
     return len({*names}) == len(names) and wanted <= {*names} <= {*table.c.keys()}
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from datetime import datetime
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, func, insert, select, update
+from sqlalchemy import Connection, insert, select, update
 
 from coursework.database.store import insert_unless_there
 from coursework.database.tables import scanned, typed
@@ -86,11 +86,3 @@ def typed_rows(connection: Connection, assignment_id: int) -> list[TypedRow]:
         last.pop(key, None)
         last[key] = row
     return [row for row in last.values() if row.answer is not None]
-
-
-def scans_stamp(connection: Connection, assignment_id: int) -> tuple[int, int]:
-    """Return the ids of the last page and the last typed text of an assignment; they change when something is
-    new."""
-    last = [select(func.max(t.c.id)).where(t.c.assignment_id == assignment_id) for t in (scanned, typed)]
-    pages, texts = (connection.execute(query).scalar() or 0 for query in last)
-    return pages, texts

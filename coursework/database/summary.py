@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, Select, distinct, func, select
 
 from coursework.database.assignments import names
-from coursework.database.current_marks import waiting
+from coursework.database.current_marks import answers_waiting
 from coursework.database.tables import answer, dealt, decision, delivery, marking, variant
 
 
@@ -50,5 +50,5 @@ def _summary(connection: Connection, name: str, number: int) -> Summary:
         count(select(func.count()).select_from(sheets)),
         count(select(func.count()).select_from(marking).where(marking.c.assignment_id == number)),
         count(select(func.count()).select_from(decision).where(decision.c.assignment_id == number)),
-        len(waiting(connection, number)),
+        answers_waiting(connection, number),
     )

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from coursework.course.course import Course
 from coursework.errors import BadInput, nearest
-from coursework.gradebook.changes import rows_of
+from coursework.gradebook.changes import lines_of, rows_of
 from coursework.gradebook.columns import MARKS_COLUMNS, REJECTED_COLUMNS, SITTING, VERDICTS
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import Sheets, placed_sheets
@@ -27,7 +27,7 @@ from coursework.issuing.students import folded
 from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 from coursework.messages import Message
-from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
+from coursework.system.tables import as_written, delimiter_of, open_csv
 
 _NEEDED = tuple(c for c in MARKS_COLUMNS if c not in ("read_as", "feedback"))
 
@@ -148,41 +148,28 @@ def _add_identity(issued: Issued, summary: Path) -> None:
 
 def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
     """Yield the lines that are not empty, with their numbers; the cells by column."""
-    try:
-        with open_csv(path) as file:
-            delimiter = delimiter_of(file.readline())
-            file.seek(0)
-            reader = csv.reader(file, delimiter=delimiter)
-            header = [title.strip().casefold() for title in next(reader, [])]
-            if missing := [c for c in _NEEDED if c not in header]:
-                titles = ", ".join(filter(None, header)) or "nothing"
-                raise BadInput(
-                    "{file} needs the columns {needed}; {missing} missing, found {found}",
-                    file=path,
-                    needed=", ".join(_NEEDED),
-                    missing=", ".join(missing),
-                    found=titles[:200],
-                )
-            if twice := duplicate_column(header, MARKS_COLUMNS):
-                raise BadInput("{file}: {problem}", file=path, problem=twice)
-            for cells in reader:
-                if any(cell.strip() for cell in cells):
-                    if len(cells) < len(header):
-                        raise BadInput(
-                            "{file}, line {line}: {cells} cells where the header has {most}",
-                            file=path,
-                            line=reader.line_num,
-                            cells=len(cells),
-                            most=len(header),
-                        )
-                    values = (as_written(cell.strip()) for cell in cells)
-                    yield reader.line_num, dict(zip(header, values, strict=False))
-    except OSError as fault:
-        raise BadInput(
-            "{file} cannot be read: {problem}", file=path, problem=fault.strerror or fault
-        ) from fault
-    except csv.Error as fault:
-        raise BadInput("{file} is not CSV: {problem}", file=path, problem=fault) from fault
+    header: list[str] = []
+    for number, row, _ in lines_of(path, None, MARKS_COLUMNS):
+        if not any(row.values()):
+            continue
+        header = header or list(row)
+        if missing := [c for c in _NEEDED if c not in header]:
+            raise BadInput(
+                "{file} needs the columns {needed}; {missing} missing, found {found}",
+                file=path,
+                needed=", ".join(_NEEDED),
+                missing=", ".join(missing),
+                found=(", ".join(filter(None, header)) or "nothing")[:200],
+            )
+        if len(row) < len(header):
+            raise BadInput(
+                "{file}, line {line}: {cells} cells where the header has {most}",
+                file=path,
+                line=number,
+                cells=len(row),
+                most=len(header),
+            )
+        yield number, row
 
 
 def _check_verdict(location: str, verdict: str) -> None:

@@ -145,9 +145,6 @@ def sheet_rows(
         )
 
 
-# , answer=answer, source=where, warning=warning, lang=lang)
-
-
 def as_answer(answer: Any) -> Any:
     """Return an answer as it is marked: coordinates joined, and numbers with too many digits as texts."""
     if isinstance(answer, (list, tuple)):

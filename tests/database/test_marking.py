@@ -14,16 +14,15 @@ from stored_class import ANA, BEN, CAME, CLEO, content, put, rows
 import coursework
 from coursework.database import marking as marking_module
 from coursework.database.assignments import put_issued
-from coursework.database.current_marks import gradebook, graded
-from coursework.database.marking import mark_new, mark_submission, would_change
+from coursework.database.current_marks import graded
+from coursework.database.marking import Work, mark_new, mark_submission, would_change
 from coursework.database.states import ENGINE, exercise_state
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import mark, marking, person
-from coursework.gradebook.book import marks_rows, summary_rows
-from coursework.gradebook.class_marking import marked
+from coursework.gradebook.book import marks_rows
+from coursework.gradebook.class_marking import marked, rejecting
 from coursework.gradebook.feedback_sheets import feedback_sheet
 from coursework.gradebook.placing import placed_sheets
-from coursework.gradebook.rows import Rejected
 from coursework.issuing.issued import Issued
 from coursework.rendering.renderer import renderer_of
 
@@ -98,24 +97,6 @@ def test_tables_and_sheets_are_made_of_what_comes_back(store, number, course, to
             renderer_of(course.folder).html(feedback_sheet(course, g, answers=True)) for g in (one, other)
         ]
         assert html[0] == html[1]
-
-
-def test_the_class_as_it_stands_is_summed_as_ever(store, number, course, told, three):
-    mark_new(course, store, number)
-    with store.begin() as connection:
-        insert_submission(
-            connection, number, [Rejected("x.csv", "not read")], source="x.csv", received_at=CAME
-        )
-    with store.reading() as connection:
-        book = gradebook(connection, course, number)
-    expected = [*summary_rows(book)]
-    assert [row["student"] for row in expected] == [ANA, BEN, CLEO]
-    assert (book.rows_in, book.marked, len(book.rejected), book.unreadable) == (
-        sum(map(len, three)) + 1,
-        sum(map(len, three)),
-        1,
-        1,
-    )
 
 
 def test_nothing_new_is_not_marked_again(store, number, course, monkeypatch):
@@ -286,8 +267,8 @@ def test_a_sheet_that_cannot_be_marked_says_so_each_time(store, number, course, 
     list(marked(course, issued, sheets))
     mark_new(course, store, number)
     for _ in range(2):
-        with store.reading() as connection:
-            book = gradebook(connection, course, number)
-        assert book.rejected == sheets.rejected != []
-        assert book.warnings == sheets.warnings
+        work = Work(course, store, number)
+        list(rejecting(work.sheets, work.results()))
+        assert work.sheets.rejected == sheets.rejected != []
+        assert work.sheets.warnings == sheets.warnings
         assert mark_new(course, store, number).marked == 0
