@@ -14,8 +14,9 @@ from coursework.course.course import Course
 from coursework.course.key_batch import keys_of
 from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
-from coursework.errors import CourseworkError
+from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook.class_marking import rules_of
+from coursework.gradebook.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, points_of
 from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise, significant, unit_text
@@ -25,10 +26,11 @@ from coursework.model import Part
 from coursework.sheets.answer_sheet import answer_text
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Handout, Question
-from coursework.site.frame.requests import Request
+from coursework.site.frame.requests import HTTPException, Request
 from coursework.site.frame.times import moment_text
 
 _HALF = 1.0  #: points from which the step is half a point; below, it is half of the part's points
+_KINDS = {"accept": ACCEPTED, "keep": KEPT, "withdraw": WITHDRAWN}
 _STEPS = 12  #: maximum number of buttons
 
 
@@ -141,14 +143,39 @@ def moment(at: datetime, lang: str) -> str:
     return moment_text(at.replace(second=0, microsecond=0), lang)
 
 
-def decided_words(request: Request, decision: Any) -> str:
+def decided_words(request: Request, decision: Any, at: datetime) -> str:
     """Return a line on a decision: its kind, its author and its time."""
     texts = request.words["queue"]["made"]
     points = localise(f"{decision.points or 0:g}", request.lang)
-    line = str(texts[decision.kind]).format(
-        by=decision.by, at=moment(decision.made, request.lang), points=points
-    )
+    line = str(texts[decision.kind]).format(by=decision.by, at=moment(at, request.lang), points=points)
     return f"{line} {quoted(decision.reason, request.lang)}" if decision.reason else line
+
+
+def requested_decision(request: Request, mark: Mark) -> tuple[str, float | None]:
+    """Return the kind of the decision on an answer that a form states, and its points.
+
+    Raises
+    ------
+    HTTPException
+        The form names no decision.
+    BadInput
+        The points are not a number, or exceed the maximum.
+    """
+    asked_for, texts = request.form.text("do"), request.words["queue"]
+    if asked_for == "refuse":
+        return (GIVEN, 0.0) if mark.verdict in ("unreadable", "to_mark") else (KEPT, None)
+    if asked_for in _KINDS:
+        return _KINDS[asked_for], None
+    if asked_for != "points" and not asked_for.startswith("give:"):
+        raise HTTPException("bad_request", 400)
+    text = request.form.text("points") if asked_for == "points" else asked_for.removeprefix("give:")
+    points = points_of(text.strip(), texts["points"])
+    if points is None:
+        raise BadInput(texts["no_points"])
+    if points > mark.out_of:
+        most = localise(f"{mark.out_of:g}", request.lang)
+        raise BadInput(texts["too_many"].format(localise(text, request.lang), most))
+    return GIVEN, points
 
 
 def raw_texts(marks: Sequence[Mark]) -> tuple[str, ...]:

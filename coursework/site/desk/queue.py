@@ -19,12 +19,19 @@ from coursework.database.instructor_queries import (
 )
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
-from coursework.gradebook.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Decision, points_of
+from coursework.gradebook.decisions import WITHDRAWN, Decision
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
 from coursework.language.numbers import localise, significant
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
-from coursework.site.desk.question_cards import QuestionCard, decided_words, question_card, raw_texts, steps
-from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.desk.question_cards import (
+    QuestionCard,
+    decided_words,
+    question_card,
+    raw_texts,
+    requested_decision,
+    steps,
+)
+from coursework.site.frame.requests import Request, Route
 
 REJECTED = "rejected"
 LONGEST = 2000  #: characters of a comment
@@ -132,7 +139,7 @@ def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:
     margin = "" if first.margin is None else localise(significant(first.margin, 2), request.lang)
     return QueueCard(
         item, question_card(now.course, now.issued, first.sheet, group.part, request.lang), first, waits,
-        tuple((entry.student, decided_words(request, done)) for entry, done in decisions if done is not None), now.number(group.exercise, group.part), margin,
+        tuple((entry.student, decided_words(request, done, done.made)) for entry, done in decisions if done is not None and done.made), now.number(group.exercise, group.part), margin,
         raw_texts([entry.mark for entry in group.members]), steps(first.mark.out_of),
         sum(len(entry.members) for entry in _alike(now, group)),
     )  # fmt: skip
@@ -163,16 +170,15 @@ def decided(request: Request) -> Response:
     """Apply the decision of a form and return the next card."""
     filters = Filters.of({k: request.form.text(k) for k in ("why", "exercise", "part")})
     now = class_here(request)
-    asked_for = request.form.text("do")
-    if asked_for == "undo":
+    if request.form.text("do") == "undo":
         return _undone(request, now, filters)
     name = request.form.text("group")
     group = next((candidate for candidate in now.groups if candidate.id == name), None)
     if group is None:
         return card_response(request, now, filters, "", message=request.words["queue"]["anew"])
-    before = [candidate.id for candidate in _around(now, filters)]
+    before = [candidate.id for candidate in items(now, filters)]
     try:
-        message = _decide(request, now, group, asked_for)
+        message = _decide(request, now, group)
     except BadInput as fault:
         return card_response(request, now, filters, name, message=str(fault))
     later = class_now(request.site, now.about.id)
@@ -193,10 +199,6 @@ def watch(request: Request) -> Response:
     decision = now.decisions.standing(group.first.sheet, group.first.mark)
     message = request.words["queue"]["taken"].format(decision.by, 1) if decision else ""
     return request.render("site/instructor/_told", told=message)
-
-
-def _around(now: ClassState, filters: Filters) -> list[QueueItem]:
-    return items(now, filters)
 
 
 def _after(before: Sequence[str], name: str, now: ClassState, filters: Filters) -> str:
@@ -296,9 +298,9 @@ def _by_question(now: ClassState, filters: Filters) -> list[tuple[str, str, str,
 # ------------------------------------------------------------------------ deciding
 
 
-def _decide(request: Request, now: ClassState, group: AnswerGroup, asked_for: str) -> str:
+def _decide(request: Request, now: ClassState, group: AnswerGroup) -> str:
     """Store the decision on the answers that nobody else has decided on meanwhile; return the message."""
-    kind, points = _requested_decision(asked_for, request, group)
+    kind, points = requested_decision(request, group.first.mark)
     members = list(_chosen(request, now, group))
     if request.form.text("everywhere") and not points:
         members += [answer for other in _alike(now, group) for answer in other.members]
@@ -344,32 +346,6 @@ def _chosen(request: Request, now: ClassState, group: AnswerGroup) -> Sequence[A
     return [answer for answer in waits if answer.student == student] or waits[:1]
 
 
-def _requested_decision(asked_for: str, request: Request, group: AnswerGroup) -> tuple[str, float | None]:
-    """Return the kind of a decision, and its points.
-
-    Raises
-    ------
-    HTTPException
-        The form names no decision.
-    BadInput
-        The points are not a number, or exceed the maximum.
-    """
-    if asked_for == "accept":
-        return ACCEPTED, None
-    if asked_for == "refuse":
-        return (GIVEN, 0.0) if group.first.mark.verdict in ("unreadable", "to_mark") else (KEPT, None)
-    points_text = request.form.text("points") if asked_for == "points" else asked_for.removeprefix("give:")
-    if asked_for != "points" and not asked_for.startswith("give:"):
-        raise HTTPException("bad_request", 400)
-    points = points_of(points_text.strip(), request.words["queue"]["points"])
-    if points is None:
-        raise BadInput(request.words["queue"]["no_points"])
-    if points > group.first.mark.out_of:
-        most = localise(f"{group.first.mark.out_of:g}", request.lang)
-        raise BadInput(request.words["queue"]["too_many"].format(localise(points_text, request.lang), most))
-    return GIVEN, points
-
-
 def _target(answer: AnswerToReview) -> DecidedAnswer:
     return DecidedAnswer(
         answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part, answer.mark.answer
@@ -382,11 +358,10 @@ def _decided_meanwhile(
     """Return the answers with a later decision."""
     decisions: dict[tuple[str, str, str, str], Decision] = {}
     for decision in later:
-        key = decision.student, decision.exercise, decision.seed, decision.part
         if decision.kind == WITHDRAWN:
-            decisions.pop(key, None)
+            decisions.pop(decision.answer_id, None)
         else:
-            decisions[key] = decision
+            decisions[decision.answer_id] = decision
     return decisions
 
 
@@ -411,17 +386,10 @@ def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
         return card_response(
             request, later, filters, request.form.text("group"), message=texts["nothing_to_undo"]
         )
-    at = next(
-        (candidate.group.id for candidate in later.open.values() if _is_of(candidate.members, batch[0])), ""
-    )
+    cards = later.open.values()
+    at = next((card.group.id for card in cards if batch[0].answer_id in map(_key, card.members)), "")
     next_filters = filters if any(candidate.id == at for candidate in items(later, filters)) else Filters()
     return card_response(request, later, next_filters, at, message=texts["undone"].format(len(batch)))
-
-
-def _is_of(members: Sequence[AnswerToReview], decision: Decision) -> bool:
-    return any(
-        _key(w) == (decision.student, decision.exercise, decision.seed, decision.part) for w in members
-    )
 
 
 ROUTES = (

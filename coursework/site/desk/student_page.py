@@ -25,7 +25,6 @@ from coursework.database.instructor_queries import people_of, practised, submiss
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.columns import own_columns
-from coursework.gradebook.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, points_of
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.issuing.students import folded
@@ -37,6 +36,7 @@ from coursework.site.desk.question_cards import (
     decided_words,
     moment,
     question_card,
+    requested_decision,
     sign_of,
     steps,
 )
@@ -167,20 +167,7 @@ def _history_line(request: Request, event: HistoryEvent) -> str:
         text = request.words["class"]["marked"]
         at = moment(event.at, request.lang)
         return str(text).format(verdict_word(event.verdict, request.lang), f"{event.points or 0:g}", at)
-    return decided_words(request, _EventDecision(event))
-
-
-class _EventDecision:
-    """Event of the history, in the form of a decision."""
-
-    def __init__(self, event: HistoryEvent):
-        self.kind, self.points, self.by, self.made, self.reason = (
-            event.kind,
-            event.points,
-            event.by,
-            event.at,
-            event.reason,
-        )
+    return decided_words(request, event, event.at)
 
 
 def _practised(request: Request, name: str, variants: int, last: datetime | None) -> PracticeSummary:
@@ -210,7 +197,7 @@ def _decided(request: Request, now: ClassState, student: str) -> str:
     )
     if sheet is None or part not in sheet.lines:
         raise HTTPException("own", 404)
-    kind, points = _kind(form.text("do"), form.text("points"), sheet.lines[part], texts)
+    kind, points = requested_decision(request, sheet.lines[part])
     target = DecidedAnswer(student, exercise, seed, part, sheet.lines[part].answer)
     with request.site.store.begin() as connection:
         decide(
@@ -223,21 +210,7 @@ def _decided(request: Request, now: ClassState, student: str) -> str:
             request.actor.name,
         )
         request.note(connection, "decision", assignment=now.about.id, exercise=exercise, part=part, kind=kind, points=points, count=1)  # fmt: skip
-    return str(texts["decided"][kind]).format(1, f"{points or 0:g}")
-
-
-def _kind(asked_for: str, points: str, mark: Mark, texts: Any) -> tuple[str, float | None]:
-    if asked_for == "points":
-        given = points_of(points.strip(), texts["points"])
-        if given is None:
-            raise BadInput(texts["no_points"])
-        if given > mark.out_of:
-            raise BadInput(texts["too_many"].format(points, f"{mark.out_of:g}"))
-        return GIVEN, given
-    kinds = {"accept": ACCEPTED, "keep": KEPT, "withdraw": WITHDRAWN}
-    if asked_for not in kinds:
-        raise HTTPException("bad_request", 400)
-    return kinds[asked_for], None
+    return str(texts["decided"][kind]).format(1, localise(f"{points or 0:g}", request.lang))
 
 
 ROUTES = (
