@@ -181,7 +181,7 @@ def _bodies() -> Iterator[_Body]:
 
 def bodies() -> None:
     """A demonstration's site, its instructor signed in, and what becomes of each body."""
-    staff = r'value="(\d+)">[^<]*<span[^>]*>(?:instructor|enseignant)'
+    staff = r'value="(\d+)">[^<]*<span[^>]*>(?:administrator|administrateur)'
     with _demonstration() as (pid, url), _signed_in(url, staff) as client:
         rows = [_sent(client, int(url.rpartition(":")[2]), pid, body) for body in _bodies()]
     print_table(("a body of", "status", "ms", "ms of a processor", "memory before, MB", "at most, MB"), rows)

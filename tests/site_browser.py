@@ -1,6 +1,7 @@
 """The site in the system's Chromium: a server on the loopback interface, pages of a telephone and of a desk."""
 
 import os
+import re
 import shutil
 import threading
 import time
@@ -77,6 +78,13 @@ def context_of(browser, class_, address, name=None, lang="en", size="telephone",
         host = urlsplit(address).hostname
         context.add_cookies([{"name": COOKIE, "value": cookie, "domain": host, "path": "/"}])
     return context
+
+
+def told(page, words):
+    """Wait until the page tells so of saving."""
+    from playwright.sync_api import expect
+
+    expect(page.locator("[data-kept], [data-kept-left]")).to_contain_text(re.compile(words), timeout=30_000)
 
 
 def serious(page):

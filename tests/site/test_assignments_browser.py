@@ -1,11 +1,10 @@
 """Handing in by a real browser: with the site's script and without it; what is typed while the line is down is not lost."""
 
-import re
 from dataclasses import replace
 
 import pytest
 from site_assignments import USUAL, dealt
-from site_browser import WIDTHS, chromium, context_of, serious, served, too_wide
+from site_browser import WIDTHS, chromium, context_of, serious, served, told, too_wide
 from site_people import ZOE
 
 from coursework.database.drafts import drafts
@@ -25,13 +24,6 @@ def typed(one, number):
         return {
             name: box.text for name, box in drafts(connection, one.ids[ZOE], f"assignment/{number}").items()
         }
-
-
-def told(page, words):
-    """Wait until the page tells so of saving."""
-    from playwright.sync_api import expect
-
-    expect(page.locator("[data-kept]")).to_contain_text(re.compile(words), timeout=30_000)
 
 
 @pytest.mark.parametrize("script", [True, False])

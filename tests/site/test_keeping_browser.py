@@ -1,13 +1,13 @@
 """What is typed is kept, whatever happens to the line, the page and the session: on sheets to practise and on papers alike."""
 
 import re
-import time
 from dataclasses import replace
 
 import pytest
 from site_assignments import ASSIGNMENT, CLOSES, dealt
-from site_browser import chromium, context_of, serious, served, too_wide
+from site_browser import chromium, context_of, serious, served, told, too_wide
 from site_people import MAX, ZOE, Class, signed_in
+from site_server import until
 
 from coursework.database.drafts import drafts
 from coursework.site.frame.cookies import COOKIE
@@ -78,20 +78,6 @@ def device(desk, request):
     found = Device(desk, request.param, re.sub(r"\W", "", request.node.name))
     yield found
     found.context.close()
-
-
-def told(page, words):
-    """Wait until the page tells so of saving."""
-    from playwright.sync_api import expect
-
-    expect(page.locator("[data-kept], [data-kept-left]")).to_contain_text(re.compile(words), timeout=30_000)
-
-
-def until(is_so):
-    end = time.monotonic() + 60
-    while not is_so():
-        assert time.monotonic() < end, "it does not come to pass"
-        time.sleep(0.05)
 
 
 def left(page):

@@ -29,7 +29,6 @@ from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 
 LONGEST = 4000  #: characters of an answer
 _ID = re.compile(r"[0-9a-f]{16}-\d{4,6}")
-_PICTURE_SECONDS = 3600  #: seconds for which a browser may keep a picture
 
 
 @dataclass(frozen=True)
