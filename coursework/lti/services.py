@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode, urlsplit, urlunsplit
 
 import httpx
@@ -17,8 +17,10 @@ from coursework.errors import CourseworkError
 from coursework.lti.keys import KeyFolder
 from coursework.lti.roles import Role, role_of
 from coursework.lti.settings import LTIPlatform, origin
-from coursework.lti.storage import Waiting
 from coursework.messages import Message
+
+if TYPE_CHECKING:
+    from coursework.lti.storage import Waiting
 
 _GRADES = "https://purl.imsglobal.org/spec/lti-ags/scope/"
 SCORE, LINE, LINE_READ = f"{_GRADES}score", f"{_GRADES}lineitem", f"{_GRADES}lineitem.readonly"
