@@ -42,7 +42,21 @@ class Degrees(NamedTuple):
 
     @staticmethod
     def between(start: Any, end: Any) -> Degrees:
-        """Return the angle from one direction to another, ``end - start``, without rounding."""
+        """Return the angle from one direction to another, ``end - start``, without rounding.
+
+        Parameters
+        ----------
+        start, end
+            Angles of the directions, degrees; scalars or arrays that broadcast.
+
+        Returns
+        -------
+        The angle, with what rounding took from it, of the broadcast shape.
+
+        Source
+        ------
+        The rounding error of a sum of two numbers is a number: Knuth's TwoSum.
+        """
         angle = end - start
         part = angle + start
         return Degrees(angle, (end - part) - (start - (part - angle)))
@@ -69,7 +83,22 @@ class Degrees(NamedTuple):
 
     def half_squares(self, scale: Any) -> tuple[Any, Any, Any]:
         """Return cosine squared, sine squared and cosine times sine of half the angle, each times a scale.
-        One tangent gives all three."""
+
+        Parameters
+        ----------
+        scale
+            Factor w, in any unit; a scalar or an array that broadcasts with the angle.
+
+        Returns
+        -------
+        ``w cos^2``, ``w sin^2`` and ``w cos sin`` of half the angle, in the unit of the scale, of the
+        broadcast shape.
+
+        Source
+        ------
+        One tangent t gives all three, ``1 / (1 + t^2)``, ``t^2 / (1 + t^2)`` and ``t / (1 + t^2)``: it is
+        that of what half the angle has beyond whole quarters of a turn.
+        """
         quarters = np.rint(np.multiply(self.angle, 1 / 180))
         beyond = np.multiply(self.angle, 0.5)
         beyond -= 90.0 * quarters
@@ -106,12 +135,32 @@ def _quarters_on(quarters: Any, cos_squared: Any, sin_squared: Any, both: Any) -
 
 
 def heading_in_degrees(angle: Any) -> Degrees:
-    """Return the heading of an angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0."""
+    """Return the heading of an angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0.
+
+    Parameters
+    ----------
+    angle
+        Degrees; a scalar or an array.
+
+    Returns
+    -------
+    The heading, of the same shape.
+    """
     return Degrees(angle)
 
 
 def taken_apart(angle: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
-    """Return a constructor and the arrays from which it builds these radians or this heading again."""
+    """Return a constructor and the arrays from which it builds these radians or this heading again.
+
+    Parameters
+    ----------
+    angle
+        Radians or a heading; scalars or arrays of one shape.
+
+    Returns
+    -------
+    The constructor, and as many arrays of floats as it takes, of that shape.
+    """
     make, parts = (type(angle), angle) if isinstance(angle, (HalfAngle, Degrees)) else (_radians, (angle,))
     return make, tuple(np.asarray(part, dtype=float)[()] for part in parts)
 
@@ -122,14 +171,44 @@ def _radians(angle: Any) -> Any:
 
 def heading_after_turns(turns: Any, angle: Any) -> HalfAngle:
     """Return the heading after whole turns and a further angle in radians; the turns cost no digit of the
-    angle."""
+    angle.
+
+    Parameters
+    ----------
+    turns
+        Number of turns, whole; a scalar or an array.
+    angle
+        The further angle, radians; a scalar or an array that broadcasts with the turns.
+
+    Returns
+    -------
+    The heading, of the broadcast shape.
+
+    Source
+    ------
+    Cosine and sine of half the angle change sign with each turn.
+    """
     sign = np.where(np.mod(turns, 2) == 0, 1.0, -1.0)[()]
     half = np.multiply(angle, 0.5)
     return HalfAngle(np.cos(angle), np.sin(angle), sign * np.cos(half), sign * np.sin(half))
 
 
 def heading_of(cos: Any, sin: Any) -> HalfAngle:
-    """Return the heading of a unit vector, its angle in (-pi, pi]."""
+    """Return the heading of a unit vector, its angle in (-pi, pi].
+
+    Parameters
+    ----------
+    cos, sin
+        Components of the unit vector; scalars or arrays of one shape.
+
+    Returns
+    -------
+    The heading, of that shape.
+
+    Source
+    ------
+    Cosine and sine of half the angle are the roots of :func:`halves`; the sine has the sign of ``sin``.
+    """
     larger, smaller = halves(np.abs(cos), sin)
     ahead = np.greater_equal(cos, 0)
     half_cos, half_sin = np.sqrt(np.where(ahead, larger, smaller)), np.sqrt(np.where(ahead, smaller, larger))
@@ -137,14 +216,34 @@ def heading_of(cos: Any, sin: Any) -> HalfAngle:
 
 
 def full_angle(angle: Any) -> tuple[Any, Any]:
-    """Return the cosine and sine of radians or of a heading."""
+    """Return the cosine and sine of radians or of a heading.
+
+    Parameters
+    ----------
+    angle
+        Radians or a heading; scalars or arrays of one shape.
+
+    Returns
+    -------
+    Cosine and sine, of that shape.
+    """
     if isinstance(angle, (HalfAngle, Degrees)):
         return angle.cos, angle.sin
     return np.cos(angle), np.sin(angle)
 
 
 def half_angle(angle: Any) -> tuple[Any, Any]:
-    """Return the signed cosine and sine of half the angle, each accurate to the last digits near its zero."""
+    """Return the signed cosine and sine of half the angle, each accurate to the last digits near its zero.
+
+    Parameters
+    ----------
+    angle
+        Radians or a heading; scalars or arrays of one shape.
+
+    Returns
+    -------
+    Cosine and sine of half the angle, of that shape.
+    """
     if isinstance(angle, (HalfAngle, Degrees)):
         return angle.half_cos, angle.half_sin
     half = np.multiply(angle, 0.5)
@@ -153,6 +252,22 @@ def half_angle(angle: Any) -> tuple[Any, Any]:
 
 def halves(abs_cos: Any, sin: Any) -> tuple[Any, Any]:
     """Return (1 + cos)/2 and (1 - cos)/2, the larger first, neither as a difference. Exchange the arguments
-    for the sine."""
+    for the sine.
+
+    Parameters
+    ----------
+    abs_cos
+        Absolute value of the cosine, from 0 to 1; a scalar or an array.
+    sin
+        Sine of the same angle, of the same shape.
+
+    Returns
+    -------
+    Both halves for this absolute value, of that shape.
+
+    Source
+    ------
+    ``1 - cos = sin^2 / (1 + cos)``.
+    """
     larger = (1 + abs_cos) / 2
     return larger, np.multiply(sin, sin) / (4 * larger)

@@ -11,10 +11,21 @@ import numpy as np
 
 
 def rise_345(u: Any) -> tuple[Any, Any, Any]:
-    """Return the lift, 0 to 1 as ``u`` goes from 0 to 1, and its first and second derivatives by ``u``; at
-    rest outside.
+    """Return the lift, 0 to 1 as ``u`` goes from 0 to 1, and its first and second derivatives by ``u``; at rest
+    outside.
 
-    Source: ``10 u^3 - 15 u^4 + 6 u^5``, in factors that keep the digits near both ends.
+    Parameters
+    ----------
+    u
+        Cam angle as a share of the angle of the rise; a scalar or an array.
+
+    Returns
+    -------
+    The lift as a share of the whole rise, its first and its second derivative, of the same shape.
+
+    Source
+    ------
+    ``10 u^3 - 15 u^4 + 6 u^5``, in factors that keep the digits near both ends.
     """
     u = np.minimum(np.maximum(u, 0.0), 1.0)
     left = 1.0 - u
@@ -22,11 +33,31 @@ def rise_345(u: Any) -> tuple[Any, Any, Any]:
 
 
 def rise_dwell_return(u: Any, dwell: Any, turn: Any) -> tuple[Any, Any]:
-    """Return a follower's lift, 0 to 1, at the cam angle ``u``, and +1 while it rises or -1 while it returns;
-    the angle of a rise is 1.
+    """Return how far a follower's rise has come at the cam angle ``u``, 0 to 1, and +1 while it rises or -1
+    while it returns.
 
-    It rises while u goes from 0 to 1, stays up during ``dwell``, returns as it rose, and stays down for the rest of the
-    ``turn``, which is longer than ``2 + dwell``. ``u`` is no more than a turn from 0 either way.
+    It rises while u goes from 0 to 1, stays up during the dwell, returns as it rose, and stays down for the
+    rest of the turn.
+
+    Parameters
+    ----------
+    u
+        Cam angle in units of the angle of a rise, no more than a turn from 0 either way; a scalar or an
+        array.
+    dwell
+        Angle of the upper dwell in the same unit; a scalar or an array that broadcasts.
+    turn
+        Angle of a whole turn in the same unit, longer than ``2 + dwell``; a scalar or an array that
+        broadcasts.
+
+    Returns
+    -------
+    The share of the rise's angle, from 0 to 1, of which the law gives the lift, and +1 or -1, of the
+    broadcast shape.
+
+    Source
+    ------
+    The motion is symmetric about the middle of the dwell.
     """
     after = u - 1.0 - dwell / 2.0  # the middle of the dwell, about which all is symmetric
     away = np.minimum(abs(after), abs(turn - abs(after)))

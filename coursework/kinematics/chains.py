@@ -151,15 +151,32 @@ class ClosedChain:
     def rates(
         self, values: Mapping[str, Any], known_rates: Mapping[str, Sequence[Any]], *, order: int = 1
     ) -> dict[str, tuple]:
-        """Return the time derivatives of the unknowns by name, from the first to ``order`` (at most 3).
+        """Return the time derivatives of the unknowns by name; all orders share the Jacobian.
 
-        ``values`` holds the known values and the unknowns of a closed pose; ``known_rates`` the
-        derivatives of the known names that vary. All orders share the Jacobian.
+        Parameters
+        ----------
+        values
+            Known values and unknowns of a closed pose by name: lengths in one unit, angles in radians or as
+            headings; scalars or arrays that broadcast.
+        known_rates
+            Time derivatives of the known names that vary, from the first on: rad/s or the unit of length per
+            second, and so on.
+        order
+            Highest order of the derivatives, 1 to 3.
+
+        Returns
+        -------
+        By unknown its derivatives from the first to ``order``, of the broadcast shape, in the units of the
+        known ones.
 
         Raises
         ------
         Undefined
             Scalars only: a dead point, where the Jacobian is singular. Not finite in arrays.
+
+        Source
+        ------
+        The loop-closure equations, differentiated: each order is one linear system.
         """
         exponent = exponent_of(
             *[np.asarray(values[name], float) for name in sorted(self._lengths)], *self._measures, 0.0

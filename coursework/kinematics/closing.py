@@ -35,7 +35,23 @@ class Sweep(NamedTuple):
 
 
 def sweep(angle: Any, w: Any) -> Sweep:
-    """Return the sweep of an angle in radians or of a heading; radians and degrees cost one tangent."""
+    """Return the sweep of an angle in radians or of a heading; radians and degrees cost one tangent.
+
+    Parameters
+    ----------
+    angle
+        Radians or a heading (:mod:`angles`); a scalar or an array.
+    w
+        Number w of the linkage, in the unit of its margins; a scalar or an array that broadcasts.
+
+    Returns
+    -------
+    The products in the unit of w, of the broadcast shape, without signed cosine and sine.
+
+    Source
+    ------
+    With t the tangent of half the angle: ``w / (1 + t^2)``, ``w t^2 / (1 + t^2)`` and ``w t / (1 + t^2)``.
+    """
     if isinstance(angle, Degrees):
         return Sweep(*angle.half_squares(w))
     if isinstance(angle, HalfAngle):
@@ -48,17 +64,43 @@ def sweep(angle: Any, w: Any) -> Sweep:
 
 
 def signed_sweep(angle: Any, w: Any) -> Sweep:
-    """Return the sweep of an angle with its signed cosine and sine."""
+    """Return the sweep of an angle with its signed cosine and sine.
+
+    Parameters
+    ----------
+    angle
+        Radians or a heading (:mod:`angles`); a scalar or an array.
+    w
+        Number w of the linkage, positive, in the unit of its margins; a scalar or an array that broadcasts.
+
+    Returns
+    -------
+    The products in the unit of w, cosine and sine in that of its root, of the broadcast shape.
+    """
     cos, sin = half_angle(angle)
     cos, sin = np.sqrt(w) * cos, np.sqrt(w) * sin
     return Sweep(cos * cos, sin * sin, cos * sin, cos, sin)
 
 
 def in_time(by_angle: Sequence[tuple[Any, ...]], rates: Sequence[Any]) -> tuple[Any, ...]:
-    """Return the time derivatives of quantities that depend on a crank angle, order after order (chain rule).
+    """Return the time derivatives of quantities that depend on a crank angle, order after order.
 
-    ``by_angle`` holds, for each order, the derivatives of all quantities by the angle; ``rates`` the time
-    derivatives of the angle, as many.
+    Parameters
+    ----------
+    by_angle
+        For each order from the first on, the derivatives of all quantities by the angle in radians; scalars
+        or arrays that broadcast.
+    rates
+        Time derivatives of the angle, rad/s, rad/s^2 and rad/s^3: one to three, as many as there are orders.
+
+    Returns
+    -------
+    The derivatives of all quantities in one tuple, those of the first order first.
+
+    Source
+    ------
+    The chain rule: ``q1 w``, ``q2 w^2 + q1 w'`` and ``q3 w^3 + 3 q2 w w' + q1 w''`` for the derivatives q1,
+    q2, q3 by the angle and the rate w.
     """
     first, rate = by_angle[0], rates[0]
     results = tuple(g * rate for g in first)
@@ -95,6 +137,26 @@ def closing(stretched: Any, folded: Any, side: Any, swept: Sweep, direct: Any = 
     likewise for Q.
 
     ``direct`` is P where it is known better than by its sum, NaN elsewhere.
+
+    Parameters
+    ----------
+    stretched, folded
+        Grashof margins E+ and E-, in one unit; scalars or arrays that broadcast with those of the sweep.
+    side
+        +1 or -1, the sign of S.
+    swept
+        Sweep of the angle, in the unit of the margins.
+    direct
+        P where it is known better than by its sum, NaN elsewhere; none unless told.
+
+    Returns
+    -------
+    All margins, P and Q in the unit given, S too but for the factor ``side``; S is NaN where the loop does
+    not close.
+
+    Source
+    ------
+    ``P = E+ + w cos^2(t / 2)``, ``Q = E- + w sin^2(t / 2)`` and ``S = side sqrt(P Q)``.
     """
     stretch, fold = stretched + swept.cos_squared, folded + swept.sin_squared
     if direct is not None:

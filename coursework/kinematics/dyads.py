@@ -29,23 +29,73 @@ Rates = Sequence[Any]  #: time derivatives of a point (complex) or of an angle, 
 
 
 def side_of(mode: Any) -> Any:
-    """Return +1 for ``open`` (or ``left``), -1 for ``crossed`` (or ``right``); arrays of texts as well."""
+    """Return +1 for ``open`` (or ``left``), -1 for ``crossed`` (or ``right``); arrays of texts as well.
+
+    Parameters
+    ----------
+    mode
+        One of the four words, or an array of them.
+
+    Returns
+    -------
+    +1 or -1, of the same shape.
+
+    Raises
+    ------
+    KeyError
+        A single word that is none of the four.
+    """
     if isinstance(mode, str):
         return {"open": OPEN, "left": OPEN, "crossed": CROSSED, "right": CROSSED}[mode]
     return np.where(np.isin(mode, ("open", "left")), OPEN, CROSSED)
 
 
 def rotating(pivot: Any, length: Any, angle: Any) -> Any:
-    """Return the end of a crank about ``pivot``; ``angle`` in radians or a :class:`Heading`.
+    """Return the end of a crank about ``pivot``.
 
     Its derivatives are :func:`vectors.turned` of the vector from the pivot.
+
+    Parameters
+    ----------
+    pivot
+        Fixed end, complex.
+    length
+        Length of the crank, in the unit of the pivot.
+    angle
+        Radians or a heading (:mod:`angles`).
+
+    Returns
+    -------
+    The point, complex, of the broadcast shape.
+
+    Source
+    ------
+    ``pivot + length e^(i angle)``.
     """
     cos, sin = full_angle(angle)
     return pivot + length * (cos + 1j * sin)
 
 
 def sliding(point: Any, along: Any, distance: Any) -> Any:
-    """Return the pin of a driven slider, ``distance`` from ``point`` in the direction ``along``."""
+    """Return the pin of a driven slider, ``distance`` from ``point`` in the direction ``along``.
+
+    Parameters
+    ----------
+    point
+        Point from which the distance is measured, complex.
+    along
+        Direction, a complex unit vector.
+    distance
+        Length of either sign, in the unit of the point.
+
+    Returns
+    -------
+    The pin, complex, of the broadcast shape.
+
+    Source
+    ------
+    ``point + distance along``.
+    """
     return point + along * distance
 
 
@@ -84,14 +134,32 @@ def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
 def rrp(p: Any, length: Any, line: Any, side: Any = 1, along: Any = 1.0) -> Any:
     """Return the slider pinned to a rod: the point of a line at ``length`` from the rod's other pin ``p``.
 
-    ``line`` is a point of the line if complex; a real number is the ordinate of a horizontal line.
-    ``along`` is its direction, a complex unit vector. ``side`` is +1 when the slider lies ahead of ``p``
-    along it, -1 when behind. Complex, of the broadcast shape.
+    Parameters
+    ----------
+    p
+        Pin of the rod, complex.
+    length
+        Length of the rod, positive.
+    line
+        A point of the line if complex; a real number is the ordinate of a horizontal line.
+    side
+        +1 when the slider lies ahead of ``p`` along the line, -1 when behind.
+    along
+        Direction of the line, a complex unit vector.
+
+    Returns
+    -------
+    The slider, complex, of the broadcast shape.
 
     Raises
     ------
     CannotAssemble
         Scalars only: the rod is shorter than the distance of ``p`` from the line.
+
+    Source
+    ------
+    Pythagoras: the square of the run along the line is ``(length - rise)(length + rise)``, with the rise from
+    ``p`` to the line.
     """
     point = line if np.iscomplexobj(line) else 1j * np.asarray(line)[()]
     return _solved(_rrp, _rrp_failure, p, length, point, side, along)
@@ -100,8 +168,18 @@ def rrp(p: Any, length: Any, line: Any, side: Any = 1, along: Any = 1.0) -> Any:
 def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
     """Return the direction and the slide of a block pinned at ``p`` on a guide pinned at ``q``.
 
-    The slot runs parallel to the guide's own direction u, ``offset`` to the left of q: p = q + (slide + i
-    offset) u. Returns u, a complex unit vector, and the slide, whose sign is ``side``.
+    Parameters
+    ----------
+    p, q
+        Pins of the block and of the guide, complex.
+    offset
+        Distance of the slot from ``q``, parallel to the guide's own direction u; positive to its left.
+    side
+        Sign of the slide, +1 or -1.
+
+    Returns
+    -------
+    The direction u, a complex unit vector, and the slide, in the unit of the points, of the broadcast shape.
 
     Raises
     ------
@@ -109,6 +187,10 @@ def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
         Scalars only: p is nearer to q than the offset.
     Undefined
         Scalars only: p lies on q and there is no offset.
+
+    Source
+    ------
+    ``p = q + (slide + i offset) u`` with ``slide^2 = (|p - q| - offset)(|p - q| + offset)``.
     """
     return _solved(_rpr, _rpr_failure, p, q, offset, side)
 
@@ -116,24 +198,54 @@ def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
 def prp(first_point: Any, first_along: Any, second_point: Any, second_along: Any) -> Any:
     """Return the pin of two blocks, each on its own line: the intersection of the lines. One assembly only.
 
+    Parameters
+    ----------
+    first_point, second_point
+        A point of each line, complex.
+    first_along, second_along
+        Their directions, complex unit vectors.
+
+    Returns
+    -------
+    The pin, complex, of the broadcast shape.
+
     Raises
     ------
     CannotAssemble
         Scalars only: the lines are parallel.
+
+    Source
+    ------
+    Cramer's rule (:func:`vectors.components`).
     """
     return _solved(_prp, _prp_failure, first_point, first_along, second_point, second_along)
 
 
 def rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
     """Return both slides of a body pinned at ``p`` that slides ``across`` a block, which slides ``along`` a
-    line.
+    line. One assembly only.
 
-    p = point + first * along + second * across; returns both slides. One assembly only.
+    Parameters
+    ----------
+    p
+        Pin of the body, complex.
+    point
+        Point of the line from which the first slide is measured, complex.
+    along, across
+        Directions of both slides, complex unit vectors.
+
+    Returns
+    -------
+    The slides along and across, of either sign, in the unit of the points, of the broadcast shape.
 
     Raises
     ------
     CannotAssemble
         Scalars only: the two directions are parallel.
+
+    Source
+    ------
+    ``p = point + first along + second across``, by Cramer's rule (:func:`vectors.components`).
     """
     return _solved(_rpp, _rpp_failure, p, point, along, across)
 
@@ -141,9 +253,28 @@ def rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
 def rrr_rates(p_arm: Any, q_arm: Any, p_rates: Rates, q_rates: Rates) -> tuple[tuple, tuple]:
     """Return the derivatives of the angles of both bodies of an RRR dyad.
 
-    ``p_arm`` = B - p and ``q_arm`` = B - q now; ``p_rates`` and ``q_rates`` the derivatives of p and q
-    from the first on, of equal number. The point B itself moves by ``p_rates`` plus
-    :func:`vectors.turned` of ``p_arm``.
+    The point B itself moves by ``p_rates`` plus :func:`vectors.turned` of ``p_arm``.
+
+    Parameters
+    ----------
+    p_arm, q_arm
+        Vectors B - p and B - q now, complex.
+    p_rates, q_rates
+        Time derivatives of p and q from the first on, complex, of equal number.
+
+    Returns
+    -------
+    The derivatives of the angle of the body at p, and of that at q: rad/s, rad/s^2, rad/s^3, as many as are
+    given.
+
+    Raises
+    ------
+    Undefined
+        Scalars only: both bodies are in line.
+
+    Source
+    ------
+    B has one velocity as a point of either body; so for the higher derivatives.
     """
 
     def known(n: int, p_turn: list, q_turn: list) -> Any:
@@ -158,9 +289,33 @@ def rrp_rates(
 ) -> tuple[tuple, tuple]:
     """Return the derivatives of the rod's angle and of the slide along the line, of an RRP dyad.
 
-    ``arm`` = B - p now. A line that moves has the derivatives ``point_rates`` of its point and
-    ``line_rates`` of its angle, and ``slide`` = distance from that point to B now; a fixed line needs
-    none of them.
+    Parameters
+    ----------
+    arm
+        Vector B - p now, complex.
+    along
+        Direction of the line now, a complex unit vector.
+    p_rates
+        Time derivatives of p from the first on, complex.
+    point_rates
+        Those of the point of a line that moves; none for a fixed line.
+    slide
+        Distance from that point to B now; it counts only for a line that turns.
+    line_rates
+        Time derivatives of the angle of a line that turns, from the first on, rad/s and so on.
+
+    Returns
+    -------
+    The derivatives of the rod's angle, in radians, and of the slide, in the unit of length: as many as p has.
+
+    Raises
+    ------
+    Undefined
+        Scalars only: the rod is perpendicular to the line.
+
+    Source
+    ------
+    B has one velocity as a point of the rod and on the line; so for the higher derivatives.
     """
     count = len(p_rates)
     carried = _padded(point_rates, count)
@@ -175,7 +330,30 @@ def rrp_rates(
 def rpr_rates(arm: Any, unit: Any, p_rates: Rates, q_rates: Rates = ()) -> tuple[tuple, tuple]:
     """Return the derivatives of the slide and of the guide's angle, of an RPR dyad.
 
-    ``arm`` = p - q and ``unit`` the guide's direction now. The second derivative holds the Coriolis term.
+    Parameters
+    ----------
+    arm
+        Vector p - q now, complex.
+    unit
+        Direction of the guide now, a complex unit vector.
+    p_rates
+        Time derivatives of p from the first on, complex.
+    q_rates
+        Those of q; none where it is fixed.
+
+    Returns
+    -------
+    The derivatives of the slide, in the unit of length, and of the guide's angle, in radians: as many as p
+    has.
+
+    Raises
+    ------
+    Undefined
+        Scalars only: the arm is perpendicular to the guide.
+
+    Source
+    ------
+    :func:`vectors.derivative` of the arm; the second holds the Coriolis term.
     """
     carried = _padded(q_rates, len(p_rates))
 
@@ -195,9 +373,29 @@ def prp_rates(
 ) -> tuple[tuple, tuple]:
     """Return the derivatives of both slides of a PRP dyad.
 
-    ``first_rates`` and ``second_rates`` are the derivatives of the lines' points; lines that turn have
-    the derivatives ``line_rates`` of their angles, and ``slides`` = the distances from these points to
-    the pin now.
+    Parameters
+    ----------
+    first_along, second_along
+        Directions of the lines now, complex unit vectors.
+    first_rates, second_rates
+        Time derivatives of the lines' points from the first on, complex, of equal number.
+    slides
+        Distances from these points to the pin now; they count only for lines that turn.
+    line_rates
+        Time derivatives of the angles of lines that turn, from the first on, rad/s and so on.
+
+    Returns
+    -------
+    The derivatives of the first and of the second slide, in the unit of length: as many as the points have.
+
+    Raises
+    ------
+    Undefined
+        Scalars only: the lines are parallel.
+
+    Source
+    ------
+    The pin has one velocity on either line; so for the higher derivatives.
     """
 
     def known(n: int, first: list, second: list) -> Any:
@@ -217,7 +415,34 @@ def rpp_rates(
     line_rates: Rates = (),
 ) -> tuple[tuple, tuple]:
     """Return the derivatives of both slides of an RPP dyad; both directions turn with the line, by
-    ``line_rates``."""
+    ``line_rates``.
+
+    Parameters
+    ----------
+    along, across
+        Directions of both slides now, complex unit vectors.
+    p_rates
+        Time derivatives of p from the first on, complex.
+    point_rates
+        Those of the line's point; none where it is fixed.
+    slides
+        Both slides now; they count only for a line that turns.
+    line_rates
+        Time derivatives of the line's angle from the first on, rad/s and so on.
+
+    Returns
+    -------
+    The derivatives of the first and of the second slide, in the unit of length: as many as p has.
+
+    Raises
+    ------
+    Undefined
+        Scalars only: both directions are parallel.
+
+    Source
+    ------
+    ``p = point + first along + second across``, differentiated (:func:`vectors.derivative`).
+    """
     count = len(p_rates)
     carried = _padded(point_rates, count)
 
@@ -236,7 +461,23 @@ def out_of_reach(
     gap: float | None = None,
     subject: str = "the two bodies",
 ) -> CannotAssemble:
-    """Return the error for two bodies that do not span the distance between their pins, with the gap."""
+    """Return the error for two bodies that do not span the distance between their pins, with the gap.
+
+    Parameters
+    ----------
+    distance
+        Distance between the pins; a scalar.
+    p_length, q_length
+        Lengths of the two bodies, scalars in the same unit.
+    gap
+        Length that is lacking, where it is known better than as a difference of the others.
+    subject
+        Names of the two bodies in the message.
+
+    Returns
+    -------
+    The error, to be raised.
+    """
     least, most = abs(p_length - q_length), p_length + q_length
     gap = max(distance - most, least - distance) if gap is None else gap
     return CannotAssemble(

@@ -41,12 +41,32 @@ _ARCTANGENT = (
 
 
 def tangent(angle: Any) -> Any:
-    """Return the tangent of radians of at most an eighth of a turn, of either sign."""
+    """Return the tangent of radians of at most an eighth of a turn, of either sign.
+
+    Parameters
+    ----------
+    angle
+        Radians from -pi / 4 to pi / 4; a scalar or an array.
+
+    Returns
+    -------
+    The tangent, of the same shape.
+    """
     return _plus_cubed(angle, *_TANGENT)
 
 
 def quotient_arctangent(tangent: Any) -> Any:
-    """Return the arctangent in radians of a tangent from -1 to 1."""
+    """Return the arctangent in radians of a tangent from -1 to 1.
+
+    Parameters
+    ----------
+    tangent
+        Number from -1 to 1; a scalar or an array.
+
+    Returns
+    -------
+    Radians from -pi / 4 to pi / 4, of the same shape.
+    """
     return _plus_cubed(tangent, *_ARCTANGENT)
 
 

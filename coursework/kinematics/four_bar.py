@@ -130,9 +130,16 @@ class FourBar:
         return np.where(never, math.nan, least)[()], np.where(never, math.nan, greatest)[()]
 
     def angles(self, crank_angle: Any) -> tuple[Any, Any]:
-        """Return the angles of coupler and rocker, radians in (-pi, pi].
+        """Return the angles of coupler and rocker.
 
-        ``crank_angle`` is in radians or a heading (:mod:`angles`), any shape that broadcasts with the lengths.
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        The angles of coupler and rocker, radians in (-pi, pi], of the broadcast shape.
 
         Raises
         ------
@@ -140,6 +147,11 @@ class FourBar:
             Scalars only: coupler and rocker do not reach each other; says by how much. NaN in arrays.
         Undefined
             Scalars only: A lies on D and coupler and rocker are equal, so that they may point anywhere.
+
+        Source
+        ------
+        From the direction of A -> D the coupler turns by the angle of ``m + b^2 - c^2 + i S``, the rocker by
+        that of ``b^2 - c^2 - m + i S``.
         """
         return self._evaluate(_angles, crank_angle)
 
@@ -152,15 +164,34 @@ class FourBar:
         *,
         order: int = 2,
     ) -> FourBarMotion:
-        """Return the angles and their time derivatives up to ``order`` (0 to 3).
+        """Return the angles and their time derivatives up to ``order``.
 
-        Rates in rad/s where the crank's are. Errors are those of :meth:`angles`, and
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+        crank_rate, crank_acceleration, crank_jerk
+            Time derivatives of the crank angle, rad/s, rad/s^2, rad/s^3; scalars or arrays that broadcast.
+        order
+            Highest order of the derivatives, 0 to 3.
+
+        Returns
+        -------
+        Angles in radians and rates in rad/s, rad/s^2 and rad/s^3, of the broadcast shape; None beyond
+        ``order``.
 
         Raises
         ------
+        CannotAssemble
+            Scalars only: coupler and rocker do not reach each other; says by how much. NaN in arrays.
         Undefined
-            Scalars only, order 1 or more: a dead point, or a change point at which the mode is kept.
-            There the angles exist and their rates do not. NaN in arrays.
+            Scalars only: A lies on D and coupler and rocker are equal; from order 1 on also a dead point, or
+            a change point at which the mode is kept. There the angles exist and their rates do not. NaN in
+            arrays.
+
+        Source
+        ------
+        The derivatives by the crank angle (:meth:`coefficients`) and the chain rule.
         """
         given = (crank_rate, crank_acceleration, crank_jerk)[:order]
         return FourBarMotion(*self._evaluate(_motion, crank_angle, *given))
@@ -168,8 +199,24 @@ class FourBar:
     def coefficients(self, crank_angle: Any, *, order: int = 1) -> tuple[tuple[Any, Any], ...]:
         """Return the derivatives of the coupler's and the rocker's angle by the crank angle.
 
-        A pair (coupler, rocker) for each order from 1 to ``order`` (at most 3): the first holds the ratios
-        omega3/omega2 and omega4/omega2. They need no inverse trigonometry. Errors as in :meth:`motion`.
+        They need no inverse trigonometry. Errors as in :meth:`motion`.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+        order
+            Highest order of the derivatives, 1 to 3.
+
+        Returns
+        -------
+        A pair (coupler, rocker) for each order, without unit: the first holds the ratios omega3/omega2 and
+        omega4/omega2.
+
+        Source
+        ------
+        A -> D turns by ``(a^2 - a d cos) / m`` of the crank's rate, relative to it the coupler by ``rho (b^2
+        - c^2 - m) / (2 m)`` and the rocker by ``rho (m + b^2 - c^2) / (2 m)``, with rho of :mod:`closing`.
         """
         result = self._evaluate(_coefficients, crank_angle, order=order)
         return tuple(zip(result[::2], result[1::2], strict=True))
@@ -178,21 +225,77 @@ class FourBar:
         """Return the linkage at a crank angle; its properties compute angles and derivatives on first use.
 
         Arrays are computed whole: for long ones asked for at once, :meth:`motion` is faster.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        The pose, whose values have the broadcast shape.
         """
         return FourBarPose(self, crank_angle)
 
     def pins(self, crank_angle: Any) -> tuple[Any, Any]:
-        """Return the points A and B, complex, in the linkage's unit of length. Errors as in :meth:`angles`."""
+        """Return the points A and B. Errors as in :meth:`angles`.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        A and B, complex, in the linkage's unit of length, of the broadcast shape.
+        """
         a, b = self._evaluate(_pins, crank_angle)
         return scaled(a, self._exponent)[()], scaled(b, self._exponent)[()]
 
     def transmission_angle(self, crank_angle: Any) -> Any:
-        """Return the angle CBA at B between coupler and rocker, radians in [0, pi]; 0 and pi are dead points."""
+        """Return the angle CBA at B between coupler and rocker.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        Radians in [0, pi], of the broadcast shape; 0 and pi are dead points.
+
+        Raises
+        ------
+        CannotAssemble
+            Scalars only: coupler and rocker do not reach each other. NaN in arrays.
+
+        Source
+        ------
+        The tangent of its half, squared, is ``Q / P``.
+        """
         return self._evaluate(_transmission_angle, crank_angle)[0]
 
     def conditioning(self, crank_angle: Any) -> Any:
-        """Return 1 / |sin(transmission angle)|, the factor from an error of the lengths to one of B; inf at a
-        dead point."""
+        """Return the factor from an error of the lengths to one of B.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        The factor, without unit, of the broadcast shape; inf at a dead point.
+
+        Raises
+        ------
+        CannotAssemble
+            Scalars only: coupler and rocker do not reach each other. NaN in arrays.
+
+        Source
+        ------
+        ``1 / |sin(transmission angle)| = 2 b c / sqrt(P Q)``.
+        """
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def _scaled_lengths(self) -> tuple[Any, Any, Any, Any]:
@@ -323,6 +426,24 @@ def grashof_type(ground: Any, crank: Any, coupler: Any, rocker: Any) -> str:
     ``crank-rocker``, ``rocker-crank``, ``double-crank``, ``double-rocker`` or ``triple-rocker``.
 
     Scalars only; the decision is exact on the given lengths.
+
+    Parameters
+    ----------
+    ground, crank, coupler, rocker
+        Lengths, positive, in one common unit; scalars.
+
+    Returns
+    -------
+    The word.
+
+    Raises
+    ------
+    WrongValue
+        A length is not positive and finite.
+
+    Source
+    ------
+    Grashof's rule: the shortest and the longest length together against the two others.
     """
     d, a, b, c = _lengths(ground, crank, coupler, rocker)
     s, p, q, l = sorted((d, a, b, c))

@@ -14,7 +14,21 @@ import numpy as np
 
 
 def exact_sum(*terms: Any) -> Any:
-    """Return the sum of a few terms without cancellation: scalars, or arrays that broadcast."""
+    """Return the sum of a few terms without cancellation.
+
+    Parameters
+    ----------
+    terms
+        Scalars, or arrays that broadcast, in one unit.
+
+    Returns
+    -------
+    The sum in that unit, of the broadcast shape.
+
+    Source
+    ------
+    ``math.fsum`` for scalars; for arrays passes of Knuth's TwoSum, which keeps the rounding errors.
+    """
     if all(isinstance(term, (float, int)) for term in terms):
         return math.fsum(terms)
     parts = list(np.broadcast_arrays(*[np.asarray(term, dtype=float) for term in terms]))
@@ -38,9 +52,20 @@ def _sum_and_error(x: Any, y: Any) -> tuple[Any, Any]:
 def grashof_margins(ground: Any, crank: Any, coupler: Any, rocker: Any) -> tuple[Any, Any]:
     """Return the Grashof margins E+ and E-: of the stretched and of the folded aligned position.
 
-    Lengths positive, one common unit, scalars or arrays; both margins in that unit squared:
-    ``(coupler + rocker)^2 - (ground + crank)^2`` and ``(ground - crank)^2 - (coupler - rocker)^2``.
-    Both positive: the crank turns fully. Zero: a change point.
+    Parameters
+    ----------
+    ground, crank, coupler, rocker
+        Lengths, positive, in one common unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    Both margins in that unit squared, of the broadcast shape. Both positive: the crank turns fully. Zero: a
+    change point.
+
+    Source
+    ------
+    ``(coupler + rocker)^2 - (ground + crank)^2`` and ``(ground - crank)^2 - (coupler - rocker)^2``, in
+    factors.
     """
     stretched = exact_sum(coupler, rocker, -ground, -crank) * (ground + crank + coupler + rocker)
     folded = exact_sum(ground, coupler, -crank, -rocker) * exact_sum(ground, rocker, -crank, -coupler)

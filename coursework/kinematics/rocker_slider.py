@@ -38,9 +38,21 @@ class RockerSlider(NamedTuple):
     line: Any
 
     def rocker_vectors(self, crank_angles: Any) -> np.ndarray:
-        """Return the vector D -> B, complex, for k crank angles along a last axis: shape ``(..., k)``.
+        """Return the vector D -> B for some crank angles.
 
-        NaN where the loop does not close.
+        Parameters
+        ----------
+        crank_angles
+            Radians, k of them along a last axis, of a shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        Complex numbers in the mechanism's unit of length, shape ``(..., k)``; NaN where the loop does not
+        close.
+
+        Source
+        ------
+        :func:`dyads.rrr`.
         """
         linkage = [np.asarray(value)[..., None] for value in self[:6]]
         return _rocker_and_coupler(np.asarray(crank_angles), *linkage)[0]

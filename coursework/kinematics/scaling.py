@@ -13,6 +13,15 @@ def exponent_of(*lengths: Any) -> Any:
 
     Dividing all lengths of a linkage by ``2**k`` is exact, so that a result scaled back is, bit for
     bit, that of the linkage in any other unit that is a power of two of the first.
+
+    Parameters
+    ----------
+    lengths
+        Lengths in one unit, of either sign; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    The integer, of the broadcast shape; 0 as well where the longest length is not finite.
     """
     longest = np.abs(lengths[0])
     for length in lengths[1:]:
@@ -21,7 +30,19 @@ def exponent_of(*lengths: Any) -> Any:
 
 
 def scaled(value: Any, exponent: Any) -> Any:
-    """Return ``value * 2**exponent``, exactly; complex values too."""
+    """Return ``value * 2**exponent``, exactly; complex values too.
+
+    Parameters
+    ----------
+    value
+        Real or complex numbers; a scalar or an array.
+    exponent
+        Integers; a scalar or an array that broadcasts.
+
+    Returns
+    -------
+    Floats or complex numbers, of the broadcast shape.
+    """
     value = np.asarray(value)
     if np.iscomplexobj(value):
         result = np.empty(np.broadcast_shapes(value.shape, np.shape(exponent)), dtype=complex)

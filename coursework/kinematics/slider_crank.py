@@ -95,9 +95,21 @@ class SliderCrank:
         *,
         order: int = 2,
     ) -> SliderCrankMotion:
-        """Return the rod angle and the slider position, with their time derivatives up to ``order`` (0 to 3).
+        """Return the rod angle and the slider position, with their time derivatives up to ``order``.
 
-        ``crank_angle`` is in radians or a heading, of any shape that broadcasts with the lengths.
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+        crank_rate, crank_acceleration, crank_jerk
+            Time derivatives of the crank angle, rad/s, rad/s^2, rad/s^3; scalars or arrays that broadcast.
+        order
+            Highest order of the derivatives, 0 to 3.
+
+        Returns
+        -------
+        The rod's angle in radians in (-pi, pi] and the abscissa in the unit of the lengths, with their rates,
+        of the broadcast shape; None beyond ``order``.
 
         Raises
         ------
@@ -106,6 +118,11 @@ class SliderCrank:
         Undefined
             Scalars only, order 1 or more: the rod stands square to the line, where the rates do not exist
             (but see ``smooth``). NaN in arrays.
+
+        Source
+        ------
+        ``x = r cos + S`` with ``S = side sqrt(l^2 - (r sin - e)^2)``, the rod's angle that of the vector
+        ``(S, e - r sin)``; then the chain rule.
         """
         given = (crank_rate, crank_acceleration, crank_jerk)[:order]
         results = list(self._evaluate(_motion, crank_angle, *given))
@@ -113,26 +130,105 @@ class SliderCrank:
         return SliderCrankMotion(*results)
 
     def position(self, crank_angle: Any) -> Any:
-        """Return the slider's abscissa alone. Errors as in :meth:`motion`."""
+        """Return the slider's abscissa alone. Errors as in :meth:`motion`.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        The abscissa in the unit of the lengths, of the broadcast shape.
+
+        Source
+        ------
+        ``r cos + side sqrt(l^2 - (r sin - e)^2)``.
+        """
         return self._restored(self._evaluate(_position, crank_angle)[0])
 
     def run(self, crank_angle: Any) -> Any:
-        """Return the distance from the crank pin to the slider along the line, positive to the right. Errors
-        as in :meth:`motion`."""
+        """Return the distance from the crank pin to the slider along the line. Errors as in :meth:`motion`.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        The distance in the unit of the lengths, positive to the right, of the broadcast shape.
+
+        Source
+        ------
+        ``side sqrt(l^2 - (r sin - e)^2)``.
+        """
         return self._restored(self._evaluate(_run, crank_angle)[0])
 
     def displacement(self, crank_angle: Any) -> Any:
-        """Return the distance of the slider from its outer dead centre, accurate to the last digits there; at
-        least 0 while the slider is on the side +1. Errors as in :meth:`motion`."""
+        """Return the distance of the slider from its outer dead centre, accurate to the last digits there.
+        Errors as in :meth:`motion`.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        The distance in the unit of the lengths, of the broadcast shape; at least 0 while the slider is on the
+        side +1.
+
+        Source
+        ------
+        ``sqrt((l + r)^2 - e^2) - x``, its differences of cosines and of roots written as products.
+        """
         return self._restored(self._evaluate(_displacement, crank_angle)[0])
 
     def pressure_angle(self, crank_angle: Any) -> Any:
-        """Return the angle between rod and line, in [0, pi/2]; the conditioning of the slider is its 1/cos."""
+        """Return the angle between rod and line; the conditioning of the slider is its 1/cos.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        Radians in [0, pi/2], of the broadcast shape.
+
+        Raises
+        ------
+        CannotAssemble
+            Scalars only: the rod does not reach the line. NaN in arrays.
+
+        Source
+        ------
+        Its tangent is ``|e - r sin| / |run|``.
+        """
         return self._evaluate(_pressure_angle, crank_angle)[0]
 
     def conditioning(self, crank_angle: Any) -> Any:
-        """Return 1 / |cos(rod angle)|, the factor from an error of the rod to one of the slider; inf where
-        the rod is perpendicular to the line."""
+        """Return the factor from an error of the rod to one of the slider.
+
+        Parameters
+        ----------
+        crank_angle
+            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
+
+        Returns
+        -------
+        The factor, without unit, of the broadcast shape; inf where the rod is perpendicular to the line.
+
+        Raises
+        ------
+        CannotAssemble
+            Scalars only: the rod does not reach the line. NaN in arrays.
+
+        Source
+        ------
+        ``1 / |cos(rod angle)| = l / |run|``.
+        """
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def stroke(self) -> Any:
@@ -213,12 +309,41 @@ class SliderCrank:
 
 def time_ratio(excess: Any) -> Any:
     """Return the time ratio of the longer to the shorter stroke, which take pi + excess and pi - excess of
-    crank angle."""
+    crank angle.
+
+    Parameters
+    ----------
+    excess
+        Crank angle by which the longer stroke exceeds half a turn, radians, of either sign; a scalar or an
+        array.
+
+    Returns
+    -------
+    The ratio, at least 1, of the same shape.
+
+    Source
+    ------
+    ``(pi + |excess|) / (pi - |excess|)``.
+    """
     return 1 + time_ratio_excess(excess)
 
 
 def time_ratio_excess(excess: Any) -> Any:
-    """Return the time ratio minus 1, without loss of digits when the strokes are nearly equal."""
+    """Return the time ratio minus 1, without loss of digits when the strokes are nearly equal.
+
+    Parameters
+    ----------
+    excess
+        As in :func:`time_ratio`.
+
+    Returns
+    -------
+    The ratio less 1, of the same shape.
+
+    Source
+    ------
+    ``2 |excess| / (pi - |excess|)``.
+    """
     return 2 * np.abs(excess) / (math.pi - np.abs(excess))
 
 

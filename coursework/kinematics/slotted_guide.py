@@ -49,7 +49,7 @@ def motion(
     *,
     order: int = 2,
 ) -> SlottedGuideMotion:
-    """Return the guide's angle and the arm's length, with time derivatives up to ``order`` (0 to 3).
+    """Return the guide's angle and the arm's length, with time derivatives up to ``order``.
 
     Parameters
     ----------
@@ -57,6 +57,10 @@ def motion(
         Lengths d = O4 O2 and r, positive, one unit. The guide turns fully when r > d, and swings when r < d.
     crank_angle
         Radians or a heading (:mod:`angles`), from the direction O4 -> O2.
+    crank_rate, crank_acceleration, crank_jerk
+        Time derivatives of the crank angle, rad/s, rad/s^2, rad/s^3; scalars or arrays that broadcast.
+    order
+        Highest order of the derivatives, 0 to 3.
 
     Returns
     -------
@@ -69,6 +73,11 @@ def motion(
         Scalars only: A lies on O4 (r = d at half a turn), where the guide has no angle. NaN in arrays.
     WrongValue
         Scalars only: a length that is not positive and finite.
+
+    Source
+    ------
+    The arm is ``d + r e^(i crank)``, its rate over the crank's ``(r^2 + r d cos) / |arm|^2``; then the chain
+    rule.
     """
     d, r, exponent = _scaled_lengths(ground, crank)
     heading, parts = taken_apart(crank_angle)
@@ -87,10 +96,22 @@ def motion(
 
 
 def swing(ground: Any, crank: Any) -> Any:
-    """Return the angle between the extreme positions of a guide that swings (crank <= ground), radians; NaN
-    if it turns fully.
+    """Return the angle between the extreme positions of a guide that swings (crank <= ground).
 
     It is also the crank angle by which the slow stroke exceeds half a turn.
+
+    Parameters
+    ----------
+    ground, crank
+        Lengths d and r, positive, in one unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    Radians, of the broadcast shape; NaN for a guide that turns fully.
+
+    Source
+    ------
+    ``2 arcsin(r / d)``: at the extreme positions the arm touches the circle of the crank pin.
     """
     with np.errstate(invalid="ignore"):
         return 2 * np.arcsin(np.divide(crank, ground))

@@ -19,13 +19,37 @@ from coursework.kinematics.angles import half_angle
 def third_side(first: Any, other: Any, angle: Any) -> Any:
     """Return the side opposite to the angle between two sides.
 
-    Source: the law of cosines as a sum of two squares, ``(other - first)^2 + 4 first other sin^2(angle/2)``.
+    Parameters
+    ----------
+    first, other
+        Sides, positive, in one unit.
+    angle
+        Angle between them, radians or a heading (:mod:`angles`).
+
+    Returns
+    -------
+    The side in that unit, of the broadcast shape.
+
+    Source
+    ------
+    The law of cosines as a sum of two squares, ``(other - first)^2 + 4 first other sin^2(angle/2)``.
     """
     return np.sqrt(_square_of_third(first, other, half_angle(angle)[1]))
 
 
 def corner(near: Any, other: Any, opposite: Any) -> Any:
     """Return the angle between the sides ``near`` and ``other``.
+
+    Parameters
+    ----------
+    near, other
+        Sides that form the angle, positive, in one unit.
+    opposite
+        Side opposite to it, in the same unit.
+
+    Returns
+    -------
+    Radians in [0, pi], of the broadcast shape.
 
     Raises
     ------
@@ -49,6 +73,19 @@ def corner_beside(first: Any, other: Any, angle: Any, third: Any) -> Any:
 
     ``third`` decides: if it differs from what the two sides and their angle give, being rounded or measured,
     the angle is that of the triangle of the three sides. If it agrees, a flat triangle costs no digit.
+
+    Parameters
+    ----------
+    first, other
+        Sides, positive, in one unit.
+    angle
+        Angle between them, radians or a heading (:mod:`angles`).
+    third
+        The third side, in the same unit.
+
+    Returns
+    -------
+    Radians in [0, pi], of the broadcast shape.
 
     Raises
     ------

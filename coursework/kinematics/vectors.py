@@ -13,23 +13,78 @@ from coursework.kinematics.scaling import exponent_of, scaled
 
 
 def cross(u: Any, v: Any) -> Any:
-    """Return the z component of u x v."""
+    """Return the z component of u x v.
+
+    Parameters
+    ----------
+    u, v
+        Vectors, complex; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    A real number, in the product of their units, of the broadcast shape.
+
+    Source
+    ------
+    ``u_x v_y - u_y v_x``.
+    """
     return np.real(u) * np.imag(v) - np.imag(u) * np.real(v)
 
 
 def dot(u: Any, v: Any) -> Any:
-    """Return the scalar product."""
+    """Return the scalar product.
+
+    Parameters
+    ----------
+    u, v
+        Vectors, complex; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    A real number, in the product of their units, of the broadcast shape.
+
+    Source
+    ------
+    ``u_x v_x + u_y v_y``.
+    """
     return np.real(u) * np.real(v) + np.imag(u) * np.imag(v)
 
 
 def size(u: Any) -> Any:
-    """Return the length of a vector whose square neither overflows nor vanishes."""
+    """Return the length of a vector whose square neither overflows nor vanishes.
+
+    Parameters
+    ----------
+    u
+        Vector, complex; a scalar or an array.
+
+    Returns
+    -------
+    The length, in its unit, of the same shape.
+
+    Source
+    ------
+    ``sqrt(u_x^2 + u_y^2)``.
+    """
     return np.sqrt(np.real(u) ** 2 + np.imag(u) ** 2)
 
 
 def direction(y: Any, x: Any) -> Any:
-    """Return the angle of the vector (x, y), radians in (-pi, pi], for arrays faster than ``arctan2``; NaN
-    for the zero vector."""
+    """Return the angle of the vector (x, y), for arrays faster than ``arctan2``.
+
+    Parameters
+    ----------
+    y, x
+        Components in one unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    Radians in (-pi, pi], of the broadcast shape; NaN for the zero vector.
+
+    Source
+    ------
+    The arctangent of ``y / x``, and half a turn where x < 0.
+    """
     quotient = np.divide(y, x)
     result = np.arctan(quotient)
     # Half a turn where x < 0, towards the side of y.
@@ -44,6 +99,21 @@ def direction_of(y: Any, x: Any, length: Any) -> Any:
     :func:`direction`.
 
     Overwrites the arrays that it is given.
+
+    Parameters
+    ----------
+    y, x
+        Components in one unit; scalars or arrays of one shape.
+    length
+        Length of the vector, in the same unit and shape.
+
+    Returns
+    -------
+    Radians in (-pi, pi], of that shape; NaN for the zero vector.
+
+    Source
+    ------
+    The tangent of half the angle is ``y / (length + x)``.
     """
     if np.min(x, initial=0.0) >= 0:
         length += x
@@ -74,7 +144,23 @@ def _twice_arctangent(y: Any, x: Any) -> Any:
 
 def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:
     """Return the real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN for parallel u
-    and v."""
+    and v.
+
+    Parameters
+    ----------
+    r
+        Vector to be resolved, complex; a scalar or an array.
+    u, v
+        Vectors along which it is resolved, complex, not parallel; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    Both numbers, of the broadcast shape.
+
+    Source
+    ------
+    ``first = (r x v) / (u x v)`` and ``second = (u x r) / (u x v)``.
+    """
     # Vectors of lengths far from 1 are scaled: their product would overflow or vanish.
     of_u, of_v = exponent_of(np.real(u), np.imag(u)), exponent_of(np.real(v), np.imag(v))
     u, v = scaled(u, -of_u), scaled(v, -of_v)
@@ -85,7 +171,7 @@ def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:
 def derivative(
     arm: Any, unit: Any, length_rates: Sequence[Any], angle_rates: Sequence[Any], order: int
 ) -> Any:
-    """Return the derivative of order 1, 2 or 3 of a vector ``arm`` whose length and angle vary.
+    """Return the time derivative of a vector ``arm`` whose length and angle vary.
 
     Parameters
     ----------
@@ -96,7 +182,20 @@ def derivative(
     length_rates, angle_rates
         Time derivatives of the length and of the angle from the first on, as far as known: those that are
         missing count as zero, so that the terms of lower order alone are had by leaving out the last.
+    order
+        Order of the derivative: 1, 2 or 3.
 
+    Returns
+    -------
+    A complex number in the unit of ``arm`` per second to the power ``order``, of the broadcast shape.
+
+    Raises
+    ------
+    ValueError
+        Another order.
+
+    Source
+    ------
     The second derivative is equation 11 of the course: radial, tangential, centripetal and Coriolis terms.
     """
     r1, r2, r3 = (*length_rates, 0.0, 0.0, 0.0)[:3]
@@ -112,5 +211,26 @@ def derivative(
 
 
 def turned(arm: Any, angle_rates: Sequence[Any]) -> tuple[Any, ...]:
-    """Return the time derivatives of a vector of constant length, as many as there are rates of its angle."""
+    """Return the time derivatives of a vector of constant length, as many as there are rates of its angle.
+
+    Parameters
+    ----------
+    arm
+        The vector now, complex.
+    angle_rates
+        Time derivatives of its angle from the first on, rad/s, rad/s^2, rad/s^3: at most three.
+
+    Returns
+    -------
+    The derivatives of the vector from the first on, complex, of the broadcast shape.
+
+    Raises
+    ------
+    ValueError
+        More than three rates.
+
+    Source
+    ------
+    :func:`derivative` with the angle alone varying.
+    """
     return tuple(derivative(arm, 0.0, (), angle_rates[:n], n) for n in range(1, len(angle_rates) + 1))
