@@ -78,21 +78,52 @@ class JudgedDrawing:
     )  #: mm on paper: each point from those before it
 
     def is_right(self, point: str) -> bool:
-        """Return whether the point is drawn and its vectors are right."""
+        """Return whether the point is drawn and its vectors are right.
+
+        Parameters
+        ----------
+        point
+            Name of an image point.
+
+        Returns
+        -------
+        True for a point that is drawn rightly, and for one that the polygon does not have.
+        """
         return point not in self.faults
 
     def follows(self, point: str) -> bool:
-        """Return whether the point is right only relative to an earlier point that is wrong."""
+        """Return whether the point is right only relative to an earlier point that is wrong.
+
+        Parameters
+        ----------
+        point
+            Name of an image point.
+
+        Returns
+        -------
+        True or False.
+        """
         if not any(q in self.faults for q in ancestors(self.polygon, point)) or not self.is_right(point):
             return False
         return not _is_in_place(point, self.points, self.polygon, self.scale, 2 * self.tolerance)
 
     def length_fault(self, start: str, end: str, measured: float) -> str:
-        """Return the fault of a length measured on paper, mm: ``""`` for none, ``own``, ``length``.
+        """Return the fault of a length measured on paper.
 
-        ``own``: it is the length in the student's drawing, which is wrong there. Where both points are drawn,
-        a length is measured between them, to a millimetre; otherwise it is the right length at the scale, to
-        two.
+        Where both points are drawn, a length is measured between them, to the tolerance; otherwise it is the
+        right length at the scale, to twice that.
+
+        Parameters
+        ----------
+        start, end
+            Names of the image points between which it is measured.
+        measured
+            The length, mm on paper.
+
+        Returns
+        -------
+        ``""`` for none; ``own``: it is the length in the student's drawing, which is wrong there; ``length``:
+        it is neither.
         """
         right = abs(self.polygon.points[end] - self.polygon.points[start]) / self.scale
         if abs(measured - right) <= 2 * self.tolerance:
@@ -105,12 +136,34 @@ class JudgedDrawing:
 
 
 def is_scale(polygon: Polygon, scale: float) -> bool:
-    """Return whether the polygon can be drawn at a scale: a positive one at which it fits on paper."""
+    """Return whether the polygon can be drawn at a scale: a positive one at which it fits on paper.
+
+    Parameters
+    ----------
+    polygon
+        The right one.
+    scale
+        mm/s or mm/s^2 for a mm on paper.
+
+    Returns
+    -------
+    True or False.
+    """
     return 0 < scale < float("inf") and polygon.size <= MOST_MM * scale
 
 
 def on_paper(x: float, y: float) -> complex:
-    """Return a drawn point or arrow, clipped to the largest paper, so that it can be computed with."""
+    """Return a drawn point or arrow, clipped to the largest paper, so that it can be computed with.
+
+    Parameters
+    ----------
+    x, y
+        Coordinates or components, mm on paper.
+
+    Returns
+    -------
+    A complex number, mm, each part at most :data:`MOST_MM` from 0.
+    """
     return complex(*(max(-MOST_MM, min(MOST_MM, float(c))) for c in (x, y)))
 
 
@@ -133,6 +186,10 @@ def judge_drawing(
         on another, it is the one at which most of the known vectors are right.
     tolerance
         mm by which each point may be off.
+
+    Returns
+    -------
+    The judged drawing, with the scale that it was judged at and the fault of each wrong or missing point.
 
     Raises
     ------
@@ -182,9 +239,18 @@ def _is_in_place(
 
 
 def vector_fault(drawn: complex, right: complex, width: float) -> str:
-    """Return the fault of one vector, all mm on paper: ``""`` for none, or a kind of :class:`DrawingFault`.
+    """Return the fault of one vector.
 
-    Its end may be ``width`` off.
+    Parameters
+    ----------
+    drawn, right
+        Vector as drawn and as it should be, complex, mm on paper.
+    width
+        mm by which its end may be off.
+
+    Returns
+    -------
+    ``""`` for none, or a kind of :class:`DrawingFault`: ``length``, ``direction``, ``sense`` or ``vector``.
     """
     size, length = abs(drawn), abs(right)
     if abs(drawn - right) <= width:
@@ -201,7 +267,19 @@ def vector_fault(drawn: complex, right: complex, width: float) -> str:
 
 
 def ancestors(polygon: Polygon, point: str) -> frozenset[str]:
-    """Return the points, except the pole, from which a point is constructed."""
+    """Return the points, except the pole, from which a point is constructed.
+
+    Parameters
+    ----------
+    polygon
+        The right one.
+    point
+        Name of an image point.
+
+    Returns
+    -------
+    Names of the points, in no order; none for the pole.
+    """
     results: set[str] = set()
     waiting = [point]
     while waiting:

@@ -173,14 +173,39 @@ class Polygon:
 
     def ratio(self, side: Side) -> complex | None:
         """Return the ratio of a side to the vector that it is proportional to; None if there is none or it
-        vanishes."""
+        vanishes.
+
+        Parameters
+        ----------
+        side
+            A side of the polygon.
+
+        Returns
+        -------
+        A complex number, without unit, or None.
+        """
         if side.image is None:
             return None
         of = self.points[side.image[1]] - self.points[side.image[0]]
         return side.value / of if abs(of) > _CLOSED * self.size else None
 
     def side(self, start: str, end: str) -> Side:
-        """Return the side from a point to another; UnknownName if there is none."""
+        """Return the side from a point to another.
+
+        Parameters
+        ----------
+        start, end
+            Names of the image points.
+
+        Returns
+        -------
+        The first side stated between them, in this order.
+
+        Raises
+        ------
+        UnknownName
+            The polygon has no such side.
+        """
         for side in self.sides:
             if (side.start, side.end) == (start, end):
                 return side
@@ -252,7 +277,22 @@ class Polygon:
         return complex(min(xs), min(ys)), complex(max(xs), max(ys))
 
     def scale_in(self, width: float, height: float) -> float:
-        """Return the least of 1, 2 and 5 times a power of ten at which the polygon fits a box, mm on paper."""
+        """Return the least of 1, 2 and 5 times a power of ten at which the polygon fits a box.
+
+        Parameters
+        ----------
+        width, height
+            Sides of the box, mm on paper.
+
+        Returns
+        -------
+        The scale, in the polygon's unit for a mm on paper.
+
+        Raises
+        ------
+        BadCourse
+            Nothing moves: the polygon has no length.
+        """
         low, high = self.extent()
         least = max((high - low).real / width, (high - low).imag / height)
         if not least > 0:
@@ -296,8 +336,28 @@ def turning(
 ) -> Side:
     r"""Return the velocity of a point of a turning bar relative to another: perpendicular to the bar.
 
-    ``of`` names it (``B/A``, or ``B`` about a fixed point), ``line`` is the bar (``AB``), ``vector`` its vector in
-    mm, ``omega`` its rate in rad/s; ``length`` is stated where it is known before the drawing.
+    Parameters
+    ----------
+    start, end
+        Names of the image points.
+    of
+        Name of the velocity: ``B/A``, or ``B`` about a fixed point.
+    line
+        Name of the bar: ``AB``.
+    vector
+        Vector of the bar, complex, mm.
+    omega
+        Rate of the bar, rad/s.
+    length
+        LaTeX of the length, where it is known before the drawing.
+
+    Returns
+    -------
+    The side, mm/s.
+
+    Source
+    ------
+    ``i omega vector``.
     """
     return Side(
         start, end, rf"\vec{{V}}_{{{of}}}", 1j * omega * vector, rf"\perp {line}", length, 1j * vector
@@ -306,7 +366,31 @@ def turning(
 
 def normal(start: str, end: str, of: str, line: str, vector: complex, omega: float, length: str) -> Side:
     """Return the normal acceleration of a bar's point relative to another, along the bar: known once the
-    velocities are."""
+    velocities are.
+
+    Parameters
+    ----------
+    start, end
+        Names of the image points.
+    of
+        Name of the acceleration: ``B/A``, or ``B`` about a fixed point.
+    line
+        Name of the bar: ``AB``.
+    vector
+        Vector of the bar, complex, mm.
+    omega
+        Rate of the bar, rad/s.
+    length
+        LaTeX of the length.
+
+    Returns
+    -------
+    The side, mm/s^2.
+
+    Source
+    ------
+    ``-omega^2 vector``.
+    """
     return Side(
         start, end, rf"\vec{{a}}^n_{{{of}}}", -(omega**2) * vector, rf"\parallel {line}", length, -vector
     )
@@ -315,8 +399,31 @@ def normal(start: str, end: str, of: str, line: str, vector: complex, omega: flo
 def tangential(
     start: str, end: str, of: str, line: str, vector: complex, alpha: float, length: str = ""
 ) -> Side:
-    """Return the tangential acceleration of a bar's point relative to another, perpendicular to the bar;
-    ``alpha`` in rad/s^2."""
+    """Return the tangential acceleration of a bar's point relative to another, perpendicular to the bar.
+
+    Parameters
+    ----------
+    start, end
+        Names of the image points.
+    of
+        Name of the acceleration: ``B/A``, or ``B`` about a fixed point.
+    line
+        Name of the bar: ``AB``.
+    vector
+        Vector of the bar, complex, mm.
+    alpha
+        Angular acceleration of the bar, rad/s^2.
+    length
+        LaTeX of the length, where it is known before the drawing.
+
+    Returns
+    -------
+    The side, mm/s^2.
+
+    Source
+    ------
+    ``i alpha vector``.
+    """
     return Side(
         start, end, rf"\vec{{a}}^t_{{{of}}}", 1j * alpha * vector, rf"\perp {line}", length, 1j * vector
     )
@@ -325,7 +432,22 @@ def tangential(
 def image(start: str, end: str, name: str, value: complex, of: tuple[str, str], length: str) -> Side:
     r"""Return the image of a third point of a bar: the vector between two image points, in proportion.
 
-    ``of`` are these two points, ``length`` the proportion as LaTeX (``\frac{OD}{OP}\,p_v p_4``).
+    Parameters
+    ----------
+    start, end
+        Names of the image points.
+    name
+        LaTeX of the vector.
+    value
+        The vector, complex, mm/s or mm/s^2.
+    of
+        Names of the two image points to whose vector it is proportional.
+    length
+        LaTeX of the proportion, such as ``\frac{OD}{OP}\,p_v p_4``.
+
+    Returns
+    -------
+    The side, in the unit of the value.
     """
     first, second = of
     return Side(start, end, name, value, rf"\parallel {first} {second}", length, image=of)
