@@ -137,7 +137,7 @@ def mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
     return [name for name, value in ways if _fits(part, reading, value, None, 0.0)]
 
 
-def _is_likely(name: str, key: Key, part: Part, before: EarlierAnswers) -> bool:
+def is_likely(name: str, key: Key, part: Part, before: EarlierAnswers) -> bool:
     """Return whether a mistake that explains an answer may be reported to the student.
 
     Not one made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
@@ -233,8 +233,8 @@ def _explanations(
         usual = NEAR_HERE if is_here else NEAR
         if fit is not None and _is_near(key, part, judged_by, reading.values[fit[0]], fit[1], usual):
             traces = () if part.sort.has_few_values else (f"mistake:{name}",)
-            is_likely = _is_likely(name, key, judged_by, before)
-            yield Explanation(f"mistake:{name}", *fit, is_here, is_likely, traces=traces)
+            likely = is_likely(name, key, judged_by, before)
+            yield Explanation(f"mistake:{name}", *fit, is_here, likely, traces=traces)
     for kind in part.sort.slips(part, reading.values[0], reference, _lengths(key.variant)):
         yield Explanation(f"slip:{kind}", 0, 0.0)
     seen = set()

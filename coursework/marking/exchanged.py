@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from coursework.errors import CourseworkError
 from coursework.kinds.nearness import gaps
 from coursework.marking.answers import read
-from coursework.marking.diagnosis import CLOSE, fits_followed, nearest_reading
+from coursework.marking.diagnosis import CLOSE, EarlierAnswers, fits_followed, is_likely, nearest_reading
+from coursework.marking.judges import Verdict, is_scale, judged, judges_of
 from coursework.marking.usual import nearness
 from coursework.model import Part
 from coursework.parsing.reading import Reading
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
+
+_FEW_JUDGED = 6  #: wrong numbers that judges judge, of which more are not tried in pairs
 
 
 class Exchange(NamedTuple):
@@ -27,104 +31,168 @@ class Exchange(NamedTuple):
     place: int  #: which honest reading of it
 
 
-def exchanged(variant: Variant, wrong: Mapping[str, Reading], *, is_guessed: bool) -> dict[str, Exchange]:
-    """Return by part the other part whose box its answer stands in, of answers that are not right where they stand.
+def exchanged(
+    variant: Variant,
+    readings: Mapping[str, Reading],
+    wrong: Mapping[str, Reading],
+    verdicts: Mapping[str, Verdict],
+    *,
+    is_guessed: bool,
+) -> dict[str, Exchange]:
+    """Return by part the other part whose box its answer stands in, of answers that are ``wrong`` where they stand.
 
     Counts and cases exchange by chance. Of counts a pair is meant where no other count is wrong and the later one does
-    not follow from the earlier; of cases never.
+    not follow from the earlier; of cases never. Of answers with ``verdicts`` of a judge the judge is asked once more.
     """
-    key, targets = variant.key, {p.id: p for p in variant.parts if p.id in wrong}
-    parts = [p for p in targets.values() if _may_be(p, wrong[p.id])]
-    counts = [p for p in parts if p.sort.is_exact]
+    boxes = _Boxes(variant, readings, wrong, verdicts)
+    counts = [p for p in boxes.parts if p.sort.is_exact]
     exchanges: dict[str, Exchange] = {}
-    for first_part, other in combinations(parts, 2):
-        if (
-            first_part.id in exchanges
-            or other.id in exchanges
-            or first_part.sort.is_exact != other.sort.is_exact
+    for pair in combinations(boxes.parts, 2):
+        if any(part.id in exchanges for part in pair):
+            continue
+        if all(part.sort.is_exact for part in pair) and (
+            is_guessed or len(counts) > 2 or boxes.goes_on(*pair)
         ):
             continue
-        if first_part.sort.is_exact and (is_guessed or len(counts) > 2):
-            continue
-        if first_part.sort.is_exact and _goes_on(
-            variant, first_part, wrong[first_part.id], other, wrong[other.id]
-        ):
-            continue
-        if not (
-            _is_near(variant, wrong[first_part.id], other) and _is_near(variant, wrong[other.id], first_part)
-        ):
-            continue
-        if any(_is_explained(variant, p, wrong[p.id]) for p in (first_part, other)):
-            continue
-        first, second = (
-            read(variant, other, wrong[first_part.id].text),
-            read(variant, first_part, wrong[other.id].text),
-        )
-        nearest, gap = nearest_reading(other, first, key, other)
-        its_place, its_gap = nearest_reading(first_part, second, key, first_part)
-        if gap > 1 or its_gap > 1:
-            continue
-        if _is_close(variant, other, first.values[nearest], gap) and _is_close(
-            variant, first_part, second.values[its_place], its_gap
-        ):
-            exchanges[first_part.id] = Exchange(other, first, nearest)
-            exchanges[other.id] = Exchange(first_part, second, its_place)
+        exchanges |= boxes.exchange(*pair)
     return exchanges
 
 
-def _is_close(variant: Variant, part: Part, value: object, gap: float) -> bool:
-    """Return whether an answer fits the other box to its last digit: near values may agree by chance."""
-    if not part.sort.is_scalar or part.sort.is_exact:
-        return gap <= 1
-    return gap <= nearness(part, variant.key, part, value, CLOSE)
+class _Boxes:
+    """The boxes of a sheet whose answers are not right where they stand."""
 
+    def __init__(
+        self,
+        variant: Variant,
+        readings: Mapping[str, Reading],
+        wrong: Mapping[str, Reading],
+        verdicts: Mapping[str, Verdict],
+    ) -> None:
+        self._variant, self._readings, self._verdicts = variant, readings, verdicts
+        parts = [p for p in variant.parts if p.id in wrong and _may_be(p, wrong[p.id])]
+        drawn = [p for p in parts if p.judge]
+        self._wrong = len(wrong)
+        self.parts = [p for p in parts if not p.judge or len(drawn) <= _FEW_JUDGED]
+        self._before = EarlierAnswers(
+            right={
+                p.quantity for p in variant.parts if p.id in readings and p.id not in wrong and not p.judge
+            }
+        )
 
-def _is_explained(variant: Variant, part: Part, reading: Reading) -> bool:
-    """Return whether the opposite sign or a known mistake gives the answer in its own box: that is likelier
-    than an exchange."""
-    reference = variant.key.reference[part.quantity]
-    width = variant.key.envelope.get(part.quantity, 0.0)
-    others = [value for _, value in variant.key.wrong_ways(part.quantity)]
-    if part.sort.is_number:
-        others.append(-reference)
-    return any(
-        part.sort.distance(part, value, other, None, width) <= 1
-        for value in reading.values
-        for other in others
-    )
+    def exchange(self, first: Part, other: Part) -> dict[str, Exchange]:
+        """Return both exchanges where each answer is right in the box of the other, unless each is explained in its own."""
+        if not (self._is_near(first, other) and self._is_near(other, first)):
+            return {}
+        if self._are_explained(first, other):
+            return {}
+        ways = {
+            box.id: Exchange(target, read(self._variant, target, self._readings[box.id].text), 0)
+            for box, target in ((first, other), (other, first))
+        }
+        if any(way.reading.status != "read" for way in ways.values()):
+            return {}
+        for box, way in ways.items():
+            if not way.part.judge:
+                place, gap = nearest_reading(way.part, way.reading, self._variant.key, way.part)
+                if not self._is_close(way.part, way.reading.values[place], gap):
+                    return {}
+                ways[box] = way._replace(place=place)
+        return ways if self._is_right_to_judges(ways) else {}
 
+    def _is_right_to_judges(self, ways: Mapping[str, Exchange]) -> bool:
+        """Return whether the judges of exchanged answers take each for right where it belongs."""
+        placed = {way.part.id: way.reading.values[way.place] for way in ways.values() if way.part.judge}
+        for name, ids in judges_of(self._variant):
+            if placed.keys().isdisjoint(ids):
+                continue
+            stand = {i: self._readings[i].values[v.reading] for i, v in self._verdicts.items() if i in ids}
+            try:
+                said = judged(self._variant, name, stand | {i: v for i, v in placed.items() if i in ids})
+            except CourseworkError:
+                return False
+            if any(i not in said or said[i].share < 1 for i in placed if i in ids):
+                return False
+        return True
 
-def _goes_on(variant: Variant, first: Part, wrong: Reading, part: Part, reading: Reading) -> bool:
-    """Return whether an answer follows from an earlier wrong one, each in its own box."""
-    if not first.sort.is_followed or wrong.status != "read" or reading.status != "read":
-        return False
-    return any(
-        fits_followed(variant.key, part, reading, part, {first.quantity: value}, {first.quantity}) is not None
-        for value in wrong.values
-    )
+    def _is_close(self, part: Part, value: Any, gap: float) -> bool:
+        """Return whether an answer fits a box to its last digit: near values may agree by chance."""
+        if not part.sort.is_scalar or part.sort.is_exact:
+            return gap <= 1
+        return gap <= min(1.0, nearness(part, self._variant.key, part, value, CLOSE))
+
+    def _are_explained(self, *pair: Part) -> bool:
+        """Return whether each of two answers is explained in its own box, those of a judge by one mistake.
+
+        A mistake that all answers to a judge show is one of the whole, which an exchange may make.
+        """
+        if any(is_scale(part) for part in pair) and self._wrong > len(pair):
+            return True  # many scales are right, for other drawings
+        shown = [self._mistake(part) for part in pair if part.judge]
+        return all(shown) and len(set(shown)) <= 1 and all(self._is_explained(p) for p in pair if not p.judge)
+
+    def _mistake(self, part: Part) -> str:
+        """Return the mistake that a judge names of an answer, and not of all."""
+        said = {i: v.said for i, v in self._verdicts.items() if v.said}
+        named = said[part.id].mistake if part.id in said else ""
+        group = dict(judges_of(self._variant))[part.judge]
+        return "" if all(said[i].mistake == named for i in group if i in said) else named
+
+    def _is_explained(self, part: Part) -> bool:
+        """Return whether the opposite sign or a known mistake gives the answer in its own box as closely."""
+        key = self._variant.key
+        reading, width = self._readings[part.id], key.envelope.get(part.quantity, 0.0)
+        others = [v for name, v in key.wrong_ways(part.quantity) if is_likely(name, key, part, self._before)]
+        if part.sort.is_number:
+            others.append(-key.reference[part.quantity])
+        return any(
+            self._is_close(part, value, part.sort.distance(part, value, other, None, width))
+            for value in reading.values
+            for other in others
+        )
+
+    def goes_on(self, first: Part, part: Part) -> bool:
+        """Return whether an answer follows from an earlier wrong one and the others, each in its own box."""
+        reading, wrong = self._readings[part.id], self._readings[first.id]
+        if not first.sort.is_followed or wrong.status != "read" or reading.status != "read":
+            return False
+        key, parts = self._variant.key, self._variant.parts
+        earlier = {
+            p.quantity: key.reference[p.quantity]
+            for p in parts[: parts.index(part)]
+            if p.sort.is_followed and p.quantity in self._before.right
+        }
+        return any(
+            fits_followed(key, part, reading, part, earlier | {first.quantity: value}, {first.quantity})
+            is not None
+            for value in wrong.values
+        )
+
+    def _is_near(self, box: Part, other: Part) -> bool:
+        """Return whether an answer may be right in another box: a cheap test that never rejects a number without
+        a unit wrongly."""
+        reading, key = self._readings[box.id], self._variant.key
+        if reading.status != "read":
+            return other.sort.is_scalar
+        if other.judge:
+            return box.sort.is_scalar
+        reference = key.reference[other.quantity]
+        if not other.sort.is_scalar:
+            along = key.reference.get(other.along)
+            return all(
+                not isinstance(v, (str, float, int)) and other.sort.distance(other, v, reference, along) <= 1
+                for v in reading.values
+            )
+        width = key.half_width(other) + 1e-9 * abs(reference)
+        return any(
+            isinstance(v, (float, int)) and gaps(np.asarray(v), reference, other.sort.turn) <= width
+            for v in reading.values
+        )
 
 
 def _may_be(part: Part, reading: Reading) -> bool:
     sort = part.sort
-    if part.judge or sort.is_open or sort.is_text or sort.has_few_values:
+    if sort.is_open or sort.is_text or sort.has_few_values or (part.judge and not sort.is_number):
         return False
-    return reading.status == "read" or (reading.status == "wrong_unit" and sort.is_number)
-
-
-def _is_near(variant: Variant, reading: Reading, other: Part) -> bool:
-    """Return whether an answer may be right in another box: a cheap test that never rejects a number without
-    a unit wrongly."""
-    if reading.status == "wrong_unit":
-        return other.sort.is_number
-    reference, key = variant.key.reference[other.quantity], variant.key
-    if not other.sort.is_scalar:
-        along = key.reference.get(other.along)
-        return all(
-            not isinstance(v, (str, float, int)) and other.sort.distance(other, v, reference, along) <= 1
-            for v in reading.values
-        )
-    width = key.half_width(other) + 1e-9 * abs(reference)
-    return any(
-        isinstance(v, (float, int)) and gaps(np.asarray(v), reference, other.sort.turn) <= width
-        for v in reading.values
-    )
+    if reading.status in ("wrong_unit", "unreadable"):
+        return sort.is_scalar and reading.code != "two_ways" and not part.judge
+    return reading.status == "read"

@@ -12,7 +12,7 @@ from coursework.errors import CourseworkError
 from coursework.language.words import words
 from coursework.marking.diagnosis import EarlierAnswers, mistakes_that_fit
 from coursework.marking.feedback import Sentence, amount, echo, either_symbol, questions, say
-from coursework.marking.judges import Verdict, judged
+from coursework.marking.judges import Verdict, is_scale, judged
 from coursework.marking.mark import Mark, made_mark
 from coursework.model import Part
 from coursework.parsing.reading import Reading
@@ -116,11 +116,6 @@ def _has_work(part: Part, key: Key, value: Any, before: EarlierAnswers) -> bool:
     reference = key.reference.get(part.quantity)
     is_right = reference is not None and part.sort.distance(part, value, reference) <= 1
     return is_right or before.is_work(part, value)
-
-
-def is_scale(part: Part) -> bool:
-    """Return whether a part asks for the scale of a drawing: so much for a millimetre of paper."""
-    return bool(part.judge) and part.sort.is_number and part.unit.endswith("/mm")
 
 
 def waits_for(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from coursework.errors import BadCourse, CannotAssemble, Undefined
+from coursework.errors import BadCourse, CannotAssemble, CourseworkError, Undefined
 from coursework.parsing.reading import Reading
 from coursework.solution import Judged
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from coursework.course.answer_key import Slip
     from coursework.course.asked import KeySource
     from coursework.course.variant import Variant
+    from coursework.model import Part
 
 
 _ALMOST = 0.99  #: of the points, more than which an answer earns that is right and read off a drawing
@@ -84,6 +85,11 @@ def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
     return tuple(inspect.signature(function).parameters)
 
 
+def is_scale(part: Part) -> bool:
+    """Return whether a part asks for the scale of a drawing: so much for a millimetre of paper."""
+    return bool(part.judge) and part.sort.is_number and part.unit.endswith("/mm")
+
+
 class Verdict(NamedTuple):
     """Judgement on one answer of a group: parts of a judge of the solution, or equations of a loop."""
 
@@ -96,11 +102,8 @@ class Verdict(NamedTuple):
     left: float = 1.0  #: the share of the points that the answer would earn without the slip
 
     @property
-    def is_unexplained(self) -> bool:
-        """Return whether the answer is wrong, and nothing is known of why."""
-        return self.said is not None and not (
-            self.said.share or self.said.mistake or self.said.slip or self.slip
-        )
+    def is_wrong(self) -> bool:
+        return self.said is not None and self.said.share < 1 and not (self.said.slip or self.slip)
 
 
 def best_judged(variant: KeySource, name: str, readings: Mapping[str, Reading]) -> dict[str, Verdict]:
@@ -171,7 +174,8 @@ def _without_slips(
     each by the others.
     """
     explained = dict(verdicts)
-    parts = {p.id: p for p in variant.parts if p.id in verdicts and verdicts[p.id].is_unexplained}
+    unexplained = {i for i, v in verdicts.items() if v.is_wrong and v.said and not v.said.mistake}
+    parts = {p.id: p for p in variant.parts if p.id in unexplained}
     answers = {i: readings[i].values[verdict.reading] for i, verdict in verdicts.items()}
     showing: dict[Slip, list[str]] = {}
     for i, part in parts.items():
@@ -186,14 +190,15 @@ def _without_slips(
             own = own_answers if explained[left[0]].followed else None
             try:
                 said = judged(variant, name, answers | {i: slip.mended(answers[i]) for i in left}, own)
-            except (CannotAssemble, Undefined):
-                continue
+            except CourseworkError:
+                continue  # nothing comes of such numbers
+            # A value that is read off nothing has a wide margin: a power of ten fits by chance.
+            enough = 0.0 if slip.kind == "radians" else _ALMOST
             for i in left:
-                # A value that is read off nothing has a wide margin: a power of ten fits by chance.
-                enough = 0.0 if slip.kind == "radians" else _ALMOST
                 if i in said and said[i].share > enough and not said[i].mistake:
+                    trace, right = slip.trace(parts[i].unit), float(said[i].share)
                     explained[i] = explained[i]._replace(
-                        slip=slip.kind, trace=slip.trace(parts[i].unit), left=float(said[i].share)
+                        said=Judged(0.0), slip=slip.kind, trace=trace, left=right
                     )
     return explained
 

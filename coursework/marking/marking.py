@@ -25,8 +25,8 @@ from coursework.marking.doubtful import settled
 from coursework.marking.error_messages import mark_wrong, shown_as
 from coursework.marking.exchanged import Exchange, exchanged
 from coursework.marking.feedback import Sentence, echo, part_name, questions, say, say_not_read
-from coursework.marking.joint_marking import is_scale, is_told_with, mark_judged, waits_for
-from coursework.marking.judges import best_judged, judged_again, judges_of
+from coursework.marking.joint_marking import is_told_with, mark_judged, waits_for
+from coursework.marking.judges import best_judged, is_scale, judged_again, judges_of
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, SheetMarks, made_mark
 from coursework.model import Part
@@ -78,9 +78,14 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     elsewhere: dict[str, Exchange] = {}
     if len(wrong) > 1:
         before.in_radians = is_in_radians(key, ((parts[i], reading) for i, reading in wrong.items()))
-        if not before.in_radians or len(wrong) == 2:
-            elsewhere = exchanged(variant, wrong, is_guessed=before.sheet.is_guessed)
-            before.in_radians = before.in_radians and not elsewhere
+    drawn = {i: verdict for verdicts in by_judge.values() for i, verdict in verdicts.items()}
+    wrong |= {i: readings[i] for i, verdict in drawn.items() if verdict.is_wrong}
+    if len(wrong) > 1 and before.sheet.has_work and (not before.in_radians or len(wrong) == 2):
+        elsewhere = exchanged(variant, readings, wrong, drawn, is_guessed=before.sheet.is_guessed)
+        before.in_radians = before.in_radians and not elsewhere
+        placed = {way.part.id: way.reading for way in elsewhere.values() if way.part.judge}
+        for name in {parts[i].judge for i in placed}:
+            by_judge[name] = best_judged(variant, name, {**readings, **placed})
     marks: dict[str, Mark] = {}
     no_scale: set[str] = set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
@@ -95,7 +100,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             together |= judged_again(variant, name, readings, by_judge[name], before.own, before.wrong)
         if i in elsewhere and elsewhere[i].part.id not in marks and _follows(key, part, reading, before):
             del elsewhere[elsewhere[i].part.id], elsewhere[i]
-        if i in elsewhere and before.sheet.has_work:
+        if i in elsewhere:
             marks[i] = _mark_exchanged(variant, key, part, elsewhere[i], marks)
             before.take_right(elsewhere[i].part, elsewhere[i].reading, elsewhere[i].place)
             continue
@@ -154,6 +159,7 @@ def _follows(key: Key, part: Part, reading: Reading, before: EarlierAnswers) -> 
     """Return whether an answer follows from earlier ones in its own box."""
     return (
         reading.status == "read"
+        and not part.judge
         and bool(before.wrong)
         and fits_followed(key, part, reading, part, before.own, before.wrong) is not None
     )
