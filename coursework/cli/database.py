@@ -280,19 +280,20 @@ def history(
         if student is not None and not entries:
             _check_student(connection, number, student)
     if as_json:
+        rows = (entry._asdict() for entry in entries)
         print_json(
             [
-                {"student": s, "exercise": e, "part": p, **entry._asdict(), "at": entry.at.isoformat()}
-                for s, e, p, entry in entries
+                {"at" if name == "made" else name: v for name, v in row.items()}
+                | {"at": row["made"].isoformat()}
+                for row in rows
             ]
         )
         return
     if not entries:
         say("nothing was marked")
-    for author, where, of, entry in entries:
-        click.echo(
-            f"{entry.at:%Y-%m-%d %H:%M:%S} UTC  {author}, {where} {entry.seed}, {of}: {_happened(entry)}".rstrip()
-        )
+    for entry in entries:
+        about = f"{entry.student}, {entry.exercise} {entry.seed}, {entry.part}"
+        click.echo(f"{entry.made:%Y-%m-%d %H:%M:%S} UTC  {about}: {_happened(entry)}".rstrip())
 
 
 def _check_student(connection: Any, number: int, student: str) -> None:

@@ -11,7 +11,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, delete, insert, select
+from sqlalchemy import Connection, delete, insert, literal, select
 
 from coursework.database.tables import decision, mark, marking, variant, worksheet
 from coursework.errors import BadInput, UnknownName, nearest
@@ -139,11 +139,14 @@ def read_decisions(connection: Connection, assignment_id: int, student: str | No
 
 
 class HistoryEvent(NamedTuple):
-    """Event in the history of an answer."""
+    """Event in the history of an answer: its marking, or a decision."""
 
-    at: datetime
+    student: str
+    exercise: str
+    part: str
+    made: datetime
     by: str  #: empty for the marking
-    kind: str  #: marked, accepted, given, withdrawn
+    kind: str  #: marked, accepted, given, kept, withdrawn
     seed: str
     sitting: int  #: 0 if unknown
     answer: str | None
@@ -157,43 +160,31 @@ MARKED = "marked"
 
 def history(
     connection: Connection, assignment_id: int, student: str | None = None, exercise: str = "", part: str = ""
-) -> list[tuple[str, str, str, HistoryEvent]]:
-    """Return the events in the history of answers, in chronological order, each with its student, exercise
-    and part; of the given student, exercise or part alone."""
-
-    def asked(all_events: Select[Any], folded_name: Any) -> Select[Any]:
-        for name, value in (("exercise", exercise), ("part", part)):
-            all_events = all_events.where(folded_name[name] == value) if value else all_events
-        return all_events
-
-    marks = select(marking, mark).join(mark).where(marking.c.assignment_id == assignment_id)
-    marks = asked(marks, {"exercise": marking.c.exercise, "part": mark.c.part}).order_by(
-        marking.c.id, mark.c.place
-    )
-    decided = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
-    all_events = [
-        (row.student, row.exercise, row.part, _marking_event(row))
-        for row in connection.execute(marks)
-        if row.verdict
+) -> list[HistoryEvent]:
+    """Return the events in the history of answers, in chronological order; of the given student, exercise or
+    part alone."""
+    marks = select(
+        marking.c.student, marking.c.exercise, mark.c.part, marking.c.made, literal(""), literal(MARKED), marking.c.seed,
+        marking.c.sitting, mark.c.answer, mark.c.verdict, mark.c.points, mark.c.feedback,
+    ).join(mark)  # fmt: skip
+    marks = marks.where(marking.c.assignment_id == assignment_id, mark.c.verdict != "")
+    of = decision.c
+    decided = select(
+        of.student, of.exercise, of.part, of.made, of.by, of.kind, of.seed, literal(0), of.answer, literal(""),
+        of.points, of.reason,
+    ).where(of.assignment_id == assignment_id)  # fmt: skip
+    rows = [
+        *connection.execute(marks.order_by(marking.c.id, mark.c.place)),
+        *connection.execute(decided.order_by(of.id)),
     ]
-    all_events += [
-        (row.student, row.exercise, row.part, _decision_event(row))
-        for row in connection.execute(asked(decided, decision.c))
-    ]
-    folded_name = None if student is None else folded(student)
-    return sorted(
-        (event for event in all_events if folded_name in (None, folded(event[0]))),
-        key=lambda event: event[3].at,
+    events = (
+        HistoryEvent(*row)
+        for row in rows
+        if exercise in ("", row.exercise)
+        and part in ("", row.part)
+        and (student is None or folded(row.student) == folded(student))
     )
-
-
-def _marking_event(row: Any) -> HistoryEvent:
-    answer_columns = row.seed, row.sitting, row.answer, row.verdict, row.points
-    return HistoryEvent(row.made, "", MARKED, *answer_columns, row.feedback)
-
-
-def _decision_event(row: Any) -> HistoryEvent:
-    return HistoryEvent(row.made, row.by, row.kind, row.seed, 0, row.answer, "", row.points, row.reason)
+    return sorted(events, key=lambda event: event.made)
 
 
 # ------------------------------------------------------------------------ files

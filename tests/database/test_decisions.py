@@ -123,10 +123,10 @@ def test_the_history_of_an_answer_has_every_mark_and_who(store, number):
     say(store, number, [PLACE], "accepted", None, "fine")
     say(store, number, [PLACE], "withdrawn", None, "not fine", by="Dr. Poe")
     with store.reading() as connection:
-        found = [one for *_, one in history(connection, number, BEN, "crank_pin", "x")]
+        found = history(connection, number, BEN, "crank_pin", "x")
     assert [(one.kind, one.by, one.reason) for one in found[1:]] == [
         ("accepted", "Prof. Roe", "fine"),
         ("withdrawn", "Dr. Poe", "not fine"),
     ]
     assert (found[0].kind, found[0].verdict, found[0].answer) == ("marked", "unreadable", "somewhere")
-    assert found == sorted(found, key=lambda one: one.at)
+    assert found == sorted(found, key=lambda one: one.made)

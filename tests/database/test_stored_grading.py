@@ -192,9 +192,7 @@ def test_a_decision_of_a_file_is_taken_in_once_and_a_later_one_from_elsewhere_st
     assert marks["why"]["points"] == "1"
     assert next(row for row in table(stored / "decisions.csv") if row["part"] == "why")["points"] == "1"
     with store.reading() as connection:
-        found = [
-            happened.by for *_, happened in history(connection, number, "Ana", "coil", "why") if happened.by
-        ]
+        found = [happened.by for happened in history(connection, number, "Ana", "coil", "why") if happened.by]
     assert found == ["decisions.csv", "Prof. Roe"]
     store.close()
 

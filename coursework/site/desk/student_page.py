@@ -97,8 +97,8 @@ def student_page(request: Request) -> Response:
         person = people_of(connection, now.about.id).get(student)
         alone = practised(connection, person, now.issued.exercises) if person else {}
     by_place: dict[tuple[str, str], list[HistoryEvent]] = {}
-    for _, exercise, part, entry in happened:
-        by_place.setdefault((exercise, part), []).append(entry)
+    for event in happened:
+        by_place.setdefault((event.exercise, event.part), []).append(event)
     sheets = [_sheet(request, now, sheet, by_place) for sheet in now.machine if sheet[0] == student]
     sheets.sort(key=lambda entry: (-entry.graded.sitting, now.issued.exercises.index(entry.graded.exercise)))
     return class_page_of(
@@ -165,9 +165,9 @@ def _history_line(request: Request, event: HistoryEvent) -> str:
         from coursework.rendering.feedback import verdict_word
 
         text = request.words["class"]["marked"]
-        at = moment(event.at, request.lang)
+        at = moment(event.made, request.lang)
         return str(text).format(verdict_word(event.verdict, request.lang), f"{event.points or 0:g}", at)
-    return decided_words(request, event, event.at)
+    return decided_words(request, event, event.made)
 
 
 def _practised(request: Request, name: str, variants: int, last: datetime | None) -> PracticeSummary:
