@@ -24,6 +24,15 @@ if TYPE_CHECKING:
 def open_course(folder: str | Path | None = None) -> Course[Variant]:
     """Open a course folder; by default the built-in course.
 
+    Parameters
+    ----------
+    folder
+        The course's folder; the built-in course unless told.
+
+    Returns
+    -------
+    The course.
+
     Raises
     ------
     BadCourse
@@ -61,6 +70,10 @@ def study(
         Where what is done is kept, in ``progress.json``.
     clock
         What tells the time, with its zone; the machine's clock unless told.
+
+    Returns
+    -------
+    The session, whose methods a notebook's cells call.
 
     Raises
     ------
@@ -108,6 +121,10 @@ def worked(
     course
         As for :func:`study`.
 
+    Returns
+    -------
+    The example, which a cell displays.
+
     Raises
     ------
     UnknownName
@@ -139,6 +156,10 @@ def mistakes(
     lang, course
         As for :func:`worked`.
 
+    Returns
+    -------
+    The messages, which a cell displays.
+
     Raises
     ------
     UnknownName
@@ -165,29 +186,86 @@ class Variant(numbers.Variant):
     def grade(self, answers: Mapping[str, Any]) -> SheetMarks:
         """Mark a student's answers, by part id.
 
+        Parameters
+        ----------
+        answers
+            What the student wrote, by part id: texts such as ``"12 mm"``, or numbers in the part's unit.
+
+        Returns
+        -------
+        The marks, by part id.
+
         Raises
         ------
         UnknownName
             An answer to a part that this variant does not ask.
+        WrongValue
+            The answers are no mapping, or an id is no text.
+        NoSolution
+            The course folder has no solutions.
         """
         from coursework.marking.marking import mark
 
         return mark(self, answers)
 
     def handout(self, student: str = "") -> Handout:
-        """Return the student's sheet."""
+        """Return the student's sheet.
+
+        Parameters
+        ----------
+        student
+            Name printed on the sheet; none unless told.
+
+        Returns
+        -------
+        The sheet's content, before it is printed.
+
+        Raises
+        ------
+        BadStatement
+            A part has no section in the statement.
+        """
         from coursework.sheets.handout import handout
 
         return handout(self, student)
 
     def answer_sheet(self, student: str = "", *, polygons: bool = True) -> AnswerSheet:
-        """Return the handout with its answers and worked solution."""
+        """Return the handout with its answers and worked solution.
+
+        Parameters
+        ----------
+        student
+            Name printed on the sheet; none unless told.
+        polygons
+            Whether the polygons that a part asks are drawn.
+
+        Returns
+        -------
+        The sheet's content, before it is printed.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        """
         from coursework.sheets.answer_sheet import answer_sheet
 
         return answer_sheet(self, student, polygons=polygons)
 
     def study_sheet(self, student: str = "", beside: Collection[str] = ()) -> StudySheet:
-        """Return the self-study notebook of this variant, with links to the lessons whose notebooks stand ``beside`` it."""
+        """Return the self-study notebook of this variant.
+
+        Parameters
+        ----------
+        student
+            Name printed in the notebook; none unless told.
+        beside
+            Names of the lessons whose notebooks stand beside it: it links to them.
+
+        Returns
+        -------
+        The notebook's content, before it is printed.
+        """
         from coursework.selfstudy.session import study_sheet
 
         return study_sheet(self, student, beside)
@@ -208,14 +286,47 @@ class Variant(numbers.Variant):
 
     def animation(self, effects: Sequence[str] = (), count: int = 72) -> DisplayedAnimation:
         """Return the mechanism over the cycle of its driver; see
-        :class:`~coursework.scenes.animation.Animation`."""
+        :class:`~coursework.scenes.animation.Animation`.
+
+        Parameters
+        ----------
+        effects
+            Effects shown from the start: ``position``, ``velocity``, ``acceleration``, ``coriolis``.
+        count
+            Number of angles in a turn of the driver.
+
+        Returns
+        -------
+        The animation, which a cell displays.
+
+        Raises
+        ------
+        BadCourse
+            The exercise names no driver or no figure, and the solution states no film.
+        UnknownName
+            An effect that is none of the four.
+        WrongValue
+            An effect of which the solution states nothing.
+        """
         from coursework.rendering.displayed import DisplayedAnimation
 
         return DisplayedAnimation(self, effects, count)
 
 
 def show_motion(variant: numbers.Variant, effects: Sequence[str] = (), count: int = 72) -> DisplayedAnimation:
-    """Return a variant's mechanism in motion, for display in a notebook cell."""
+    """Return a variant's mechanism in motion, for display in a notebook cell.
+
+    Parameters
+    ----------
+    variant
+        Variant of an exercise that moves.
+    effects, count
+        As for :meth:`Variant.animation`, whose errors it raises.
+
+    Returns
+    -------
+    The animation, which a cell displays.
+    """
     from coursework.rendering.displayed import DisplayedAnimation
 
     return DisplayedAnimation(variant, effects, count)

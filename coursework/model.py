@@ -62,7 +62,17 @@ class GivenSpec:
         return self.low is None and not self.choices
 
     def is_listed(self, parts: Collection[str]) -> bool:
-        """Return True if a sheet that asks these parts lists the quantity among its data."""
+        """Return True if a sheet that asks these parts lists the quantity among its data.
+
+        Parameters
+        ----------
+        parts
+            Ids of the parts asked.
+
+        Returns
+        -------
+        True or False.
+        """
         return self.shown if isinstance(self.shown, bool) else not {*self.shown}.isdisjoint(parts)
 
 
@@ -85,14 +95,37 @@ def drawn(
     nonzero: bool = False,
     shown: bool | tuple[str, ...] = True,
 ) -> GivenSpec:
-    """Declare a quantity drawn from the multiples of ``step`` in [low, high].
+    """Declare a quantity drawn from the multiples of ``step`` in [low, high]; the record keeps it.
 
-    A bound may be a function of quantities declared before it; its parameters name them. ``positive``
-    says whether a request may only give positive values; unless told, it follows from a positive
-    ``low``. ``nonzero`` refuses 0, both in draws and in requests. ``default`` is what a request
-    that leaves the quantity out takes. With ``shown=False`` the sheet does not list it among the data: what
-    it stands for is in the statement or in the figure. With ids of parts, as in ``shown=("pv_a", "pv_b")``, a sheet
-    lists it only where it asks one of them. The record keeps it.
+    Parameters
+    ----------
+    low, high
+        Bounds, the smaller first, in the quantity's unit: numbers, or functions of quantities declared
+        before, which their parameters name.
+    step
+        Distance of neighbouring values, positive, in the same unit.
+    unit
+        Unit of the quantity; ``"1"`` for none.
+    default
+        Value that a request takes which leaves the quantity out.
+    positive
+        True if a request may only give positive values; unless told, it follows from a positive ``low``, but
+        for degrees.
+    nonzero
+        True if 0 is refused, both in draws and in requests.
+    shown
+        False if the sheet does not list it among the data: what it stands for is in the statement or in the
+        figure. With ids of parts, as in ``shown=("pv_a", "pv_b")``, a sheet lists it only where it asks one
+        of them.
+
+    Returns
+    -------
+    The specification.
+
+    Raises
+    ------
+    WrongValue
+        A bound is neither number nor function, the bounds are exchanged, or the step is not positive.
     """
     for bound in (low, high):
         if not (callable(bound) or _is_number(bound)):
@@ -110,14 +143,42 @@ def drawn(
 
 
 def fixed(value: float, *, unit: str = "1") -> GivenSpec:
-    """Declare a quantity with the same value in every variant; a request may give another."""
+    """Declare a quantity with the same value in every variant; a request may give another.
+
+    Parameters
+    ----------
+    value
+        The value, in the unit.
+    unit
+        Unit of the quantity; ``"1"`` for none.
+
+    Returns
+    -------
+    The specification.
+
+    Raises
+    ------
+    WrongValue
+        The value is no number.
+    """
     if not _is_number(value):
         raise WrongValue(f"fixed(…) takes a number; found {value!r}")
     return GivenSpec(unit, default=value)
 
 
 def chosen(*choices: str, shown: bool | tuple[str, ...] = True) -> GivenSpec:
-    """Declare a quantity drawn among named cases, all equally likely; ``shown`` as in :func:`drawn`.
+    """Declare a quantity drawn among named cases, all equally likely.
+
+    Parameters
+    ----------
+    choices
+        Names of the cases.
+    shown
+        As in :func:`drawn`.
+
+    Returns
+    -------
+    The specification.
 
     Raises
     ------
@@ -268,11 +329,35 @@ class Part:
         return result
 
     def half_width(self, reference: float) -> float:
-        """Return the largest accepted distance from a reference, in the part's unit."""
+        """Return the largest accepted distance from a reference.
+
+        Parameters
+        ----------
+        reference
+            The right value, in the part's unit.
+
+        Returns
+        -------
+        The distance in that unit.
+
+        Source
+        ------
+        ``max(atol, rtol |reference|)``.
+        """
         return max(self.atol, self.rtol * abs(reference))
 
     def is_asked(self, given: Mapping[str, Any]) -> bool:
-        """Return whether a variant with these given values asks the part; True where they do not decide."""
+        """Return whether a variant with these given values asks the part; True where they do not decide.
+
+        Parameters
+        ----------
+        given
+            Values of given quantities by name.
+
+        Returns
+        -------
+        True or False.
+        """
         if self.when is None:
             return True
         names = _parameters(self.when)
@@ -290,10 +375,22 @@ def _loop_form(part: Part) -> tuple[str, int] | None:
 
 
 def in_turn(count: int, by: Sequence[str], *groups: Part | Sequence[Part]) -> tuple[Part, ...]:
-    """Return parts of which a variant asks some: ``count`` of the groups, told by the given quantities ``by``.
+    """Return parts of which a variant asks some.
 
-    Questions that have one answer in every variant are asked in turn, so that no sheet tells another. A group is a part
-    or several that are asked together.
+    Questions that have one answer in every variant are asked in turn, so that no sheet tells another.
+
+    Parameters
+    ----------
+    count
+        Number of groups that a variant asks.
+    by
+        Names of the given quantities whose values decide which.
+    groups
+        A part each, or several that are asked together.
+
+    Returns
+    -------
+    All parts of the groups, in their order.
 
     Raises
     ------
@@ -338,12 +435,30 @@ def loop_equations(
     usual: Sequence[str] = (),
     points: float = 1,
 ) -> tuple[Part, ...]:
-    """Return the equations that close a loop of the solution, as parts: projections on x and y, and the
-    complex form.
+    """Return the equations that close a loop of the solution, as parts: projections on x and y, and the complex
+    form.
 
-    ``symbols`` are what a student may write; with ``rates`` and ``second_rates`` the derivatives of the
-    closure are parts as well: ``loop_1_x_dot``, ``loop_1_x_ddot``. All are asked by request, but the forms that are
-    ``usual``: ``("x", "y")``. A named mistake of the solution is known up to a factor of ``parameters``.
+    With ``rates`` and ``second_rates`` the derivatives of the closure are parts as well: ``loop_1_x_dot``,
+    ``loop_1_x_ddot``. All are asked by request, but the forms that are usual.
+
+    Parameters
+    ----------
+    loop
+        Name of the loop in the solution.
+    symbols
+        Names of the quantities that a student may write.
+    rates, second_rates
+        Names that may be written besides, in the first and in the second derivative.
+    parameters
+        Names up to a factor of which a named mistake of the solution is known.
+    usual
+        Forms that are asked without a request: ``("x", "y")``.
+    points
+        Points of a projection; the complex form is worth twice that.
+
+    Returns
+    -------
+    The parts, the closure first, then its derivatives.
     """
     parts = []
     known_names = tuple(symbols)
@@ -408,8 +523,22 @@ class Driver:
 
 
 def clearly_apart(value: Any, right: Any, tolerance: Any, least: float = 2.0, most: float = 0.25) -> Any:
-    """Return where a value lies ``least`` tolerances and more from the right one, or ``most`` and less; so where nobody
-    can doubt whether it is right. What does not exist is clearly wrong."""
+    """Return where it is clear whether a value is right: it lies ``least`` tolerances and more from the right
+    one, or ``most`` and less.
+
+    Parameters
+    ----------
+    value, right
+        Values in one unit; scalars or arrays that broadcast.
+    tolerance
+        Distance in the same unit up to which a value is right, positive.
+    least, most
+        Numbers of tolerances.
+
+    Returns
+    -------
+    True or False, of the broadcast shape; True for a value that does not exist (NaN): it is clearly wrong.
+    """
     return _is_clear(abs(value - right) / tolerance, least, most)
 
 
@@ -431,7 +560,19 @@ class Detectable:
         return f"{self.mistake}_is_detectable"
 
     def holds(self, part: Part, wrong: Any, right: Any) -> Any:
-        """Return where the mistake shows clearly in the answers to a part."""
+        """Return where the mistake shows clearly in the answers to a part.
+
+        Parameters
+        ----------
+        part
+            The question.
+        wrong, right
+            Values with and without the mistake, in the part's unit; scalars or arrays that broadcast.
+
+        Returns
+        -------
+        True or False, of the broadcast shape; True as well where the mistake does not show at all.
+        """
         gap = abs(wrong - right)
         if turn := part.sort.turn:
             gap = np.minimum(gap % turn, -gap % turn)
@@ -442,6 +583,19 @@ def detectable(mistake: str, *quantities: str, least: float = 2.0, most: float =
     """Return the constraint that a mistake of the solution shows clearly in some quantities, or not at all.
 
     The tolerance of a quantity is that of the part that asks it.
+
+    Parameters
+    ----------
+    mistake
+        Name of the mistake in the solution.
+    quantities
+        Names of the quantities in which it shows.
+    least, most
+        Numbers of tolerances, as in :func:`clearly_apart`.
+
+    Returns
+    -------
+    The constraint.
     """
     return Detectable(mistake, quantities, least, most)
 
@@ -537,15 +691,45 @@ class Exercise:
                     raise BadCourse(f"either_order names no part {i!r}{nearest(i, ids)}")
 
     def told(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the values that the statement may use beside the given ones."""
+        """Return the values that the statement may use beside the given ones.
+
+        Parameters
+        ----------
+        given
+            Values of all given quantities by name.
+
+        Returns
+        -------
+        The values by name; none where the exercise states no ``tells``.
+        """
         return {} if self.tells is None else self.tells(*[given[n] for n in _parameters(self.tells)])
 
     def part(self, part_id: str) -> Part | None:
-        """Return the part of this id, or None."""
+        """Return the part of this id, or None.
+
+        Parameters
+        ----------
+        part_id
+            Id of the part.
+
+        Returns
+        -------
+        The part; None where the exercise has none of this id.
+        """
         return next((p for p in self.parts if p.id == part_id), None)
 
     def symbol(self, name: str) -> str:
-        """Return the LaTeX symbol of a quantity."""
+        """Return the LaTeX symbol of a quantity.
+
+        Parameters
+        ----------
+        name
+            Name of the quantity.
+
+        Returns
+        -------
+        LaTeX: the exercise's own symbol, or that of :func:`symbol_of`.
+        """
         return self.symbols.get(name) or symbol_of(name)
 
 
@@ -562,6 +746,17 @@ _GREEK = (
 def symbol_of(name: str) -> str:
     r"""Return the LaTeX symbol of a public name: ``theta4`` -> ``\theta_4``, ``rA_dot`` -> ``\dot{r}_A``.
 
+    Parameters
+    ----------
+    name
+        Name of the quantity.
+
+    Returns
+    -------
+    LaTeX, without dollars.
+
+    Examples
+    --------
     >>> symbol_of("theta3_open")
     '\\theta_{3,\\mathrm{open}}'
     """

@@ -67,13 +67,32 @@ class Mistake:
 def mistake(
     *targets: str, kind: str = "mistake", share: float | None = None, approximation: bool = False
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Mark a function as a named mistake about ``targets``, given or computed quantities.
+    """Mark a function as a named mistake about ``targets``.
 
     The function returns the wrong value, or a tuple of them for several targets. A parameter that
     bears a target's name stands for its right value, so ``def sign(omega5): return -omega5`` reads
-    as it sounds. ``kind`` says which error it is, of those that :data:`~coursework.quantities.error_kinds.PENALTIES` knows:
-    what it leaves of the points is the course's price for it. ``share``, 0 to 1, is a price of its own;
-    ``approximation`` declares a legitimate one.
+    as it sounds.
+
+    Parameters
+    ----------
+    targets
+        Names of the quantities that it gets wrong, given or computed.
+    kind
+        Kind of error, one of :data:`~coursework.quantities.error_kinds.PENALTIES`: what it leaves of the
+        points is the course's price for it.
+    share
+        Share of the points that it leaves, 0 to 1, as a price of its own; that of its kind unless told.
+    approximation
+        True for a legitimate approximation.
+
+    Returns
+    -------
+    A decorator, which returns the function itself.
+
+    Raises
+    ------
+    BadCourse
+        No target, no such kind, or a share that is not between 0 and 1.
     """
     if not targets or not all(isinstance(t, str) for t in targets):
         raise BadCourse('@mistake names what it gets wrong: @mistake("theta4")')
@@ -94,8 +113,17 @@ def mistake(
 def formula(latex: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     r"""State the printed formula of a quantity whose code does not read as one.
 
-    ``<name>`` stands for the quantity of that name: its symbol in the formula, its number in the
-    substitution. ``@formula(r"\operatorname{arg}(<arm>)")``.
+    ``@formula(r"\operatorname{arg}(<arm>)")``
+
+    Parameters
+    ----------
+    latex
+        The formula: ``<name>`` stands for the quantity of that name, its symbol in the formula, its number in
+        the substitution.
+
+    Returns
+    -------
+    A decorator, which returns the function itself.
     """
 
     def mark(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -112,6 +140,15 @@ def told_after(*names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]
         def rs(_combined): ...
 
     So the table of what is transmitted stands before the rank that is counted in it, whichever questions are asked.
+
+    Parameters
+    ----------
+    names
+        Names of the quantities printed before.
+
+    Returns
+    -------
+    A decorator, which returns the function itself.
     """
 
     def mark(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -132,6 +169,15 @@ def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Calla
 
         @stable(lambda _linkage: _linkage.rocker_angle)
         def theta4(phi, psi): return phi - psi
+
+    Parameters
+    ----------
+    function
+        The computation, a function of other quantities.
+
+    Returns
+    -------
+    A decorator of the textbook formula, which it returns.
     """
 
     def mark(formula: Callable[..., Any]) -> Callable[..., Any]:
@@ -149,11 +195,31 @@ class Case:
     effects: tuple[str, ...] | None = None
 
     def under(self, *effects: str) -> Case:
-        """Return the case under these effects, or under none."""
+        """Return the case under these effects, or under none.
+
+        Parameters
+        ----------
+        effects
+            Names of the effects.
+
+        Returns
+        -------
+        A case with the same values.
+        """
         return Case(self.values, effects)
 
     def gives(self, **expected: Any) -> tuple[Any, ...]:
-        """Return the entry of ``KNOWN``, with the expected values."""
+        """Return the entry of ``KNOWN``, with the expected values.
+
+        Parameters
+        ----------
+        expected
+            Values by quantity; a text is right to its last printed digit, a number to 1e-9 relative.
+
+        Returns
+        -------
+        A pair (given values, expected values), with the effects as a third item where they are stated.
+        """
         case = (self.values, expected)
         return case if self.effects is None else (*case, self.effects)
 
@@ -165,6 +231,15 @@ def given(**values: Any) -> Case:
         given(r1=200, r2=100, theta2=90).gives(rA=300, theta4=90),
         given(r2=40, F=-400).under("load").gives(torque=-12),
     )
+
+    Parameters
+    ----------
+    values
+        Values by given quantity, in their units.
+
+    Returns
+    -------
+    The case, without effects of its own.
     """
     return Case(values)
 
@@ -201,6 +276,15 @@ def judge(function: Callable[..., Any]) -> Callable[..., Any]:
             if "r2" not in answers:
                 return {}
             return {"r2": Judged(abs(2 * answers["r2"] - stroke) <= 0.01 * stroke, found={"stroke": ...})}
+
+    Parameters
+    ----------
+    function
+        The judge, a function of ``answers`` and of quantities.
+
+    Returns
+    -------
+    The function itself.
     """
     function.__judge__ = True  # type: ignore[attr-defined]  # marks a function
     return function
@@ -220,7 +304,17 @@ class Moving:
     coriolis: Any = None
 
     def over(self, count: int) -> Moving:
-        """Return the motion as arrays of ``count`` instants."""
+        """Return the motion as arrays of ``count`` instants.
+
+        Parameters
+        ----------
+        count
+            Number of instants.
+
+        Returns
+        -------
+        The motion, each of its vectors of shape ``(count,)``, complex; None for one that is not shown.
+        """
         values = (self.position, self.velocity, self.acceleration, self.coriolis)
         return Moving(*(v if v is None else np.broadcast_to(v, (count,)).astype(complex) for v in values))
 
@@ -266,7 +360,20 @@ class Solution:
 
     @staticmethod
     def of(name: str, module: ModuleType, source: str) -> Solution:
-        """Read a solution module; ``source`` is the name of its file in messages.
+        """Read a solution module.
+
+        Parameters
+        ----------
+        name
+            Name of the exercise.
+        module
+            The module, loaded.
+        source
+            Name of its file in messages.
+
+        Returns
+        -------
+        The solution.
 
         Raises
         ------
@@ -330,6 +437,15 @@ class Solution:
     def judge(self, name: str) -> Callable[..., Any]:
         """Return the judge that parts name.
 
+        Parameters
+        ----------
+        name
+            Name of the judge.
+
+        Returns
+        -------
+        The function marked :func:`judge`.
+
         Raises
         ------
         UnknownName
@@ -340,17 +456,52 @@ class Solution:
         return self.judges[name]
 
     def mistaken(self, name: str) -> Graph:
-        """Return the graph with one named mistake in it."""
+        """Return the graph with one named mistake in it.
+
+        Parameters
+        ----------
+        name
+            Name of the mistake.
+
+        Returns
+        -------
+        The graph in which the mistake replaces its targets.
+
+        Raises
+        ------
+        UnknownName
+            The solution has no such mistake.
+        """
         if name not in self.mistakes:
             raise unknown("mistake", name, self.mistakes, f"solution {self.name}")
         return self._mistaken_graphs[name]
 
     def reached(self, name: str) -> frozenset[str]:
-        """Return the quantities that a named mistake can change."""
+        """Return the quantities that a named mistake can change.
+
+        Parameters
+        ----------
+        name
+            Name of a mistake of the solution.
+
+        Returns
+        -------
+        The names of its targets and of what depends on them.
+        """
         return self._reached[name]
 
     def depending_on(self, quantity: str) -> frozenset[str]:
-        """Return the quantities that depend on one."""
+        """Return the quantities that depend on one.
+
+        Parameters
+        ----------
+        quantity
+            Name of a quantity.
+
+        Returns
+        -------
+        Its name and theirs, by the textbook formulas.
+        """
         if quantity not in self._dependants:
             self._dependants[quantity] = self.graph.textbook.descendants((quantity,))
         return self._dependants[quantity]
