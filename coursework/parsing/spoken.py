@@ -82,6 +82,37 @@ def number_words() -> dict[str, int]:
     }
 
 
+#: What people write about a number beside words: an arrow before it, a sign in brackets, digits that go on, a power of ten
+#: in words, a direction up to a turn, to which digit it is rounded, the same in another unit.
+_HABITS = (
+    (re.compile(r"^(?:[→⇒⟹⟶∴]|[=~-]>|~=)\s*(?=[+-]?\s*[0-9])"), ""),
+    (re.compile(r"^\(\s*([+-])\s*\)\s*(?=[0-9])"), r"\1"),
+    (re.compile(r"(?<=[0-9])(?:\.\.\.|…)(?!\s*[0-9+-])"), ""),
+    (re.compile(r"(?<=10)\s*(?:exp|puissance|to the power)\s*(?=[+-]?[0-9])", re.I), "^"),
+    (
+        re.compile(r"\s*(?:\(\s*mod[^()]*\)|\[\s*(?:mod(?:ulo)?\s*)?(?:360\s*°?|2\s*(?:π|pi))\s*\])$", re.I),
+        "",
+    ),
+    (re.compile(r"(?<=\S)[\s,]+\(?à\s+[^\s()]{1,9}(?:\s[^\s()]{1,6})?\s+près\)?$", re.I), ""),
+    (re.compile(r"(?<=[^\W_])\s*,?\s+soit\s+(?=[+-]?[0-9])", re.I), " = "),
+)
+
+
+@lru_cache(maxsize=1)
+def _remark() -> re.Pattern[str]:
+    """Words that say nothing of a value at its end: ``12,5 (arrondi)``, ``2,05 sans unité``."""
+    return re.compile(rf"(?<=\S)[\s,]+[(\[]?(?:{_either('remark')})[)\]]?[.!]?$", re.I)
+
+
+def _plainly(text: str) -> str:
+    """Return a number without the habits of people who write it by hand."""
+    if len(text) > _LONGEST:
+        return text
+    for pattern, plain in _HABITS:
+        text = pattern.sub(plain, text, count=1)
+    return _remark().sub("", text) if re.search(r"[0-9]", text) else text
+
+
 def with_signs(text: str) -> str:
     """Return a number with digits and a sign in place of words: ``moins 18,32``, ``cinq``, ``à peu près 15``.
 
@@ -92,17 +123,18 @@ def with_signs(text: str) -> str:
     Stop
         The sign is against the words: ``two_values``.
     """
+    text = _plainly(text)
     if not any(map(str.isalpha, text)):
         return text
-    if about := _before("about").match(text):
-        text = text[about.end() :]
+    while about := _before("about").match(text):
+        text = text[about.end() :].lstrip(", ")
     for category, sign in (("minus", "-"), ("plus", "")):
         if match := _before(category).match(text):
             text = sign + text[match.end() :]
     number = number_words().get(text.lstrip("-").casefold())
     if number is not None:
         return f"{'-' if text[0] == '-' else ''}{number}"
-    for category in ("negative", "positive"):  # counterclockwise ends as clockwise does, and is no part of it
+    for category in ("positive", "negative"):  # anti-horaire ends as horaire does
         if number_text := _number_before(category, text):
             is_negative = number_text.startswith("-")
             if category == "positive" and is_negative:

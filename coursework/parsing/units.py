@@ -247,6 +247,7 @@ _TOKEN = re.compile(
 
 
 _PER = re.compile(r"(?<![^\W\d_])(?:par|per)(?![^\W\d_])", re.I)
+_SQUARED = re.compile(r"(?<=[^\W\d_])\s+(?:au carr[ée]|carr[ée]e?s?|squared)(?![^\W\d_])", re.I)
 _CELSIUS = re.compile(r"(?:°|deg(?:r[eé]e?)?s?)\s*celsius|deg\.?\s*C(?![^\W\d_])", re.I)
 _HYPHEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])")
 
@@ -333,7 +334,7 @@ def _analyse_plain(plain: str, text: str) -> tuple[Unit | None, str]:
         unit = _DIFFERENCES[plain]
         return Unit(text, unit.ratio, unit.pi, unit.dimension), ""
     try:
-        plain = _PER.sub("/", _CELSIUS.sub("°C", plain))
+        plain = _PER.sub("/", _CELSIUS.sub("°C", _SQUARED.sub("^2", plain)))
         tokens = _tokens(_HYPHEN.sub("*", plain))
         # A temperature stands alone; with anything beside it, it is a difference.
         zero = _named(tokens[0][0]).zero if len(tokens) == 1 and tokens[0][1] == 1 else None

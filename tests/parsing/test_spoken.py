@@ -21,6 +21,12 @@ def test_numbers_with_words_signs_and_senses_are_read():
         ("270 + 0", "mm", 270), ("12 rad.s-²", "rad/s^2", 12), ("12 mm·s-¹", "mm/s", 12), ("105 deg 9 min", "deg", 105.15),
         ("105 degrés 9 minutes", "deg", 105.15), ("20,54 rad/s (sens horaire)", "rad/s", -20.54), ("-20.54 rad/s, clockwise", "rad/s", -20.54),
         ("20.54 rad/s counterclockwise", "rad/s", 20.54), ("201,5 mm/s vers la droite", "mm/s", 201.5), ("201.5 mm/s to the left", "mm/s", -201.5),
+        ("d'où -39,4°", "deg", -39.4), ("soit environ 39,4 °", "deg", 39.4), ("on trouve −2,5 mm", "mm", -2.5), ("est égal à 3 mm", "mm", 3),
+        ("⇒ 12,5 mm", "mm", 12.5), ("≅ -12,5 mm", "mm", -12.5), ("~= 12,5 mm", "mm", 12.5), ("-12,5 mm environ", "mm", -12.5), ("12,5 mm (arrondi)", "mm", 12.5),
+        ("12,5 mm à 0,1 près", "mm", 12.5), ("39,417... °", "deg", 39.417), ("-39,4° [360°]", "deg", -39.4), ("39,4° (modulo 360°)", "deg", 39.4),
+        ("-3,94 x 10 puissance 1 °", "deg", -39.4), ("3,94 10exp1 mm", "mm", 39.4), ("(-)39,4 °", "deg", -39.4), ("39,4 degrés décimaux", "deg", 39.4),
+        ("116,77 mm soit 11,677 cm", "mm", 116.77), ("15,4 mètres par seconde au carré", "mm/s^2", 15400), ("2 radians par seconde carrée", "rad/s^2", 2),
+        ("2,05 (sans unité)", "1", 2.05), ("4,7 rad/s (sens anti-horaire)", "rad/s", 4.7), ("4,7 rad/s, sens négatif", "rad/s", -4.7), ("so, about 12 mm", "mm", 12),
         ("racine(2)", "1", math.sqrt(2)), ("square root of 2", "1", math.sqrt(2)), ("sin⁻¹(0,5)", "deg", 30), ("cos^-1(0.5)", "deg", 60),
         ("sqrt(185^2+115^2+2*185*115*sin(130))", "mm", math.sqrt(185**2 + 115**2 + 2 * 185 * 115 * math.sin(math.radians(130)))),
         ("115 cos 25", "mm", 115 * math.cos(math.radians(25))), ("100 sin(1.5708)", "mm", 100), ("100 sin(π/6)", "mm", 50),
@@ -35,7 +41,14 @@ def test_numbers_with_words_signs_and_senses_are_read():
 
 
 def test_what_may_be_degrees_or_radians_and_a_sign_against_its_words_wait():
-    for text in ("115*sin(0.5)", "cos(3)", "-20 rad/s (counterclockwise)", "319.8 ± 50"):
+    for text in (
+        "115*sin(0.5)",
+        "cos(3)",
+        "-20 rad/s (counterclockwise)",
+        "319.8 ± 50",
+        "12 rad/s soit 13 rad/s",
+        "1...5",
+    ):
         assert read_number(text, "rad/s").status == "unreadable", text
 
 
