@@ -31,7 +31,8 @@ from coursework.messages import as_message, localised
 from coursework.site.desk import uploads
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
-from coursework.site.frame.budgets import DESK_FILES, read_apart, read_upload
+from coursework.site.frame.budgets import DESK_FILES, read_apart
+from coursework.site.frame.forms import read_upload
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 from coursework.site.frame.responses import Download
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text

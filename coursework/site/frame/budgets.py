@@ -4,17 +4,11 @@ file."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from coursework.errors import BadInput
-from coursework.messages import as_message
 from coursework.system.processes import Exceeded, ResourceLimits, confined
-
-if TYPE_CHECKING:
-    from coursework.site.frame.requests import Request
 
 KILOBYTE, MEGABYTE = 1024, 1024 * 1024
 
@@ -66,26 +60,6 @@ DESK_FILE = DESK_FILES._replace(
 )
 
 MOST_ROWS = 800  #: of a student's file of answers
-
-
-def read_upload(
-    request: Request, budget: Budget, function: Callable[..., Any], name: str, data: bytes, *arguments: Any
-) -> Any:
-    """Return the result of a function that reads an uploaded file by its path, in a process with the budget's
-    resource limits.
-
-    Raises
-    ------
-    BadInput
-        The function raised it, or exceeded its resource limits; the message names the file alone.
-    """
-    with TemporaryDirectory(prefix="coursework-") as folder:
-        path = Path(folder) / name
-        path.write_bytes(data)
-        try:
-            return read_apart(budget, request.words["refused"]["too_much"], function, path, *arguments)
-        except BadInput as fault:
-            raise BadInput(as_message(fault).replacing(f"{folder}/", "")) from None
 
 
 def read_apart(budget: Budget, too_much: str, function: Callable[..., Any], *arguments: Any) -> Any:

@@ -1,11 +1,12 @@
-"""Reading of forms, within limits of size, number and time."""
+"""Reading of forms and of their files, within limits of size, number and time."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from email.message import Message
-from pathlib import PurePath
+from pathlib import Path, PurePath
+from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any
 
@@ -14,8 +15,11 @@ from starlette.exceptions import HTTPException as StarletteException
 from starlette.formparsers import FormParser, MultiPartException, MultiPartParser
 from starlette.requests import Request
 
-from coursework.site.frame.budgets import KILOBYTE, MEGABYTE, Budget
+from coursework.errors import BadInput
+from coursework.messages import as_message
+from coursework.site.frame.budgets import KILOBYTE, MEGABYTE, Budget, read_apart
 from coursework.site.frame.requests import FormData, HTTPException, Upload, clean
+from coursework.site.frame.requests import Request as SiteRequest
 
 _TYPED = 1024 * 1024  #: bytes of a form without files, and of one field in a form with files
 _SECONDS, _RATE = 30.0, 20_000  #: time limit of a form: a fixed part, and the lowest rate in bytes per second
@@ -125,3 +129,28 @@ async def _form(items: Sequence[tuple[str, Any]], most: int) -> FormData:
 
 def size_text(count: int) -> str:
     return f"{count // MEGABYTE} MB" if count >= MEGABYTE else f"{count // KILOBYTE} kB"
+
+
+def read_upload(
+    request: SiteRequest,
+    budget: Budget,
+    function: Callable[..., Any],
+    name: str,
+    data: bytes,
+    *arguments: Any,
+) -> Any:
+    """Return the result of a function that reads an uploaded file by its path, in a process with the budget's
+    resource limits.
+
+    Raises
+    ------
+    BadInput
+        The function raised it, or exceeded its resource limits; the message names the file alone.
+    """
+    with TemporaryDirectory(prefix="coursework-") as folder:
+        path = Path(folder) / name
+        path.write_bytes(data)
+        try:
+            return read_apart(budget, request.words["refused"]["too_much"], function, path, *arguments)
+        except BadInput as fault:
+            raise BadInput(as_message(fault).replacing(f"{folder}/", "")) from None

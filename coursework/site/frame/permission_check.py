@@ -35,7 +35,7 @@ def check_permission(
         Current user; None if nobody is signed in.
     path
         Parameters of the path.
-    posted
+    is_post
         True if a form is sent.
 
     Raises

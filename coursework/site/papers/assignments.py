@@ -22,8 +22,9 @@ from coursework.gradebook.rows import AnswerRow
 from coursework.gradebook.submissions import read_rows
 from coursework.issuing.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
-from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, read_upload
+from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS
 from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts, versions_of
+from coursework.site.frame.forms import read_upload
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 from coursework.site.frame.responses import Download, redirect
 from coursework.site.frame.times import exact_text, length_text, zone_name

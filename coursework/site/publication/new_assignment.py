@@ -21,7 +21,8 @@ from coursework.errors import BadInput
 from coursework.issuing.assignment import FILES, OPTIONS, Assignment, assignment_of
 from coursework.issuing.issued import Issued
 from coursework.issuing.roster import Student, read_roster
-from coursework.site.frame.budgets import DESK_FILE, read_upload
+from coursework.site.frame.budgets import DESK_FILE
+from coursework.site.frame.forms import read_upload
 from coursework.site.frame.requests import Request, Upload
 from coursework.site.frame.settings import Site
 from coursework.site.publication.assigning import AssignmentRequest
