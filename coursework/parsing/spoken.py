@@ -50,7 +50,11 @@ def refers_elsewhere(text: str) -> bool:
 def _either(category: str) -> str:
     """Return the words of every language as a pattern, their spaces of any length, with accents and without."""
     phrases = {
-        w for lang in languages() for word in words(lang)["answers"][category] for w in (word, folded(word))
+        w
+        for lang in languages()
+        for word in words(lang)["answers"][category]
+        for w in (word, folded(word))
+        if w
     }
     return "|".join(re.escape(w).replace(r"\ ", r"[\s-]+") for w in sorted(phrases, key=len, reverse=True))
 
@@ -66,10 +70,13 @@ def _sense(category: str) -> re.Pattern[str]:
     return re.compile(rf"[(\[]?(?<![^\W\d_])(?:{_either(category)})\s{{0,9}}[)\]]?[.!]?$", re.I)
 
 
+_NAMED = re.compile(r"^[^\W\d_]\w{0,9}\s*[=≈:]\s*(?=[+-]?\s*[0-9])")  #: the name of a number
+
+
 def _number_before(category: str, text: str) -> str:
     """Return the number that stands before words for a sense; nothing where none does."""
     match = _sense(category).search(text) if len(text) <= _LONGEST else None
-    number = text[: match.start()].strip(" ,;(") if match else ""
+    number = _NAMED.sub("", text[: match.start()].strip(" ,;(")) if match else ""
     return number if re.match(r"[+-]?\s*[0-9]", number) else ""
 
 

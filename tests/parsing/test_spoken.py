@@ -27,6 +27,8 @@ def test_numbers_with_words_signs_and_senses_are_read():
         ("-3,94 x 10 puissance 1 °", "deg", -39.4), ("3,94 10exp1 mm", "mm", 39.4), ("(-)39,4 °", "deg", -39.4), ("39,4 degrés décimaux", "deg", 39.4),
         ("116,77 mm soit 11,677 cm", "mm", 116.77), ("15,4 mètres par seconde au carré", "mm/s^2", 15400), ("2 radians par seconde carrée", "rad/s^2", 2),
         ("2,05 (sans unité)", "1", 2.05), ("4,7 rad/s (sens anti-horaire)", "rad/s", 4.7), ("4,7 rad/s, sens négatif", "rad/s", -4.7), ("so, about 12 mm", "mm", 12),
+        ("ω3 = 4,2 rad/s horaire", "rad/s", -4.2), ("4 rad/s ↻", "rad/s", -4), ("3 mm/s ↑", "mm/s", 3), ("v = 3 mm/s dirigée vers le bas", "mm/s", -3),
+        ("12,5 mm (mesuré)", "mm", 12.5), ("12,5 mm ?", "mm", 12.5), ("la réponse est 12,5 mm", "mm", 12.5), ("4 rad/s sens rétrograde", "rad/s", -4),
         ("racine(2)", "1", math.sqrt(2)), ("square root of 2", "1", math.sqrt(2)), ("sin⁻¹(0,5)", "deg", 30), ("cos^-1(0.5)", "deg", 60),
         ("sqrt(185^2+115^2+2*185*115*sin(130))", "mm", math.sqrt(185**2 + 115**2 + 2 * 185 * 115 * math.sin(math.radians(130)))),
         ("115 cos 25", "mm", 115 * math.cos(math.radians(25))), ("100 sin(1.5708)", "mm", 100), ("100 sin(π/6)", "mm", 50),
@@ -37,7 +39,12 @@ def test_numbers_with_words_signs_and_senses_are_read():
         if not (reading.values and math.isclose(reading.values[0], value, rel_tol=1e-6)):
             wrong.append((text, reading))
     assert wrong == []
-    assert [read_integer(t).values for t in ("cinq", "five", "moins deux")] == [(5,), (5,), (-2,)]
+    assert [read_integer(t).values for t in ("cinq", "five", "moins deux", "3 liaisons")] == [
+        (5,),
+        (5,),
+        (-2,),
+        (3,),
+    ]
 
 
 def test_what_may_be_degrees_or_radians_and_a_sign_against_its_words_wait():
