@@ -34,9 +34,14 @@ def test_numbers_need_no_formulas_and_no_sheets(command):
     assert not modules & {"coursework.figures.placing", "coursework.course.answer_key"}
 
 
-def test_a_variant_is_drawn_without_its_solution():
-    modules = loaded("variant slotted_mechanism --seed 1 --json")
-    assert not modules & {"coursework.solution", "coursework.parsing.numbers", "coursework.polygons"}
+def test_a_variant_is_drawn_without_the_solution_unless_a_constraint_asks_it():
+    assert not loaded("variant grashof --seed 1 --json") & {
+        "coursework.solution",
+        "coursework.parsing.numbers",
+    }
+    asked = loaded("variant slotted_mechanism --seed 1 --json")
+    assert "coursework.solution" in asked
+    assert not asked & {"coursework.parsing.numbers", "coursework.course.answer_key"}
 
 
 @pytest.mark.parametrize(
