@@ -143,7 +143,7 @@ def _zip(folder: Folder, issued: bytes, lang: str) -> bytes:
         *((("course", folder.root),) if is_own_course else ()),
     ):
         for kind in _COURSE:
-            files |= _below(name, root, _files(root / kind))
+            files |= _below(name, root, _files(root / kind, skip="site" if kind == "templates" else ""))
     return zipped(files, programs=("setup.sh", "run_autograder"))
 
 

@@ -252,6 +252,7 @@ class ProgressFile:
             self.progress |= new
             return
         try:
+            self.path.parent.stat()  # a lock would make the folder
             with file_lock(self.path.with_suffix(".lock"), _WAIT):
                 self.progress = self._read() | self.progress | new
                 part = self.path.with_suffix(".part")
