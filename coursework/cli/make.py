@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -30,10 +30,6 @@ from coursework.cli.printing import print_table
 from coursework.issuing.formats import ADDITIONS
 from coursework.messages import Message, localised
 from coursework.system.limits import MOST_VARIANTS
-
-if TYPE_CHECKING:
-    pass
-
 
 # ------------------------------------------------------------------------ build
 

@@ -26,7 +26,7 @@ from coursework.cli.options import (
     tell_lack_of_charts,
     writes,
 )
-from coursework.cli.printing import print_json, progress_bar, say, warn
+from coursework.cli.printing import print_json, progress_bar, say, warn_some
 from coursework.errors import BadInput, counted
 from coursework.messages import Message, localised
 from coursework.system.extras import libraries
@@ -195,21 +195,17 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
     for line in book.seen:
         click.echo(one_line(line))
     say(
-        "{rows}: {marked} marked, {rejected} rejected, {blanks} blank beside another; see {out}"
-        if book.blanks
-        else "{rows}: {marked} marked, {rejected} rejected; see {out}",
+        "{rows}: {marked} marked, {rejected} rejected{blanks}; see {out}",
         rows=counted(book.rows_in, "row"),
         marked=book.marked,
         rejected=len(book.rejected),
+        blanks=Message(", {count} blank beside another", count=book.blanks) if book.blanks else "",
         out=out,
-        **({"blanks": book.blanks} if book.blanks else {}),
     )
     if book.unreadable:
         say(
-            "{count} unreadable answer to look at: verdict unreadable in {file}"
-            if book.unreadable == 1
-            else "{count} unreadable answers to look at: verdict unreadable in {file}",
-            count=book.unreadable,
+            "{answers} to look at: verdict unreadable in {file}",
+            answers=counted(book.unreadable, "unreadable answer"),
             file=out / "marks.csv",
         )
     if book.waiting:
@@ -231,10 +227,10 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
     _print_warnings(book)
     for fault in book.faults:
         click.echo(f"coursework: {one_line(localised(fault))}", err=True)
-    for rejected in book.rejected[:10]:
-        click.echo(f"coursework: {one_line(f'{rejected.source}: {rejected.reason}')}", err=True)
-    if len(book.rejected) > 10:
-        warn("and {count} more in {file}", count=len(book.rejected) - 10, file=out / "rejected.csv")
+    warn_some(
+        [Message("{source}: {reason}", source=row.source, reason=row.reason) for row in book.rejected],
+        out / "rejected.csv",
+    )
     return FOUND if book.review_count else DONE
 
 

@@ -8,12 +8,15 @@ import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import zip_longest
+from pathlib import Path
 from typing import Any
 
 import click
 
 from coursework.messages import Message, localised
-from coursework.system.visible import plain, visible, visible_streams
+from coursework.system.visible import one_line, plain, visible, visible_streams
+
+_SHOWN = 10  #: lines of a list on the error stream
 
 
 def print_json(content: Any) -> None:
@@ -39,6 +42,14 @@ def say(template: str, /, **values: Any) -> None:
 def warn(template: str, /, **values: Any) -> None:
     """Print a line in the reader's language on the error stream, after the name of the program."""
     click.echo(f"coursework: {localised(Message(template, **values))}", err=True)
+
+
+def warn_some(lines: Sequence[str], file: Path) -> None:
+    """Print the first lines on the error stream, and how many more stand in a file."""
+    for line in lines[:_SHOWN]:
+        click.echo(f"coursework: {one_line(localised(line))}", err=True)
+    if len(lines) > _SHOWN:
+        warn("and {count} more in {file}", count=len(lines) - _SHOWN, file=file)
 
 
 def print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:

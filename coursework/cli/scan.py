@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING
 import click
 
 from coursework.cli.options import DONE, FOUND, FilePath, NeedingExtra, decimal_option, opened, writes
-from coursework.cli.printing import progress_bar, say, warn
+from coursework.cli.printing import progress_bar, say, warn, warn_some
 from coursework.errors import BadInput, counted
 from coursework.messages import Message, localised
 from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
     from coursework.scanning.scan import ScanBook
-
-_TOLD = 10  #: lines of a kind that are told
 
 
 def _ready() -> None:
@@ -120,13 +118,9 @@ def _print_scan_book(book: ScanBook, out: Path) -> int:
         )
     if book.unused:
         warn("note: {lines} of typed.csv fit nothing that was scanned", lines=counted(book.unused, "line"))
-    _told_some([Message("{owner} missing", owner=owner) for owner in book.missing], out / "missing.csv")
-    _told_some([f"{row}: {why}" for row, why in book.rejected], out / "rejected.csv")
+    warn_some([Message("{owner} missing", owner=owner) for owner in book.missing], out / "missing.csv")
+    warn_some(
+        [Message("{source}: {reason}", source=row, reason=why) for row, why in book.rejected],
+        out / "rejected.csv",
+    )
     return FOUND if book.needs_a_look else DONE
-
-
-def _told_some(lines: Sequence[str], rest: Path) -> None:
-    for line in lines[:_TOLD]:
-        click.echo(f"coursework: {localised(line)}", err=True)
-    if len(lines) > _TOLD:
-        warn("and {count} more in {file}", count=len(lines) - _TOLD, file=rest)
