@@ -16,7 +16,6 @@ from coursework.database.publication import (
     NEVER,
     Publication,
     publish,
-    published,
     set_counting_attempt,
 )
 from coursework.database.tables import assignment
@@ -94,17 +93,14 @@ def _publication(wanted: LinkSettings) -> Publication:
     return Publication(tries=wanted.tries, feedback=AT_ONCE, answers=answers)
 
 
-def follow_link(site: Site, linked: LinkedAssignment, launch: Launch) -> None:
+def follow_link(site: Site, linked: LinkedAssignment, current: Publication, launch: Launch) -> None:
     """Take over the rules that a link of an exercise states now; what staff set beside them stays."""
     if linked.number is None or not linked.link:
         return
     counts = linked.table["sittings"]
     with site.store.reading() as connection:
-        current = published(connection, linked.number)
         mine = assignment.c.id == linked.number
         stated = connection.execute(select(assignment.c.stated).where(mine)).scalar_one()
-    if current is None:
-        return
     stating = replace(current, tries=linked.publication.tries, answers=linked.publication.answers)
     if stating == current and stated.get("sittings") == counts:
         return

@@ -129,24 +129,27 @@ class SiteHost:
             The assignment is not published, not open, or cannot be assigned.
         """
         site, launch = self._site, request.launch
+        publication: Publication | None = None
         if linked.number is not None:
             with site.store.reading() as connection:
-                if published(connection, linked.number) is None:
-                    raise HTTPException("own", 404)
-            follow_link(site, linked, launch)
+                publication = published(connection, linked.number)
+            if publication is None:
+                raise HTTPException("own", 404)
+            follow_link(site, linked, publication, launch)
         row = launch_persons.launch_person(site, launch, request.lang)
-        number = self._assigned(request, linked, row)
+        number = self._assigned(request, linked, publication, row)
         if self._storage.record(launch, row.id, number):
             self._queue_score(launch, row.id, number)
         person = Person(row.id, row.name, "student", request.lang)
         return SiteRequest.of_person(site, person, request.lang, request.home, {"number": number}, form)
 
-    def _assigned(self, request: LTIRequest, linked: LinkedAssignment, person: Any) -> int:
+    def _assigned(
+        self, request: LTIRequest, linked: LinkedAssignment, publication: Publication | None, person: Any
+    ) -> int:
         """Return the assignment's id, after a paper was assigned to the person, if they have none."""
-        if linked.number is not None:
+        if linked.number is not None and publication is not None:
             with self._site.store.reading() as connection:
-                publication = published(connection, linked.number)
-                if publication is None or student_assignments(connection, person.id, linked.number):
+                if student_assignments(connection, person.id, linked.number):
                     return linked.number
             phase = publication.phase(publication.now(self._site.clock()))
             if phase is Phase.TO_COME:
