@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import time
-import traceback
 from collections.abc import Callable
 from contextlib import AsyncExitStack, suppress
 from datetime import UTC, datetime
@@ -30,7 +29,7 @@ from coursework.site.frame.forms import read_form
 from coursework.site.frame.permission_check import GREATEST, check_permission, note_export, person_of
 from coursework.site.frame.requests import HTTPException, Person, Request, Route
 from coursework.site.frame.responses import redirect, set_cookie
-from coursework.site.frame.security_log import FAILED, event_of, log_events
+from coursework.site.frame.security_log import FAILED, event_of, location_of, log_events
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.frame.threads import Lanes, Run
 from coursework.site.people import home
@@ -63,7 +62,7 @@ class Middleware:
         except Exception as fault:
             refusal = _refusal_of(fault)
             if refusal.status_code == 500:  # logged without its message, which may contain an answer
-                level, why = logging.ERROR, f" {_location_of(fault)}"
+                level, why = logging.ERROR, f" {location_of(fault)}"
                 request.person, request.browser, request.is_new = None, Session(""), False
             response = await run_in_threadpool(self._refused, request, refusal)
         took = 1000 * (time.perf_counter() - begun)
@@ -244,7 +243,7 @@ class Middleware:
         try:
             response = request.render("site/refused", why.status_code, told=message)
         except Exception as fault:
-            LOG.error("the page for that: %s", _location_of(fault))
+            LOG.error("the page for that: %s", location_of(fault))
             request.is_new = False
             response = PlainTextResponse(f"Error {why.status_code}", why.status_code)
         response.headers.update(why.headers or {})
@@ -268,7 +267,7 @@ def _refusal_of(fault: Exception) -> HTTPException:
     if isinstance(fault, BadInput):
         return _mistaken(fault)
     if isinstance(fault, BadCourse):  # its folder is unavailable, or one of its files has changed
-        LOG.error("the course: %s", _location_of(fault) if isinstance(fault, BrokenFunction) else fault)
+        LOG.error("the course: %s", location_of(fault) if isinstance(fault, BrokenFunction) else fault)
         return HTTPException("course", 503, _AGAIN)
     if isinstance(fault, IntegrityError):  # two transactions wrote the same row; this one was rolled back
         LOG.error("the database: two wrote the same at once")
@@ -303,11 +302,3 @@ def _host(url: str) -> str:
 def _origin(url: str) -> str:
     parts = urlsplit(url)
     return f"{parts.scheme}://{parts.netloc}"
-
-
-def _location_of(fault: BaseException) -> str:
-    frames = traceback.extract_tb(fault.__traceback__)[-5:]
-    lines = " < ".join(
-        f"{frame.filename.rpartition('coursework/')[2]}:{frame.lineno}" for frame in reversed(frames)
-    )
-    return f"{type(fault).__name__} at {lines}"

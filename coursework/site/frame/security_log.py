@@ -7,6 +7,7 @@ Times are in UTC.
 from __future__ import annotations
 
 import logging
+import traceback
 
 from coursework.site.frame.requests import HTTPException, Request
 from coursework.system.allowances import network
@@ -38,3 +39,13 @@ def log_events(request: Request, path: str) -> None:
         level = logging.INFO if event in (SIGNED_IN, SIGNED_OUT) else logging.WARNING
         by, address = f"person {person}" if person else "nobody", network(request.client_address)
         LOG.log(level, "security: %s, %s %s, %s, from %s", event, request.method, path, by, address)
+
+
+def location_of(fault: BaseException) -> str:
+    """Return the type of a fault and the lines that raised it, without its message, since a message may
+    contain an answer."""
+    frames = traceback.extract_tb(fault.__traceback__)[-5:]
+    lines = " < ".join(
+        f"{frame.filename.rpartition('coursework/')[2]}:{frame.lineno}" for frame in reversed(frames)
+    )
+    return f"{type(fault).__name__} at {lines}"

@@ -8,7 +8,6 @@ import json
 import logging
 import re
 import time
-import traceback
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import replace
@@ -42,6 +41,7 @@ from coursework.site.frame.budgets import Budget
 from coursework.site.frame.forms import read_form
 from coursework.site.frame.requests import FormData
 from coursework.site.frame.requests import HTTPException as RefusedForm
+from coursework.site.frame.security_log import location_of
 from coursework.site.frame.settings import Site
 from coursework.site.lti.launch_request import LTIRequest
 from coursework.site.lti.offers import offer_groups
@@ -165,7 +165,7 @@ class _Service:
             except LTIRefusal as fault:
                 response, why = await run_in_threadpool(self.refused, request, fault), str(fault)
             except Exception as fault:
-                why = _location_of(fault)
+                why = location_of(fault)
                 LOG.error("%s failed: %s", _shown_path(request), why)
                 response = await run_in_threadpool(self.refused, request, LTIRefusal("failed", 500))
             self._guard(response, request)
@@ -483,13 +483,3 @@ async def _form(request: Request) -> FormData:
 def _shown_path(request: Request) -> str:
     """Return the path for the log, without the query and the name of the session."""
     return re.sub(r"/at/[^/]+", "/at/…", request.url.path)[:100]
-
-
-def _location_of(fault: BaseException) -> str:
-    """Return the type of a fault and the lines that raised it, without its message, since a message may
-    contain an answer."""
-    frames = traceback.extract_tb(fault.__traceback__)[-4:]
-    lines = " < ".join(
-        f"{frame.filename.rpartition('coursework/')[2]}:{frame.lineno}" for frame in reversed(frames)
-    )
-    return f"{type(fault).__name__} at {lines}"
