@@ -23,7 +23,7 @@ def test_numbers_with_words_signs_and_senses_are_read():
         ("20.54 rad/s counterclockwise", "rad/s", 20.54), ("201,5 mm/s vers la droite", "mm/s", 201.5), ("201.5 mm/s to the left", "mm/s", -201.5),
         ("d'où -39,4°", "deg", -39.4), ("soit environ 39,4 °", "deg", 39.4), ("on trouve −2,5 mm", "mm", -2.5), ("est égal à 3 mm", "mm", 3),
         ("⇒ 12,5 mm", "mm", 12.5), ("≅ -12,5 mm", "mm", -12.5), ("~= 12,5 mm", "mm", 12.5), ("-12,5 mm environ", "mm", -12.5), ("12,5 mm (arrondi)", "mm", 12.5),
-        ("12,5 mm à 0,1 près", "mm", 12.5), ("39,417... °", "deg", 39.417), ("-39,4° [360°]", "deg", -39.4), ("39,4° (modulo 360°)", "deg", 39.4),
+        ("12,5 mm à 0,1 près", "mm", 12.5), ("39,417... °", "deg", 39.417), ("-39,4° [360°]", "deg", -39.4), ("39,4° (modulo 360°)", "deg", 39.4), ("[360]", "mm", 360), (" [360°]", "deg", 360),
         ("-3,94 x 10 puissance 1 °", "deg", -39.4), ("3,94 10exp1 mm", "mm", 39.4), ("(-)39,4 °", "deg", -39.4), ("39,4 degrés décimaux", "deg", 39.4),
         ("116,77 mm soit 11,677 cm", "mm", 116.77), ("15,4 mètres par seconde au carré", "mm/s^2", 15400), ("2 radians par seconde carrée", "rad/s^2", 2),
         ("2,05 (sans unité)", "1", 2.05), ("4,7 rad/s (sens anti-horaire)", "rad/s", 4.7), ("4,7 rad/s, sens négatif", "rad/s", -4.7), ("so, about 12 mm", "mm", 12),
