@@ -57,9 +57,10 @@ def kept(page):
     "exercise",
     [
         "slotted_mechanism",
+        "joint_twist",
         *(
             pytest.param(name, marks=pytest.mark.slow)
-            for name in ("vocabulary", "joint_twist", "velocity_polygon", "joint_graph", "slider_extras")
+            for name in ("vocabulary", "velocity_polygon", "joint_graph", "slider_extras")
         ),
     ],
 )
