@@ -57,7 +57,7 @@ test-clients: $(VENV)/ready-test $(VENV)/ready-e2e  ## Exports in the real playe
 	$(BIN)/python tests/clients/run.py $(CLIENTS)
 
 # The tests of the numeric core, where a last bit would show.
-NUMBERS := kinematics mechanics solids structure course/test_draws.py quantities/test_graph.py scenes/test_scenes.py
+NUMBERS := kinematics mechanics structure course/test_draws.py quantities/test_graph.py scenes/test_scenes.py
 
 # The vector units that numpy has found here and would use; nothing where it names none.
 VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extensions', {}).get('found', []))

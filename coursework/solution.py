@@ -12,7 +12,7 @@
   relative; a third item names the case's effects, where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
 * ``FILM``, a :class:`Film`, states a picture of its own for the animation, where the statement's figure cannot move;
-* ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.polygons.Polygon`;
+* ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.figures.polygons.Polygon`;
 * ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.quantities.loops`;
   ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
 * ``MECHANISM`` states bodies and joints, a :class:`~coursework.mechanics.Mechanism`: forces and motions follow from it;
@@ -43,7 +43,7 @@ from coursework.quantities.in_radians import in_radians
 from coursework.quantities.loops import Loop, quantities, stated
 
 if TYPE_CHECKING:
-    from coursework.polygons.polygon import Polygon
+    from coursework.figures.polygons.polygon import Polygon
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,8 @@ from coursework.markup.mathml import to_mathml
 from coursework.model import GivenSpec
 from coursework.rendering.renderer import renderer_of
 from coursework.scenes.animation import Animation
+from coursework.selfstudy.workbook.binding import bound
 from coursework.sheets.sheet import Question
-from coursework.workbook.binding import bound
 
 SEED = 0  #: the variant shown
 WHOLE = "whole/pages"  #: copied as they are into the site, as ``pages``

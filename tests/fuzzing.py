@@ -430,7 +430,7 @@ def _scene(path: Path) -> None:
 
 
 def _platforms(path: Path) -> None:
-    from coursework.lti.settings import as_toml, read_settings
+    from coursework.platforms.lti.settings import as_toml, read_settings
 
     found = read_settings(path.parent)
     path.write_text(as_toml(found), "utf-8")
@@ -464,7 +464,7 @@ def _progress(path: Path) -> None:
 
 
 def _marks(path: Path) -> None:
-    from coursework.statistics.marks import read
+    from coursework.gradebook.statistics.marks import read
 
     read(path.parent)
 

@@ -16,8 +16,8 @@ from cryptography.hazmat.primitives.asymmetric import rsa
 from jwt.algorithms import RSAAlgorithm
 from starlette.testclient import TestClient
 
-from coursework.lti.keys import KeyFolder
-from coursework.lti.settings import LTIPlatform
+from coursework.platforms.lti.keys import KeyFolder
+from coursework.platforms.lti.settings import LTIPlatform
 
 LTI = "https://purl.imsglobal.org/spec/lti/claim/"
 DEEP = "https://purl.imsglobal.org/spec/lti-dl/claim/"

@@ -16,9 +16,9 @@ from coursework.database.assignments import issued_of
 from coursework.database.publication import AT_ONCE, publish
 from coursework.database.store import Store
 from coursework.database.tables import assignment
-from coursework.lti.keys import KeyFolder
-from coursework.lti.settings import Settings
-from coursework.lti.storage import Storage
+from coursework.platforms.lti.keys import KeyFolder
+from coursework.platforms.lti.settings import Settings
+from coursework.platforms.lti.storage import Storage
 from coursework.site.application import application
 from coursework.site.desk.class_cache import class_now
 from coursework.site.desk.class_page import rows

@@ -20,8 +20,8 @@ from coursework.database.store import Store
 from coursework.database.submissions import insert_submission, submissions_of
 from coursework.database.tables import person
 from coursework.gradebook.rows import Rejected
-from coursework.lti.launch import Launch
-from coursework.lti.roles import Role
+from coursework.platforms.lti.launch import Launch
+from coursework.platforms.lti.roles import Role
 from coursework.site.application import application
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.lti.connecting import address as connecting_address

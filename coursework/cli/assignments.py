@@ -282,7 +282,7 @@ def write_build(
         )
     wanted = list(files(course, issued.issues, formats, assignment, only=only, secret=issued.secret))
     if "nbgrader" in formats and only is None:
-        from coursework.nbgrader import tree as nbgrader
+        from coursework.platforms.nbgrader import tree as nbgrader
 
         wanted[:0] = nbgrader.files(course, issued.issues, assignment, out)
     store(content)

@@ -24,8 +24,8 @@ from coursework.errors import BadInput, counted, nearest
 from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
-    from coursework.lti.settings import LTIPlatform, Settings
-    from coursework.lti.storage import Storage
+    from coursework.platforms.lti.settings import LTIPlatform, Settings
+    from coursework.platforms.lti.storage import Storage
 
 _LIBRARIES = ("cryptography", "httpx", "jwt")
 KINDS = ("moodle", "canvas", "other")
@@ -94,7 +94,7 @@ def platform(
     """
     from dataclasses import replace
 
-    from coursework.lti.settings import checked_url, read_settings
+    from coursework.platforms.lti.settings import checked_url, read_settings
 
     settings = read_settings(folder)
     settings = replace(settings, url=checked_url(url, "--url")) if url else settings
@@ -107,7 +107,7 @@ def platform(
         _write(settings)
         _tell_registration(settings, kind)
         return DONE
-    from coursework.lti.settings import with_platform
+    from coursework.platforms.lti.settings import with_platform
 
     settings = with_platform(settings, added)
     _write(settings)
@@ -126,8 +126,8 @@ def _platform(
     addresses: dict[str, str | None],
 ) -> LTIPlatform | None:
     """Return the platform that is told; none as long as it has not said its client ID."""
-    from coursework.lti.settings import KINDS as known
-    from coursework.lti.settings import LTIPlatform, checked_url, origin
+    from coursework.platforms.lti.settings import KINDS as known
+    from coursework.platforms.lti.settings import LTIPlatform, checked_url, origin
 
     if kind not in KINDS:
         raise BadInput("no kind of platform {kind!r}{nearest}", kind=kind, nearest=nearest(kind, KINDS))
@@ -154,7 +154,7 @@ def _platform(
 
 
 def _write(settings: Settings) -> None:
-    from coursework.lti.settings import FILE, as_toml
+    from coursework.platforms.lti.settings import FILE, as_toml
     from coursework.system.writing import writing
 
     with writing(settings.folder):
@@ -227,8 +227,8 @@ def _checked(settings: Settings, registered: LTIPlatform) -> str:
     import httpx
 
     from coursework.errors import CourseworkError
-    from coursework.lti.keys import KeyFolder
-    from coursework.lti.services import SCORE, Services
+    from coursework.platforms.lti.keys import KeyFolder
+    from coursework.platforms.lti.services import SCORE, Services
 
     with httpx.Client(timeout=8.0, trust_env=False) as client:
         try:
@@ -257,7 +257,7 @@ def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
     'rotate' makes a key that signs from now on; the one before stays public, since platforms keep keys for a while, until
     'retire KID' takes it away.
     """
-    from coursework.lti.keys import KeyFolder
+    from coursework.platforms.lti.keys import KeyFolder
 
     key_folder = KeyFolder(folder / "keys")
     if action not in ("list", "new", "rotate", "retire"):
@@ -327,7 +327,7 @@ def scores(context: click.Context, folder: Path, db: str, send: bool, as_json: b
 
 def _storage(context: click.Context, db: str) -> Storage:
     from coursework.cli.database import store_at
-    from coursework.lti.storage import Storage
+    from coursework.platforms.lti.storage import Storage
 
     return Storage(store_at(context, db))
 
@@ -335,10 +335,10 @@ def _storage(context: click.Context, db: str) -> Storage:
 def _send(folder: Path, storage: Storage) -> None:
     import httpx
 
-    from coursework.lti.keys import KeyFolder
-    from coursework.lti.sending import Sender
-    from coursework.lti.services import Services
-    from coursework.lti.settings import read_settings
+    from coursework.platforms.lti.keys import KeyFolder
+    from coursework.platforms.lti.sending import Sender
+    from coursework.platforms.lti.services import Services
+    from coursework.platforms.lti.settings import read_settings
 
     storage.hurry()
     with httpx.Client(timeout=8.0, trust_env=False) as client:
@@ -362,10 +362,10 @@ def roster(context: click.Context, course_title: str | None, folder: Path, db: s
     """
     import httpx
 
-    from coursework.lti.class_list import as_csv
-    from coursework.lti.keys import KeyFolder
-    from coursework.lti.services import Services
-    from coursework.lti.settings import read_settings
+    from coursework.platforms.lti.class_list import as_csv
+    from coursework.platforms.lti.keys import KeyFolder
+    from coursework.platforms.lti.services import Services
+    from coursework.platforms.lti.settings import read_settings
 
     courses = _storage(context, db).courses()
     if course_title is None:

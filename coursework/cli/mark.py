@@ -389,10 +389,10 @@ def report(
 def _report(
     context: click.Context, folder: Path, lang: str, out: Path | None, decimal: str, as_json: bool
 ) -> None:
+    from coursework.gradebook.statistics import measures as statistics
+    from coursework.gradebook.statistics import page as statistics_page
+    from coursework.gradebook.statistics.marks import read, unlike_summary
     from coursework.language.words import words
-    from coursework.statistics import measures as statistics
-    from coursework.statistics import page as statistics_page
-    from coursework.statistics.marks import read, unlike_summary
 
     words(lang)  # an unknown language stops here
     course = opened(context)
@@ -427,7 +427,7 @@ def _report(
 
 def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
     """Say whose wrong answers are right on another variant; the table of an earlier report goes where there are none."""
-    from coursework.statistics.alike import COLUMNS, alike
+    from coursework.gradebook.statistics.alike import COLUMNS, alike
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
@@ -445,9 +445,9 @@ def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
 
 def _write_report(course: Course, measures: Any, lang: str, out: Path, decimal: str) -> None:
     """Everything is made before the first file is written."""
+    from coursework.gradebook.statistics import measures as statistics
+    from coursework.gradebook.statistics import page as statistics_page
     from coursework.rendering.renderer import renderer_of
-    from coursework.statistics import measures as statistics
-    from coursework.statistics import page as statistics_page
     from coursework.system.processes import Task, in_turn, is_shared
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole

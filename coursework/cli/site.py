@@ -156,7 +156,7 @@ def _check_lti(folder: Path, url: str) -> None:
     BadInput
         The folder's file is for another address, or cannot be read.
     """
-    from coursework.lti.keys import KeyFolder
+    from coursework.platforms.lti.keys import KeyFolder
     from coursework.site.lti.service import settings_of
 
     if not settings_of(folder, url).platforms:
@@ -248,7 +248,7 @@ def _entrance(host: str, url: str, demo: str | None, *, is_stated: bool) -> Entr
     """
     from urllib.parse import urlsplit
 
-    from coursework.lti.settings import is_loopback
+    from coursework.platforms.lti.settings import is_loopback
     from coursework.site.frame.settings import Entrance
 
     is_own = is_loopback(host) and is_loopback(urlsplit(url).hostname or "")

@@ -64,8 +64,8 @@ def lesson(
         for name in names:
             click.echo(name)
         return DONE
+    from coursework.selfstudy.workbook.files import lesson_notebook, notebook_name
     from coursework.system.writing import write_whole
-    from coursework.workbook.files import lesson_notebook, notebook_name
 
     writes(context, out)
     paths = {name: out / notebook_name(name, lang) for name in names}
@@ -83,7 +83,7 @@ def _check_language(lang: str) -> None:
 
 
 def _check_lessons(course: Course, chosen: Sequence[str]) -> int:
-    from coursework.workbook.lessons import faults, order_faults
+    from coursework.selfstudy.workbook.lessons import faults, order_faults
 
     names = chosen or course.folder.lessons
     for name in chosen:
@@ -154,8 +154,8 @@ def notebook(
     from coursework.course.lessons import taught_by
     from coursework.issuing.issuing import distinct_variants
     from coursework.rendering.renderer import renderer_of
+    from coursework.selfstudy.workbook.files import lesson_notebook, notebook_name
     from coursework.system.writing import write_whole
-    from coursework.workbook.files import lesson_notebook, notebook_name
 
     course = opened(context)
     wheel = course.folder.wheel
@@ -197,7 +197,7 @@ def notebook(
 
 
 def _formats() -> tuple[str, ...]:
-    from coursework.workbook.files import FORMATS
+    from coursework.selfstudy.workbook.files import FORMATS
 
     return FORMATS
 
@@ -241,9 +241,9 @@ def workbook(
 ) -> None:
     """Bind the whole course into a book: lessons and exercises in their order, as one PDF with contents, index and solutions, as
     pages and as notebooks that lead to one another."""
+    from coursework.selfstudy.workbook.binding import bound, pieces_of
+    from coursework.selfstudy.workbook.files import files
     from coursework.system.writing import write_tree
-    from coursework.workbook.binding import bound, pieces_of
-    from coursework.workbook.files import files
 
     course = opened(context)
     _check_language(lang)

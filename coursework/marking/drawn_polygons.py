@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from coursework.polygons.hand_drawn import (
+from coursework.figures.polygons.hand_drawn import (
     HUNG,
     DrawingFault,
     JudgedDrawing,
@@ -14,7 +14,7 @@ from coursework.polygons.hand_drawn import (
     is_scale,
     judge_drawing,
 )
-from coursework.polygons.polygon import Polygon
+from coursework.figures.polygons.polygon import Polygon
 from coursework.quantities.error_kinds import PENALTIES
 from coursework.solution import Judged
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from coursework.course.variant import Variant
-from coursework.polygons.construction import Construction
+from coursework.figures.polygons.construction import Construction
 from coursework.rendering.renderer import builtin_renderer, renderer_of
 from coursework.scenes.animation import Animation
 from coursework.sheets.drawings import stated_polygons

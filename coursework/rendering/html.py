@@ -14,10 +14,10 @@ from markupsafe import Markup
 
 from coursework.errors import BadCourse
 from coursework.figures import Beginning, Figure, Picture
+from coursework.figures.polygons.construction import Construction
 from coursework.language.words import words
 from coursework.markup import markdown as markup
 from coursework.markup.mathml import to_mathml
-from coursework.polygons.construction import Construction
 from coursework.rendering import feedback, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.keeping import keeping

@@ -12,7 +12,7 @@ from coursework.course.folder import Folder
 from coursework.errors import unknown
 
 if TYPE_CHECKING:
-    from coursework.polygons.construction import Construction
+    from coursework.figures.polygons.construction import Construction
     from coursework.rendering.papers import AnyPaper
     from coursework.scenes.animation import Animation
     from coursework.sheets.book import Book

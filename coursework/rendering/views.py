@@ -29,7 +29,7 @@ from coursework.sheets.sheet import (
 
 if TYPE_CHECKING:
     from coursework.figures import Beginning, Figure, Picture
-    from coursework.polygons.construction import SideRow
+    from coursework.figures.polygons.construction import SideRow
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 

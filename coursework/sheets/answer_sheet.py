@@ -30,7 +30,7 @@ from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
 if TYPE_CHECKING:
     from coursework.course.texts import RenderedText
     from coursework.course.variant import Variant
-    from coursework.polygons.construction import Construction
+    from coursework.figures.polygons.construction import Construction
 
 
 PRINTED_DIGITS = 5  #: significant digits of a value in a worked solution

@@ -6,8 +6,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from coursework.errors import BadCourse, BrokenFunction
-from coursework.polygons.construction import Construction
-from coursework.polygons.polygon import Polygon
+from coursework.figures.polygons.construction import Construction
+from coursework.figures.polygons.polygon import Polygon
 from coursework.quantities.graph import call_on_quantities, graph_of
 
 if TYPE_CHECKING:

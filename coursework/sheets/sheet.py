@@ -16,7 +16,7 @@ from coursework.course.lessons import Lesson as Lesson
 
 if TYPE_CHECKING:
     from coursework.figures import Figure, Picture
-    from coursework.polygons.construction import Construction
+    from coursework.figures.polygons.construction import Construction
     from coursework.sheets.answer_pages import AnswerPage
 
 

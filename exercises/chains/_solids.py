@@ -8,7 +8,7 @@ from math import gcd, isqrt
 import numpy as np
 
 from coursework.model import GivenSpec, Part, chosen, drawn
-from coursework.solids import (
+from coursework.structure.spatial_chains import (
     ARRANGEMENTS,
     FREEDOMS,
     AlignedJoint,
@@ -238,7 +238,7 @@ def _planar_freedoms() -> np.ndarray:
 
 
 def several_joints(third: tuple[str, ...]) -> dict[str, GivenSpec]:
-    """Given: two to four joints, the first at the origin, by :func:`coursework.solids.arranged`; ``third`` are the names of
+    """Given: two to four joints, the first at the origin, by :func:`coursework.structure.spatial_chains.arranged`; ``third`` are the names of
     the third and the fourth."""
     found = {
         "arrangement": chosen(*ARRANGEMENTS, shown=False),
@@ -271,7 +271,7 @@ def of_joints(read):
 
 
 def table_of(joints, bodies):
-    """The lines of a statement's table of joints that are :class:`~coursework.solids.AlignedJoint`."""
+    """The lines of a statement's table of joints that are :class:`~coursework.structure.spatial_chains.AlignedJoint`."""
     return [_line(k + 1, bodies[k], *joint) for k, joint in enumerate(joints)]
 
 

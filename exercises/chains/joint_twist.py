@@ -4,7 +4,7 @@ import numpy as np
 
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part, chosen, drawn
-from coursework.solids import AlignedJoint
+from coursework.structure.spatial_chains import AlignedJoint
 
 from ._solids import coordinate, direction, joint_kind, rank_together, table_of, vector_latex
 

@@ -2,7 +2,7 @@
 
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part
-from coursework.solids import CONDITIONS, EQUIVALENTS, arranged
+from coursework.structure.spatial_chains import CONDITIONS, EQUIVALENTS, arranged
 
 from ._solids import (
     WITH_DIRECTION,

@@ -8,7 +8,7 @@ import numpy as np
 
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part, in_turn
-from coursework.solids import ARRANGEMENTS, EQUIVALENTS, arranged
+from coursework.structure.spatial_chains import ARRANGEMENTS, EQUIVALENTS, arranged
 
 from ._solids import (
     WITH_DIRECTION,

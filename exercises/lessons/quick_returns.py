@@ -22,8 +22,7 @@ from coursework.figures import (
     slot_link,
     trace,
 )
-from coursework.kinematics.dyads import rrp, rrr
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     guide_a,
@@ -36,7 +35,8 @@ from coursework.polygons import (
     tangential,
     turning,
 )
-from coursework.polygons.construction import Construction
+from coursework.figures.polygons.construction import Construction
+from coursework.kinematics.dyads import rrp, rrr
 
 
 def _arcs(center, radius, start, middle):

@@ -17,9 +17,7 @@ from coursework.figures import (
     slider,
     vector,
 )
-from coursework.kinematics.dyads import rrp, rrr
-from coursework.kinematics.vectors import cross, dot
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     polygon_of_accelerations,
@@ -29,7 +27,9 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.polygons.construction import Construction
+from coursework.figures.polygons.construction import Construction
+from coursework.kinematics.dyads import rrp, rrr
+from coursework.kinematics.vectors import cross, dot
 
 # The example of the lesson: mm, degrees, rad/s.
 R2, R3, E, THETA2, OMEGA2 = 60.0, 180.0, 20.0, 60.0, 10.0

@@ -3,8 +3,8 @@
 import numpy as np
 
 from coursework.quantities.columns import each_stacked
-from coursework.solids import joint_of
 from coursework.solution import mistake
+from coursework.structure.spatial_chains import joint_of
 
 from ._counts import *
 from ._solids import _chain, _chain_of

@@ -8,7 +8,14 @@ import numpy as np
 
 from coursework.language.numbers import significant
 from coursework.quantities.columns import each_stacked
-from coursework.solids import Chain, PlanarChain, arranged, in_parallel, in_series, joints_of
+from coursework.structure.spatial_chains import (
+    Chain,
+    PlanarChain,
+    arranged,
+    in_parallel,
+    in_series,
+    joints_of,
+)
 
 _in_parallel = lru_cache(maxsize=4096)(in_parallel)
 _chain = lru_cache(maxsize=4096)(Chain)

@@ -5,8 +5,8 @@ from functools import lru_cache
 import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
-from coursework.solids import aligned, each_distinct
 from coursework.solution import given
+from coursework.structure.spatial_chains import aligned, each_distinct
 
 from ._chains import *
 from ._solids import _sum_of

@@ -4,8 +4,8 @@ import numpy as np
 
 from coursework.errors import WrongValue
 from coursework.quantities.columns import each, each_stacked
-from coursework.solids import aligned, each_distinct
 from coursework.solution import given, mistake
+from coursework.structure.spatial_chains import aligned, each_distinct
 
 from ...exercises.chains._complex import DIRECTIONS, LAYOUTS, points_of
 from ._chains import *

@@ -4,9 +4,16 @@ import numpy as np
 
 from coursework.errors import WrongValue
 from coursework.quantities.columns import each, vector
-from coursework.solids import aligned, each_distinct, joints_of, moved, twist_components, wrench_components
-from coursework.solids.torsors import TWIST, WRENCH
 from coursework.solution import given, mistake
+from coursework.structure.spatial_chains import (
+    aligned,
+    each_distinct,
+    joints_of,
+    moved,
+    twist_components,
+    wrench_components,
+)
+from coursework.structure.spatial_chains.torsors import TWIST, WRENCH
 
 from ._solids import _in_parallel
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
-from coursework.solids import FREEDOMS, each_distinct, joint_of
 from coursework.solution import given, mistake, told_after
+from coursework.structure.spatial_chains import FREEDOMS, each_distinct, joint_of
 
 from ._solids import _direction, _lines, _parallel_of, _point_of_axis, _row_of, _stiffest
 

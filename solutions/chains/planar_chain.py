@@ -3,8 +3,8 @@
 import numpy as np
 
 from coursework.quantities.columns import each_stacked
-from coursework.solids import aligned, each_distinct, joints_of, planar_kind
 from coursework.solution import given, mistake
+from coursework.structure.spatial_chains import aligned, each_distinct, joints_of, planar_kind
 
 from ._counts import *
 from ._solids import _chain_of, _planar_chain_of

@@ -6,9 +6,9 @@ import numpy as np
 
 from coursework.degrees import angle, atan2, cos, polar, sin
 from coursework.figures import Figure, ground_pivot, line, link, pin, trace, vector
+from coursework.figures.polygons import Side, crank_v, polygon_of_velocities, turning, two_bars_v
 from coursework.kinematics.dyads import rrr, side_of
 from coursework.mechanics import Body, Mechanism
-from coursework.polygons import Side, crank_v, polygon_of_velocities, turning, two_bars_v
 from coursework.solution import given, mistake, stable
 
 from ._four_bar import *

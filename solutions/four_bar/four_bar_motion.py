@@ -8,9 +8,7 @@ import numpy as np
 
 from coursework.degrees import cos, polar, sin
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.dyads import side_of
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     polygon_of_accelerations,
@@ -18,6 +16,8 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.dyads import side_of
 from coursework.solution import formula, given, mistake, stable
 
 from ._four_bar import *

@@ -10,11 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.degrees import cos, polar, sin
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.dyads import side_of
-from coursework.mechanics import Body, Load, Mechanism
-from coursework.polygons import (
+from coursework.figures.polygons import (
     Side,
     crank_a,
     crank_v,
@@ -23,6 +19,10 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.dyads import side_of
+from coursework.mechanics import Body, Load, Mechanism
 from coursework.solution import Moving, formula, given, mistake, stable
 
 from ._four_bar import *

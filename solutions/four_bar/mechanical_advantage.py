@@ -9,8 +9,8 @@ import numpy as np
 from coursework.degrees import polar, sin
 from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
+from coursework.figures.polygons import crank_v, polygon_of_velocities, two_bars_v
 from coursework.kinematics.dyads import side_of
-from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
 from coursework.solution import Moving, given, mistake
 
 from ._four_bar import *

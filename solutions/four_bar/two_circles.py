@@ -12,6 +12,8 @@ import numpy as np
 
 from coursework.degrees import from_radians, polar, wrap
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin
+from coursework.figures.polygons import Polygon, Side
+from coursework.figures.polygons.hand_drawn import TOLERANCE_MM, on_paper
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import (
@@ -23,8 +25,6 @@ from coursework.marking.drawn_polygons import (
     turned,
     verdicts,
 )
-from coursework.polygons import Polygon, Side
-from coursework.polygons.hand_drawn import TOLERANCE_MM, on_paper
 from coursework.solution import Judged, given, judge, mistake
 
 from ..polygons._drawn_start import *

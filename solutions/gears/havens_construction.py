@@ -4,8 +4,8 @@ import numpy as np
 
 from coursework.degrees import polar
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
+from coursework.figures.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
 from coursework.marking.drawn_polygons import read_off, scale_for, to_paper
-from coursework.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
 from coursework.solution import Judged, given, judge, mistake, stable
 
 from ._havens import *

@@ -9,11 +9,11 @@ import numpy as np
 
 from coursework.degrees import atan, atan2, cos, from_radians, polar, sin, sqrt, tan
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
+from coursework.figures.polygons import Side, crank_v, guide_v, polygon_of_velocities, turning
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.mechanics import Body, Gear, Mechanism, Slide
-from coursework.polygons import Side, crank_v, guide_v, polygon_of_velocities, turning
 from coursework.solution import Moving, given, mistake, stable
 
 from ._havens import *

@@ -9,10 +9,7 @@ import numpy as np
 from coursework.degrees import acos, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, point, vector
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.triangles import corner
-from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import (
+from coursework.figures.polygons import (
     Side,
     normal,
     polygon_of_accelerations,
@@ -20,6 +17,9 @@ from coursework.polygons import (
     tangential,
     turning,
 )
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.triangles import corner
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.solution import Moving, formula, given, mistake, stable
 
 UNITS = {"OB": "mm", "beta": "deg", "gamma": "deg", "mu": "deg"}

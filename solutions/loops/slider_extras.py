@@ -12,12 +12,7 @@ import numpy as np
 
 from coursework.degrees import acos, angle, atan, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
 from coursework.errors import CannotAssemble
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.dyads import side_of
-from coursework.kinematics.four_bar import FourBar
-from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     polygon_of_accelerations,
@@ -27,6 +22,11 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.dyads import side_of
+from coursework.kinematics.four_bar import FourBar
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"A": "1", "side": "1"}

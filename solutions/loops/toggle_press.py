@@ -12,11 +12,11 @@ import numpy as np
 from coursework.degrees import acos, asin, atan2, cos, from_radians, polar, sin, wrap
 from coursework.errors import CannotAssemble, Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
+from coursework.figures.polygons import Side, crank_v, polygon_of_velocities, turning, two_bars_v
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.triangles import corner
 from coursework.mechanics import Body, Load, Mechanism, Slide
-from coursework.polygons import Side, crank_v, polygon_of_velocities, turning, two_bars_v
 from coursework.solution import Moving, given, mistake, stable
 
 UNITS = {

@@ -12,12 +12,7 @@ import numpy as np
 
 from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.figures import Figure, ground_pivot, link, pin, vector
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.dyads import side_of
-from coursework.kinematics.four_bar import FourBar
-from coursework.mechanics import Body, Mechanism
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     normal,
@@ -28,6 +23,11 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.dyads import side_of
+from coursework.kinematics.four_bar import FourBar
+from coursework.mechanics import Body, Mechanism
 from coursework.solution import formula, given, mistake, stable
 
 from ._first_four_bar import *

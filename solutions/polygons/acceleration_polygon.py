@@ -4,10 +4,10 @@ tangential ones, of which the directions are known, meet in b."""
 import numpy as np
 
 from coursework.degrees import polar
+from coursework.figures.polygons import crank_a, polygon_of_accelerations, two_bars_a
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import DrawingParts, Read, verdicts
-from coursework.polygons import crank_a, polygon_of_accelerations, two_bars_a
 from coursework.solution import given, judge, mistake, stable
 
 from ._drawn_acceleration import *

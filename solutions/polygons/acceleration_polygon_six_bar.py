@@ -3,6 +3,7 @@ then that of C about B and the guide meet in c."""
 
 import numpy as np
 
+from coursework.figures.polygons import crank_a, polygon_of_accelerations, slider_a, two_bars_a
 from coursework.marking.drawn_polygons import (
     DrawingParts,
     Read,
@@ -13,7 +14,6 @@ from coursework.marking.drawn_polygons import (
     turned,
     verdicts,
 )
-from coursework.polygons import crank_a, polygon_of_accelerations, slider_a, two_bars_a
 from coursework.solution import given, judge, mistake
 
 from ._drawn_acceleration import *
@@ -225,7 +225,7 @@ def alpha3_of_a_B(alpha3, _images, r3):
 
 @judge
 def drawing(answers, r1, r2, r3, r4, r5, theta2, omega2, mode):
-    """Any pole and any scale; see :mod:`coursework.polygons.hand_drawn`."""
+    """Any pole and any scale; see :mod:`coursework.figures.polygons.hand_drawn`."""
     linkage = _linkage(r1, r2, r3, r4, mode, theta2)
     links = _links(linkage, r2, r3, r4, r5, theta2)
     rates = _rates(linkage, links, omega2)

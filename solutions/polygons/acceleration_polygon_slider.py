@@ -4,10 +4,10 @@ part and that of the acceleration of B meet in b."""
 import numpy as np
 
 from coursework.degrees import polar
+from coursework.figures.polygons import crank_a, polygon_of_accelerations, slider_a
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import DrawingParts, Read, met, verdicts
-from coursework.polygons import crank_a, polygon_of_accelerations, slider_a
 from coursework.solution import given, judge, mistake
 
 from ._drawn_acceleration import *

@@ -3,6 +3,7 @@ acceleration besides, known from the velocities. The two accelerations of which 
 
 import numpy as np
 
+from coursework.figures.polygons import crank_a, guide_a, polygon_of_accelerations
 from coursework.marking.drawn_polygons import (
     DrawingParts,
     Read,
@@ -13,7 +14,6 @@ from coursework.marking.drawn_polygons import (
     turned,
     verdicts,
 )
-from coursework.polygons import crank_a, guide_a, polygon_of_accelerations
 from coursework.solution import given, judge, mistake
 
 from ._drawn_start import *
@@ -261,7 +261,7 @@ def alpha4_of_A4(alpha4, _images, rA):
 
 @judge
 def drawing(answers, r1, r2, theta2, omega2):
-    """Any pole and any scale; see :mod:`coursework.polygons.hand_drawn`."""
+    """Any pole and any scale; see :mod:`coursework.figures.polygons.hand_drawn`."""
     guide = _guide(r1, r2, theta2)
     _, along = vectors = _vectors(guide, r2, theta2)
     whole = {"alpha4_of_A4": ("p_a", "a_4", 1 / guide.arm)}

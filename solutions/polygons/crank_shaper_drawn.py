@@ -10,6 +10,17 @@ import numpy as np
 
 from coursework.degrees import acos, asin, from_radians, polar, wrap
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin, point, rotation_arrow
+from coursework.figures.polygons import (
+    crank_a,
+    crank_v,
+    guide_a,
+    guide_v,
+    image,
+    polygon_of_accelerations,
+    polygon_of_velocities,
+    slider_a,
+    slider_v,
+)
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import (
@@ -21,17 +32,6 @@ from coursework.marking.drawn_polygons import (
     to_paper,
     turned,
     verdicts,
-)
-from coursework.polygons import (
-    crank_a,
-    crank_v,
-    guide_a,
-    guide_v,
-    image,
-    polygon_of_accelerations,
-    polygon_of_velocities,
-    slider_a,
-    slider_v,
 )
 from coursework.solution import Judged, given, judge, mistake, stable
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from coursework.figures.polygons import crank_v, polygon_of_velocities, slider_v, two_bars_v
 from coursework.marking.drawn_polygons import DrawingParts, Read, met, off_both, scale_for, verdicts
-from coursework.polygons import crank_v, polygon_of_velocities, slider_v, two_bars_v
 from coursework.solution import given, judge, mistake
 
 from ._drawn_velocity import *
@@ -173,7 +173,7 @@ def rate_of_absolute_velocity(kv, pv_b, pv_c, r3, r5, omega3, omega5):
 
 @judge
 def drawing(answers, r1, r2, r3, r4, r5, theta2, omega2, mode):
-    """Any pole and any scale; see :mod:`coursework.polygons.hand_drawn`."""
+    """Any pole and any scale; see :mod:`coursework.figures.polygons.hand_drawn`."""
     linkage = _linkage(r1, r2, r3, r4, mode, theta2)
     _, coupler, rocker, rod = links = _links(linkage, r2, r3, r4, r5, theta2)
     absolute = "rate_of_absolute_velocity"

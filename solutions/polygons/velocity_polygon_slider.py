@@ -3,10 +3,10 @@
 import numpy as np
 
 from coursework.degrees import polar
+from coursework.figures.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import DrawingParts, Read, verdicts
-from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import given, judge, mistake
 
 from ._drawn_velocity import *

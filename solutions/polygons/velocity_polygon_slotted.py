@@ -3,8 +3,8 @@ slides along the slot."""
 
 import numpy as np
 
+from coursework.figures.polygons import crank_v, guide_v, polygon_of_velocities
 from coursework.marking.drawn_polygons import DrawingParts, Read, verdicts
-from coursework.polygons import crank_v, guide_v, polygon_of_velocities
 from coursework.solution import given, judge, mistake, stable
 
 from ._drawn_velocity import *
@@ -96,7 +96,7 @@ def omega4_of_A2(omega4, omega2, r2, rA):
 
 @judge
 def drawing(answers, r1, r2, theta2, omega2):
-    """Any pole and any scale; see :mod:`coursework.polygons.hand_drawn`."""
+    """Any pole and any scale; see :mod:`coursework.figures.polygons.hand_drawn`."""
     guide = _guide(r1, r2, theta2)
     _, along = vectors = _vectors(guide, r2, theta2)
     arm = guide.arm

@@ -6,12 +6,12 @@ The crank pin A slides in the guide O4; P on the guide drives the ram C by a rod
 from math import pi
 
 from coursework.degrees import atan2, cos, from_radians, polar, sin, sqrt, wrap
+from coursework.figures.polygons import crank_v, guide_v, polygon_of_velocities, slider_v, turning
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import crank_v, guide_v, polygon_of_velocities, slider_v, turning
 from coursework.solution import stable
 
 LOOPS = {

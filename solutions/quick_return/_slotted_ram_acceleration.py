@@ -1,7 +1,7 @@
 """The acceleration of a ram that a slotted guide drives, the crank at a constant rate: whether the guide turns or swings."""
 
 from coursework.degrees import polar, sin
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     guide_a,
     normal,

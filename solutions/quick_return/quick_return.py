@@ -11,14 +11,7 @@ import numpy as np
 
 from coursework.degrees import acos, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.errors import CannotAssemble, Undefined
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.dyads import rrp, side_of
-from coursework.kinematics.rocker_slider import RockerSlider
-from coursework.kinematics.triangles import corner, corner_beside, third_side
-from coursework.kinematics.vectors import cross
-from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     polygon_of_accelerations,
@@ -28,6 +21,13 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.dyads import rrp, side_of
+from coursework.kinematics.rocker_slider import RockerSlider
+from coursework.kinematics.triangles import corner, corner_beside, third_side
+from coursework.kinematics.vectors import cross
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.solution import formula, given, mistake, stable
 
 from ._strokes import *

@@ -12,11 +12,7 @@ import numpy as np
 
 from coursework.degrees import asin, atan2, cos, from_radians, polar, sin, sqrt
 from coursework.errors import CannotAssemble
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.slider_crank import SliderCrank
-from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     polygon_of_accelerations,
@@ -24,6 +20,10 @@ from coursework.polygons import (
     slider_a,
     slider_v,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.slider_crank import SliderCrank
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.solution import formula, given, mistake, stable
 
 from ._in_line import _in_line

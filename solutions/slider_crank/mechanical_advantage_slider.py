@@ -8,10 +8,10 @@ import numpy as np
 
 from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
+from coursework.figures.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import Moving, given, mistake, stable
 
 UNITS = {

@@ -9,11 +9,7 @@ from math import pi
 import numpy as np
 
 from coursework.degrees import atan2, cos, polar, sin, sqrt
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.slider_crank import SliderCrank
-from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     polygon_of_accelerations,
@@ -21,6 +17,10 @@ from coursework.polygons import (
     slider_a,
     slider_v,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.slider_crank import SliderCrank
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"p": "mm", "q": "mm"}

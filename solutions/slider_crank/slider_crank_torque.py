@@ -15,10 +15,7 @@ import numpy as np
 from coursework.accuracy import Motion, Study
 from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.slider_crank import SliderCrank
-from coursework.mechanics import Body, Load, Mechanism, Slide
-from coursework.polygons import (
+from coursework.figures.polygons import (
     Side,
     crank_a,
     crank_v,
@@ -27,6 +24,9 @@ from coursework.polygons import (
     slider_a,
     slider_v,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slider_crank import SliderCrank
+from coursework.mechanics import Body, Load, Mechanism, Slide
 from coursework.solution import formula, given, mistake, stable
 
 GRAVITY = 9.81  #: m/s^2, along -y

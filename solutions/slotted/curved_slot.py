@@ -9,12 +9,7 @@ import numpy as np
 
 from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.figures import Figure, arc, ground_pivot, line, link, pin, point, vector
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.dyads import side_of
-from coursework.kinematics.four_bar import FourBar
-from coursework.mechanics import Body, Mechanism
-from coursework.polygons import (
+from coursework.figures.polygons import (
     Side,
     crank_a,
     crank_v,
@@ -24,6 +19,11 @@ from coursework.polygons import (
     tangential,
     turning,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.dyads import side_of
+from coursework.kinematics.four_bar import FourBar
+from coursework.mechanics import Body, Mechanism
 from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"AD": "mm", "phi": "deg", "psi": "deg", "side": "1"}

@@ -9,11 +9,7 @@ import numpy as np
 
 from coursework.degrees import atan, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
-from coursework.kinematics.angles import Degrees
-from coursework.kinematics.chains import Vector
-from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import (
+from coursework.figures.polygons import (
     crank_a,
     crank_v,
     guide_a,
@@ -21,6 +17,10 @@ from coursework.polygons import (
     polygon_of_accelerations,
     polygon_of_velocities,
 )
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
+from coursework.kinematics.slotted_guide import SlottedGuidePose
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}

@@ -7,7 +7,7 @@ from tables import each_row
 import coursework
 from coursework.figures.perspective import _DRAWN, _VIEWS, _face, _looking, in_perspective
 from coursework.figures.placing import distance
-from coursework.solids import FREEDOMS
+from coursework.structure.spatial_chains import FREEDOMS
 
 COURSE = coursework.open_course()
 

@@ -15,10 +15,10 @@ from coursework.gradebook.book import Result, counting_result
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.scale import mark_of
+from coursework.gradebook.statistics.marks import read
+from coursework.gradebook.statistics.measures import measure
 from coursework.gradebook.submissions import read_file
 from coursework.issuing.issued import Issued
-from coursework.statistics.marks import read
-from coursework.statistics.measures import measure
 
 
 @pytest.fixture

@@ -9,10 +9,10 @@ import pytest
 from coursework.errors import BadInput
 from coursework.gradebook.decisions import DecisionFiles
 from coursework.gradebook.rows import Rejected
+from coursework.gradebook.statistics.marks import _lines
 from coursework.gradebook.submissions import read_file
 from coursework.issuing.roster import read_roster
 from coursework.scanning.typed import read_typed
-from coursework.statistics.marks import _lines
 
 
 @pytest.mark.parametrize("again", ["answer", " Answer ", "STUDENT", '"part"'])

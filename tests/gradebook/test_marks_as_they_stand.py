@@ -9,8 +9,8 @@ from small_assignment import grade, issue, item, right, table
 
 import coursework
 from coursework.cli import run
-from coursework.statistics.marks import read
-from coursework.statistics.measures import measure
+from coursework.gradebook.statistics.marks import read
+from coursework.gradebook.statistics.measures import measure
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import pytest
 from tables import each_row
 
 from coursework.course.lessons import lesson_file
-from coursework.solids import Chain, in_series
+from coursework.structure.spatial_chains import Chain, in_series
 
 CLAIMS = []
 TURN = np.arange(0.25, 360.0, 0.5)

@@ -11,8 +11,8 @@ PACKAGE = Path(coursework.__file__).resolve().parent
 
 #: From the ground up.
 ROOMS = (
-    "messages errors degrees system language kinematics solids markup figures structure mechanics parsing polygons quantities kinds model solution "
-    "course marking sheets scenes rendering accuracy issuing gradebook statistics selfstudy scanning database workbook platforms nbgrader lti authoring api site __init__ cli __main__"
+    "messages errors degrees system language kinematics markup figures structure mechanics parsing quantities kinds model solution "
+    "course marking sheets scenes rendering accuracy issuing gradebook selfstudy scanning database platforms nbgrader authoring api site __init__ cli __main__"
 ).split()
 
 FILES = {

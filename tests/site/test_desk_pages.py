@@ -81,9 +81,9 @@ def test_a_question_shows_its_answers(desk):
 def test_statistics_are_those_of_the_report(desk, tmp_path):
     from coursework.gradebook.book import marks_rows, summary_rows
     from coursework.gradebook.columns import marks_columns, summary_columns
+    from coursework.gradebook.statistics.marks import read
+    from coursework.gradebook.statistics.measures import measure
     from coursework.site.desk.question_page import statistics_of
-    from coursework.statistics.marks import read
-    from coursework.statistics.measures import measure
     from coursework.system.tables import csv_file
 
     now = class_now(desk.site, desk.number)

@@ -19,7 +19,7 @@ from coursework.database.sessions import begin_session, session_of
 from coursework.database.settings import secret
 from coursework.database.store import Store, is_shared
 from coursework.database.tables import audit
-from coursework.lti.keys import KeyFolder
+from coursework.platforms.lti.keys import KeyFolder
 from coursework.site.frame.cookies import Cookies
 from coursework.system.log_lines import VisibleLines
 

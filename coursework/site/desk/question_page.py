@@ -11,6 +11,10 @@ from starlette.responses import HTMLResponse, Response
 
 from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
+from coursework.gradebook.statistics.captions import Names
+from coursework.gradebook.statistics.measures import PartStatistics, Statistics, measure
+from coursework.gradebook.statistics.of_class import marks_of_class
+from coursework.gradebook.statistics.page import report, sheet_order
 from coursework.gradebook.waiting import written
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
@@ -19,10 +23,6 @@ from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import question_card, sign_of
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import Download
-from coursework.statistics.captions import Names
-from coursework.statistics.measures import PartStatistics, Statistics, measure
-from coursework.statistics.of_class import marks_of_class
-from coursework.statistics.page import report, sheet_order
 
 _EXAMPLES = 8  #: students named with an answer
 _ANSWERS = 60  #: answers listed

@@ -12,7 +12,7 @@ from coursework.database.instructor_queries import people_of
 from coursework.database.publication import CHARGE, Publication
 from coursework.database.tables import identity
 from coursework.language.words import words
-from coursework.lti.storage import Waiting
+from coursework.platforms.lti.storage import Waiting
 from coursework.site.desk import class_page
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import moment_text

@@ -20,7 +20,7 @@ from coursework.site.frame.settings import Site
 from coursework.site.people import guessing, passwords
 
 if TYPE_CHECKING:
-    from coursework.lti.launch import Launch
+    from coursework.platforms.lti.launch import Launch
 
 _SECONDS = 15 * 60  #: lifetime of the address in seconds
 

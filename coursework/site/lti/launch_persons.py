@@ -25,7 +25,7 @@ from coursework.issuing.issued import issued_content as content_of
 from coursework.issuing.roster import Student
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import assign_variants
-from coursework.lti.storage import digest_of
+from coursework.platforms.lti.storage import digest_of
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
 from coursework.site.lti import connecting
@@ -33,7 +33,7 @@ from coursework.site.lti.linked_assignment import LinkedAssignment, number_of
 from coursework.site.publication.assigning import holders
 
 if TYPE_CHECKING:
-    from coursework.lti.launch import Launch
+    from coursework.platforms.lti.launch import Launch
 
 _ROUNDS = 20  #: tries to assign a paper while others are assigned
 _AGAIN = 5  #: seconds after which to try again

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from coursework.lti.launch import Launch
-from coursework.lti.services import Member
-from coursework.lti.storage import Waiting
+from coursework.platforms.lti.launch import Launch
+from coursework.platforms.lti.services import Member
+from coursework.platforms.lti.storage import Waiting
 
 
 @dataclass(frozen=True)

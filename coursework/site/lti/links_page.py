@@ -7,7 +7,7 @@ from typing import Any
 from starlette.responses import Response
 
 from coursework.database.permissions import Permission
-from coursework.lti.storage import Storage
+from coursework.platforms.lti.storage import Storage
 from coursework.site.frame.requests import Request, Route
 from coursework.site.lti.scores import number_text
 

@@ -12,7 +12,7 @@ from coursework.database.assignments import issued_of
 from coursework.database.tables import assignment
 from coursework.issuing.assignment import text_in
 from coursework.language.words import words
-from coursework.lti.deep_linking import Offer, OfferGroup
+from coursework.platforms.lti.deep_linking import Offer, OfferGroup
 from coursework.site.frame.settings import Site
 
 

@@ -31,15 +31,15 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
-from coursework.lti.launch import Launch
-from coursework.lti.storage import Score, Storage
+from coursework.platforms.lti.launch import Launch
+from coursework.platforms.lti.storage import Score, Storage
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import class_now
 from coursework.site.frame.settings import Site
 from coursework.site.papers.assignment_state import AssignmentState
 from coursework.site.papers.submission import pass_dates
 
-LOG = logging.getLogger("coursework.lti")
+LOG = logging.getLogger("coursework.platforms.lti")
 WAITS = ("to_mark", "unreadable")  #: verdicts of answers that wait for a person
 _COMMENT = 900  #: characters of a comment in the gradebook
 _PAUSE = 5.0  #: seconds between two checks

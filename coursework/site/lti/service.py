@@ -24,19 +24,19 @@ from starlette.routing import Route
 
 from coursework.errors import BadInput
 from coursework.language.words import words
-from coursework.lti import deep_linking
-from coursework.lti.class_list import as_csv
-from coursework.lti.key_sets import KeySets
-from coursework.lti.keys import KeyFolder
-from coursework.lti.launch import PICKING, Launch, launch_of
-from coursework.lti.login import Login, cookie_of, session_cookie
-from coursework.lti.refusal import LTIRefusal
-from coursework.lti.roles import Role
-from coursework.lti.sending import Sender
-from coursework.lti.services import Member, NotServed, Services
-from coursework.lti.settings import LTIPlatform, Settings, checked_url, origin, read_settings
-from coursework.lti.storage import Storage, Waiting
-from coursework.lti.tokens import verified
+from coursework.platforms.lti import deep_linking
+from coursework.platforms.lti.class_list import as_csv
+from coursework.platforms.lti.key_sets import KeySets
+from coursework.platforms.lti.keys import KeyFolder
+from coursework.platforms.lti.launch import PICKING, Launch, launch_of
+from coursework.platforms.lti.login import Login, cookie_of, session_cookie
+from coursework.platforms.lti.refusal import LTIRefusal
+from coursework.platforms.lti.roles import Role
+from coursework.platforms.lti.sending import Sender
+from coursework.platforms.lti.services import Member, NotServed, Services
+from coursework.platforms.lti.settings import LTIPlatform, Settings, checked_url, origin, read_settings
+from coursework.platforms.lti.storage import Storage, Waiting
+from coursework.platforms.lti.tokens import verified
 from coursework.site.frame.budgets import Budget
 from coursework.site.frame.forms import read_form
 from coursework.site.frame.requests import FormData
@@ -51,7 +51,7 @@ from coursework.system.headers import Guarded, security_headers
 from coursework.system.processes import processor_time
 from coursework.system.request_slots import Crowded
 
-LOG = logging.getLogger("coursework.lti")
+LOG = logging.getLogger("coursework.platforms.lti")
 LARGEST = 256 * 1024  #: bytes of a form
 AT_ONCE = 2  #: requests of one person that are answered at once; the others wait
 _BUDGET = Budget("lti", LARGEST, 400, AT_ONCE)

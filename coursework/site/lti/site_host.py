@@ -23,13 +23,13 @@ from coursework.gradebook.rows import AnswerRow
 from coursework.issuing.assignment import Assignment, text_in
 from coursework.issuing.students import folded
 from coursework.language.words import words
-from coursework.lti.class_list import students
-from coursework.lti.launch import Launch
-from coursework.lti.refusal import LTIRefusal
-from coursework.lti.roles import Role
-from coursework.lti.services import SCORE, Member, NotServed
-from coursework.lti.storage import Storage
 from coursework.messages import as_message, localised
+from coursework.platforms.lti.class_list import students
+from coursework.platforms.lti.launch import Launch
+from coursework.platforms.lti.refusal import LTIRefusal
+from coursework.platforms.lti.roles import Role
+from coursework.platforms.lti.services import SCORE, Member, NotServed
+from coursework.platforms.lti.storage import Storage
 from coursework.site.desk.class_cache import assignment_title, class_now
 from coursework.site.frame.requests import FormData, HTTPException, Person
 from coursework.site.frame.requests import Request as SiteRequest

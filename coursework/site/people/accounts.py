@@ -25,7 +25,7 @@ from coursework.database.people import put_person
 from coursework.database.permissions import ADMINISTRATOR, Permission
 from coursework.database.sessions import LONGEST, begin_session, end_session, end_sessions, sessions_of
 from coursework.errors import BadInput
-from coursework.lti.storage import end_launch_sessions
+from coursework.platforms.lti.storage import end_launch_sessions
 from coursework.site.frame.attempts import Attempt
 from coursework.site.frame.budgets import PLAIN
 from coursework.site.frame.cookies import ANONYMOUS_SECONDS, COOKIE

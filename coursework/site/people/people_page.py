@@ -18,7 +18,7 @@ from coursework.database.people import people, person_by_id, person_by_identifie
 from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Area, Permission, may, to_invite
 from coursework.issuing.identity import EMAIL, LOGIN, plain
 from coursework.issuing.roster import Student
-from coursework.lti.storage import drop_launches
+from coursework.platforms.lti.storage import drop_launches
 from coursework.site.desk.class_cache import assignment_title
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.requests import HTTPException, Request, Route

@@ -22,7 +22,7 @@ from coursework.selfstudy.mastery import (
     told_date,
 )
 from coursework.selfstudy.progress import Progress
-from coursework.workbook.binding import chapters_of
+from coursework.selfstudy.workbook.binding import chapters_of
 
 if TYPE_CHECKING:
     from coursework.site.frame.requests import Request

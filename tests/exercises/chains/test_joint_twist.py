@@ -10,7 +10,7 @@ from exact_joints import actions, cross, exact_rank, motions
 import coursework
 from coursework.errors import WrongValue
 from coursework.kinds.kind import kind_of
-from coursework.solids import in_series, joints_of, twist_components, wrench_components
+from coursework.structure.spatial_chains import in_series, joints_of, twist_components, wrench_components
 
 EXERCISE = coursework.open_course()["joint_twist"]
 VARIANTS = EXERCISE.variants(range(80))

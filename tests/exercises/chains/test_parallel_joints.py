@@ -7,7 +7,7 @@ from tables import each_row
 
 import coursework
 from coursework.errors import CannotTell, UnknownName, WrongValue
-from coursework.solids import FREEDOMS, aligned
+from coursework.structure.spatial_chains import FREEDOMS, aligned
 
 EXERCISE = coursework.open_course()["parallel_joints"]
 

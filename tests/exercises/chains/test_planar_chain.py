@@ -7,7 +7,7 @@ from tables import each_row
 
 import coursework
 from coursework.errors import CannotTell, WrongValue
-from coursework.solids import aligned
+from coursework.structure.spatial_chains import aligned
 
 EXERCISE = coursework.open_course()["planar_chain"]
 BETWEEN = [(0, 1), (1, 2), (2, 3), (3, 0)]

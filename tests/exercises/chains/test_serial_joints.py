@@ -5,7 +5,7 @@ from exact_joints import COUNTS, FREE, arrangement, exact_rank, motions
 from tables import each_row
 
 import coursework
-from coursework.solids import FREEDOMS, aligned
+from coursework.structure.spatial_chains import FREEDOMS, aligned
 
 EXERCISE = coursework.open_course()["serial_joints"]
 

@@ -1,0 +1,123 @@
+"""Book of a course: its chapters, each with its lessons and a variant of each exercise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from coursework.course.chapters import Chapter
+from coursework.course.chapters import ChapterSection as Placed
+from coursework.course.course import Course
+from coursework.course.exercise import CourseExercise
+from coursework.course.lessons import PAGES, taught_by
+from coursework.course.variant import Variant
+from coursework.errors import BadCourse, BadInput
+from coursework.issuing.issuing import distinct_variants
+from coursework.language.words import words
+from coursework.selfstudy.workbook.lessons import lesson_text
+from coursework.sheets.answer_sheet import answer_sheet
+from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
+from coursework.sheets.handout import handout
+
+_FAR = 500_000  #: seeds away from those of a class and of self-study: a book prints its solutions
+_APART = 1_000  #: seeds between two books
+
+
+def bound(
+    course: Course[Any],
+    lang: str,
+    seed: int = 0,
+    *,
+    chapters: Sequence[int] = (),
+    solved: bool = True,
+    advance: Callable[[], object] = lambda: None,
+) -> Book:
+    """Return the book of a course.
+
+    Parameters
+    ----------
+    course
+        An open course. What stands in none of its chapters comes in one at the end.
+    lang
+        Language of the book.
+    seed
+        Which book: each has variants of its own, and none that a class or self-study is given.
+    chapters
+        The numbers of those that are wanted; all unless told.
+    solved
+        Whether the solutions stand at its end.
+    advance
+        Called after each lesson and exercise.
+
+    Raises
+    ------
+    BadInput
+        No such chapter.
+    BadCourse
+        An exercise has the name of a page that every book has; a lesson cannot be read, drawn or run.
+    """
+    course.folder.check_speaks(lang)
+    for name in set(course.folder.names) & set(PAGES):
+        raise BadCourse(
+            f"the exercise {name} has a name that is a page of every book as well; rename its files"
+        )
+    results = tuple(chapters_of(course, lang))
+    numbers = [chapter.number for chapter in results]
+    for number in chapters:
+        if number not in numbers:
+            raise BadInput(
+                "no chapter {number}; there is {value}",
+                number=number,
+                value=", ".join(map(str, numbers)) or "none",
+            )
+    wanted = [chapter for chapter in results if not chapters or chapter.number in chapters]
+    created = tuple(_chapter(course, chapter, lang, seed, advance) for chapter in wanted)
+    return Book(lang, course.folder.title(lang), seed, created, solved)
+
+
+def pieces_of(course: Course[Any]) -> int:
+    """Count the lessons and exercises of the whole book."""
+    return len(course.folder.lessons) + len(course.folder.names)
+
+
+def chapters_of(course: Course[Any], lang: str) -> Iterator[Chapter]:
+    """Yield the chapters of the course, then one with everything outside them."""
+    folder = course.folder
+    yield from folder.chapters
+    lessons = [n for n in folder.lessons if not any(n in c.lessons for c in folder.chapters)]
+    exercises = [n for n in folder.names if folder.section_of(n) is None]
+    if lessons or exercises:
+        title = words(lang)["book"]["others"] if folder.chapters else folder.title(lang)
+        sections = (*(Placed(n, {}, (), {}) for n in lessons), Placed("", {}, tuple(exercises), {}))
+        yield Chapter(1 + len(folder.chapters), {lang: title}, sections)
+
+
+def _chapter(
+    course: Course[Any], chapter: Chapter, lang: str, seed: int, advance: Callable[[], object]
+) -> BookChapter:
+    sections = []
+    count = 0
+    for placed in chapter.sections:
+        lesson = lesson_text(course, placed.lesson, lang) if placed.lesson else None
+        if lesson:
+            advance()
+        exercises = []
+        for name in placed.exercises:
+            count += 1
+            exercises.append(_practised(course, name, lang, seed, f"{chapter.number}.{count}"))
+            advance()
+        title = "" if lesson else placed.titles.get(lang, "")
+        sections.append(BookSection(lesson, tuple(exercises), title))
+    return BookChapter(chapter.number, chapter.title(lang), tuple(sections))
+
+
+def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant:
+    """Return the first valid variant for a book."""
+    return distinct_variants(exercise, _FAR + _APART * seed, 1, lang)[0]
+
+
+def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str) -> BookExercise:
+    exercise = course[name]
+    variant = _variant(exercise, lang, seed)
+    taught = tuple((item.name, item.title) for item in taught_by(course.folder, name, lang))
+    return BookExercise(number, handout(variant), answer_sheet(variant), taught)

@@ -1,0 +1,213 @@
+"""Lesson with its pictures drawn and its cells run, as a book prints it."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from coursework.course.chapters import Chapter
+from coursework.course.course import Course
+from coursework.course.folder import Folder
+from coursework.course.lessons import lesson_file, lesson_sections, lesson_title, read_text, taught_by
+from coursework.errors import BadCourse, CourseworkError, counted, nearest
+from coursework.markup.links import TERM, TextLink, links
+from coursework.selfstudy.workbook import lesson_source as source
+from coursework.selfstudy.workbook.lesson_source import lines_of_words, place_of, proofread
+from coursework.selfstudy.workbook.running import CellOutput, CellSession, drawn
+from coursework.sheets.book import CodePiece, HeadPiece, LaterPiece, LessonText, Piece, ProsePiece
+
+_TITLE = re.compile(r"\A# +[^\n]*\n*")
+_CELL = re.compile(r"(?<!\\)\|")
+_HEAD = re.compile(r"^(##+) +(?:(\d+)\. +)?(.*?) *$", re.MULTILINE)
+
+
+class LessonFile(NamedTuple):
+    """Lesson file: its name in messages, its text, and its proofread blocks."""
+
+    file: str
+    text: str
+    blocks: tuple[source.Block, ...]
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Index entries of the lesson, each once."""
+        return tuple(dict.fromkeys(link.name for link in links(self.text) if link.kind == TERM))
+
+
+def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
+    """Read and proofread a lesson's file.
+
+    Raises
+    ------
+    UnknownName
+        No such lesson.
+    BadCourse
+        It is not written in this language; a formula, a fence or a picture is none; a link names an exercise, a lesson or a section that
+        there is not.
+    """
+    path = lesson_file(course.folder, name, lang)
+    text, file = read_text(path), course.folder.relative(path)
+    blocks = source.blocks(text, file)
+    proofread(blocks, file)
+    for words, line in lines_of_words(blocks):
+        for link in links(words):
+            if link.kind != TERM:
+                location = place_of(words, line, file, f"{link.kind}:{link.name}")
+                _check_link(course.folder, link, lang, location)
+    return LessonFile(file, text, blocks)
+
+
+def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
+    """Return a lesson with its pictures drawn and its cells run.
+
+    Raises
+    ------
+    UnknownName
+        No such lesson.
+    BadCourse
+        It is not written in this language, a cell raises, or a picture or a link leads nowhere.
+    """
+    return _drawn_and_run(course, name, lang, opened(course, name, lang))
+
+
+def _drawn_and_run(course: Course[Any], name: str, lang: str, lesson: LessonFile) -> LessonText:
+    with CellSession(lesson.file, course.folder.root) as session:
+        created = _Lesson(course, name, lang, session)
+        for block in _untitled(lesson.blocks):
+            created.add(block)
+    number = 1 + course.folder.lessons.index(name)
+    title = lesson_title(course.folder, name, lang)
+    return LessonText(name, number, lang, title, tuple(created.pieces), tuple(created.answers), lesson.terms)
+
+
+def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
+    """Yield the blocks without the title at the start of the first one."""
+    first, *others = blocks
+    assert isinstance(first, source.LessonProse)  # proofread
+    yield replace(first, text=_TITLE.sub("", first.text))
+    yield from others
+
+
+class _Lesson:
+    """Pieces of a lesson, in order."""
+
+    def __init__(self, course: Course[Any], name: str, lang: str, session: CellSession):
+        self._course, self._name, self._lang, self._session = course, name, lang, session
+        self.pieces: list[Piece] = []
+        self.answers: list[tuple[int, tuple[Piece, ...]]] = []
+
+    def add(self, block: source.Block) -> None:
+        match block:
+            case source.LessonProse():
+                self.pieces += _parted(block.text)
+            case source.LessonImage():
+                self.pieces.append(drawn(self._course, self._name, block, self._lang))
+            case source.LessonAnswer():
+                self._later((ProsePiece(block.text),))
+            case source.CodeCell():
+                self._cell(block)
+
+    def _cell(self, cell: source.CodeCell) -> None:
+        if source.NOTEBOOK in cell.tags:
+            return
+        if source.SHOWN in cell.tags or source.STILL in cell.tags:
+            self.pieces.append(CodePiece(cell.code))
+        displayed = CellOutput() if source.STILL in cell.tags else self._session.run(cell)
+        self.pieces += displayed.now
+        if displayed.later:
+            self._later(displayed.later)
+
+    def _later(self, pieces: tuple[Piece, ...]) -> None:
+        number = 1 + len(self.answers)
+        self.pieces.append(LaterPiece(number))
+        self.answers.append((number, pieces))
+
+
+def _parted(text: str) -> Iterator[Piece]:
+    """Yield the running text, with its headings as separate pieces."""
+    end = 0
+    for head in _HEAD.finditer(text):
+        if before := text[end : head.start()].strip():
+            yield ProsePiece(before)
+        yield HeadPiece(head[3], len(head[1]) - 1, int(head[2] or 0))
+        end = head.end()
+    if after := text[end:].strip():
+        yield ProsePiece(after)
+
+
+def _check_link(folder: Folder, link: TextLink, lang: str, position: str) -> None:
+    known_names = folder.names if link.kind == "exercise" else folder.lessons
+    if link.name not in known_names:
+        raise BadCourse(
+            f"{position}: a link to the {link.kind} {link.name!r}, which there is not{nearest(link.name, known_names)}"
+        )
+    if link.section and link.section not in (there := lesson_sections(folder, link.name, lang)):
+        numbers = ", ".join(map(str, there)) or "none"
+        raise BadCourse(
+            f"{position}: a link to section {link.section} of {link.name}, which it has not; there is {numbers}"
+        )
+
+
+def faults(course: Course[Any], name: str) -> tuple[str, ...]:
+    """Return the faults of a lesson, a sentence each.
+
+    A language may fail to be read, drawn or run, or have other cells, pictures or answers than another.
+    """
+    result, shapes = [], {}
+    for lang in course.folder.languages:
+        try:
+            lesson = opened(course, name, lang)
+            _drawn_and_run(course, name, lang, lesson)
+        except CourseworkError as fault:
+            result.append(f"{name}, {lang}: {fault}")
+            continue
+        result += _cut_formulas(lesson.text, name, lang)
+        shapes[lang] = [type(b).__name__ for b in lesson.blocks if not isinstance(b, source.LessonProse)]
+    if len({tuple(shape) for shape in shapes.values()}) > 1:
+        text = "; ".join(f"{lang}: {_counted(shape)}" for lang, shape in shapes.items())
+        result.append(f"{name} is not the same in every language: {text}")
+    return tuple(result)
+
+
+def order_faults(course: Course[Any]) -> tuple[str, ...]:
+    """Return the faults in the order of a course, a sentence each: missing titles, and unknown names in
+    ``[lessons]``."""
+    folder = course.folder
+    results = [
+        f"exercises/course.toml: chapter {chapter.number}{where} has no title in {lang!r}"
+        for chapter in folder.chapters
+        for where, titles in _titles(chapter)
+        for lang in folder.languages
+        if lang not in titles
+    ]
+    for lang in folder.languages:
+        try:
+            for name in folder.names:
+                taught_by(folder, name, lang)
+        except CourseworkError as fault:
+            return (*results, str(fault))
+    return tuple(results)
+
+
+def _titles(chapter: Chapter) -> Iterator[tuple[str, Mapping[str, str]]]:
+    """Yield the titles of a chapter, and those of its sections with one."""
+    yield "", chapter.titles
+    for number, section in enumerate(chapter.sections, 1):
+        if section.titles:
+            yield f", section {number}", section.titles
+
+
+def _cut_formulas(text: str, name: str, lang: str) -> list[str]:
+    """Return the table rows in which a bar inside a formula ends the cell."""
+    return [
+        f"{name}, {lang}, line {k}: a bar inside a formula ends the cell of a table; write \\lvert, \\rvert or \\mid: {line.strip()}"
+        for k, line in enumerate(text.splitlines(), 1)
+        if line.lstrip().startswith("|") and any(cell.count("$") % 2 for cell in _CELL.split(line))
+    ]
+
+
+def _counted(shape: Sequence[str]) -> str:
+    return ", ".join(counted(n, kind.lower()) for kind, n in sorted(Counter(shape).items())) or "none"
