@@ -14,7 +14,7 @@ import httpx
 import jwt
 from cryptography.hazmat.primitives.asymmetric import rsa
 from jwt.algorithms import RSAAlgorithm
-from starlette.testclient import TestClient
+from site_client import Client
 
 from coursework.platforms.lti.keys import KeyFolder
 from coursework.platforms.lti.settings import LTIPlatform
@@ -163,7 +163,7 @@ class Visitor:
 
     def __init__(self, app, platform, base="/lti"):
         self.platform, self.base = platform, base
-        self.browser = TestClient(app, base_url=TOOL, headers=ENGLISH, follow_redirects=False)
+        self.browser = Client(app, base_url=TOOL, headers=ENGLISH)
 
     def login(self, **changed):
         """What the tool asks the platform for: the parameters of the authentication request."""

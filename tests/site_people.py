@@ -4,8 +4,8 @@ import re
 from contextlib import contextmanager
 from datetime import UTC, datetime
 
+from site_client import Client
 from sqlalchemy import event
-from starlette.testclient import TestClient
 
 from coursework import open_course
 from coursework.database.people import put_account, put_person
@@ -60,11 +60,11 @@ def count_of(found):
     )
 
 
-class Browser(TestClient):
+class Browser(Client):
     """Follows no address by itself; ``fill`` fills in the seal of the page's forms."""
 
     def __init__(self, app, lang):
-        super().__init__(app, base_url=HOME, headers={"accept-language": lang}, follow_redirects=False)
+        super().__init__(app, base_url=HOME, headers={"accept-language": lang})
 
     @property
     def seal(self):

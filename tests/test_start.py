@@ -6,6 +6,8 @@ import sys
 import pytest
 from tables import each_row
 
+pytestmark = pytest.mark.e2e  #: each is a command in a process of its own
+
 SOLVE = "solve slotted_mechanism --set r1=228.6mm --set r2=114.3mm --set theta2=135deg --only rA,theta4"
 CODE = "import sys; from coursework.cli import run; run(sys.argv[1:]); print('loaded', *sys.modules)"
 

@@ -32,6 +32,7 @@ def clean(target, name, variants):
     return report.failures
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("name", sampled(FEW, ["havens_construction"]))
 def test_a_copy_is_checked_clean_and_asks_the_same(name, tmp_path):
     made = copied(tmp_path / "mine", name)
@@ -45,6 +46,7 @@ def test_a_copy_is_checked_clean_and_asks_the_same(name, tmp_path):
     ]
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("name", sampled(FEW, ["complex_chain"]))
 def test_a_renamed_copy_in_one_language_is_checked_clean(name, tmp_path):
     made = copied(tmp_path / "mine", name, "another", ("en",))
@@ -136,6 +138,7 @@ def test_modules_texts_data_and_pictures_are_found_wherever_they_stand(tmp_path)
     assert "(mine.svg)" in (new / "exercises/topic/mine.en.md.j2").read_text("utf-8")
 
 
+@pytest.mark.e2e
 def test_the_command_copies_and_says_what_it_wrote(tmp_path):
     run = [sys.executable, "-P", "-c", "import sys; from coursework.cli import main; main()"]
 

@@ -95,6 +95,7 @@ def one_at_least_did_it(ended):
 TIMES = [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 12))]
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("time", TIMES)
 def test_two_builds_at_once_leave_a_whole_one(small_course, tmp_path, time):
     (tmp_path / "r.csv").write_text("student\n" + "\n".join(f"S{n}" for n in range(12)), "utf-8")
@@ -118,6 +119,7 @@ def test_two_builds_at_once_leave_a_whole_one(small_course, tmp_path, time):
     }  # fmt: skip
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("time", TIMES)
 def test_two_gradings_at_once_leave_the_marks_of_one(small_course, tmp_path, time):
     assert (

@@ -121,6 +121,7 @@ def rows_of(folder):
 forks = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not copied here")
 
 
+@pytest.mark.e2e
 @forks
 def test_a_kill_leaves_every_sheet_and_the_next_time_tells_what_changed(built, tmp_path):
     killed_anywhere(built, tmp_path, (0, 3, 4, 6, 8, 10))

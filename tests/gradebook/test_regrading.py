@@ -514,6 +514,7 @@ def test_a_parquet_file_that_is_none_is_rejected_with_its_reason(small_course, i
     assert "not a Parquet file" in rejected["reason"]
 
 
+@pytest.mark.e2e
 def test_many_answers_are_marked_by_processes_as_by_one(small_course, issued, tmp_path, monkeypatch):
     from coursework.gradebook import class_marking
 

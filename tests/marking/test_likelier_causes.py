@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from sweeps import seeds
+from sweeps import seeds, whole_course
 
 import coursework
 from coursework import degrees
@@ -95,6 +95,7 @@ def test_a_calculator_in_radians_throughout_costs_one_question(name, converts, m
         assert len(lost) <= 1, [(i, answers[i], marking[i].verdict, marking[i].feedback) for i in lost]
 
 
+@whole_course
 @seeds(1, 12)
 def test_angles_told_in_radians_are_named_once_and_paid_once(seeds):
     """Each angle alone amid right answers, in whichever kind of part it is asked, then all of a sheet: the first pays."""
@@ -133,6 +134,7 @@ def test_angles_told_in_radians_are_named_once_and_paid_once(seeds):
 # ----------------------------------------------------------------------- exchanged boxes
 
 
+@whole_course
 @seeds(1, 6)
 def test_two_exchanged_boxes_are_found_and_counted_once(seeds):
     """In any pair of boxes of numbers, read off a drawing or not, all other answers right: the first pays, the second and

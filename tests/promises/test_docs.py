@@ -218,6 +218,7 @@ def hand_in(answers: dict[tuple[str, str], str]) -> None:
     Path("returned/smith.ipynb").write_text(notebook, "utf-8")
 
 
+@pytest.mark.e2e
 def test_the_first_hour_prints_and_writes_what_its_commands_do(tmp_path, monkeypatch, capsys):
     """Of the answers that it does not show, the right ones came back."""
     monkeypatch.chdir(tmp_path)

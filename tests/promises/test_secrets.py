@@ -152,6 +152,7 @@ def test_a_practice_build_of_the_same_class_is_none_of_an_exam(tmp_path):
         assert [place for place in issued if same(issued[place], built[place])] == []
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("platform", ["moodle", "qti3"])
 def test_no_pool_of_a_platform_is_drawn_by_who_has_the_package(tmp_path, platform):
     path = stated(tmp_path)
@@ -291,6 +292,7 @@ def test_no_text_of_an_assignment_shows_its_secret(tmp_path):
 HEAD = "0b6c5d1f2a9e47388c1fd2b7a4e3905d"
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("in_file", [True, False])
 def test_nothing_that_is_handed_out_or_only_marks_holds_the_secret(tmp_path, in_file):
     path = stated(tmp_path, SOME[:1], f'secret = "{HEAD}"' if in_file else "")

@@ -263,6 +263,7 @@ def test_the_wheel_is_called_as_its_project():
 # -------------------------------------------------------------------- the wheel
 
 
+@pytest.mark.e2e
 @needs_sources
 def test_the_same_sources_give_the_same_wheel(tmp_path):
     digests = set()

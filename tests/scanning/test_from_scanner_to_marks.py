@@ -8,6 +8,7 @@ import json
 
 import cv2
 import numpy as np
+import pytest
 from scanned_class import handwritten, rows, write
 from scanned_pages import Hand, Scan, scanned, sheet_of_pdf
 
@@ -22,6 +23,7 @@ EXERCISE = "slotted_mechanism"
 NAMES = ("Zoé", "Max")
 
 
+@pytest.mark.e2e
 def test_from_the_printer_to_the_marks(tmp_path):
     roster = tmp_path / "class.csv"
     roster.write_text("student\n" + "\n".join(NAMES) + "\n", "utf-8")

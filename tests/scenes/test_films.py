@@ -123,6 +123,7 @@ def test_a_film_that_is_none_is_refused(small_course):
         coursework.open_course(small_course)["crank_pin"].variant(0).animation()
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_the_command_writes_a_film_in_both_languages(tmp_path, lang):
     assert (

@@ -62,6 +62,7 @@ def test_a_self_study_notebook_runs_from_top_to_bottom_twice(name, lang, here):
     assert run_cells(cells) == run_cells(cells)
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize(
     ("name", "lang"), [("slotted_mechanism", "en"), pytest.param("mobility", "fr", marks=slow)]
 )

@@ -109,6 +109,7 @@ def bodies(budget):
     yield "multipart/form-data; boundary=x", one + b"[" * (room - 200) + b"\r\n--x--\r\n"
 
 
+@pytest.mark.e2e
 def test_the_worst_body_within_a_budget_takes_little_memory(site):
     """As much as a form of its size needs, whatever is in it."""
     over = []
@@ -260,6 +261,7 @@ def test_a_notebook_with_its_figures_is_taken(class_of_three):
     assert "holds no answer" in reply.text
 
 
+@pytest.mark.e2e
 def test_a_file_that_takes_too_long_is_ended_and_told(class_of_three, monkeypatch):
     number = dealt(class_of_three)
     monkeypatch.setattr(
@@ -319,6 +321,7 @@ def for_ever(*told):
         pass
 
 
+@pytest.mark.e2e
 def test_what_is_read_apart_is_limited_in_time_and_memory(tmp_path):
     means = ResourceLimits(20.0, 64 * MEGABYTE)
     path = tmp_path / "a.csv"
@@ -365,6 +368,7 @@ def test_what_is_over_the_budget_of_a_link_is_refused_by_its_head_alone(linked):
     assert set(told.values()) == {b"413"}
 
 
+@pytest.mark.e2e
 def test_the_worst_body_of_a_link_takes_little_memory(linked):
     visitor, _, path = linked.enter()
     kind, room, over = {"content-type": "application/x-www-form-urlencoded"}, LARGEST - 1024, []

@@ -223,6 +223,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.e2e
 def test_half_an_answer_is_not_waited_for(tmp_path):
     process = ending.begun(tmp_path, script=ANSWERS)
     assert ending.ended(process) == ("", "")
