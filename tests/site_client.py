@@ -6,6 +6,7 @@ starlette's client begins a thread with an event loop for each request, which ta
 import asyncio
 import atexit
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from urllib.parse import unquote
 
@@ -27,6 +28,9 @@ class Transport(testclient.httpx.BaseTransport):
         self.app = app
 
     def handle_request(self, request):
+        if asyncio._get_running_loop() is not None:  # that of a real browser, which a test drives from here
+            with ThreadPoolExecutor(1) as pool:
+                return pool.submit(self.handle_request, request).result()
         is_main = threading.current_thread() is threading.main_thread()
         return (_loop().run_until_complete if is_main else asyncio.run)(self._response(request))
 
