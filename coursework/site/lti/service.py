@@ -51,7 +51,7 @@ from coursework.system.headers import Guarded, security_headers
 from coursework.system.processes import processor_time
 from coursework.system.request_slots import Crowded
 
-LOG = logging.getLogger("coursework.platforms.lti")
+LOG = logging.getLogger("coursework.lti")
 LARGEST = 256 * 1024  #: bytes of a form
 AT_ONCE = 2  #: requests of one person that are answered at once; the others wait
 _BUDGET = Budget("lti", LARGEST, 400, AT_ONCE)

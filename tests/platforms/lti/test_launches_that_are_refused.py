@@ -406,12 +406,12 @@ def test_only_the_platform_may_hold_a_page_in_a_frame(visitor):
 
 
 def test_the_log_holds_neither_answers_nor_tokens(visitor, caplog):
-    with caplog.at_level(logging.DEBUG, "coursework.platforms.lti"):
+    with caplog.at_level(logging.DEBUG, "coursework.lti"):
         page, path = visitor.enter()
         visitor.hand_in(path, page, {"e1-rA": "12345.678 mm"})
         visitor.browser.get(path)
         visitor.launch(sign=lambda claims: "a.b.c")
-    assert caplog.text.count("coursework.platforms.lti") >= 5
+    assert caplog.text.count("coursework.lti") >= 5
     for secret in ("12345.678", path.rpartition("/")[2], seal(page.text), "Ada"):
         assert secret not in caplog.text
 
@@ -423,7 +423,7 @@ def test_what_fails_is_a_page_and_no_traceback(visitor, caplog, monkeypatch):
         raise ZeroDivisionError("the answer was 12345.678")
 
     monkeypatch.setattr(SiteHost, "answer", fails)
-    with caplog.at_level(logging.INFO, "coursework.platforms.lti"):
+    with caplog.at_level(logging.INFO, "coursework.lti"):
         answer = visitor.hand_in(path, page, {"e1-rA": "12345.678"})
     assert refused(answer, "failed", 500)
     assert "ZeroDivisionError" in caplog.text
