@@ -103,6 +103,13 @@ def test_every_internal_link_leads_somewhere(page):
             assert anchor in anchors(there), target
 
 
+@every_page
+def test_the_files_of_this_repository_that_commands_name_are_there(page):
+    text = "\n".join(blocks(page, "console"))
+    named = re.findall(r"(?<![\w./-])(?:tests|benchmarks|docs|coursework)/[\w./-]+", text)
+    assert [name for name in named if not (ROOT / name).exists()] == []
+
+
 def listed(index: Path) -> set[str]:
     """The pages of the hidden table of contents of a page."""
     found = re.search(r"```\{toctree\}\n:hidden:\n\n(.*?)```", index.read_text("utf-8"), re.DOTALL)
