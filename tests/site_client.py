@@ -24,8 +24,8 @@ def _loop():
 class Transport(testclient.httpx.BaseTransport):
     """Hands a request to an application and waits for the end of its response; what the application raises is raised."""
 
-    def __init__(self, app):
-        self.app = app
+    def __init__(self, app, client):
+        self.app, self.client = app, client
 
     def handle_request(self, request):
         if asyncio._get_running_loop() is not None:  # that of a real browser, which a test drives from here
@@ -49,7 +49,7 @@ class Transport(testclient.httpx.BaseTransport):
             "headers": [
                 (name.lower().encode(), text.encode()) for name, text in request.headers.multi_items()
             ],
-            "client": ("testclient", 50000),
+            "client": self.client,
             "server": [url.raw_host.decode("ascii"), port],
             "extensions": {},
             "state": {},
@@ -79,6 +79,6 @@ class Transport(testclient.httpx.BaseTransport):
 class Client(testclient.TestClient):
     """Client that follows no address by itself."""
 
-    def __init__(self, app, base_url, headers=None):
+    def __init__(self, app, base_url, headers=None, client=("testclient", 50000)):
         super().__init__(app, base_url=base_url, headers=headers, follow_redirects=False)
-        self._transport = Transport(app)
+        self._transport = Transport(app, client)

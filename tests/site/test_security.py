@@ -5,9 +5,9 @@ import re
 from pathlib import Path
 
 import pytest
+from site_client import Client
 from site_people import MAX, TEACHER, ZOE
 from site_walk import Filled, filled, fillings
-from starlette.testclient import TestClient
 
 import coursework
 from coursework.database.accounts import account_of, set_secret
@@ -30,13 +30,7 @@ def site(tmp_path_factory):
 def browser(site):
     """A browser of nobody, over https."""
     site.site.url, before = SECURE, site.site.url
-    yield TestClient(
-        application(site.site),
-        base_url=SECURE,
-        headers={"accept-language": "en"},
-        follow_redirects=False,
-        client=("192.0.2.7", 1),
-    )
+    yield Client(application(site.site), SECURE, {"accept-language": "en"}, client=("192.0.2.7", 1))
     site.site.url = before
 
 
