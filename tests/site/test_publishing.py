@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import zipfile
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -35,6 +36,8 @@ name = "grashof"
 points = 6
 """
 ROSTER = "student,group\nZoé,1\nMax,2\n".encode()
+
+CELL = re.compile(r"<(t[hd])\b[^>]*>(.*?)</\1>", re.DOTALL)
 
 
 @pytest.fixture
@@ -99,6 +102,24 @@ def test_exercises_are_chosen_and_dealt_to_who_has_an_account(class_of_three, st
         assert class_of_three.browser(name).get(f"/assignments/{number}").status_code == 200
     seeds = Issued(content(class_of_three, number), "test")
     assert seeds.issued_to(ZOE) != seeds.issued_to(MAX)
+
+
+@pytest.mark.parametrize("versions", [b"", b"versions = 2\n"], ids=["each their own", "two versions"])
+def test_the_list_of_papers_has_a_column_for_versions_where_there_are_any(class_of_three, staff, versions):
+    reply = handed_out(class_of_three, staff, file=versions + TOML, roster=ROSTER)
+    number = dealt_by(class_of_three, staff, reply)
+    issued = content(class_of_three, number)["issued"]
+    letters = {one["student"]: one["version"] for one in issued if "version" in one}
+    assert bool(letters) == bool(versions)
+    page = staff.get(f"/desk/assignments/{number}").text
+    (table,) = (one for one in re.findall(r"<table>(.*?)</table>", page, re.DOTALL) if 'name="who"' in one)
+    head, *rows = (
+        [text for _, text in CELL.findall(row)] for row in re.findall(r"<tr>.*?</tr>", table, re.DOTALL)
+    )
+    assert ("Version" in head) == bool(versions)
+    assert [len(row) for row in rows] == [len(head)] * 2
+    if versions:
+        assert {row[1]: row[head.index("Version")] for row in rows} == letters
 
 
 def test_what_a_build_issued_is_taken_in_as_it_is(class_of_three, staff):
