@@ -48,26 +48,62 @@ class Decomposition:
         return roman(self.rank)
 
     def group_of(self, body: int) -> AssourGroup | None:
-        """Return the group that holds a body; None for the frame and the driver."""
+        """Return the group that holds a body.
+
+        Parameters
+        ----------
+        body
+            Number of the body.
+
+        Returns
+        -------
+        The group; None for the frame and the driver.
+        """
         return next((group for group in self.groups if body in group.bodies), None)
 
 
 def roman(number: int) -> str:
-    """Return a small number, 1 to 39, in Roman figures."""
+    """Return a small number in Roman figures.
+
+    Parameters
+    ----------
+    number
+        Whole number from 1 to 39.
+
+    Returns
+    -------
+    Its capital letters: 4 gives ``IV``.
+    """
     tens, units = divmod(number, 10)
     return "X" * tens + ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX")[units]
 
 
 def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> Decomposition:
-    """Return the Assour groups of a mechanism with lower pairs alone, driven by the pair of ``driver``, [1,
-    body].
+    """Return the Assour groups of a mechanism with lower pairs alone.
+
+    Parameters
+    ----------
+    joints
+        Records or a graph.
+    driver
+        The frame, 1, and the body that is driven, in either order.
+
+    Returns
+    -------
+    The groups with their classes, in order of assembly.
 
     Raises
     ------
     Undefined
-        A higher pair, a formula's count other than 1, or bodies that have more pairs than conditions to settle.
+        A higher pair, a formula's count other than 1, several joints between frame and driver, or bodies that
+        have more pairs than conditions to settle.
     WrongValue
-        A driver that is no body joined to the frame.
+        Records that are no mechanism (:meth:`JointGraph.of`), or a driver that no lower pair joins to the
+        frame.
+
+    Source
+    ------
+    A mechanism with one driver has ``w = 3 n - 2 b = 1``, a group of n bodies and b pairs ``3 n = 2 b``.
     """
     graph = JointGraph.of(joints)
     body = driven_body(graph, driver)
@@ -82,7 +118,24 @@ def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> D
 
 
 def driven_body(graph: JointGraph, driver: Sequence[int]) -> int:
-    """Return the body of a driver [1, body], which a lower pair joins to the frame."""
+    """Return the body of a driver, which a lower pair joins to the frame.
+
+    Parameters
+    ----------
+    graph
+        Joint graph of the mechanism.
+    driver
+        The frame, 1, and the body, in either order.
+
+    Returns
+    -------
+    The number of the body.
+
+    Raises
+    ------
+    WrongValue
+        Anything but the frame and a body that a lower pair joins to it.
+    """
     try:
         numbers = [int(x) for x in driver]
         wrong = len(numbers) != 2 or FRAME not in numbers or numbers != list(driver)
@@ -100,7 +153,17 @@ def driven_body(graph: JointGraph, driver: Sequence[int]) -> int:
 
 
 def drivers(graph: JointGraph) -> tuple[int, ...]:
-    """Return the bodies that a lower pair joins to the frame."""
+    """Return the bodies that a lower pair joins to the frame.
+
+    Parameters
+    ----------
+    graph
+        Joint graph of the mechanism.
+
+    Returns
+    -------
+    Their numbers, in increasing order.
+    """
     joined = {b for j in graph.joints if FRAME in j.bodies and j.kind != "higher" for b in j.bodies}
     return tuple(sorted(joined - {FRAME}))
 
@@ -264,10 +327,25 @@ def _pairs_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
 
 
 def class_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
-    """Return the class of a group: the larger of its longest chordless loop and of the most joints on one
-    body.
+    """Return the class of a group.
 
-    A multiple pivot is one corner of each of its bodies.
+    Parameters
+    ----------
+    graph
+        Joint graph of the mechanism.
+    ring
+        Numbers of the group's bodies.
+    placed
+        Numbers of the bodies placed before the group, the frame among them.
+
+    Returns
+    -------
+    The class, a whole number.
+
+    Source
+    ------
+    The larger of the sides of the longest chordless loop and of the most joints on one body; a multiple pivot
+    is one corner of each of its bodies.
     """
     bodies = set(ring)
     used = [j for j in graph.joints if len(bodies & set(j.bodies)) + bool(placed & set(j.bodies)) > 1]
@@ -276,9 +354,18 @@ def class_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
 
 
 def longest_loop(joined: Sequence[set[int]], bodies: Iterable[int]) -> int:
-    """Return the number of sides of the longest chordless loop of bodies; 0 if there is none.
+    """Return the number of sides of the longest chordless loop of bodies.
 
-    ``joined`` holds the bodies of each joint. Bodies on one common pivot are no loop.
+    Parameters
+    ----------
+    joined
+        Numbers of the bodies of each joint.
+    bodies
+        Numbers of all bodies, those of the joints among them.
+
+    Returns
+    -------
+    The number of sides, 3 or more; 0 if there is no loop. Bodies on one common pivot are none.
     """
     neighbours: dict[int, set[int]] = {body: set() for body in bodies}
     for several in joined:

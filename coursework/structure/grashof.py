@@ -27,22 +27,70 @@ TYPES = (
 
 
 def shortest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
+    """Return the length of the shortest bar.
+
+    Parameters
+    ----------
+    r1, r2, r3, r4
+        Lengths in one unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    The length, in that unit, of the broadcast shape.
+    """
     return np.minimum(np.minimum(r1, r2), np.minimum(r3, r4))
 
 
 def longest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
+    """Return the length of the longest bar.
+
+    Parameters
+    ----------
+    r1, r2, r3, r4
+        Lengths in one unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    The length, in that unit, of the broadcast shape.
+    """
     return np.maximum(np.maximum(r1, r2), np.maximum(r3, r4))
 
 
 def closing_excess(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Return the excess of s + p + q over l: the bars close a loop when it is positive. Its sign is exact for
-    the decimals."""
+    """Return the excess that is positive if the bars close a loop.
+
+    Parameters
+    ----------
+    r1, r2, r3, r4
+        Lengths in one unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    The excess, in that unit, of the broadcast shape; its sign is exact for the decimals.
+
+    Source
+    ------
+    ``s + p + q - l`` for the shortest bar s, the longest l and the others p, q.
+    """
     return _exact(_closing, r1, r2, r3, r4)
 
 
 def grashof_excess(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Return the excess of p + q over s + l: some bar turns fully when it is positive. Its sign is exact for
-    the decimals."""
+    """Return the excess that is positive if some bar turns fully.
+
+    Parameters
+    ----------
+    r1, r2, r3, r4
+        Lengths in one unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    The excess, in that unit, of the broadcast shape; its sign is exact for the decimals.
+
+    Source
+    ------
+    ``p + q - s - l`` for the shortest bar s, the longest l and the others p, q.
+    """
     return _exact(_grashof, r1, r2, r3, r4)
 
 
@@ -70,7 +118,18 @@ def _exact(terms: Callable[..., tuple[Any, ...]], *lengths: Any) -> Any:
 
 
 def type_by_shortest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Return the type of a linkage that satisfies Grashof's rule, by its shortest bar."""
+    """Return the type of a linkage that satisfies Grashof's rule, by its shortest bar.
+
+    Parameters
+    ----------
+    r1, r2, r3, r4
+        Lengths of frame, input, coupler and output in one unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    An array of the first four of :data:`TYPES`, of the broadcast shape. Of bars that are equally short the
+    input counts, then the output, then the frame.
+    """
     short = shortest(r1, r2, r3, r4)
     return np.select(
         [r2 == short, r4 == short, r1 == short],
@@ -80,8 +139,22 @@ def type_by_shortest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
 
 
 def linkage_type(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Return one of :data:`TYPES` for a frame r1, input r2, coupler r3, output r4: positive scalars or
-    arrays."""
+    """Return the type of a four-bar linkage.
+
+    Parameters
+    ----------
+    r1, r2, r3, r4
+        Lengths of frame, input, coupler and output, positive, in one unit; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    An array of :data:`TYPES`, of the broadcast shape.
+
+    Source
+    ------
+    ``impossible`` where :func:`closing_excess` is not positive; else by :func:`grashof_excess`: 0
+    ``change-point``, negative ``triple-rocker``, positive the type by the shortest bar.
+    """
     excess = grashof_excess(r1, r2, r3, r4)
     return np.select(
         [closing_excess(r1, r2, r3, r4) <= 0, excess == 0, excess < 0],

@@ -35,13 +35,45 @@ class NumberStream:
             block += 1
 
     def below(self, count: int) -> int:
-        """Return a number from 0 to ``count - 1``."""
+        """Return the next number, below a bound.
+
+        Parameters
+        ----------
+        count
+            The bound, a whole number from 1 to 2^32.
+
+        Returns
+        -------
+        A number from 0 to ``count - 1``.
+        """
         return (next(self._bits) * count) >> 32
 
     def one_of(self, items: Sequence[Item]) -> Item:
+        """Return one of some items, by the next number.
+
+        Parameters
+        ----------
+        items
+            The choices, at least one.
+
+        Returns
+        -------
+        The item.
+        """
         return items[self.below(len(items))]
 
     def shuffled(self, items: Sequence[Item]) -> list[Item]:
+        """Return the items in another order, by as many numbers.
+
+        Parameters
+        ----------
+        items
+            Items of any sort.
+
+        Returns
+        -------
+        A new list of all of them.
+        """
         rest = list(items)
         return [rest.pop(self.below(len(rest))) for _ in items]
 
@@ -58,10 +90,21 @@ class GeneratedMechanism(NamedTuple):
 
 
 def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> GeneratedMechanism:
-    """Return the mechanism of a number: these groups attached in this order, bodies and joints then shuffled.
+    """Return the mechanism of a number: groups attached one after another, bodies and joints then shuffled.
 
-    ``groups`` holds ``dyad`` (class II), ``triad`` (III), ``tetrad`` (IV: a loop of four bodies), ``follower``
-    (one body, a lower and a higher pair) and ``stiffener`` (a bar, which takes a degree of freedom away).
+    Parameters
+    ----------
+    number
+        Whole number that decides every choice.
+    groups
+        ``dyad`` (class II), ``triad`` (III), ``tetrad`` (IV: a loop of four bodies), ``follower`` (one body,
+        a lower and a higher pair) or ``stiffener`` (a bar, which takes a degree of freedom away), in order.
+    drivers
+        Number of bodies joined to the frame before the groups.
+
+    Returns
+    -------
+    The records of its joints and the numbers of its drivers.
     """
     plant = _Plant(NumberStream(number, "grow"), drivers)
     for group in groups:
@@ -70,8 +113,22 @@ def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> GeneratedMe
 
 
 def relabelled(number: int, joints: Sequence[PlaneJoint], drivers: Sequence[int] = ()) -> GeneratedMechanism:
-    """Return the mechanism with moving bodies renumbered, joints shuffled and lettered A, B, C, … along the
-    list."""
+    """Return a mechanism with moving bodies renumbered, joints shuffled and lettered A, B, C, … along the
+    list.
+
+    Parameters
+    ----------
+    number
+        Whole number that decides the order.
+    joints
+        Joints of the mechanism; their letters are not kept.
+    drivers
+        Numbers of the driven bodies in ``joints``.
+
+    Returns
+    -------
+    The records of its joints and the new numbers of its drivers.
+    """
     choices = NumberStream(number, "relabel")
     moving = sorted({body for joint in joints for body in joint.bodies} - {FRAME})
     new = {FRAME: FRAME, **dict(zip(moving, choices.shuffled(moving), strict=True))}

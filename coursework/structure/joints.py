@@ -58,6 +58,16 @@ class JointGraph:
     def of(records: JointGraph | Iterable[Record | PlaneJoint]) -> JointGraph:
         """Read a list of joint records.
 
+        Parameters
+        ----------
+        records
+            Mappings with ``between``, ``kind`` and, optionally, ``at``, or joints; a graph is returned
+            unchanged.
+
+        Returns
+        -------
+        The graph, its joints in canonical order.
+
         Raises
         ------
         WrongValue
@@ -102,7 +112,17 @@ class JointGraph:
         return Counts(total - 1, lower, higher, freedoms, pairs, total, pairs - total + 1)
 
     def joints_of(self, body: int) -> tuple[PlaneJoint, ...]:
-        """Return the joints that a body takes part in."""
+        """Return the joints that a body takes part in.
+
+        Parameters
+        ----------
+        body
+            Number of the body.
+
+        Returns
+        -------
+        The joints in the graph's order; none for a number that is no body.
+        """
         return tuple(joint for joint in self.joints if body in joint.bodies)
 
     def pairs(self) -> tuple[Pair, ...]:
@@ -136,7 +156,17 @@ class JointGraph:
 
 
 def copied(records: Iterable[Record]) -> tuple[dict[str, Any], ...]:
-    """Return copies of the records, which the caller may change."""
+    """Return copies of joint records, which the caller may change.
+
+    Parameters
+    ----------
+    records
+        Mappings with ``between`` at least.
+
+    Returns
+    -------
+    New mappings with new lists ``between``.
+    """
     return tuple({**record, "between": list(record["between"])} for record in records)
 
 

@@ -39,10 +39,20 @@ class SlidingPair:
 
 
 def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, SlidingPair]:
-    """Return the sliding pairs by joint index. The frame guides; else the body with the most joints, so that
+    """Return the sliding pairs of a mechanism. The frame guides; else the body with the most joints, so that
     blocks are small bodies.
 
-    With the positions ``at`` of the joints, a body with a pivot where it slides is the block.
+    Parameters
+    ----------
+    graph
+        Joint graph of the mechanism.
+    at
+        Positions of the joints, complex, mm on paper. With them, a body with a pivot where it slides is the
+        block.
+
+    Returns
+    -------
+    The pairs by index of their joint in the graph.
     """
 
     def rank(body: int, index: int) -> tuple[bool, bool, int, int]:
@@ -63,7 +73,17 @@ def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, SlidingPa
 
 def sites(graph: JointGraph) -> list[int]:
     """Return the site of each joint. A block with one other pivot sits on that pivot; a pivot takes one
-    block."""
+    block.
+
+    Parameters
+    ----------
+    graph
+        Joint graph of the mechanism.
+
+    Returns
+    -------
+    Numbers from 0 without a gap, in the order of the graph's joints.
+    """
     number = list(range(len(graph.joints)))
     occupied: set[int] = set()
     for index, slide in slides(graph).items():
@@ -79,7 +99,17 @@ def sites(graph: JointGraph) -> list[int]:
 
 @lru_cache(maxsize=1024)
 def places(graph: JointGraph) -> tuple[complex, ...]:
-    """Return the position of each joint of the graph, mm on paper, y up."""
+    """Return the position of each joint.
+
+    Parameters
+    ----------
+    graph
+        Joint graph of the mechanism.
+
+    Returns
+    -------
+    Complex numbers in the order of the graph's joints, mm on paper, y up.
+    """
     picture = _Picture(graph)
     pictures = picture.settled(picture.starts())
     result = pictures[int(np.argmin(picture.cost(pictures)))]

@@ -11,8 +11,18 @@ Drawn = tuple[tuple[complex, ...], dict[int, float]]
 
 
 def drawn_in_course(graph: JointGraph) -> Drawn | None:
-    """Return the drawn position of each joint and the direction of each fixed inclined rail; None if no
-    figure of the course is isomorphic."""
+    """Return how a figure of the course draws a mechanism.
+
+    Parameters
+    ----------
+    graph
+        Joint graph of the mechanism.
+
+    Returns
+    -------
+    The position of each joint (complex, mm on paper, y up) and, by index of its joint, the direction in
+    degrees of each fixed rail that is not level; None if no drawn figure is isomorphic.
+    """
     for figure, mechanism in LIBRARY.items():
         if figure not in PLACES or len(mechanism.joints) != len(graph.joints):
             continue
@@ -33,10 +43,19 @@ def _drawn(graph: JointGraph, mechanism: JointGraph, bodies: Mapping[int, int], 
 
 
 def likeness(graph: JointGraph, mechanism: JointGraph) -> dict[int, int] | None:
-    """Return an isomorphism: for each body of a mechanism its counterpart in ``mechanism``; None if there is
-    none.
+    """Return an isomorphism of two mechanisms.
 
     The identity is tried first, so a figure of the course maps to itself.
+
+    Parameters
+    ----------
+    graph, mechanism
+        Joint graphs.
+
+    Returns
+    -------
+    For each body of ``graph`` its counterpart in ``mechanism``, the frame for the frame; None if there is
+    none.
     """
     if len(graph.bodies) != len(mechanism.bodies) or _kinds(graph) != _kinds(mechanism):
         return None

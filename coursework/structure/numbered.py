@@ -65,7 +65,17 @@ class Driven(NamedTuple):
 
 @lru_cache(maxsize=4096)
 def to_count(number: int) -> tuple[Record, ...]:
-    """Return a mechanism to count joints and bodies of; its mobility by the formula is 0, 1 or 2."""
+    """Return a mechanism to count joints and bodies of; its mobility by the formula is 0, 1 or 2.
+
+    Parameters
+    ----------
+    number
+        Whole number that decides every choice.
+
+    Returns
+    -------
+    The records of its joints.
+    """
     choices = NumberStream(number, "count")
     if choices.below(_ONE_IN) == 0:
         return relabelled(number, LIBRARY[choices.one_of(_COUNTED_FIGURES)].joints).joints
@@ -78,7 +88,17 @@ def to_count(number: int) -> tuple[Record, ...]:
 
 @lru_cache(maxsize=4096)
 def to_decompose(number: int) -> Driven:
-    """Return a mechanism to decompose into Assour groups of class II to IV, and any driver that allows it."""
+    """Return a mechanism to decompose into Assour groups of class II to IV, and any driver that allows it.
+
+    Parameters
+    ----------
+    number
+        Whole number that decides every choice; below 1 000 000 as in the exercise's first version.
+
+    Returns
+    -------
+    The records of its joints and its driver.
+    """
     choices = NumberStream(number, "decompose")
     if choices.below(_ONE_IN) == 0:
         grown = relabelled(number, LIBRARY[choices.one_of(_DECOMPOSED_FIGURES)].joints, (2,))
@@ -98,5 +118,17 @@ def _can_drive(graph: JointGraph, body: int) -> bool:
 
 
 def last_body(graph: JointGraph, driver: tuple[int, int]) -> int:
-    """Return the highest body that is neither frame nor driven; the driven one where there is no other."""
+    """Return the highest body that is neither frame nor driven.
+
+    Parameters
+    ----------
+    graph
+        Joint graph of the mechanism.
+    driver
+        The frame and the driven body.
+
+    Returns
+    -------
+    The number of the body; that of the driven one where there is no other.
+    """
     return max((body for body in graph.moving if body not in driver), default=max(driver))

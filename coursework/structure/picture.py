@@ -22,7 +22,22 @@ def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
     """Draw bodies as numbered circles (the frame has a second one), joints as lines with the letter of their
     kind.
 
-    Two joints of the same two bodies are drawn side by side; a pivot of several bodies is a dot with a line to each.
+    Two joints of the same two bodies are drawn side by side; a pivot of several bodies is a dot with a line
+    to each.
+
+    Parameters
+    ----------
+    joints
+        Records or a graph.
+
+    Returns
+    -------
+    The figure.
+
+    Raises
+    ------
+    WrongValue
+        Records that are no mechanism (:meth:`JointGraph.of`).
     """
     graph = JointGraph.of(joints)
     places = _places(graph)

@@ -54,6 +54,15 @@ def kinematic_scheme(
         Whether joints bear the letters of their ``at``.
     driver
         The frame and the body that an arrow shows to be driven, if any.
+
+    Returns
+    -------
+    The figure.
+
+    Raises
+    ------
+    WrongValue
+        Records that are no mechanism (:meth:`JointGraph.of`).
     """
     graph = JointGraph.of(joints)
     return _Scheme(graph, letters, max(driver, default=0)).figure()

@@ -24,13 +24,34 @@ def aligned(
     between: Sequence[int] = (0, 1),
     tilt: str = "",
 ) -> dict[str, Any]:
-    """Return the mapping of a joint whose direction is ``x``, ``y``, ``z``, or three whole numbers such as
-    ``3 4 0``.
+    """Return the mapping of a joint along a direction of whole numbers.
 
-    The direction is the axis, the normal of a joint that has no axis, and the line of a contact along a
-    line, whose normal is then the axis that follows: y after x, z after y, x after z; of a direction in a coordinate plane,
-    what a quarter of a turn in that plane makes of it. With a ``tilt``, a letter, the joint is turned with its point
-    about that axis of the origin, by the angle whose cosine is 4/5 and whose sine is 3/5.
+    The direction is the axis, the normal of a joint that has no axis, and the line of a contact along a line,
+    whose normal is then the direction that follows: y after x, z after y, x after z; of a direction in a
+    coordinate plane, what a quarter of a turn in that plane makes of it.
+
+    Parameters
+    ----------
+    name
+        Name of the joint, one of :data:`~coursework.structure.spatial_chains.joints.JOINTS` without a pitch.
+    along
+        Direction: ``x``, ``y``, ``z``, or three whole numbers such as ``3 4 0``.
+    point
+        Coordinates of the joint's point, in any unit of length.
+    between
+        Numbers of its two bodies.
+    tilt
+        Axis of the origin, ``x``, ``y`` or ``z``, about which the joint is turned with its point by the angle
+        of cosine 4/5 and sine 3/5; empty for none.
+
+    Returns
+    -------
+    The mapping, with unit vectors ``axis`` and ``normal``, and ``point`` in its unit.
+
+    Raises
+    ------
+    WrongValue
+        As :func:`directions_of`.
     """
     axis, after = directions_of(along, tilt)
     x, y, z = point
@@ -44,12 +65,22 @@ def aligned(
 
 
 def directions_of(along: str, tilt: str = "") -> tuple[Whole, Whole]:
-    """Return a direction and the one that follows it, as :func:`aligned` says, in whole numbers.
+    """Return a direction and the one that follows it (:func:`aligned`), in whole numbers.
+
+    Parameters
+    ----------
+    along, tilt
+        Direction and axis of the tilt, as in :func:`aligned`.
+
+    Returns
+    -------
+    Both directions, five times as long with a tilt; the second is (0, 0, 0) for a direction in no coordinate
+    plane.
 
     Raises
     ------
     WrongValue
-        It is neither a letter nor three whole numbers, one of them 0.
+        ``along`` is neither a letter nor three whole numbers, not all of them 0.
     """
     if along in _WHOLE:
         axis, after = _WHOLE[along], _WHOLE[_NEXT[along]]
@@ -62,7 +93,19 @@ def directions_of(along: str, tilt: str = "") -> tuple[Whole, Whole]:
 
 
 def placed(point: tuple[float, float, float], tilt: str = "") -> tuple[float, float, float]:
-    """Return a point turned by the tilt of :func:`aligned`."""
+    """Return a point turned by the tilt of :func:`aligned`.
+
+    Parameters
+    ----------
+    point
+        Coordinates, in any unit of length.
+    tilt
+        Axis of the tilt; empty for none.
+
+    Returns
+    -------
+    The coordinates, in the same unit.
+    """
     x, y, z = (c / (5.0 if tilt else 1.0) for c in _turned(point, tilt))
     return x, y, z
 
@@ -76,6 +119,17 @@ class AlignedJoint(NamedTuple):
     tilt: str = ""
 
     def mapping(self, between: Sequence[int] = (0, 1)) -> dict[str, Any]:
+        """Return the mapping of the joint between two bodies.
+
+        Parameters
+        ----------
+        between
+            Numbers of the bodies.
+
+        Returns
+        -------
+        The mapping of :func:`aligned`.
+        """
         return aligned(self.name, self.along, self.point, between, self.tilt)
 
 
@@ -91,8 +145,23 @@ ARRANGEMENTS: Mapping[str, tuple[int, bool, bool]] = {
 
 
 def arranged(arrangement: str, tilt: str, inclined: str, *joints: Sequence[Any]) -> tuple[AlignedJoint, ...]:
-    """Return the joints of an arrangement at their positions; each joint is (name, along, x, y, z), lengths
-    in mm."""
+    """Return the joints of an arrangement at their positions.
+
+    Parameters
+    ----------
+    arrangement
+        Name in :data:`ARRANGEMENTS`.
+    tilt
+        Axis of the tilt, for an arrangement that is tilted.
+    inclined
+        Direction of the second joint, for an arrangement in which it is inclined.
+    joints
+        Name, direction, x, y and z of each joint, mm; those beyond the arrangement's number are ignored.
+
+    Returns
+    -------
+    The joints, points in mm.
+    """
     count, is_tilted, is_inclined = ARRANGEMENTS[arrangement]
     return tuple(
         AlignedJoint(
@@ -138,10 +207,19 @@ def _unit(vector: Whole) -> list[float]:
 
 
 def each_distinct(function: Callable[..., Any], *columns: Any) -> Any:
-    """Evaluate ``function`` on each row of columns that broadcast, once for each distinct row.
+    """Evaluate a function on each row of some columns, once for each distinct row.
 
-    Scalars give the function's own result. Results that are neither numbers nor truth values come in an array
-    of objects.
+    Parameters
+    ----------
+    function
+        Function of as many scalars as there are columns.
+    columns
+        Scalars or arrays that broadcast, in the units of the function.
+
+    Returns
+    -------
+    The results, of the broadcast shape, in an array of objects if they are neither numbers nor truth values;
+    the function's own result for scalars.
     """
     if not any(np.ndim(column) for column in columns):
         return function(*columns)

@@ -229,8 +229,16 @@ def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) ->
 
 
 def planar_kind(joint: Joint) -> str:
-    """Return the kind of a joint in the plane xy: ``rigid``, ``revolute``, ``prismatic``, ``point_contact``
-    or ``free``.
+    """Return the kind of a joint in the plane xy.
+
+    Parameters
+    ----------
+    joint
+        Joint in space.
+
+    Returns
+    -------
+    ``rigid``, ``revolute``, ``prismatic``, ``point_contact`` or ``free``.
 
     Raises
     ------

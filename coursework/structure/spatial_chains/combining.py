@@ -22,16 +22,40 @@ def in_parallel(joints: Iterable[Joint | Mapping[str, Any]]) -> Parallel:
     """Combine joints between the same two bodies: each constraint and each transmitted action of any joint
     remains.
 
+    Parameters
+    ----------
+    joints
+        Joints, or their mappings; points and pitches in one unit of length.
+
+    Returns
+    -------
+    The combination, whose numbers are computed on first use.
+
     Raises
     ------
     WrongValue, UnknownName
-        As :func:`~coursework.structure.spatial_chains.joints.joint_of`.
+        As :func:`~coursework.structure.spatial_chains.joints.joint_of`; an empty list.
     """
     return Parallel(read_joints(joints))
 
 
 def in_series(joints: Iterable[Joint | Mapping[str, Any]]) -> Series:
-    """Combine joints in a row: their free motions add up. Errors are those of :func:`in_parallel`."""
+    """Combine joints in a row: their free motions add up.
+
+    Parameters
+    ----------
+    joints
+        Joints, or their mappings; points and pitches in one unit of length.
+
+    Returns
+    -------
+    The combination, whose numbers are computed on first use.
+
+    Raises
+    ------
+    WrongValue, UnknownName
+        As :func:`in_parallel`.
+    """
     return Series(read_joints(joints))
 
 

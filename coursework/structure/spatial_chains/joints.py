@@ -53,21 +53,64 @@ _SQUARE = 1e-9  #: largest cosine between the line and the normal of a contact t
 
 
 def cross(a: Sequence[float], b: Sequence[float]) -> Vector:
+    """Return the vector product a × b.
+
+    Parameters
+    ----------
+    a, b
+        Vectors of three numbers, in any units.
+
+    Returns
+    -------
+    The vector, in the product of their units.
+    """
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def dot(a: Sequence[float], b: Sequence[float]) -> float:
+    """Return the scalar product.
+
+    Parameters
+    ----------
+    a, b
+        Vectors of three numbers, in any units.
+
+    Returns
+    -------
+    A number, in the product of their units.
+    """
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def unit(a: Sequence[float]) -> Vector:
+    """Return the unit vector along a vector.
+
+    Parameters
+    ----------
+    a
+        Vector of three numbers other than zero, in any unit.
+
+    Returns
+    -------
+    Three numbers without unit.
+    """
     size = math.hypot(*a)
     return (a[0] / size, a[1] / size, a[2] / size)
 
 
 @lru_cache(maxsize=1024)
 def frame_about(u: Vector) -> tuple[Vector, Vector, Vector]:
-    """Return the right-handed unit vectors u, v, w; v is near the coordinate axis most perpendicular to u."""
+    """Return a right-handed frame about a direction.
+
+    Parameters
+    ----------
+    u
+        Unit vector.
+
+    Returns
+    -------
+    Unit vectors u, v, w; v is near the coordinate axis most perpendicular to u.
+    """
     least = min(range(3), key=lambda i: abs(u[i]))
     w = unit(cross(u, tuple(float(i == least) for i in range(3))))
     return u, cross(w, u), w
@@ -113,7 +156,24 @@ class Joint:
         return self._free[1]
 
     def twists(self, origin: Vector, length: float) -> list[list[float]]:
-        """Return the free twists at a point: ``freedoms`` rows of 6, velocities divided by the length."""
+        """Return the free twists at a point.
+
+        Parameters
+        ----------
+        origin
+            The point, in the unit of the joint's point.
+        length
+            Length that divides velocities, in the same unit.
+
+        Returns
+        -------
+        ``freedoms`` rows of 6 numbers, rotation before velocity; rotations, and the velocities of free
+        translations, are unit vectors.
+
+        Source
+        ------
+        ``V(O) = OP × u + p u / (2 pi)`` for a rotation u at P with the advance p a turn.
+        """
         arm = self.arm(origin, length)
         advance = self.pitch / (2 * math.pi * length) if self.name == "helical" else 0.0
         rotations, translations = self._free
@@ -124,8 +184,24 @@ class Joint:
         return rows + [[0.0, 0.0, 0.0, *along] for along in translations]
 
     def wrenches(self, origin: Vector, length: float) -> list[list[float]]:
-        """Return the transmitted wrenches at a point: ``6 - freedoms`` rows of 6, moments divided by the
-        length."""
+        """Return the transmitted wrenches at a point.
+
+        Parameters
+        ----------
+        origin
+            The point, in the unit of the joint's point.
+        length
+            Length that divides moments, in the same unit.
+
+        Returns
+        -------
+        ``6 - freedoms`` rows of 6 numbers, moment before force; forces, and moments that come without one,
+        are unit vectors.
+
+        Source
+        ------
+        ``M(O) = OP × F``, less ``p u / (2 pi)`` for the force along the axis u of a helical joint.
+        """
         arm = self.arm(origin, length)
         moments = _named(self.frame, _others(self.kind.rotations))
         forces = _named(self.frame, _others(self.kind.translations))
@@ -140,7 +216,19 @@ class Joint:
         return rows
 
     def arm(self, origin: Vector, length: float) -> Vector:
-        """Return the vector from the origin to the joint's point, divided by the length."""
+        """Return the vector from a point to the joint's point.
+
+        Parameters
+        ----------
+        origin
+            The point, in the unit of the joint's point.
+        length
+            Length that divides the vector, in the same unit.
+
+        Returns
+        -------
+        Three numbers without unit; zeros for a joint whose position does not matter.
+        """
         if self.point is None:
             return (0.0, 0.0, 0.0)
         x, y, z = ((p - o) / length for p, o in zip(self.point, origin, strict=True))
@@ -158,13 +246,23 @@ def _others(letters: str) -> str:
 def joint_of(given: Mapping[str, Any]) -> Joint:
     """Return a joint from its mapping; keys that it does not use are ignored.
 
+    Parameters
+    ----------
+    given
+        ``joint``, a name of :data:`JOINTS`, with the keys that it needs and, optionally, ``between``; point
+        and pitch in one unit of length, axis and normal of any length.
+
+    Returns
+    -------
+    The joint.
+
     Raises
     ------
     UnknownName
         No joint has this name.
     WrongValue
-        A key is missing, a vector is no vector or has no direction, or the line and the normal of a
-        contact are not perpendicular.
+        A key is missing, a vector is no vector or has no direction, or the line and the normal of a contact
+        are not perpendicular.
     """
     if not isinstance(given, Mapping) or "joint" not in given:
         raise WrongValue(f"a joint is a mapping with a key 'joint'; found {str(given)[:80]!r}")
@@ -184,7 +282,22 @@ def joint_of(given: Mapping[str, Any]) -> Joint:
 
 
 def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
-    """Return the joints of a list of mappings, in order; refuse an empty list."""
+    """Return the joints of a list of mappings.
+
+    Parameters
+    ----------
+    given
+        Mappings (:func:`joint_of`), at least one.
+
+    Returns
+    -------
+    The joints, in order.
+
+    Raises
+    ------
+    WrongValue, UnknownName
+        As :func:`joint_of`; an empty list.
+    """
     if isinstance(given, (Mapping, str)) or not isinstance(given, Iterable):
         raise WrongValue(f"a list of joints is a list of mappings; found {str(given)[:60]!r}")
     joints = tuple(joint_of(item) for item in given)
@@ -194,7 +307,22 @@ def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
 
 
 def read_joints(given: Iterable[Joint | Mapping[str, Any]]) -> tuple[Joint, ...]:
-    """Return a list of joints unchanged, or read it from mappings; a mixture is refused."""
+    """Return a list of joints unchanged, or read it from mappings.
+
+    Parameters
+    ----------
+    given
+        Joints, or mappings (:func:`joint_of`), at least one.
+
+    Returns
+    -------
+    The joints, in order.
+
+    Raises
+    ------
+    WrongValue, UnknownName
+        As :func:`joints_of`; a mixture of both.
+    """
     every: tuple[Any, ...] = tuple(given)
     known_names = tuple(joint for joint in every if isinstance(joint, Joint))
     if known_names and len(known_names) == len(every):
@@ -255,9 +383,18 @@ class TwistReference:
 
     @staticmethod
     def of(joints: Sequence[Joint]) -> TwistReference:
-        """Return the middle of the joints' points and the largest distance from it.
+        """Return the reference of some joints.
 
-        Where all points coincide, a pitch is the only length; where there is none, any length does.
+        Parameters
+        ----------
+        joints
+            Joints with points and pitches in one unit of length.
+
+        Returns
+        -------
+        The middle of the joints' points and the largest distance from it, in that unit. Where all points
+        coincide, the advance a radian of the largest pitch is the only length; where there is none, any
+        length does.
         """
         points = [joint.point for joint in joints if joint.point is not None]
         origin: Vector = (0.0, 0.0, 0.0)

@@ -25,6 +25,20 @@ def all_free_at_every_pose(joints: Sequence[Joint]) -> bool:
     """Return whether the last body of an open chain has six freedoms relative to the first at every pose.
 
     A joint that turns and slides may carry its slide on either of its bodies: both cases must hold.
+
+    Parameters
+    ----------
+    joints
+        Joints from the first body to the last.
+
+    Returns
+    -------
+    True or False.
+
+    Raises
+    ------
+    CannotTell
+        Directions of slides are neither surely equal nor surely distinct.
     """
     if not any(len(joint.kind.rotations) == 3 for joint in joints):
         return False

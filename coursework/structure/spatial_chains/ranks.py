@@ -30,6 +30,17 @@ class Rank:
 def is_zero(value: float, subject: str) -> bool:
     """Return whether a number that is either 0 or of order 1 is 0.
 
+    Parameters
+    ----------
+    value
+        The number, without unit.
+    subject
+        The statement that holds for 0, for the message.
+
+    Returns
+    -------
+    True or False.
+
     Raises
     ------
     CannotTell
@@ -47,11 +58,21 @@ def is_zero(value: float, subject: str) -> bool:
 def decompose(
     rows: np.ndarray, subject: str, scale: float | None = None
 ) -> tuple[Rank, np.ndarray, np.ndarray]:
-    """Return the rank of the rows, and orthonormal bases of what they span and of what is perpendicular to
+    """Return the rank of some rows, and orthonormal bases of what they span and of what is perpendicular to
     it.
 
-    ``rows`` has shape (k, d), the bases (rank, d) and (d - rank, d). Singular values are counted in
-    ``scale``, by default the largest of them.
+    Parameters
+    ----------
+    rows
+        Rows in one unit, shape ``(k, d)``.
+    subject
+        What the rows are, for the message.
+    scale
+        Number in the unit of the rows by which singular values are counted; by default the largest of them.
+
+    Returns
+    -------
+    The rank, and the bases of shapes ``(rank, d)`` and ``(d - rank, d)``.
 
     Raises
     ------
@@ -79,6 +100,17 @@ def decompose(
 
 def rank_of(matrix: np.ndarray, subject: str = "the system") -> Rank:
     """Return the rank of a matrix whose columns are scaled to the same length first.
+
+    Parameters
+    ----------
+    matrix
+        Two-dimensional array, each column in a unit of its own.
+    subject
+        What the matrix is, for the message.
+
+    Returns
+    -------
+    The rank with its evidence; 0 for an empty matrix.
 
     Raises
     ------

@@ -49,8 +49,17 @@ class Equivalent:
 def recognise(twists: np.ndarray, wrenches: np.ndarray, measure: TwistReference) -> Equivalent:
     """Return the joint whose free twists are those of the rows.
 
-    ``twists`` (m, 6) and ``wrenches`` (6 - m, 6) are orthonormal bases, perpendicular to one another, written
-    at the measure's origin.
+    Parameters
+    ----------
+    twists, wrenches
+        Orthonormal bases perpendicular to one another, shapes ``(m, 6)`` and ``(6 - m, 6)``: rotation and
+        velocity, moment and force at the measure's origin, velocities and moments divided by its length.
+    measure
+        Origin and length, in the unit of the data.
+
+    Returns
+    -------
+    The joint, its point and pitch in the unit of the data; ``other`` if the table has none.
 
     Raises
     ------

@@ -20,22 +20,69 @@ _NOTHING = 1e-9
 
 
 def moved(resultant: Any, moment: Any, arm: Any) -> Any:
-    """Return the moment, or the velocity, of a torsor at another point; ``arm`` leads from there to the point
-    of ``moment``.
+    """Return the moment of a wrench, or the velocity of a twist, at another point.
 
-    Arrays of shape ``(..., 3)``: ``M(B) = M(A) + BA × R``, and ``V(B) = V(A) + BA × Ω``. Units are those of the product.
+    Parameters
+    ----------
+    resultant
+        Force or rotation, shape ``(..., 3)``.
+    moment
+        Moment or velocity at the first point, in the unit of ``resultant`` times ``arm``, shape ``(..., 3)``.
+    arm
+        Vector from the other point to the first, in any unit of length, shape ``(..., 3)``.
+
+    Returns
+    -------
+    The moment or the velocity at the other point, in its unit, of the broadcast shape.
+
+    Source
+    ------
+    ``M(B) = M(A) + BA × R`` and ``V(B) = V(A) + BA × Ω``.
     """
     return np.asarray(moment) + np.cross(arm, resultant)
 
 
 def twist_components(of: Joint | Parallel | Series, point: Vector) -> str:
-    """Return the names of the components of the free twists at a point that may differ from zero, ``"wz
-    vx"``; ``"0"`` for none."""
+    """Return the names of the components of the free twists at a point that may differ from zero.
+
+    Parameters
+    ----------
+    of
+        Joint, or joints combined.
+    point
+        The point, in the unit of the joints' points.
+
+    Returns
+    -------
+    Names of :data:`TWIST` with spaces between, ``"wz vx"``; ``"0"`` for none.
+
+    Raises
+    ------
+    CannotTell
+        Joints in parallel whose rank hangs on digits that the data do not hold.
+    """
     return _named(_twists(of, point), TWIST)
 
 
 def wrench_components(of: Joint | Parallel | Series, point: Vector) -> str:
-    """Return the names of the components of the transmitted wrenches that may differ from zero, ``"X Y M"``."""
+    """Return the names of the components of the transmitted wrenches at a point that may differ from zero.
+
+    Parameters
+    ----------
+    of
+        Joint, or joints combined.
+    point
+        The point, in the unit of the joints' points.
+
+    Returns
+    -------
+    Names of :data:`WRENCH` with spaces between, ``"X Y M"``; ``"0"`` for none.
+
+    Raises
+    ------
+    CannotTell
+        Joints in series whose rank hangs on digits that the data do not hold.
+    """
     if isinstance(of, Joint):
         rows = np.array(of.wrenches(point, _LENGTH)).reshape(-1, 6)
         return _named(np.roll(rows, 3, axis=1), WRENCH)
