@@ -35,7 +35,17 @@ class Equilibrium:
         self.names = (*names, "effort")
 
     def column(self, name: str) -> int:
-        """Return the column of an unknown."""
+        """Return the column of an unknown.
+
+        Parameters
+        ----------
+        name
+            One of ``names``.
+
+        Returns
+        -------
+        Its index in the last axis of the matrix.
+        """
         return self.names.index(name)
 
     @cached_property
@@ -93,7 +103,16 @@ class Equilibrium:
             return none.rub(slide, self.stance.direction(slide) / self.stance.sliding(slide))
 
     def under(self, *wrenches: BodyWrenches) -> np.ndarray:
-        """Return the unknowns under each of some wrenches alone, shape ``(n, unknowns, wrenches)``; NaN at a
-        dead point."""
+        """Return the unknowns under each of some wrenches alone.
+
+        Parameters
+        ----------
+        wrenches
+            Wrenches on the bodies at the instants of the stance, N and N m; the ground's do not matter.
+
+        Returns
+        -------
+        Forces in N, moments and efforts in N m, shape ``(n, unknowns, wrenches)``; NaN at a dead point.
+        """
         right = -np.stack([self._rows(wrench) for wrench in wrenches], axis=-1)
         return solved(self.matrix, right)

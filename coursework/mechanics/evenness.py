@@ -12,15 +12,24 @@ from coursework.errors import Undefined
 
 @dataclass(frozen=True)
 class Evenness:
-    """Effort of a drive over a turn at a constant rate, N m, at equal steps, and that rate, rad/s.
+    """Effort of a drive over a turn at a constant rate.
 
-    Source: the energy that a drive of constant torque lacks and has in excess is kept by the flywheel; for a small
-    unevenness (largest - least speed) / mean speed it is J (mean speed)^2 times the unevenness.
+    Parameters
+    ----------
+    efforts
+        Effort at equal steps of the turn, N m, shape ``(n,)``.
+    speed
+        Rate of the driver, rad/s.
 
     Raises
     ------
     Undefined
         The effort does not exist somewhere on the turn.
+
+    Source
+    ------
+    The energy that a drive of constant torque lacks and has in excess is kept by the flywheel; for a small
+    unevenness (largest - least speed) / mean speed it is J (mean speed)^2 times the unevenness.
     """
 
     efforts: np.ndarray
@@ -46,9 +55,29 @@ class Evenness:
         return float(np.ptp(np.cumsum(self.mean_torque - self.efforts) * step))
 
     def inertia_for(self, unevenness: float) -> float:
-        """Return the moment of inertia of the flywheel for an unevenness, kg m^2."""
+        """Return the moment of inertia of the flywheel for an unevenness.
+
+        Parameters
+        ----------
+        unevenness
+            Ratio without unit, positive; a scalar or an array.
+
+        Returns
+        -------
+        The moment of inertia, kg m^2, of the same shape.
+        """
         return self.excess_energy / (unevenness * self.speed**2)
 
     def unevenness_of(self, inertia: float) -> float:
-        """Return the unevenness with a flywheel of some inertia."""
+        """Return the unevenness with a flywheel.
+
+        Parameters
+        ----------
+        inertia
+            Moment of inertia of the flywheel, kg m^2, positive; a scalar or an array.
+
+        Returns
+        -------
+        The ratio, without unit, of the same shape.
+        """
         return self.excess_energy / (inertia * self.speed**2)

@@ -83,7 +83,26 @@ class Forces:
     def load_sizes(
         self, stance: Stance, driver: np.ndarray, direction: np.ndarray | float
     ) -> list[np.ndarray]:
-        """Return the size of each load along its line, for the driver's direction: +1, -1, 0 at rest."""
+        """Return the size of each load along its line.
+
+        Parameters
+        ----------
+        stance
+            The mechanism at ``n`` instants.
+        driver
+            Angles of the driver there, radians, shape ``(n,)``.
+        direction
+            Direction of the driver: +1, -1, 0 at rest; a scalar or shape ``(n,)``.
+
+        Returns
+        -------
+        For each load, N or N m, shape ``(n,)``.
+
+        Raises
+        ------
+        WrongValue
+            As :func:`~coursework.mechanics.loads.strokes`.
+        """
         results = []
         for acting, when in zip(self.loads, self.strokes, strict=True):
             sizes = acting.sizes(driver)
@@ -97,7 +116,24 @@ class Forces:
     def applied(
         self, stance: Stance, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
     ) -> BodyWrenches:
-        """Return the total wrench without friction and joint reactions."""
+        """Return the total wrench without friction, joint reactions and the flywheel.
+
+        Parameters
+        ----------
+        stance
+            The mechanism at ``n`` instants.
+        driver, speed, acceleration
+            Angle, speed and acceleration of the driver there: rad, rad/s, rad/s^2, shape ``(n,)``.
+
+        Returns
+        -------
+        Loads, weights and inertia forces together, N and N m.
+
+        Raises
+        ------
+        WrongValue
+            As :meth:`load_sizes`.
+        """
         total = BodyWrenches.none(stance)
         for acting, size in zip(self.loads, self.load_sizes(stance, driver, np.sign(speed)), strict=True):
             total = total + acting.pull(stance) * size
@@ -110,8 +146,25 @@ class Forces:
     def over(
         self, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray, *, joints: bool = False
     ) -> ForceResults:
-        """Compute the forces at angles (radians), speeds and accelerations of the driver, shape ``(n,)``; NaN
-        where the mechanism jams or does not close."""
+        """Compute the forces at ``n`` instants.
+
+        Parameters
+        ----------
+        driver, speed, acceleration
+            Angle, speed and acceleration of the driver: rad, rad/s, rad/s^2, shape ``(n,)``.
+        joints
+            Whether joint unknowns are wanted; with friction they are computed anyway.
+
+        Returns
+        -------
+        The effort, N m, and the joint unknowns and friction, N or N m, shape ``(n,)``; NaN where the
+        mechanism jams or does not close.
+
+        Raises
+        ------
+        WrongValue
+            As :meth:`load_sizes`.
+        """
         results = [
             self._piece(driver[k], speed[k], acceleration[k], joints)
             for k in _pieces(len(driver), PIECE if joints or self.contacts else 16 * PIECE)
@@ -157,8 +210,22 @@ class Forces:
 
 
 def share_of_turn(pace: np.ndarray) -> float:
-    """Return the part of a turn, in radians, on which a function is positive; it is sampled in the middle of
-    equal steps."""
+    """Return the part of a turn on which a function is positive.
+
+    Parameters
+    ----------
+    pace
+        Values in the middle of equal steps of the turn, in any unit, shape ``(n,)``; NaN counts as not
+        positive.
+
+    Returns
+    -------
+    Radians, 0 to 2 pi.
+
+    Source
+    ------
+    Zeros are interpolated linearly between the values.
+    """
     step, after = 2 * np.pi / len(pace), np.roll(pace, -1)
     with np.errstate(all="ignore"):
         crossing = np.clip(np.where(pace > 0, pace, after) / np.abs(pace - after), 0.0, 1.0)

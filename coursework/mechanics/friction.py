@@ -41,28 +41,61 @@ class Contact:
     reads: tuple[Mapping[str, float], ...]
 
     def rubs(self, stance: Stance) -> BodyWrenches:
-        """Return the unit friction opposite to a motion in the joint's direction."""
+        """Return the unit friction opposite to a motion in the joint's direction.
+
+        Parameters
+        ----------
+        stance
+            The mechanism at ``n`` instants.
+
+        Returns
+        -------
+        The wrench of 1 N on the sliding body, or of 1 N m on the pinned body, and its opposite on the other.
+        """
         wrench = BodyWrenches.none(stance)
         if isinstance(self.joint, SlideJoint):
             return wrench.rub(self.joint, -stance.direction(self.joint))
         return wrench.turn(self.joint.of.body, -1.0).turn(self.joint.on.body, 1.0)
 
     def rate(self, stance: Stance) -> np.ndarray:
-        """Return the sliding rate of the joint for unit speed of the driver, with rounding errors set to 0."""
+        """Return the sliding rate of the joint for unit speed of the driver.
+
+        Parameters
+        ----------
+        stance
+            The mechanism at ``n`` instants.
+
+        Returns
+        -------
+        m/rad in a slide, rad/rad in a pin, shape ``(n,)``, with rounding errors set to 0.
+        """
         if isinstance(self.joint, SlideJoint):
             return no_rounding(stance.sliding(self.joint), stance.size)
         return no_rounding(stance.rates[self.joint.of.body] - stance.rates[self.joint.on.body], 1.0)
 
 
 def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ...]:
-    """Return the contacts for coefficients by joint; a pin has a pair of coefficient and journal radius, mm.
+    """Return the contacts of a mechanism.
+
+    Parameters
+    ----------
+    linkage
+        Its numbers.
+    friction
+        By joint, a coefficient for a slide, a pair of coefficient and journal radius (mm) for a pin; each a
+        number, a quantity or a function of quantities.
+
+    Returns
+    -------
+    The contacts that have friction: one a pin or a short slide, two a long slide.
 
     Raises
     ------
     UnknownName
         A joint that the mechanism does not have.
     WrongValue
-        A point at which several bodies are pinned, without the one that is meant.
+        A coefficient or a radius that is negative, a pin without its radius, or a point at which several
+        bodies are pinned, without the one that is meant.
     """
     slides = {joint.name: joint for joint in linkage.slides}
     pins = {joint.name: joint for joint in linkage.pins}
@@ -122,7 +155,17 @@ class Rubbing:
         self.sizes = np.array([contact.size for contact in contacts])
 
     def reading(self, equations: Equilibrium) -> np.ndarray:
-        """Return the matrix from the unknowns of the equations to the normal forces, shape ``(k, unknowns)``."""
+        """Return the matrix from the unknowns of the equations to the normal forces.
+
+        Parameters
+        ----------
+        equations
+            Equilibrium equations of the mechanism.
+
+        Returns
+        -------
+        Shape ``(k, unknowns)``: without unit for forces, 1/m for moments of long slides.
+        """
         result = np.zeros((len(self._rows), len(equations.names)))
         for number, row in enumerate(self._rows):
             for name, share in row.items():
@@ -130,7 +173,17 @@ class Rubbing:
         return result
 
     def magnitudes(self, normals: np.ndarray) -> np.ndarray:
-        """Return |s| of each contact, shape ``(n, contacts)``, for normal forces ``(n, k)``."""
+        """Return the magnitude of each contact's normal force.
+
+        Parameters
+        ----------
+        normals
+            Normal forces, N, shape ``(n, k)``.
+
+        Returns
+        -------
+        |s|, N, shape ``(n, contacts)``.
+        """
         squares = np.zeros((len(normals), len(self.contacts)))
         np.add.at(squares.T, self.owner, (normals**2).T)
         return np.sqrt(squares)
@@ -148,12 +201,25 @@ class Rubbing:
     def one(
         self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, near: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the friction of the contacts at one instant, shape ``(contacts,)``, and the normal forces
-        ``(k,)``.
+        """Return the friction and the normal forces at one instant.
 
-        ``strength``: coefficients with the signs of the motions; ``near``: the normal forces of the previous
-        instant, from which Newton's method needs a step or two. If it does not converge from them, friction
-        is increased from 0.
+        Parameters
+        ----------
+        free
+            Normal forces without friction, N, shape ``(k,)``.
+        spread
+            What unit friction at each contact takes from them, N per N or N m, shape ``(k, contacts)``.
+        strength
+            Sizes of the contacts with the signs of the motions, shape ``(contacts,)``: without unit for a
+            slide, m for a pin.
+        near
+            Normal forces of the previous instant, N, shape ``(k,)``, from which Newton's method needs a step
+            or two; None without. If it does not converge from them, friction is increased from 0.
+
+        Returns
+        -------
+        Friction of the contacts, N or N m, shape ``(contacts,)``, and normal forces, N, shape ``(k,)``; NaN
+        where the mechanism jams.
         """
         normals = free if near is None else near
         unit = np.eye(len(free))
@@ -174,16 +240,20 @@ class Rubbing:
         return (strength * self.magnitudes(grown))[0], grown[0]
 
     def balanced(self, free: np.ndarray, spread: np.ndarray, sense: np.ndarray) -> np.ndarray:
-        """Return the friction w of the contacts, shape ``(n, contacts)``; NaN where the mechanism jams.
+        """Return the friction w of the contacts.
 
         Parameters
         ----------
         free
-            Normal forces without friction, ``(n, k)``.
+            Normal forces without friction, N, shape ``(n, k)``.
         spread
-            What unit friction at each contact takes from them, ``(n, k, contacts)``.
+            What unit friction at each contact takes from them, N per N or N m, shape ``(n, k, contacts)``.
         sense
-            Signs of the motions, ``(n, contacts)``.
+            Signs of the motions, shape ``(n, contacts)``.
+
+        Returns
+        -------
+        N for a slide, N m for a pin, shape ``(n, contacts)``; NaN where the mechanism jams.
         """
         strength = sense * self.sizes
         return strength * self.magnitudes(self._grown(free, spread, strength))

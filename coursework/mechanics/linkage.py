@@ -132,14 +132,45 @@ class Linkage:
     # -------------------------------------------------------------------- places
 
     def number(self, position: Any) -> Any:
+        """Return the value of an expression.
+
+        Parameters
+        ----------
+        position
+            A quantity's name, a number, or a function of quantities.
+
+        Returns
+        -------
+        The number, in the unit that the statement gives it: mm, degrees, kg, kg m^2, N, N m.
+        """
         return number(position, self.values)
 
     def held(self, point: str, body: str) -> BodyPoint:
-        """Return the position of a point on a body that has it."""
+        """Return the position of a point on a body that has it.
+
+        Parameters
+        ----------
+        point, body
+            Their names.
+
+        Returns
+        -------
+        The index of the body and the place in its frame, metres, complex.
+        """
         return BodyPoint(self.index[body], complex(self.number(self.mechanism.place(point, body))) * MM)
 
     def owner(self, point: str) -> BodyPoint:
-        """Return the position of a point on the first body that has it."""
+        """Return the position of a point on the first body that has it.
+
+        Parameters
+        ----------
+        point
+            Its name.
+
+        Returns
+        -------
+        The index of the body and the place in its frame, metres, complex.
+        """
         return self.held(point, self.mechanism.holders(point)[0])
 
     @cached_property

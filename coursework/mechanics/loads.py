@@ -98,7 +98,17 @@ class AppliedLoad:
         return None if self.load.table or self.follows else float(self.linkage.number(self._size))
 
     def followed(self, driver: np.ndarray) -> np.ndarray:
-        """Return the values of the followed quantity at driver's angles, radians."""
+        """Return the values of the followed quantity.
+
+        Parameters
+        ----------
+        driver
+            Angles of the driver, radians, of any shape.
+
+        Returns
+        -------
+        N or N m, or the unit of the quantity by which a table goes, of the same shape.
+        """
         return self._at(self.follows, driver)
 
     def _at(self, name: str, driver: np.ndarray) -> np.ndarray:
@@ -142,14 +152,33 @@ class AppliedLoad:
             return np.where(rate == 0, 0, rate / np.abs(rate))
 
     def pull(self, stance: Stance) -> BodyWrenches:
-        """Return the wrench of 1 N along the line, or of 1 N m."""
+        """Return the unit pull along the line.
+
+        Parameters
+        ----------
+        stance
+            The mechanism at ``n`` instants.
+
+        Returns
+        -------
+        The wrench of 1 N, or of 1 N m.
+        """
         if self.is_moment:
             return BodyWrenches.none(stance).turn(self.linkage.index[self.load.on], 1.0)
         return BodyWrenches.none(stance).push(self._held, self._line(stance))
 
     def pace(self, stance: Stance) -> np.ndarray:
-        """Return the rate of the loaded point or body along the line for unit speed of the driver, with
-        rounding errors set to 0."""
+        """Return the rate of the loaded point or body along the line for unit speed of the driver.
+
+        Parameters
+        ----------
+        stance
+            The mechanism at ``n`` instants.
+
+        Returns
+        -------
+        m/rad for a force, rad/rad for a moment, shape ``(n,)``, with rounding errors set to 0.
+        """
         if self.is_moment:
             return no_rounding(stance.rates[self.linkage.index[self.load.on]], 1.0)
         return no_rounding((np.conj(self._line(stance)) * stance.rate(self._held)).real, stance.size)
@@ -162,8 +191,24 @@ class AppliedLoad:
         return bool(self.load.table) and self.load.by in ("", self.linkage.driver)
 
     def sizes(self, driver: np.ndarray, here: np.ndarray | None = None) -> np.ndarray:
-        """Return the size along the line at driver's angles, radians; ``here``: the values of the followed
-        quantity, if known."""
+        """Return the size along the line, with no regard to stroke and direction.
+
+        Parameters
+        ----------
+        driver
+            Angles of the driver, radians, of any shape.
+        here
+            Values of the followed quantity (:meth:`followed`), of the same shape, if known.
+
+        Returns
+        -------
+        N or N m, of the same shape.
+
+        Source
+        ------
+        A table is interpolated linearly: by the driver's angle around the turn, by another quantity with its
+        end values beyond.
+        """
         if self.follows and here is None:
             here = self._at(self.follows, driver)
         if not self.load.table:
@@ -193,21 +238,46 @@ class Strokes:
     really: bool = False
 
     def along(self, size: Any, pace: Any, driver_way: Any, *, against: bool) -> Any:
-        """Return a load's size along its line, for the sign of its pace with the driver turning forward, and
-        the driver's direction."""
+        """Return a load's size along its line, signed, 0 outside its stroke.
+
+        Parameters
+        ----------
+        size
+            Size of the load, N or N m; a scalar or an array.
+        pace
+            Sign of its pace for a driver that turns forward; a scalar or an array that broadcasts.
+        driver_way
+            Direction of the driver: +1, -1, 0 at rest; a scalar or an array that broadcasts.
+        against
+            Whether the load opposes the motion.
+
+        Returns
+        -------
+        N or N m, of the broadcast shape.
+        """
         if self.way:
             size = size * ((pace * driver_way if self.really else pace) == self.way)
         return -size * pace * driver_way if against else size
 
 
 def strokes(acting: AppliedLoad, forward: float, backward: float) -> Strokes:
-    """Return the strokes of a load, from the parts of the driver's turn (radians) on which its point moves
-    forward and backward.
+    """Return the strokes of a load.
+
+    Parameters
+    ----------
+    acting
+        The load.
+    forward, backward
+        Parts of the driver's turn on which its point moves forward and backward along its line, radians.
+
+    Returns
+    -------
+    The stroke on which it acts.
 
     Raises
     ------
     WrongValue
-        A working stroke where neither takes longer.
+        A working or a return stroke where the two differ by less than 0.05 degrees.
     """
     during = acting.load.during
     if during == "always":

@@ -75,14 +75,45 @@ class Stance:
         return result
 
     def arm(self, held: BodyPoint) -> np.ndarray:
-        """Return the vector from the origin of a body's frame to a position on it."""
+        """Return the vector from the origin of a body's frame to a position on it.
+
+        Parameters
+        ----------
+        held
+            The position.
+
+        Returns
+        -------
+        Metres, complex, shape ``(n,)``.
+        """
         return held.place * self.headings[held.body]
 
     def place(self, held: BodyPoint) -> np.ndarray:
+        """Return where a position on a body lies in the ground's frame.
+
+        Parameters
+        ----------
+        held
+            The position.
+
+        Returns
+        -------
+        Metres, complex, shape ``(n,)``.
+        """
         return self.origins[held.body] + self.arm(held)
 
     def direction(self, slide: SlideJoint) -> np.ndarray:
-        """Return the directions of a slide: unit vectors."""
+        """Return the directions of a slide.
+
+        Parameters
+        ----------
+        slide
+            The slide.
+
+        Returns
+        -------
+        Unit vectors, complex, shape ``(n,)``.
+        """
         return slide.along * self.headings[slide.on]
 
     # --------------------------------------------------------------- first order
@@ -175,21 +206,73 @@ class Stance:
         return result
 
     def rate(self, held: BodyPoint) -> np.ndarray:
-        """Return the velocity of a position for unit speed of the driver."""
+        """Return the velocity of a position for unit speed of the driver.
+
+        Parameters
+        ----------
+        held
+            The position.
+
+        Returns
+        -------
+        m/rad, complex, shape ``(n,)``.
+        """
         return self.origin_rates[held.body] + 1j * self.rates[held.body] * self.arm(held)
 
     def acceleration(
         self, held: BodyPoint, speed: np.ndarray | float, acceleration: np.ndarray | float
     ) -> np.ndarray:
-        """Return the acceleration of a position, m/s^2, for the driver's speed and acceleration."""
+        """Return the acceleration of a position.
+
+        Parameters
+        ----------
+        held
+            The position.
+        speed, acceleration
+            Those of the driver, rad/s and rad/s^2; scalars or shape ``(n,)``.
+
+        Returns
+        -------
+        m/s^2, complex, shape ``(n,)``.
+
+        Source
+        ------
+        ``p'' speed^2 + p' acceleration`` for the derivatives p', p'' of the position by the driver's angle.
+        """
         return self.bend(held) * speed**2 + self.rate(held) * acceleration
 
     def coriolis(self, slide: SlideJoint, speed: np.ndarray | float) -> np.ndarray:
-        """Return the Coriolis term of a slide's point, m/s^2, signed: to the left of the slide's direction."""
+        """Return the Coriolis term of a slide's point.
+
+        Parameters
+        ----------
+        slide
+            The slide.
+        speed
+            Speed of the driver, rad/s; a scalar or shape ``(n,)``.
+
+        Returns
+        -------
+        m/s^2, shape ``(n,)``, signed: to the left of the slide's direction.
+
+        Source
+        ------
+        Twice the angular velocity of the guide times the sliding velocity.
+        """
         return 2 * self.rates[slide.on] * self.sliding(slide) * speed**2
 
     def sliding(self, slide: SlideJoint) -> np.ndarray:
-        """Return the signed speed of a slide along its direction, for unit speed of the driver."""
+        """Return the speed of a slide along its direction, for unit speed of the driver.
+
+        Parameters
+        ----------
+        slide
+            The slide.
+
+        Returns
+        -------
+        m/rad, signed, shape ``(n,)``.
+        """
         under = self.place(slide.of) - self.origins[slide.on]
         guide = self.origin_rates[slide.on] + 1j * self.rates[slide.on] * under
         return (np.conj(self.direction(slide)) * (self.rate(slide.of) - guide)).real
@@ -246,7 +329,17 @@ class Stance:
         return self._origin_bends(self.bends, self._coordinate_bends)
 
     def bend(self, held: BodyPoint) -> np.ndarray:
-        """Return the second derivative of a position by the driver's angle."""
+        """Return the second derivative of a position by the driver's angle.
+
+        Parameters
+        ----------
+        held
+            The position.
+
+        Returns
+        -------
+        m/rad^2, complex, shape ``(n,)``.
+        """
         return self._bend(held, self.origin_bends, self.bends)
 
     # ---------------------------------------------------------------- certificate
@@ -259,14 +352,36 @@ class Stance:
 
 
 def no_rounding(pace: np.ndarray, size: float) -> np.ndarray:
-    """Return the rates with 0 for those that are mere rounding relative to the size of the mechanism (1 for a
-    turning body)."""
+    """Return the rates with 0 for those that are mere rounding.
+
+    Parameters
+    ----------
+    pace
+        Rates, m/rad or rad/rad, shape ``(n,)``.
+    size
+        Size of the mechanism, m; 1 for a turning body.
+
+    Returns
+    -------
+    The rates, in their unit and shape; NaN remains.
+    """
     return np.where(np.abs(pace) > 1e-12 * size, pace, np.where(np.isnan(pace), np.nan, 0.0))
 
 
 def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solve many small linear systems, shapes ``(n, k, k)`` and ``(n, k, columns)``; NaN where one is
-    singular."""
+    """Solve many small linear systems.
+
+    Parameters
+    ----------
+    matrix
+        Matrices, shape ``(n, k, k)``.
+    right
+        Right-hand sides, shape ``(n, k, columns)``, in the units of the equations.
+
+    Returns
+    -------
+    The solutions, shape ``(n, k, columns)``; NaN for a singular matrix.
+    """
     try:
         return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:

@@ -64,7 +64,18 @@ class Trajectory:
     evaluations: int = 0
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the state at increasing instants, shape ``(3, n)``, and the driver's direction."""
+        """Return the state at some instants.
+
+        Parameters
+        ----------
+        t
+            Instants, s, increasing, shape ``(n,)``.
+
+        Returns
+        -------
+        The driver's angle, its speed and the work that became kinetic energy since the start: rad, rad/s, J,
+        shape ``(3, n)``; and the driver's direction +1, -1 or 0, shape ``(n,)``.
+        """
         result, ways = np.empty((3, len(t))), np.empty(len(t))
         starts = np.array([phase.start for phase in self.phases])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
@@ -186,13 +197,26 @@ class Running:
     def acceleration(
         self, angle: float, speed: float, direction: int, signs: np.ndarray | None = None
     ) -> float:
-        """Return the driver's acceleration, rad/s^2, at an angle (radians), a speed and a direction;
-        ``signs`` of the paces in a phase.
+        """Return the driver's acceleration.
+
+        Parameters
+        ----------
+        angle, speed
+            Those of the driver, rad and rad/s.
+        direction
+            Direction in which it moves, +1 or -1.
+        signs
+            Signs of the paces in a phase (:meth:`signs`); those at the angle if None.
+
+        Returns
+        -------
+        The acceleration, rad/s^2.
 
         Raises
         ------
         Undefined
-            The mechanism does not close, jams, or has no inertia there.
+            The mechanism does not close, jams, or has no inertia there; or the run takes too many
+            evaluations.
         """
         return self._balance(angle, speed, direction, signs)[0]
 
@@ -274,8 +298,17 @@ class Running:
         return efforts[first] * strength * abs(free) / slope if slope > 0 else math.nan
 
     def holding(self, angle: float) -> tuple[float, float]:
-        """Return the range of drive efforts that do not move the mechanism from rest, N m; infinite where it
-        is self-locking."""
+        """Return the range of drive efforts that do not move the mechanism from rest.
+
+        Parameters
+        ----------
+        angle
+            Angle of the driver, rad.
+
+        Returns
+        -------
+        The least and the greatest effort, N m; infinite where the mechanism is self-locking.
+        """
         low, high = (self._holding(angle, direction) for direction in (-1, 1))
         return low, high
 
@@ -337,14 +370,37 @@ class Running:
         return result[(result > low + 1e-9) & (result < high - 1e-9)]
 
     def next_place(self, angle: float, direction: int) -> float:
-        """Return the next turning place beyond an angle; infinite where there is none."""
+        """Return the next turning place beyond an angle.
+
+        Parameters
+        ----------
+        angle
+            Angle of the driver, rad.
+        direction
+            Direction in which it moves, +1 or -1.
+
+        Returns
+        -------
+        The angle, rad; infinite where there is none.
+        """
         ahead = (angle, angle + 1.01 * TURN) if direction > 0 else (angle - 1.01 * TURN, angle)
         beyond = self._unrolled(self.turning_places, *ahead)
         return float(beyond[0] if direction > 0 else beyond[-1]) if len(beyond) else direction * math.inf
 
     def signs(self, angle: float, direction: int) -> np.ndarray:
-        """Return the signs of the paces just beyond an angle in the driver's direction; they hold up to the
-        next turning place."""
+        """Return the signs of the paces just beyond an angle; they hold up to the next turning place.
+
+        Parameters
+        ----------
+        angle
+            Angle of the driver, rad.
+        direction
+            Direction in which it moves, +1 or -1.
+
+        Returns
+        -------
+        -1, 0 or 1 for each load and then each contact, of a driver that turns forward; empty without both.
+        """
         if not self.forces.loads and not self.forces.contacts:
             return np.empty(0)
         room = min(abs(self.next_place(angle, direction) - angle) / 2, _BEYOND)
@@ -353,12 +409,29 @@ class Running:
     # ---------------------------------------------------------------------- phases
 
     def run(self, angle: float, speed: float, duration: float, rtol: float = 1e-9) -> Trajectory:
-        """Return the motion from an angle (radians) and a speed (rad/s), for a duration (s).
+        """Return the motion from a state of the driver.
+
+        Parameters
+        ----------
+        angle, speed
+            The state, rad and rad/s.
+        duration
+            Time of the motion, s.
+        rtol
+            Relative tolerance of each step of the integration.
+
+        Returns
+        -------
+        Phases up to the duration.
 
         Raises
         ------
         Undefined
             The mechanism jams, reaches a place where it does not close, or its motion takes too many steps.
+
+        Source
+        ------
+        The Runge-Kutta method of order 8 of Dormand and Prince, as scipy has it (DOP853).
         """
         motion = Trajectory()
         state, t = np.array([angle, speed, 0.0]), 0.0

@@ -155,15 +155,46 @@ class Mechanism:
         return tuple(body.name for body in self.bodies)
 
     def body(self, name: str) -> Body:
+        """Return a moving body.
+
+        Parameters
+        ----------
+        name
+            Its name.
+
+        Returns
+        -------
+        The body.
+        """
         return next(body for body in self.bodies if body.name == name)
 
     def holders(self, point: str) -> tuple[str, ...]:
-        """Return the bodies that have a point, in order; the ground first."""
+        """Return the bodies that have a point.
+
+        Parameters
+        ----------
+        point
+            Its name.
+
+        Returns
+        -------
+        Their names in order, the ground's first.
+        """
         on_ground = (GROUND,) if point in self.ground else ()
         return (*on_ground, *(b.name for b in self.bodies if point in b.places))
 
     def place(self, point: str, body: str) -> Place:
-        """Return the position of a point in a body's frame."""
+        """Return the position of a point in a body's frame.
+
+        Parameters
+        ----------
+        point, body
+            Their names; the body may be the ground.
+
+        Returns
+        -------
+        A quantity, a number or a function of quantities that gives mm, complex off the x axis.
+        """
         return self.ground[point] if body == GROUND else self.body(body).places[point]
 
     @property
@@ -189,6 +220,15 @@ class Mechanism:
 
     def driven_by(self, angle: str) -> str:
         """Return the body that the drive turns.
+
+        Parameters
+        ----------
+        angle
+            Quantity of the driving angle.
+
+        Returns
+        -------
+        The name of the body.
 
         Raises
         ------
@@ -273,14 +313,36 @@ class Mechanism:
 
 
 def parameters(expression: Place) -> tuple[str, ...]:
-    """Return the quantities on which an expression depends."""
+    """Return the quantities on which an expression depends.
+
+    Parameters
+    ----------
+    expression
+        A quantity's name, a number, or a function of quantities.
+
+    Returns
+    -------
+    Their names; none for a number.
+    """
     if isinstance(expression, str):
         return (expression,)
     return tuple(inspect.signature(expression).parameters) if callable(expression) else ()
 
 
 def number(expression: Place, values: Mapping[str, Any]) -> Any:
-    """Evaluate an expression."""
+    """Evaluate an expression.
+
+    Parameters
+    ----------
+    expression
+        A quantity's name, a number, or a function of quantities.
+    values
+        Values of the quantities by name, in the units of the exercise.
+
+    Returns
+    -------
+    The value, in the unit of the quantity or of what the function gives.
+    """
     if isinstance(expression, str):
         return values[expression]
     return expression(*(values[n] for n in parameters(expression))) if callable(expression) else expression

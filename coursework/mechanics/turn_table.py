@@ -83,7 +83,17 @@ class TurnTable:
         return np.fft.irfft(padded * count, count, axis=1)
 
     def at(self, angle: float) -> np.ndarray:
-        """Return the functions at one angle, shape ``(m,)``."""
+        """Return the functions at one angle.
+
+        Parameters
+        ----------
+        angle
+            Radians, on any turn.
+
+        Returns
+        -------
+        Values in the units of the functions, shape ``(m,)``.
+        """
         position = angle / self._step
         full = math.floor(position)
         x = position - full
@@ -92,7 +102,17 @@ class TurnTable:
         return self._coefficients[full % self._count] @ powers
 
     def over(self, angles: np.ndarray) -> np.ndarray:
-        """Return the functions at many angles, shape ``(m, n)``."""
+        """Return the functions at many angles.
+
+        Parameters
+        ----------
+        angles
+            Radians, on any turn, shape ``(n,)``.
+
+        Returns
+        -------
+        Values in the units of the functions, shape ``(m, n)``.
+        """
         position = angles / self._step
         full = np.floor(position)
         powers = (position - full)[:, None] ** np.arange(6)
@@ -108,13 +128,46 @@ class Untabulated:
         self._functions = functions
 
     def at(self, angle: float) -> np.ndarray:
+        """Return the functions at one angle.
+
+        Parameters
+        ----------
+        angle
+            Radians.
+
+        Returns
+        -------
+        Values in the units of the functions, shape ``(m,)``.
+        """
         return self._functions(np.array([angle]))[0][:, 0]
 
     def over(self, angles: np.ndarray) -> np.ndarray:
+        """Return the functions at many angles.
+
+        Parameters
+        ----------
+        angles
+            Radians, shape ``(n,)``.
+
+        Returns
+        -------
+        Values in the units of the functions, shape ``(m, n)``.
+        """
         return self._functions(angles)[0]
 
 
 def tabulated(functions: Functions) -> TurnTable | Untabulated:
-    """Return a table if the functions are periodic and smooth; otherwise the functions themselves."""
+    """Return a table of functions, if they are periodic and smooth.
+
+    Parameters
+    ----------
+    functions
+        From angles in radians, shape ``(n,)``, to values ``(m, n)`` and the sizes of their terms ``(m,)``, in
+        any units.
+
+    Returns
+    -------
+    The table; otherwise the functions with its interface.
+    """
     table = TurnTable(functions)
     return table if table.steps else Untabulated(functions)

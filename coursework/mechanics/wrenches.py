@@ -27,25 +27,86 @@ class BodyWrenches:
 
     @staticmethod
     def none(stance: Stance) -> BodyWrenches:
+        """Return wrenches that are zero.
+
+        Parameters
+        ----------
+        stance
+            The mechanism at ``n`` instants.
+
+        Returns
+        -------
+        New wrenches, to which forces and moments may be added.
+        """
         return BodyWrenches(stance, np.zeros(stance.turns.shape, dtype=complex), np.zeros(stance.turns.shape))
 
     def push(self, held: BodyPoint, force: np.ndarray | complex) -> BodyWrenches:
-        """Add a force at a position of a body."""
+        """Add a force at a position of a body.
+
+        Parameters
+        ----------
+        held
+            The position.
+        force
+            N, complex; a scalar or shape ``(n,)``.
+
+        Returns
+        -------
+        These wrenches.
+        """
         return self.push_at(held.body, self.stance.arm(held), force)
 
     def push_at(self, body: int, arm: np.ndarray, force: np.ndarray | complex) -> BodyWrenches:
-        """Add a force at an arm from the origin of a body."""
+        """Add a force at an arm from the origin of a body.
+
+        Parameters
+        ----------
+        body
+            Index of the body; -1 for the ground.
+        arm
+            Metres, complex, shape ``(n,)``.
+        force
+            N, complex; a scalar or shape ``(n,)``.
+
+        Returns
+        -------
+        These wrenches.
+        """
         self.forces[body] += force
         self.moments[body] += (np.conj(arm) * force).imag
         return self
 
     def turn(self, body: int, moment: np.ndarray | float) -> BodyWrenches:
-        """Add a moment on a body."""
+        """Add a moment on a body.
+
+        Parameters
+        ----------
+        body
+            Index of the body; -1 for the ground.
+        moment
+            N m; a scalar or shape ``(n,)``.
+
+        Returns
+        -------
+        These wrenches.
+        """
         self.moments[body] += moment
         return self
 
     def rub(self, slide: SlideJoint, force: np.ndarray | complex) -> BodyWrenches:
-        """Add a force on a sliding body at its point, and its opposite on the guide there."""
+        """Add a force on a sliding body at its point, and its opposite on the guide there.
+
+        Parameters
+        ----------
+        slide
+            The slide.
+        force
+            N, complex; a scalar or shape ``(n,)``.
+
+        Returns
+        -------
+        These wrenches.
+        """
         under = self.stance.place(slide.of) - self.stance.origins[slide.on]
         return self.push(slide.of, force).push_at(slide.on, under, -force)
 
@@ -73,7 +134,23 @@ class BodyWrenches:
 
 
 def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> BodyWrenches:
-    """Return the weights of the bodies; ``downwards`` is the acceleration of gravity."""
+    """Return the weights of the bodies.
+
+    Parameters
+    ----------
+    stance
+        The mechanism at ``n`` instants.
+    downwards
+        Acceleration of gravity, m/s^2, complex.
+
+    Returns
+    -------
+    The wrenches, N and N m.
+
+    Source
+    ------
+    The mass times the acceleration of gravity, at the centre of mass.
+    """
     wrench = BodyWrenches.none(stance)
     for mass in stance.linkage.masses:
         wrench.push(BodyPoint(mass.body, mass.centre), mass.mass * downwards)
@@ -81,13 +158,41 @@ def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> BodyWrenches:
 
 
 def inertia_at_rate(stance: Stance) -> BodyWrenches:
-    """Return the inertia forces for a driver at a constant 1 rad/s."""
+    """Return the inertia forces for a driver at a constant 1 rad/s.
+
+    Parameters
+    ----------
+    stance
+        The mechanism at ``n`` instants.
+
+    Returns
+    -------
+    The wrenches, N and N m; times the square of the speed for another one.
+
+    Source
+    ------
+    ``-m a`` at the centre of mass and ``-J alpha`` for the acceleration a and the angular acceleration alpha.
+    """
     return _inertia(stance, stance.bend, stance.bends)
 
 
 def inertia_at_start(stance: Stance) -> BodyWrenches:
-    """Return the inertia forces for a driver at rest that accelerates by 1 rad/s^2: their effort is the
-    generalised inertia, kg m^2."""
+    """Return the inertia forces for a driver at rest that accelerates by 1 rad/s^2.
+
+    Parameters
+    ----------
+    stance
+        The mechanism at ``n`` instants.
+
+    Returns
+    -------
+    The wrenches, N and N m; times the acceleration for another one. Their effort is the generalised inertia,
+    kg m^2.
+
+    Source
+    ------
+    As :func:`inertia_at_rate`.
+    """
     return _inertia(stance, stance.rate, stance.rates)
 
 

@@ -16,7 +16,15 @@ IN_TWO_FILES = {"Variant"}
 CLAUSE = re.compile(r"(What|Who|Whoever|Whose|Whether|How|Where|Which|That|This|It)\b")
 
 #: Rooms whose public functions state parameters and return value: the interface and the numeric core.
-DESCRIBED = ("api.py", "model.py", "solution.py", "kinematics/", "figures/polygons/", "structure/")
+DESCRIBED = (
+    "api.py",
+    "model.py",
+    "solution.py",
+    "kinematics/",
+    "figures/polygons/",
+    "structure/",
+    "mechanics/",
+)
 
 DEFINITIONS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
