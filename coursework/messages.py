@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 CATALOGUES = Path(__file__).parent / "language" / "messages"
+_PLACES = tuple(f"note{number}" for number in range(1, 100))
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
 _language: ContextVar[str] = ContextVar("language of messages", default="en")
 
@@ -83,6 +84,21 @@ class Message(str):
 
 def _restored(template: str, values: dict[str, Any]) -> Message:
     return Message(template, **values)
+
+
+def joined_notes(notes: Iterable[str]) -> str:
+    """Return notes as one message with semicolons between them, each of which is still translated; "" without notes."""
+    several = dict(zip(_PLACES, filter(None, notes), strict=False))
+    if len(several) < 2:
+        return next(iter(several.values()), "")
+    return Message("; ".join(f"{{{place}}}" for place in several), **several)
+
+
+def separate_notes(note: str) -> tuple[str, ...]:
+    """Return the notes that :func:`joined_notes` put together; one that is alone is itself."""
+    if isinstance(note, Message) and {*note.values} & {*_PLACES}:
+        return tuple(note.values.values())
+    return (note,)
 
 
 def as_message(text: object) -> Message:

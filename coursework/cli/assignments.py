@@ -12,8 +12,9 @@ import click
 
 from coursework.cli.database import keeping
 from coursework.cli.options import exercise_names, opened, print_notes, shared_by_cluster, split_list, writes
-from coursework.cli.printing import progress_bar, say
+from coursework.cli.printing import progress_bar, say, warn
 from coursework.errors import BadInput, counted, nearest
+from coursework.messages import Message
 from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
@@ -98,8 +99,6 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
 
     file = Path(exercises[0]) if is_assignment(exercises) else None
     given = context.params
-    if "scan" in given["additions"]:
-        codes_ready()
     course = opened(context)
     assignment = None if file is None else read_assignment(file, course)
     settings = BuildSettings(context, file, {} if assignment is None else assignment.options)
@@ -124,6 +123,13 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
         which = "--again" if given["again"] else "--make-up"
         raise BadInput("{which} is for what was issued: there is no {value}", which=which, value=record)
     if assignment is not None and file is not None:
+        for option in ("seed", "parts"):
+            if settings.is_given(option):
+                warn(
+                    "note: --{option} is for exercises named one by one, and is not used: the file of an assignment states its parts, "
+                    "and its secret draws the variants",
+                    option=option,
+                )
         issued = _issued_assignment(course, assignment, file, settings, record, before, stood)
     else:
         issued = _issued_exercises(course, names, settings, before)
@@ -205,8 +211,12 @@ def _issued_exercises(
     with_language = sum(bool(student.lang) for student in students)
     if with_language and settings.is_given("langs"):
         notes.append(
-            f"the roster says the language of {with_language} of its {counted(len(students), 'student')}, which counts; "
-            f"--lang {','.join(langs)} is for those of whom it says none"
+            Message(
+                "the roster states the language of {some} of its {students}, which counts; --lang {langs} is for the others",
+                some=with_language,
+                students=counted(len(students), "student"),
+                langs=",".join(langs),
+            )
         )
     parts = split_list(given["parts"]) or None
     count, seed = given["count"] or 1, given["seed"]
@@ -354,10 +364,17 @@ def _check_identity(assignment: Assignment, students: Sequence[Any], notes: list
 
     columns = list(dict.fromkeys(title for student in students for title in student.columns))
     folded_columns = set(map(folded, columns))
-    wanted = [(title, "a box to fill in by hand is printed") for title in assignment.identity]
+    wanted = [(title, Message("a box to fill in by hand is printed")) for title in assignment.identity]
     if assignment.sort:
-        wanted.append((assignment.sort, "a booklet stands as the roster does"))
+        wanted.append((assignment.sort, Message("the papers of a booklet are in the order of the roster")))
     for title, then in wanted:
         if folded(title) not in folded_columns:
             near = nearest(title, columns) if columns else ""
-            notes.append(f"the roster has no column {title!r}{near}: {then}")
+            notes.append(
+                Message(
+                    "the roster has no column {title!r}{nearest}: {then}",
+                    title=title,
+                    nearest=near,
+                    then=then,
+                )
+            )

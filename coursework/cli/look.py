@@ -111,7 +111,10 @@ def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[A
     for item in variants:
         if not item.parts:
             raise WrongValue(
-                f"{exercise.name}, seed {item.seed}, asks none of the parts {parts}; try another seed"
+                "{exercise}, seed {seed}, asks none of the parts {parts}; try another seed",
+                exercise=exercise.name,
+                seed=item.seed,
+                parts=parts,
             )
     return variants
 

@@ -17,10 +17,10 @@ from coursework.cli.options import (
     NeedingExtra,
     database_ready,
     json_option,
-    print_notes,
 )
-from coursework.cli.printing import print_json, print_table
+from coursework.cli.printing import print_json, print_table, say, warn
 from coursework.errors import BadInput, counted, nearest
+from coursework.messages import Message, localised
 from coursework.system.extras import libraries
 
 if TYPE_CHECKING:
@@ -167,26 +167,25 @@ def _write(settings: Settings) -> None:
 def _tell_registration(settings: Settings, kind: str) -> None:
     """Print the values to fill in on the page where a platform registers a tool."""
     url = settings.url or "https://WHERE-THE-SITE-IS/lti"
-    click.echo("On the platform, register an LTI 1.3 tool with:")
+    say("On the platform, register an LTI 1.3 tool with:")
     rows = [
         ("tool URL", f"{url}/launch"),
         ("initiate login URL", f"{url}/login"),
         ("redirection URI", f"{url}/launch"),
         ("public keyset URL", f"{url}/jwks"),
         ("content selection (deep linking) URL", f"{url}/launch"),
-        ("services", "grades (with columns), names and roles"),
-        ("privacy", "share the name; the e-mail where the roster is to have it"),
+        (Message("services"), Message("grades (with columns), names and roles")),
+        (Message("privacy"), Message("share the name, and the e-mail address if the roster is to have it")),
     ]
     for label, value in rows:
-        click.echo(f"  {label:<38}{value}")
-    click.echo(
-        f"It then shows a client ID and a deployment ID: coursework lti platform {kind} … --client-id ID --deployment ID"
+        click.echo(f"  {localised(label):<38}{localised(value)}")
+    say(
+        "It then shows a client ID and a deployment ID: coursework lti platform {kind} … --client-id ID --deployment ID",
+        kind=kind,
     )
     if not settings.url:
-        print_notes(
-            [
-                "say where browsers find it: --url https://exercises.example.org/lti, the address of the site with /lti behind it"
-            ]
+        warn(
+            "note: state its address with --url https://exercises.example.org/lti: that of the site, with /lti behind it"
         )
 
 
@@ -204,8 +203,9 @@ def _list(settings: Settings, check: bool, as_json: bool) -> int:
             ]
         )
     elif not faults:
-        click.echo(
-            f"no platform in {settings.folder}: coursework lti platform moodle https://moodle.example.org"
+        say(
+            "no platform in {folder}: coursework lti platform moodle https://moodle.example.org",
+            folder=settings.folder,
         )
     else:
         rows = [
@@ -275,9 +275,9 @@ def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
             "{folder} has a key already; 'coursework lti keys rotate' makes another", folder=key_folder.folder
         )
     if action in ("new", "rotate"):
-        click.echo(f"{key_folder.new().kid} signs from now on")
+        say("{key} signs from now on", key=key_folder.new().kid)
     elif action == "retire":
-        click.echo(f"{key_folder.retire(kid or '').kid} is taken away: what it signed is refused from now on")
+        say("{key} is removed: what it signed is refused from now on", key=key_folder.retire(kid or "").kid)
     else:
         rows = [
             {"key": key.kid, "made": key.made, "signs": "yes" if key == key_folder.keys[-1] else ""}
@@ -288,7 +288,7 @@ def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
         elif rows:
             print_table(rows, "")
         else:
-            click.echo(f"no key in {key_folder.folder}: coursework lti keys new")
+            say("no key in {folder}: coursework lti keys new", folder=key_folder.folder)
 
 
 # --------------------------------------------------------------- scores, roster
@@ -372,7 +372,7 @@ def roster(context: click.Context, course_title: str | None, folder: Path, db: s
         for course in courses:
             click.echo(f"{course.title}  ({course.issuer})")
         if not courses:
-            click.echo("no course yet: open a link of this tool from one, as its teacher")
+            say("no course yet: open a link of this tool from one, as its teacher")
         return
     matches = [course for course in courses if course.title.casefold().startswith(course_title.casefold())]
     if len(matches) != 1:

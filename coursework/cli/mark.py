@@ -21,12 +21,11 @@ from coursework.cli.options import (
     json_option,
     lang_option,
     opened,
-    print_notes,
     shared_by_cluster,
     tell_lack_of_charts,
     writes,
 )
-from coursework.cli.printing import print_json, progress_bar, say, warn_some
+from coursework.cli.printing import print_json, progress_bar, say, warn, warn_some
 from coursework.errors import BadInput, counted
 from coursework.messages import Message, localised
 from coursework.system.extras import libraries
@@ -399,12 +398,12 @@ def _report(
     marks = read(folder)
     if unlike := unlike_summary(folder, marks):
         path = folder / "marks.csv"
-        print_notes(
-            [
-                f"{counted(len(unlike), 'student')} with other points in {path} than in summary.csv ({unlike[0]}"
-                f"{', …' if len(unlike) > 1 else ''}): the report is of {path}; 'coursework grade --issued … --from {path}' "
-                "makes summary and feedback agree with it"
-            ]
+        warn(
+            "note: {students} with other points in {path} than in summary.csv ({names}): the report is of {path}; "
+            "'coursework grade --issued … --from {path}' makes summary and feedback agree with it",
+            students=counted(len(unlike), "student"),
+            path=path,
+            names=f"{unlike[0]}, …" if len(unlike) > 1 else unlike[0],
         )
     measures = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:
@@ -436,10 +435,10 @@ def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
         path.unlink(missing_ok=True)
         return
     write_whole(path, csv_file((pair.row() for pair in copied), COLUMNS, SPREADSHEETS[decimal]))
-    print_notes(
-        [
-            f"{counted(len(copied), 'sheet')} of answers that are right on another student's variant, see {path}"
-        ]
+    warn(
+        "note: {sheets} of answers that are right on another student's variant, see {path}",
+        sheets=counted(len(copied), "sheet"),
+        path=path,
     )
 
 

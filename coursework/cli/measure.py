@@ -19,6 +19,8 @@ from coursework.cli.options import (
     writes,
 )
 from coursework.cli.printing import print_json, say
+from coursework.errors import counted
+from coursework.messages import Message, localised
 
 if TYPE_CHECKING:
     from coursework.sheets.report import ReportContent
@@ -86,15 +88,12 @@ def _in_detail(course: Any, names: Sequence[str], quick: bool, lang: str, silent
         for row in measure(course[name], quick=quick):
             rows.append(row)
             if not silent and row.family != DATA:
-                error = "no answer" if row.max_error is None else f"{row.max_error:.1e}"
-                failed = (
-                    f"  no answer at {row.failed} of {row.n}"
-                    if row.failed and row.max_error is not None
-                    else ""
-                )
+                error = Message("no answer") if row.max_error is None else f"{row.max_error:.1e}"
+                failed = Message("  no answer at {failed} of {all}", failed=row.failed, all=row.n)
                 click.echo(
                     f"{row.exercise:22} {row.what:12} {row.method:20} {row.place:16} {row.median:14,.0f} ns "
-                    f"({row.low:,.0f} to {row.high:,.0f})  {error}{failed}"
+                    f"({row.low:,.0f} … {row.high:,.0f})  {localised(error)}"
+                    + (localised(failed) if row.failed and row.max_error is not None else "")
                 )
     return [row.as_json() for row in rows], lambda: report(course, rows, lang)
 
@@ -124,23 +123,38 @@ def overview_text(line: Any) -> str:
         return f"{line.exercise:28} {line.wrong}"
 
     if not line.quantities:
-        return f"{line.exercise:28} no reference: the formula of {', '.join(line.lacking)} cannot be followed in many digits"
+        lacking = Message(
+            "no reference: the formula of {names} cannot be followed in many digits",
+            names=", ".join(line.lacking),
+        )
+        return f"{line.exercise:28} {localised(lacking)}"
 
     def error(value: float | None) -> str:
         return "      –" if value is None else f"{value:7.1e}"
 
-    times = f"{1e9 * line.stable_ns.median:8,.0f} ns, textbook {1e9 * line.textbook_ns.median:8,.0f} ns"
-    digits = "all that the data allow"
-    if line.beyond > 1:
-        lost = ", ".join(f"{name} by {times:.0e}" for name, times in line.losing.items())
-        unasked = "" if line.asked_losing else "; the asked answers keep all that the data allow"
-        digits = f"beyond what the data explain: {lost} times{unasked}"
-    hard = (
-        f"hard {error(line.hard)} (textbook {error(line.hard_textbook)}), {digits}"
-        if line.places
-        else "no hard place"
+    times = Message(
+        "{stable} ns, textbook {textbook} ns",
+        stable=f"{1e9 * line.stable_ns.median:8,.0f}",
+        textbook=f"{1e9 * line.textbook_ns.median:8,.0f}",
     )
-    return f"{line.exercise:28} generic {error(line.generic)} (textbook {error(line.generic_textbook)})  {times}  {hard}"
+    digits = Message("all that the data allow")
+    if line.beyond > 1:
+        lost = ", ".join(f"{name} × {times:.0e}" for name, times in line.losing.items())
+        asked = "" if line.asked_losing else Message("; the asked answers keep all that the data allow")
+        digits = Message("beyond what the data explain: {lost}{asked}", lost=lost, asked=asked)
+    hard = Message(
+        "hard {error} (textbook {textbook}), {digits}",
+        error=error(line.hard),
+        textbook=error(line.hard_textbook),
+        digits=digits,
+    )
+    generic = Message(
+        "generic {error} (textbook {textbook})",
+        error=error(line.generic),
+        textbook=error(line.generic_textbook),
+    )
+    hard = hard if line.places else Message("no hard place")
+    return f"{line.exercise:28} {localised(generic)}  {localised(times)}  {localised(hard)}"
 
 
 def _on_paper(course: Any, names: Sequence[str], quick: bool, lang: str, silent: bool) -> tuple[list, Any]:
@@ -152,11 +166,15 @@ def _on_paper(course: Any, names: Sequence[str], quick: bool, lang: str, silent:
     rows = [row for name in names for row in on_paper(course[name], variants)]
     if not silent:
         for row in total(rows):
-            digits = "1 % alone" if row.digits == PLAIN else f"{row.digits} digits"
-            click.echo(
-                f"{digits:10} right answers wronged: by 1 % {row.wronged.value:8.3%}, by our margin "
-                f"{row.wronged_ours.value:8.3%};  let pass: mistakes {row.mistakes.value:8.3%}, neighbours "
-                f"{row.neighbours.value:8.3%}"
+            digits = Message("1 % alone") if row.digits == PLAIN else counted(row.digits, "digit")
+            say(
+                "{digits} right answers marked wrong: by 1 % {plain}, by our margin {ours};  accepted: mistakes {mistakes}, "
+                "neighbours {neighbours}",
+                digits=f"{localised(digits):11}",
+                plain=f"{row.wronged.value:8.3%}",
+                ours=f"{row.wronged_ours.value:8.3%}",
+                mistakes=f"{row.mistakes.value:8.3%}",
+                neighbours=f"{row.neighbours.value:8.3%}",
             )
     return [row.as_json() for row in rows], lambda: paper_report(course, rows, variants, lang)
 

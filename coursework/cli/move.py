@@ -27,6 +27,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, print_table, say
 from coursework.errors import WrongValue
+from coursework.messages import Message, localised
 from coursework.system.limits import MOST_STEPS
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def simulate(
     if plan and budget:
         raise WrongValue("--plan says what would be done, --budget does it; give one of them")
     if "tolerance" in typed and not budget:
-        raise WrongValue("--tolerance is of --budget")
+        raise WrongValue("--tolerance goes with --budget")
     if out is not None:
         writes(context, out)
     told_file = _scene_file(opened(context), exercise, options, typed)
@@ -118,18 +119,22 @@ def _scene_file(course: Any, exercise: str, settings: dict[str, Any], typed: set
         for option in ("effects", "settings", "show", "seed", "over", "steps", "drive", "duration"):
             if option in typed:
                 name = "set" if option == "settings" else option
-                raise WrongValue(f"{exercise} says what the scene is; leave --{name} out, or write it there")
+                raise WrongValue(
+                    "{file} states the scene; leave --{name} out, or write it there", file=exercise, name=name
+                )
         return read_scene(Path(exercise), course)
     chosen_exercise = course[exercise]
     given = {**chosen_exercise.variant(settings["seed"]).given, **settings_given(settings["settings"])}
     scene = Scene(chosen_exercise, given, split_list(settings["effects"]), tuple(settings["show"]))
     if settings["drive"] is None:
         if settings["duration"] is not None:
-            raise WrongValue("--duration is of a motion in time: give its drive too, --drive torque=5")
+            raise WrongValue("--duration is that of a motion in time: give its drive too, --drive torque=5")
         return SceneFile(exercise, scene, settings["steps"] or 360)
     for option in ("steps", "over"):
         if option in typed:
-            raise WrongValue(f"--{option} is of a cycle; with --drive the motion is in time")
+            raise WrongValue(
+                "--{option} is that of a cycle; with --drive the motion is in time", option=option
+            )
     return SceneFile(
         exercise,
         scene,
@@ -145,7 +150,9 @@ def _seconds(text: str | None) -> float:
         return 1.0
     reading = read_number(text, "s")
     if reading.status != "read" or len(reading.values) != 1 or not reading.values[0] > 0:
-        raise WrongValue(f"--duration takes a time above 0, such as 2 or '500 ms'; found {text!r}")
+        raise WrongValue(
+            "--duration takes a time above 0, such as 2 or '500 ms'; found {found!r}", found=text
+        )
     return reading.values[0]
 
 
@@ -280,7 +287,7 @@ def _write_budget_plot(effect_budget: EffectBudget, title: str, stem: Path) -> N
         cost = _cost(worth)
         time = _rounded(cost) if cost is not None else "–" if worth.needed else _below(1e3 * worth.spread)
         rows.append((worth.effect, part, f"{_rounded(part)} % ({prefix}{time} ms)"))
-    plot = bars(rows, title, "largest change without the effect, % of the output")
+    plot = bars(rows, title, localised(Message("largest change without the effect, % of the output")))
     write_whole(stem.parent / f"{stem.name}.svg", plot)
 
 
@@ -324,10 +331,12 @@ def _drive(exercise: Any, text: str) -> Motor:
     name, equals, value = text.partition("=")
     effort = exercise.spec.driver.effort if exercise.spec.driver else ""
     if not equals or name.strip() not in ("torque", effort):
-        raise WrongValue(f"--drive takes {effort or 'torque'}=VALUE; found {text!r}")
+        raise WrongValue(
+            "--drive takes {effort}=VALUE; found {found!r}", effort=effort or "torque", found=text
+        )
     reading = read_number(value.strip(), "N*m")
     if reading.status != "read" or len(reading.values) != 1:
-        raise WrongValue(f"the torque of --drive is a number in N*m; found {value!r}")
+        raise WrongValue("the torque of --drive is a number in N*m; found {found!r}", found=value)
     return Motor(reading.values[0])
 
 

@@ -101,8 +101,16 @@ class WholeNumber(click.ParamType):
         except ValueError:
             number = self.least - 1
         if not self.least <= number <= self.most:
-            bound = f"{self.least} or more" if number < self.least else f"at most {self.most:,}"
-            self.fail(f"takes a whole number, {bound}; found {str(value)[:40]!r}", param, ctx)
+            too_small = number < self.least
+            bound = (
+                Message("{least} or more", least=self.least)
+                if too_small
+                else Message("at most {most:,}", most=self.most)
+            )
+            message = Message(
+                "takes a whole number, {bound}; found {found!r}", bound=bound, found=str(value)[:40]
+            )
+            self.fail(localised(message), param, ctx)
         return number
 
 
@@ -112,9 +120,9 @@ class FilePath(click.Path):
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         text = os.fspath(value)
         if not text.strip():
-            self.fail("names no file or folder; the one that you are in is called ./", param, ctx)
+            self.fail(localised(Message("names no file or folder; the current folder is ./")), param, ctx)
         if "\0" in text:
-            self.fail("no file's name holds a NUL", param, ctx)
+            self.fail(localised(Message("the name of a file contains no NUL")), param, ctx)
         return super().convert(value, param, ctx)
 
 
@@ -137,11 +145,17 @@ class Lists(click.ParamType):
         for word in words:
             if word not in accepted:
                 message = (
-                    self.refusal(word) if self.refusal else f"no {word!r}; there is {', '.join(accepted)}"
+                    self.refusal(word)
+                    if self.refusal
+                    else localised(
+                        Message("no {word!r}; there is {known}", word=word, known=", ".join(accepted))
+                    )
                 )
                 self.fail(message, param, ctx)
         if not words:
-            self.fail(f"nothing named; there is {', '.join(accepted)}", param, ctx)
+            self.fail(
+                localised(Message("nothing named; there is {known}", known=", ".join(accepted))), param, ctx
+            )
         return words
 
     def shell_complete(
@@ -330,7 +344,7 @@ def settings_given(settings: Sequence[str]) -> dict[str, str]:
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals or not value.strip():
-            raise WrongValue(f"--set takes NAME=VALUE; found {setting!r}")
+            raise WrongValue("--set takes NAME=VALUE; found {found!r}", found=setting)
         given[name.strip()] = value.strip()
     return given
 

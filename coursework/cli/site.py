@@ -23,6 +23,7 @@ from coursework.cli.options import (
     needing_extra,
     print_notes,
 )
+from coursework.cli.printing import warn
 from coursework.errors import BadInput, unknown
 from coursework.messages import Message
 from coursework.system.extras import libraries
@@ -141,10 +142,9 @@ def _check_private(db: str) -> None:
 
     file = file_of(db)
     if is_shared(file):
-        print_notes(
-            [
-                f"other users of this machine can read {file}, with all answers and the signing key: chmod 600 {file}"
-            ]
+        warn(
+            "note: other users of this machine can read {file}, with all answers and the signing key: chmod 600 {file}",
+            file=file,
         )
 
 
@@ -160,8 +160,9 @@ def _check_lti(folder: Path, url: str) -> None:
     from coursework.site.lti.service import settings_of
 
     if not settings_of(folder, url).platforms:
-        print_notes(
-            [f"no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one"]
+        warn(
+            "note: no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one",
+            folder=folder,
         )
     if (old := folder / "lti.sqlite").exists():
         note = Message(
@@ -259,10 +260,9 @@ def _entrance(host: str, url: str, demo: str | None, *, is_stated: bool) -> Entr
             "--demo lets anybody be anybody: it is for this machine alone, without --host and --url"
         )
     if url.startswith("http:") and not is_own:
-        print_notes(
-            [
-                f"{url} is plain http: whoever shares the network can read passwords and answers; a proxy with https helps"
-            ]
+        warn(
+            "note: {url} is plain http: everybody on the network can read passwords and answers; put a proxy with https before it",
+            url=url,
         )
     return Entrance.ACCOUNTS
 
@@ -278,7 +278,7 @@ def _say(url: str, where: str, opens: bool) -> None:
     if opens and has_screen:
         webbrowser.open(url)
     elif opens:
-        print_notes([f"no screen here: open {url} in a browser"])
+        warn("note: no screen here: open {url} in a browser", url=url)
 
 
 # ---------------------------------------------------------------------- preview

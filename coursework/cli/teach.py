@@ -30,6 +30,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import progress_bar, say
 from coursework.errors import BadInput, counted, unknown
+from coursework.messages import Message
 from coursework.system.limits import MOST_SEED
 
 if TYPE_CHECKING:
@@ -184,7 +185,12 @@ def notebook(
     if is_typed(context, "seed"):
         print_notes(
             [
-                f"{name}: seed {seed} is not worth issuing; the notebook has seed {missing}, the next that is"
+                Message(
+                    "{exercise}: seed {seed} gives no valid variant; the notebook has seed {next}, the next that does",
+                    exercise=name,
+                    seed=seed,
+                    next=missing,
+                )
                 for name, missing in other.items()
             ]
         )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from coursework.errors import BadCourse, nearest
+from coursework.messages import Message
 from coursework.quantities.error_kinds import PENALTIES
 
 #: Beyond these a variant is ill-conditioned: rounding alone may cost a student the answer.
@@ -46,16 +47,23 @@ class Rules:
             A rule that there is not, or a value that makes no sense.
         """
         if not isinstance(table, Mapping):
-            raise BadCourse(f"{source}: [marking] is a table: digits = 4")
+            raise BadCourse("{place}: [marking] is a table: digits = 4", place=source)
         usual = usual or Rules()
         names = {f.name for f in fields(Rules)}
         stated: dict[str, Any] = {}
         for name, value in table.items():
             if name not in names:
-                raise BadCourse(f"{source}: no rule of marking {name!r}{nearest(str(name), names)}")
+                near = nearest(str(name), names)
+                raise BadCourse(
+                    "{place}: no rule of marking {name!r}{nearest}", place=source, name=name, nearest=near
+                )
             is_integer = isinstance(value, int) and not isinstance(value, bool)
             if name == "digits" and not (is_integer and 2 <= value <= 12):
-                raise BadCourse(f"{source}: digits is a whole number from 2 to 12; found {value!r}")
+                raise BadCourse(
+                    "{place}: digits is a whole number from 2 to 12; found {found!r}",
+                    place=source,
+                    found=value,
+                )
             if name == "prices":
                 value = {**usual.prices, **_penalties(value, source)}
             elif name != "digits":
@@ -66,14 +74,17 @@ class Rules:
 
 def _penalties(table: Any, source: str) -> Mapping[str, float]:
     if not isinstance(table, Mapping):
-        raise BadCourse(f"{source}: [marking.prices] is a table: sign = 0.5")
+        raise BadCourse("{place}: [marking.prices] is a table: sign = 0.5", place=source)
     for kind, value in table.items():
         if kind not in PENALTIES:
-            raise BadCourse(f"{source}: no price for {kind!r}{nearest(str(kind), PENALTIES)}")
-        _check_share(f"the price of {kind}", value, source)
+            near = nearest(str(kind), PENALTIES)
+            raise BadCourse("{place}: no price for {kind!r}{nearest}", place=source, kind=kind, nearest=near)
+        _check_share(Message("the price of {kind}", kind=kind), value, source)
     return table
 
 
 def _check_share(name: str, value: Any, source: str) -> None:
     if isinstance(value, bool) or not (isinstance(value, (int, float)) and 0 <= value <= 1):
-        raise BadCourse(f"{source}: {name} is a share from 0 to 1; found {value!r}")
+        raise BadCourse(
+            "{place}: {name} is a share from 0 to 1; found {found!r}", place=source, name=name, found=value
+        )

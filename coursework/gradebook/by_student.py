@@ -13,7 +13,7 @@ from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.issuing.issued import Issued
 from coursework.marking.marking import mark
-from coursework.messages import Message, as_message
+from coursework.messages import Message, as_message, joined_notes, separate_notes
 
 
 class OwnMarks(NamedTuple):
@@ -57,9 +57,12 @@ def as_students(
             yield row
             continue
         named = issued.student(row.student) if issued.has_roster and row.student else None
-        if named not in (None, student) and (note := f"the answers bear the name of {named}") not in notes:
+        if (
+            named not in (None, student)
+            and (note := Message("the answers bear the name of {name}", name=named)) not in notes
+        ):
             notes.append(note)
-        warning = row.warning.replace(NO_NAME, "").strip("; ")
+        warning = joined_notes(note for note in separate_notes(row.warning) if note != NO_NAME)
         yield row._replace(student=student, warning=warning, origin=None)
 
 

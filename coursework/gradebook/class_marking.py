@@ -59,7 +59,7 @@ def rules_of(course: Course, issued: Issued) -> Rules | None:
     if not stated:
         return None
     try:
-        return Rules.of(stated, "the assignment in issued.json", course.folder.rules)
+        return Rules.of(stated, Message("the assignment in issued.json"), course.folder.rules)
     except BadCourse as fault:
         raise BadInput(as_message(fault)) from fault
 

@@ -29,7 +29,7 @@ from coursework.gradebook.rows import (
     short_fault,
     with_unread,
 )
-from coursework.messages import Message
+from coursework.messages import Message, joined_notes
 from coursework.system import python_code
 
 # --------------------------------------------------------------------- notebook
@@ -67,7 +67,9 @@ def _read(data: bytes, source: str, by: str) -> Iterator[AnswerRow | Rejected]:
                 source, Message("not a notebook of ours: it names no exercise, in its metadata or in print")
             )
             return
-        notes.append(f"{source}: its metadata is gone; whose it is, and of which variant, is as it prints it")
+        notes.append(
+            Message("{file}: its metadata is gone; student and variant are those printed in it", file=source)
+        )
     about = {**about, _SUBMITTED_BY: by}
     if isinstance(about.get("sheets"), list):
         yield from _read_paper(about, cells, source, notes)
@@ -82,16 +84,18 @@ def _read(data: bytes, source: str, by: str) -> Iterator[AnswerRow | Rejected]:
     if isinstance(answers, str):
         yield Rejected(source, answers, _about(about, source) | {"answer": quoted(code)})
         return
-    notes += [f"{source}: {text_of_note}" for text_of_note in (note, more) if text_of_note]
-    about, warning = _with_name(about, answers, source, "; ".join(notes))
+    notes += [Message("{place}: {note}", place=source, note=text) for text in (note, more) if text]
+    about, warning = _with_name(about, answers, source, joined_notes(notes))
     yield from sheet_rows(about, answers, source, warning)
 
 
 _LONGEST = 200_000  #: characters of a cell of answers
-NO_NAME = "a notebook holds no name; its file's name stands for it"
-_NO_TAG = "no cell is tagged 'answers'; the one that says answers = { is read"
-_OTHER = "the cell tagged 'answers' is blank; the answers of another that says answers = { are read"
-_CUT = "the answers cell was cut in pieces; they are put together"
+NO_NAME = Message("a notebook contains no name; the name of its file is taken")
+_NO_TAG = Message("no cell is tagged 'answers'; the one that begins with 'answers =' is read")
+_OTHER = Message(
+    "the cell tagged 'answers' is blank; the answers of another one that begins with 'answers =' are read"
+)
+_CUT = Message("the answers cell was cut into pieces; they are put together")
 
 
 def _answers_code(cells: list[dict[str, Any]]) -> tuple[str | None, str]:
@@ -130,7 +134,9 @@ def _answers_in(code: str) -> tuple[dict[Any, Any] | str, str]:
     if isinstance(answers, str) and len(code) <= _LONGEST and (bare := answers_statement(code)) != code:
         bare_answers = literal_answers(bare)
         if not isinstance(bare_answers, str):
-            return bare_answers, "the answers cell holds more than the answers; that is neither read nor run"
+            return bare_answers, Message(
+                "the answers cell contains more than the answers; the rest is neither read nor run"
+            )
     return answers, ""
 
 
@@ -155,10 +161,12 @@ def _read_paper(
         if location not in tagged
     ]
     lost = [(sheet, text) for sheet, text in lost if sheet[0] and sheet not in sheets_tagged]
-    notes += [f"{source}, {exercise}: {_NO_TAG}" for (exercise, _), _ in lost]
+    notes += [
+        Message("{place}: {note}", place=f"{source}, {exercise}", note=_NO_TAG) for (exercise, _), _ in lost
+    ]
     read = [(sheet, _answers_in(code)[0], code) for sheet, code in (*codes, *lost)]
     name, warning = _name_in_paper(
-        about, [cell_answers for _, cell_answers, _ in read], source, "; ".join(notes)
+        about, [cell_answers for _, cell_answers, _ in read], source, joined_notes(notes)
     )
     for (exercise, seed), cell_answers, code in read:
         identity = {
@@ -234,7 +242,7 @@ def _with_name(
         return {**about, "student": written}, warning
     if about[_SUBMITTED_BY]:
         return {**about, "student": about[_SUBMITTED_BY]}, warning
-    return {**about, "student": Path(source).stem}, "; ".join(filter(None, (warning, NO_NAME)))
+    return {**about, "student": Path(source).stem}, joined_notes((warning, NO_NAME))
 
 
 def _about(about: dict[str, Any], source: str) -> dict[str, str]:

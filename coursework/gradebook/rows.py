@@ -64,7 +64,7 @@ def path_text(path: Path) -> str:
 def decoded_text(data: bytes, source: str) -> tuple[str, str]:
     """Return the text, and a warning that names its file."""
     text, warning = decode(data)
-    return text, f"{source}: {warning}" if warning else ""
+    return text, Message("{place}: {note}", place=source, note=warning) if warning else ""
 
 
 def _storable_text(text: str) -> str:

@@ -21,7 +21,7 @@ from coursework.issuing.protection import valid_variants
 from coursework.issuing.roster import Student
 from coursework.issuing.students import file_stems
 from coursework.kinds.kind import Asking
-from coursework.messages import Message
+from coursework.messages import Message, localised
 from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
 
 V = TypeVar("V", bound=Variant)
@@ -69,9 +69,8 @@ def distinct_variants(
         drawn = exercise.variants(batch, lang, parts)
         asking = _that_ask(drawn, fits)
         if len(asking) < len(drawn):
-            refused["asks none of the parts" if fits is None else "asks other parts"] += len(drawn) - len(
-                asking
-            )
+            flaw = Message("asks none of the parts") if fits is None else Message("asks other parts")
+            refused[flaw] += len(drawn) - len(asking)
             drawn = asking
         for variant in valid_variants(exercise, drawn, refused):
             by_values.setdefault(tuple(variant.given.values()), variant)
@@ -99,7 +98,7 @@ def _passed_over(refused: Counter[str]) -> str:
     """Return the most frequent flaws of the skipped variants, for a message; empty if there is none."""
     if not refused:
         return ""
-    flaws = ", ".join(f"{flaw} ({number}×)" for flaw, number in refused.most_common(3))
+    flaws = ", ".join(f"{localised(flaw)} ({number}×)" for flaw, number in refused.most_common(3))
     return Message("; passed over as {flaws}", flaws=flaws)
 
 

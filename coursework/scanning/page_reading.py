@@ -14,6 +14,7 @@ from coursework.course.course import Course, opened
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.issuing.answer_papers import answer_papers
+from coursework.messages import Message, as_message
 from coursework.scanning.scan_store import (
     ANSWERS,
     BLANK,
@@ -38,12 +39,14 @@ _HIGHEST = 2376  #: pixels of a picture that is kept of a page that is not strai
 _QUALITY = 60  #: of a JPEG
 _LAID_OUT = 400  #: papers that are kept laid out
 
+OTHER_SHEET = Message("a sheet of something else that was issued")
+
 #: By what :func:`coursework.scanning.pages.read_page` finds: what the page is, and what is told of it.
 _FOUND = {
-    "no code": (LOST, "no code of a page was found, or it cannot be read"),
-    "no sheet": (REFUSED, "its code is not of a sheet"),
-    "two pages": (REFUSED, "two sheets on one picture: scan them one by one"),
-    "other assignment": (REFUSED, "a sheet of something else that was issued"),
+    "no code": (LOST, Message("no code of a page was found, or it cannot be read")),
+    "no sheet": (REFUSED, Message("its code is not that of a sheet")),
+    "two pages": (REFUSED, Message("two sheets on one picture: scan them one by one")),
+    "other assignment": (REFUSED, OTHER_SHEET),
     "statement": (STATEMENT, ""),
 }
 
@@ -135,11 +138,11 @@ def _read(
     try:
         picture = picture_at(path, number)
     except CourseworkError as fault:
-        return PageScan(REFUSED, str(fault), has_picture=False, least=least), {}
+        return PageScan(REFUSED, as_message(fault), has_picture=False, least=least), {}
     try:
         page_read = read_page(picture, papers, read_digits, least)
     except opencv().error as fault:  # one picture does not stop a pile: a person looks at it
-        reason = f"reading it failed: {str(fault.err or fault)[:100]}"
+        reason: str = Message("reading it failed: {problem}", problem=str(fault.err or fault)[:100])
         return PageScan(LOST, reason, least=least), {picture_of(name): _jpeg(picture.grey, _HIGHEST)}
     if page_read.found == "no code" and _is_bare(picture.grey):
         return PageScan(BLANK, least=least), {picture_of(name): _jpeg(picture.grey, 600)}

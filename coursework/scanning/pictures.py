@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 from coursework.system.extras import library
 from coursework.system.limits import LEAST_OF_PAGE, MOST_PAGES, MOST_PAGES_OF_TIFF, beyond
 from coursework.system.processes import Exceeded, ResourceLimits, confined
@@ -36,6 +37,9 @@ _MOST_PICTURES = 8  #: of a page that is drawn here
 _DRAWING = ResourceLimits(30.0, 1_500_000_000)  #: of a process in which a page is drawn
 _NEEDS = ("reading scans needs", "scan")
 SUFFIXES = (".pdf", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
+
+
+_UNREADABLE = Message("page {page} of {file} cannot be read: {problem}")
 
 
 class BadPicture(BadInput):
@@ -75,7 +79,9 @@ def pictures(path: Path) -> Iterator[PageImage]:
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise BadPicture(f"{path.name} is no scan that can be read: {', '.join(SUFFIXES)}")
+        raise BadPicture(
+            "{file} is no scan that can be read: {endings}", file=path.name, endings=", ".join(SUFFIXES)
+        )
     yield from _of_pdf(path) if suffix == ".pdf" else _of_image(path)
 
 
@@ -84,7 +90,9 @@ def _of_pdf(path: Path) -> Iterator[PageImage]:
     try:
         document = pdfium.PdfDocument(path)
     except pdfium.PdfiumError as fault:
-        raise BadPicture(f"{path.name} is no PDF that can be read: {fault}") from fault
+        raise BadPicture(
+            "{file} is no PDF that can be read: {problem}", file=path.name, problem=fault
+        ) from fault
     with document:
         for number in range(len(document)):
             yield PageImage(path.name, number + 1, _drawn(pdfium, document, number, path))
@@ -97,7 +105,11 @@ def _drawn(pdfium: Any, document: Any, number: int, path: Path) -> np.ndarray:
         width, height = page.get_width(), page.get_height()
         if not _SMALLEST <= min(width, height) <= max(width, height) <= _WIDEST:
             raise BadPicture(
-                f"page {number + 1} of {path.name} is {width / 72:.3g} by {height / 72:.3g} inches: no paper is so"
+                "page {page} of {file} is {width} by {height} inches: no paper has this size",
+                page=number + 1,
+                file=path.name,
+                width=f"{width / 72:.3g}",
+                height=f"{height / 72:.3g}",
             )
         scale = min(PDF_DPI / 72, (LARGEST / (width * height)) ** 0.5)
         if _is_scanned(pdfium, page):
@@ -106,10 +118,15 @@ def _drawn(pdfium: Any, document: Any, number: int, path: Path) -> np.ndarray:
         return drawn
     except Exceeded as fault:
         raise BadPicture(
-            f"page {number + 1} of {path.name} takes too much {fault.resource} to be drawn: print it, and scan it"
+            "page {page} of {file} takes too much {resource} to be drawn: print it, and scan it",
+            page=number + 1,
+            file=path.name,
+            resource=Message(fault.resource),
         ) from None
     except pdfium.PdfiumError as fault:
-        raise BadPicture(f"page {number + 1} of {path.name} cannot be drawn: {fault}") from fault
+        raise BadPicture(
+            "page {page} of {file} cannot be drawn: {problem}", page=number + 1, file=path.name, problem=fault
+        ) from fault
 
 
 def _render(page: Any, scale: float) -> np.ndarray:
@@ -150,7 +167,11 @@ def _pages_of_image(cv2: Any, path: Path) -> int:
     except cv2.error:
         count = 0
     if not count:
-        raise BadPicture(f"{path.name} is no picture that can be read, or is larger than {LARGEST:,} pixels")
+        raise BadPicture(
+            "{file} is no picture that can be read, or is larger than {most} pixels",
+            file=path.name,
+            most=f"{LARGEST:,}",
+        )
     return count
 
 
@@ -164,14 +185,18 @@ def _decoded(cv2: Any, path: Path, number: int) -> np.ndarray:
             grey = _single(cv2, path)
     except cv2.error as fault:
         too_large = "MAX_IMAGE_PIXELS" in str(fault.err)
-        why = f"it is larger than {LARGEST:,} pixels" if too_large else fault.err
-        raise BadPicture(f"page {number + 1} of {path.name} cannot be read: {why}") from fault
+        why = Message("it is larger than {most} pixels", most=f"{LARGEST:,}") if too_large else fault.err
+        raise BadPicture(_UNREADABLE, page=number + 1, file=path.name, problem=why) from fault
     if grey is None:
-        raise BadPicture(f"page {number + 1} of {path.name} cannot be read: it is damaged")
+        raise BadPicture(_UNREADABLE, page=number + 1, file=path.name, problem=Message("it is damaged"))
     if min(grey.shape) < NARROWEST:
         high, wide = grey.shape
         raise BadPicture(
-            f"page {number + 1} of {path.name} is {wide} by {high} pixels: nothing can be read of so few"
+            "page {page} of {file} is {width} by {height} pixels: too few to read",
+            page=number + 1,
+            file=path.name,
+            width=wide,
+            height=high,
         )
     return np.asarray(grey)
 
@@ -214,12 +239,16 @@ def page_count(path: Path) -> int:
     count = _pages(path)
     most = MOST_PAGES_OF_TIFF if path.suffix.lower() in (".tif", ".tiff") else MOST_PAGES
     if count > most:
-        raise BadPicture(f"{path.name}: {beyond('a file', count, most, 'pages')}")
+        raise BadPicture(
+            "{place}: {problem}", place=path.name, problem=beyond("a file", count, most, "pages")
+        )
     size = path.stat().st_size
     if count > _FEW and size < count * LEAST_OF_PAGE:
         raise BadPicture(
-            f"{path.name} has {count:,} pages in {size:,} bytes: no scan is so small; scan the sheets, or name the file that "
-            "the scanner wrote"
+            "{file} has {count} pages in {size} bytes: no scan is so small; scan the sheets, or name the file that the scanner wrote",
+            file=path.name,
+            count=f"{count:,}",
+            size=f"{size:,}",
         )
     return count
 
@@ -250,7 +279,9 @@ def _opened(path: Path) -> Any:
     try:
         return pdfium.PdfDocument(path)
     except pdfium.PdfiumError as fault:
-        raise BadPicture(f"{path.name} is no PDF that can be read: {fault}") from fault
+        raise BadPicture(
+            "{file} is no PDF that can be read: {problem}", file=path.name, problem=fault
+        ) from fault
 
 
 def without_streaks(grey: np.ndarray) -> np.ndarray:

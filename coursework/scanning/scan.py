@@ -21,6 +21,7 @@ from coursework.course.course import Course
 from coursework.errors import BadInput
 from coursework.issuing.answer_papers import AnswerPaper
 from coursework.issuing.issued import COLUMNS, Issued
+from coursework.messages import Message, localised
 from coursework.scanning.digits import CONFIDENT
 from coursework.scanning.gathering import (
     FieldPosition,
@@ -30,7 +31,16 @@ from coursework.scanning.gathering import (
     ScannedAnswer,
     gather,
 )
-from coursework.scanning.page_reading import Desk, PageRange, Papers, count_pages, cut, read_pages, typed_page
+from coursework.scanning.page_reading import (
+    OTHER_SHEET,
+    Desk,
+    PageRange,
+    Papers,
+    count_pages,
+    cut,
+    read_pages,
+    typed_page,
+)
 from coursework.scanning.parts import Joins
 from coursework.scanning.queue import ScanQueue, write_queue
 from coursework.scanning.scan_store import (
@@ -80,7 +90,6 @@ _CHUNK = 4  #: pages that a process is sent at once
 _WORTH_PROCESSES = 8  #: pages; fewer are read before a process has started
 _WORTH_COUNTING = 60  #: files of which the pages are counted
 _AHEAD = 3  #: chunks a process that wait for it
-_OTHER = "a sheet of something else that was issued"
 
 
 @dataclass
@@ -300,7 +309,7 @@ def as_told(scanned_page: Scanned, papers: Papers, typed: Sequence[Typed], least
     statement."""
     page = scanned_page.page
     if page.what == ANSWERS and page.code not in papers:
-        return replace(scanned_page, page=PageScan(REFUSED, _OTHER, page.code))
+        return replace(scanned_page, page=PageScan(REFUSED, OTHER_SHEET, page.code))
     if page.what != LOST:
         return scanned_page
     answer = next((t.answer for t in typed if (t.exercise, t.part) == (PAGE, scanned_page.id)), None)
@@ -308,7 +317,7 @@ def as_told(scanned_page: Scanned, papers: Papers, typed: Sequence[Typed], least
         return scanned_page
     code, _, number = answer.strip().partition(" ")
     if not answer.strip():
-        return replace(scanned_page, page=PageScan(REFUSED, "set aside by hand: no answer page", ""))
+        return replace(scanned_page, page=PageScan(REFUSED, Message("set aside by hand: no answer page"), ""))
     if code in papers and number.isdecimal() and len(number) < 7 and 1 <= int(number) <= len(papers[code]):
         return replace(scanned_page, page=typed_page(papers, code, int(number), least))
     return scanned_page
@@ -399,7 +408,7 @@ def _write_pages(
         book.statements += page.what == "statement"
         book.blank += page.what == "blank"
         if page.what == REFUSED:
-            rejected.write({**source, "reason": page.reason, "picture": picture})
+            rejected.write({**source, "reason": localised(page.reason), "picture": picture})
             book.rejected.append(
                 (
                     f"{scanned_page.file.name} p. {scanned_page.number}"

@@ -16,6 +16,7 @@ from typing import Any, TypeVar, get_type_hints
 import numpy as np
 
 from coursework.errors import BadInput
+from coursework.messages import Message
 from coursework.system.json_files import read_json
 from coursework.system.limits import MOST_PAGES
 from coursework.system.tables import json_text
@@ -268,7 +269,7 @@ def scanned(out: Path, files: Iterable[ScannedFile]) -> Iterator[Scanned]:
         for number in range(1, file.pages + 1):
             name = page_id(file.digest, number)
             page = stored_page(out, name) or PageScan(
-                REFUSED, "what was read of it is gone: name its scan again", has_picture=False
+                REFUSED, Message("what was read of it is gone: name its scan again"), has_picture=False
             )
             yield Scanned(file, number, name, page, file.digest in met)
         met.add(file.digest)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from coursework.errors import BadInput
+from coursework.messages import Message, as_message
 from coursework.system.links import LEADS_OUT, LeadsOut, open_inside, walked
 from coursework.system.unzipping import ArchiveLimits, is_zip, unpack
 
@@ -57,7 +58,7 @@ def _of(path: Path, unpacked: Path) -> Iterator[Scan]:
     for link in refused:
         yield _refused(_text(link.relative_to(path).as_posix()), link, LEADS_OUT)
     if not files and not refused:
-        yield _refused(_text(path.name), path, "the folder holds no file")
+        yield _refused(_text(path.name), path, Message("the folder contains no file"))
 
 
 def _is_hidden(path: Path, below: Path) -> bool:
@@ -77,19 +78,37 @@ def _file(path: Path, name: str, unpacked: Path, folder: Path | None = None) -> 
             data.seek(0)
             digest = hashlib.file_digest(data, "sha256").hexdigest()[:_KEPT] if size <= MAX_BYTES else ""
     except OSError as fault:
-        why = LEADS_OUT if isinstance(fault, LeadsOut) else f"cannot be read: {fault.strerror}"
+        why = (
+            LEADS_OUT
+            if isinstance(fault, LeadsOut)
+            else Message("cannot be read: {problem}", problem=fault.strerror)
+        )
         yield _refused(name, path, why)
         return
     ending = path.suffix.lower()
     if not size:
-        yield _refused(name, path, "the file is empty")
+        yield _refused(name, path, Message("the file is empty"))
     elif not digest:
-        yield _refused(name, path, f"{size:,} bytes are too many for scans; the limit is {MAX_BYTES:,}")
+        yield _refused(
+            name,
+            path,
+            Message(
+                "{size} bytes are too many for scans; the limit is {most}",
+                size=f"{size:,}",
+                most=f"{MAX_BYTES:,}",
+            ),
+        )
     elif ending == ".zip" and is_zip(head):
         yield from _archive(path, name, digest, unpacked)
     elif ending not in ENDINGS:
         yield _refused(
-            name, path, f"scans come as {', '.join(ENDINGS)} or .zip; found {ending or 'no ending'}"
+            name,
+            path,
+            Message(
+                "scans are {endings} or .zip files; found {found}",
+                endings=", ".join(ENDINGS),
+                found=ending or Message("no ending"),
+            ),
         )
     else:
         yield Scan(name, digest, path)
@@ -107,11 +126,11 @@ def _archive(path: Path, name: str, digest: str, unpacked: Path) -> Iterator[Sca
     try:
         unpack(path, folder, _UNZIPPED)
     except BadInput as fault:
-        yield _refused(name, path, str(fault))
+        yield _refused(name, path, as_message(fault))
         return
     for file in sorted(p for p in folder.rglob("*") if p.is_file() and not _is_hidden(p, folder)):
         inside = f"{name}/{_text(file.relative_to(folder).as_posix())}"
         if file.suffix.lower() == ".zip":
-            yield _refused(inside, file, "an archive in an archive is not opened")
+            yield _refused(inside, file, Message("an archive in an archive is not opened"))
         else:
             yield from _file(file, inside, unpacked)

@@ -143,7 +143,7 @@ def test_a_notebook_that_was_nobodys_is_marked_by_the_name_in_it_or_its_files(cl
         "grade", back, "--issued", out / "issued.json", "--out", tmp_path / "m", "--no-feedback"
     )
     assert status == 0
-    assert "file's name stands for it" in err
+    assert "name of its file is taken" in err
     assert [s["student"] for s in table(tmp_path / "m" / "summary.csv")] == ["Ann", "returned-1"]
 
 

@@ -97,7 +97,7 @@ def test_the_name_written_in_one_cell_is_that_of_all(tmp_path):
     cells = [cell('{"x": "1,5"}', SHEETS[0]), cell('{"class": "2"}', SHEETS[1])]
     rows = read(tmp_path, cells, student="")
     assert {r.student for r in rows} == {"ada"}
-    assert all("its file's name stands for it" in r.warning for r in rows)
+    assert all("the name of its file is taken" in r.warning for r in rows)
 
 
 @pytest.mark.parametrize("sheets", [[], ["x"], [{"exercise": None}], [{}]])

@@ -2,6 +2,7 @@
 
 import ast
 import pickle
+import re
 import string
 import tomllib
 from collections import Counter
@@ -10,9 +11,22 @@ from pathlib import Path
 import pytest
 
 import coursework
+from coursework.cli.options import UNLESS_TOLD
 from coursework.errors import BadInput, UnknownName, counted, unknown
+from coursework.gradebook.book import rejected_rows
+from coursework.gradebook.rows import Rejected
+from coursework.issuing.formats import ADDITIONS
 from coursework.language.words import languages
-from coursework.messages import CATALOGUES, Message, as_message, localised, messages_in, translations
+from coursework.messages import (
+    CATALOGUES,
+    Message,
+    as_message,
+    joined_notes,
+    localised,
+    messages_in,
+    separate_notes,
+    translations,
+)
 
 PACKAGE = Path(coursework.__file__).resolve().parent
 
@@ -25,6 +39,7 @@ FOR_USERS = {
     "NotAtHand",
     "NotServed",
     "NoSolution",
+    "BadPicture",
     "say",
     "warn",
 }
@@ -35,7 +50,8 @@ def calls():
         if path.name in ("messages.py", "errors.py"):
             continue
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            if isinstance(node, ast.Call) and getattr(node.func, "id", "") in FOR_USERS and node.args:
+            name = getattr(node.func, "id", "") if isinstance(node, ast.Call) else ""
+            if (name in FOR_USERS or (name == "WrongValue" and path.parent.name == "cli")) and node.args:
                 first = node.args[0]
                 for template in (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,):
                     yield f"{path.relative_to(PACKAGE)}:{template.lineno}", template, node.keywords
@@ -65,6 +81,59 @@ def test_each_message_has_a_translation_with_the_same_places(lang):
         return None
 
     found = {place: why for place, *call in calls() if (why := fault(*call))}
+    assert found == {}
+
+
+#: Rooms of which every sentence is read by an instructor; the pages of the site are templates.
+READ_BY_INSTRUCTORS = ("cli", "gradebook", "scanning", "issuing")
+
+#: Words of sentences, not of names, patterns and keys.
+ENGLISH = re.compile(
+    r"\b(?:the|is|of|has|have|are|no|not|cannot|with|without|for|from|should|must|to|and|a|in|on|by)\b"
+)
+
+#: Sentences that only a programmer reads, and those that are part of the help of a command.
+NOT_MESSAGES = {
+    "only a header that has them comes here",
+    "id of a part",
+    "handed in by",
+    "a number of very many digits",
+}
+
+
+def sentences(tree):
+    """Yield the English sentences in the code of a file that are neither documentation nor help of a command."""
+    skipped = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            skipped.add(id(node.value))
+        elif isinstance(node, ast.keyword) and node.arg in ("help", "epilog"):
+            skipped.update(map(id, ast.walk(node.value)))
+        elif isinstance(node, ast.JoinedStr):
+            skipped.update(map(id, node.values))
+    for node in ast.walk(tree):
+        if id(node) in skipped:
+            continue
+        if isinstance(node, ast.JoinedStr):
+            text = "".join(piece.value if isinstance(piece, ast.Constant) else "{}" for piece in node.values)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            text = node.value
+        else:
+            continue
+        if len(ENGLISH.findall(text)) > 1:
+            yield node.lineno, text
+
+
+@pytest.mark.parametrize("lang", [lang for lang in languages() if lang != "en"])
+def test_each_sentence_that_an_instructor_reads_stands_in_the_catalogue(lang):
+    known = {*translations(lang), *NOT_MESSAGES, *ADDITIONS.values(), UNLESS_TOLD}
+    found = {
+        f"{path.relative_to(PACKAGE)}:{line}": text
+        for room in READ_BY_INSTRUCTORS
+        for path in sorted((PACKAGE / room).rglob("*.py"))
+        for line, text in sentences(ast.parse(path.read_text("utf-8")))
+        if text not in known
+    }
     assert found == {}
 
 
@@ -98,3 +167,24 @@ def test_values_that_are_messages_are_translated_with_the_whole():
 def test_a_text_without_values_keeps_its_braces():
     assert str(BadInput("write {a} as it is")) == "write {a} as it is"
     assert Message("100 % {") == "100 % {"
+
+
+def test_rejected_answers_state_their_place_and_reason_in_the_readers_language():
+    rows = [
+        Rejected("class.csv, line 12", Message("the file is empty")),
+        Rejected("marks.parquet, row 3", "why"),
+    ]
+    with messages_in("fr"):
+        places = [row["source"] for row in rejected_rows(rows)]
+    assert places == ["class.csv, ligne 12", "marks.parquet, enregistrement 3"]
+    assert [row["source"] for row in rejected_rows(rows)] == ["class.csv, line 12", "marks.parquet, row 3"]
+
+
+def test_notes_put_together_are_translated_one_by_one_and_come_apart_again():
+    notes = Message("it is damaged"), Message("{file}, line {line}", file="a.csv", line=3)
+    both = joined_notes(["", *notes])
+    assert both == "it is damaged; a.csv, line 3"
+    assert localised(both, "fr") == "elle est endommagée; a.csv, ligne 3"
+    assert separate_notes(both) == notes
+    assert separate_notes(notes[1]) == (notes[1],)
+    assert joined_notes([]) == ""
