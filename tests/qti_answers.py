@@ -11,7 +11,7 @@ from coursework.platforms._qti_item import choice_name, identifier
 from coursework.platforms.items import Item, item
 from coursework.platforms.losses import losses
 from coursework.platforms.platform import platform_of
-from coursework.platforms.posed import CHOICE, CHOICES, NUMBER, Posed, marked_alone
+from coursework.platforms.posed import CHOICE, CHOICES, NUMBER, Posed, mark_alone
 
 NUMERAL = re.compile(r"\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*")
 _NONSENSE = ("abc", "nan", "inf", "1/2", "12 or 13", "--3", "1 234.5", "\u22123", "0x10", "x = 4", "9" * 400)
@@ -84,7 +84,7 @@ def _numbers(variant, posed: Posed, part) -> Iterator[tuple[str, str]]:
 
 def ours(variant, part, answer: Answer):
     """Our mark, of a sheet that is blank but for this answer, and its share of the points."""
-    made = marked_alone(variant, part, answer.typed)
+    made = mark_alone(variant, part, answer.typed)
     return made, made.points / made.out_of
 
 

@@ -193,7 +193,7 @@ class Kind(ABC):
 
     def size(self, reference: Any) -> float:
         """Return the size that a relative tolerance is a share of."""
-        return float(np.linalg.norm(reference))
+        return abs(reference) if isinstance(reference, float) else float(np.linalg.norm(reference))
 
     def is_trivial(self, value: Any) -> bool:
         """Return whether nothing follows from such a value."""

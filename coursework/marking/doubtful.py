@@ -51,8 +51,9 @@ def _settled(variant: Variant, part: Part, reading: Reading, answers: Mapping[st
     if gap <= 1:
         return reading
     quotient = _QUOTIENT.fullmatch(text)
-    is_opposite = has_sense(text) and any(
-        part.sort.distance(part, -v, variant.key.reference[part.quantity]) <= 1 for v in reading.values
+    reference = variant.key.reference[part.quantity]
+    is_opposite = any(part.sort.distance(part, -v, reference) <= 1 for v in reading.values) and has_sense(
+        text
     )
     if (
         is_opposite

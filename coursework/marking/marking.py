@@ -126,6 +126,14 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     return SheetMarks(marks)
 
 
+def mark_alone(variant: Variant, part: Part, answer: Any) -> Mark:
+    """Return the mark of an answer on an otherwise empty sheet, to a part that neither a judge nor the order of others
+    decides; the other parts are not read."""
+    reading = settled(variant, {part.id: read(variant, part, answer)}, {part.id: answer})[part.id]
+    nearest = nearest_reading(part, reading, variant.key, part)
+    return _mark_part(variant, variant.key, part, reading, part, nearest, EarlierAnswers())
+
+
 def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dict[str, str]:
     """For each part id, the part whose reference it is judged by.
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 from coursework.course.answer_key import Key
 from coursework.course.variant import Variant
@@ -16,8 +15,7 @@ from coursework.kinds.choices import cases_of
 from coursework.kinds.ticks import cost_of_wrong
 from coursework.language.numbers import plain, settled, significant
 from coursework.marking.diagnosis import CLOSE
-from coursework.marking.mark import Mark
-from coursework.marking.marking import mark
+from coursework.marking.marking import mark_alone
 from coursework.marking.usual import NEAR
 from coursework.model import Part
 from coursework.sheets.sheet import Question
@@ -268,10 +266,10 @@ def _wrong_interval(
     text = significant(value, digits) if not part.is_exact else plain(value)
     if len(text.partition(".")[2]) == 3:
         text += "0"  # three decimals could be thousands
-    marked = marked_alone(variant, part, text)
+    marked = mark_alone(variant, part, text)
     if marked.verdict == "correct" or not marked.verdict.startswith(("mistake:", "slip:")):
         return None
-    if value and abs(value) <= half and marked_alone(variant, part, "0").verdict != marked.verdict:
+    if value and abs(value) <= half and mark_alone(variant, part, "0").verdict != marked.verdict:
         return None  # a nought earns nothing, and an interval has no hole
     return Interval(
         value - half, value + half, value, marked.points / marked.out_of, marked.says, marked.verdict
@@ -289,11 +287,6 @@ def _same(interval: Interval, other: Interval) -> bool:
     )
 
 
-def marked_alone(variant: Variant, part: Part, answer: Any) -> Mark:
-    """Return the mark of an answer on an otherwise empty sheet."""
-    return mark(variant, {part.id: answer})[part.id]
-
-
 # ------------------------------------------------------------------------- choices
 
 
@@ -306,6 +299,6 @@ def _options(variant: Variant, key: Key, question: Question, part: Part) -> Iter
             share = 1 / len(right) if case in right else -cost_of_wrong(len(right), len(question.choices))
             yield Option(case, letter, label, share)
             continue
-        marked = marked_alone(variant, part, case)
+        marked = mark_alone(variant, part, case)
         message = "" if marked.verdict == "correct" else marked.says
         yield Option(case, letter, label, marked.points / marked.out_of, message)

@@ -22,7 +22,7 @@ from coursework.platforms.losses import losses
 from coursework.platforms.moodle import PLATFORM, quiz
 from coursework.platforms.pieces import PagePieces
 from coursework.platforms.pools import of_exercises
-from coursework.platforms.posed import CHOICES, COLLECTED, marked_alone
+from coursework.platforms.posed import CHOICES, COLLECTED, mark_alone
 
 pytestmark = pytest.mark.skipif(not MOODLE, reason="COURSEWORK_MOODLE names no folder of a Moodle's code")
 
@@ -128,7 +128,7 @@ def compared(one, lang):
     attempts = [{"id": id, "data": {place: given.answer}} for id, place, *_, given in asked]
     made = ask("answer", lang=lang, attempts=attempts)
     for (_, place, posed, part, variant, given), theirs in zip(asked, made, strict=True):
-        ours = marked_alone(variant, part, _as_ours(posed, given.answer))
+        ours = mark_alone(variant, part, _as_ours(posed, given.answer))
         yield posed, part, given, theirs["shares"][str(place)] or 0.0, ours.points / ours.out_of, ours.verdict
 
 

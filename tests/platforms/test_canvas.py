@@ -13,7 +13,7 @@ from coursework.api import open_course
 from coursework.authoring.scaffold import new_course
 from coursework.platforms.platform import platform_of
 from coursework.platforms.pools import of_exercises
-from coursework.platforms.posed import marked_alone
+from coursework.platforms.posed import mark_alone
 from coursework.sheets.handout import handout
 
 LANGS = ("en", "fr")
@@ -77,7 +77,7 @@ def test_numbers_are_taken_as_we_take_them(drawn, lang):
             typed = f"{value:.4f}" if half else f"{round(value)}"
             if half and abs(abs(off) - 1) * half < 2e-4:
                 continue
-            ours = marked_alone(variant, part, typed).verdict == "correct"
+            ours = mark_alone(variant, part, typed).verdict == "correct"
             assert takes_number(one, typed) == ours, (one["label"], typed)
             tried += 1
         if part.sort.turn:
@@ -98,7 +98,7 @@ def test_choices_earn_as_we_pay_them_and_say_what_we_say(drawn, lang):
         cases = [case for case, _ in asked.choices]
         assert len(one["offered"]) == len(cases)
         for ident, case in zip(one["offered"], cases, strict=True):
-            mark = marked_alone(variant, part, case)
+            mark = mark_alone(variant, part, case)
             assert (share_of_chosen(one, [ident]) == 1) == (mark.points == mark.out_of)
             assert letters[case] in one["offered"][ident]
             if mark.verdict != "correct" and mark.says:
@@ -220,10 +220,10 @@ def test_numbers_too_small_for_the_page_are_asked_in_a_smaller_unit_and_that_is_
         reference, half = variant.key.reference[part.quantity], variant.key.half_width(part)
         for off in (0, 0.9, -0.9, 1.2, -1.2):
             value = reference + off * half
-            ours = marked_alone(variant, part, f"{value:.9g}").verdict == "correct"
+            ours = mark_alone(variant, part, f"{value:.9g}").verdict == "correct"
             assert takes_number(one, value * 10**decades) == ours
-            assert marked_alone(variant, part, f"{value * 10**decades:.9g} {unit}").verdict == (
-                "correct" if ours else marked_alone(variant, part, f"{value:.9g}").verdict
+            assert mark_alone(variant, part, f"{value * 10**decades:.9g} {unit}").verdict == (
+                "correct" if ours else mark_alone(variant, part, f"{value:.9g}").verdict
             )
     told = {loss.part: loss.instead for loss in platform_of("canvas").losses(bolts)}
     assert set(told) == set(powers)

@@ -16,7 +16,7 @@ from coursework.marking.marking import mark
 from coursework.platforms._maxima import Unprintable, printed, text
 from coursework.platforms.platform import platform_of
 from coursework.platforms.pools import of_exercises
-from coursework.platforms.posed import marked_alone
+from coursework.platforms.posed import mark_alone
 
 LANGS = ("en", "fr")
 EXERCISES = ("slotted_mechanism", "four_bar_positions", "vocabulary", "mobility", "slider_crank")
@@ -85,12 +85,12 @@ def test_numbers_are_judged_as_we_judge_them_with_their_mistakes(drawn, read):
                 -reference,
             }:
                 value = value if half else round(value)
-                ours = marked_alone(variant, part, repr(value))
+                ours = mark_alone(variant, part, repr(value))
                 theirs, _ = score(question, f"prt{place}", {box: value})
                 assert (theirs == 1) == (ours.verdict == "correct"), (variant.exercise.name, part.id, value)
                 tried += 1
             for name, wrong in variant.key.wrong_ways(part.quantity):
-                ours = marked_alone(variant, part, repr(wrong)) if isinstance(wrong, (int, float)) else None
+                ours = mark_alone(variant, part, repr(wrong)) if isinstance(wrong, (int, float)) else None
                 if ours is not None and ours.verdict == f"mistake:{name}":
                     theirs, node = score(question, f"prt{place}", {box: wrong})
                     assert theirs == pytest.approx(ours.points / ours.out_of), (part.id, name)
@@ -159,7 +159,7 @@ def test_choices_earn_and_say_what_ours_do(drawn, read, lang):
     for question, variant, judged in asked(drawn, read, lang):
         for place, part in judged.items():
             for case, letter in variant.letters(part).items() if part.choices else ():
-                ours = marked_alone(variant, part, case)
+                ours = mark_alone(variant, part, case)
                 theirs, node = score(question, f"prt{place}", {f"ans{place}": letter})
                 assert theirs == pytest.approx(ours.points / ours.out_of)
                 assert bool(node and node["says"]) == (ours.verdict != "correct" and bool(ours.says))
