@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from functools import cache
 from typing import Any
@@ -254,23 +254,41 @@ def issued_content(
     if about is None:
         raise BadInput("no assignment number {number} in the database", number=number)
     items: list[dict[str, Any]] = []
-    columns = about.columns
     if person_id is not None:
         items = _items_of(connection, number, person_id)
-        if items and not about.is_pool:
-            theirs = {item["student"] for item in items}
-            columns = {name: student_columns for name, student_columns in columns.items() if name in theirs}
     elif student is not None:
         items = _items(connection, number, dealt.c.student == student)
+    is_of_person = person_id is not None and bool(items)
+    return _content(about, items or _items(connection, number), is_of_person, about.secret if secret else "")
+
+
+def _content(
+    about: Any, items: list[dict[str, Any]], is_of_person: bool, secret: str | None = ""
+) -> dict[str, Any]:
+    """Return the content of ``issued.json`` with some items; with the columns of their students if they are of one
+    person."""
+    columns = about.columns
+    if is_of_person and not about.is_pool:
+        names = dict.fromkeys(item["student"] for item in items)
+        columns = {name: columns[name] for name in names if name in columns}
     return {
         "format": ISSUED_FORMAT,
         "roster": about.has_roster,
         **({"pool": True} if about.is_pool else {}),
         **({} if about.stated is None else {"assignment": about.stated}),
-        **({SECRET: about.secret} if secret and about.secret else {}),
+        **({SECRET: secret} if secret else {}),
         **({"students": columns} if columns else {}),
-        "issued": items or _items(connection, number),
+        "issued": items,
     }
+
+
+def contents_by_person(connection: Connection, number: int) -> dict[int, dict[str, Any]]:
+    """Return the :func:`issued_content` of each person to whom a paper of an assignment was issued."""
+    about = connection.execute(select(assignment).where(assignment.c.id == number)).one()
+    items: dict[int, list[dict[str, Any]]] = {}
+    for person, item in _class_items(connection, number):
+        items.setdefault(person, []).append(item)
+    return {person: _content(about, theirs, True) for person, theirs in items.items()}
 
 
 def sheet_content(
@@ -298,14 +316,18 @@ def _items_of(connection: Connection, number: int, person_id: int) -> list[dict[
 
 
 def _items(connection: Connection, number: int, *conditions: ColumnElement[bool]) -> list[dict[str, Any]]:
-    given = _dealt(number).where(*conditions)
-    if conditions:  # few rows: one query
-        return [
-            _issued_item(row, row.record) for row in connection.execute(given.add_columns(variant.c.record))
-        ]
+    if not conditions:
+        return [item for _, item in _class_items(connection, number)]
+    given = _dealt(number).where(*conditions)  # few rows: one query
+    return [_issued_item(row, row.record) for row in connection.execute(given.add_columns(variant.c.record))]
+
+
+def _class_items(connection: Connection, number: int) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Yield each issued item with its person's id, if there is one."""
     query = select(variant.c.id, variant.c.record).where(variant.c.assignment_id == number)
     records = {row.id: row.record for row in connection.execute(query)}
-    return [_issued_item(row, records[row.variant_id]) for row in connection.execute(given)]
+    for row in connection.execute(_dealt(number)):
+        yield row.person_id, _issued_item(row, records[row.variant_id])
 
 
 def _issued_item(row: Any, record: Mapping[str, Any]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, bindparam, func, insert, select, update
+from sqlalchemy import BindParameter, Connection, Select, bindparam, func, insert, select, update
 
 from coursework.database.tables import assignment, dealt, delivery, extension, variant
 
@@ -203,6 +203,11 @@ class Publication:
             date for date in (*own_dates, *(more.closes for more in extensions)) if date is not None
         )
 
+    def passed(self, extensions: Sequence[Extension], clock: datetime) -> datetime | None:
+        """Return the last date that has passed; None if there is none, or if it is recorded."""
+        last = max((date for date in self.dates(extensions) if date < clock), default=None)
+        return last if last is None or self.reached is None or last >= self.reached else None
+
 
 def last_end(publication: Publication, extensions: Sequence[Extension]) -> datetime | None:
     """Return the time after which nobody can submit any more; None if there is none."""
@@ -263,11 +268,34 @@ def extend(connection: Connection, number: int, person: int, more: Extension) ->
 
 def extensions(connection: Connection, number: int) -> dict[int, Extension]:
     """Return the current extension of each person."""
-    query = select(extension).where(extension.c.assignment_id == number).order_by(extension.c.id)
-    return {
-        row.person_id: Extension(row.closes, row.tries, row.reason, row.by, row.made)
-        for row in connection.execute(query)
-    }
+    return extensions_by_assignment(connection, [number]).get(number, {})
+
+
+def extensions_by_assignment(
+    connection: Connection, numbers: Sequence[int]
+) -> dict[int, dict[int, Extension]]:
+    """Return the current extension of each person, by assignment."""
+    more: dict[int, dict[int, Extension]] = {}
+    for row in connection.execute(_extensions_query(), {"numbers": numbers}):
+        extended = Extension(row.closes, row.tries, row.reason, row.by, row.made)
+        more.setdefault(row.assignment_id, {})[row.person_id] = extended
+    return more
+
+
+@cache
+def _extensions_query() -> Select[Any]:
+    """Return the query of :func:`extensions_by_assignment`, cached."""
+    numbers: BindParameter[Any] = bindparam("numbers", expanding=True)
+    return select(extension).where(extension.c.assignment_id.in_(numbers)).order_by(extension.c.id)
+
+
+def passing(connection: Connection, numbers: Sequence[int], clock: datetime) -> list[int]:
+    """Return the assignments with a date that has passed and is not recorded."""
+    query = select(assignment.c.id, assignment.c.published).where(assignment.c.id.in_(numbers))
+    rows = connection.execute(query.where(assignment.c.published.is_not(None))).all()
+    more = extensions_by_assignment(connection, [row.id for row in rows])
+    publications = ((row.id, Publication.of(row.published)) for row in rows)
+    return [number for number, one in publications if one.passed([*more.get(number, {}).values()], clock)]
 
 
 def record_passed_date(connection: Connection, number: int, clock: datetime) -> bool:
@@ -278,13 +306,10 @@ def record_passed_date(connection: Connection, number: int, clock: datetime) -> 
     if about is None:
         return False
     current = Publication.of(about)
-    passed = [date for date in current.dates(list(extensions(connection, number).values())) if date < clock]
-    if not passed or (current.reached is not None and passed[-1] < current.reached):
+    passed = current.passed([*extensions(connection, number).values()], clock)
+    if passed is None:
         return False
-    just_after = passed[-1] + timedelta(microseconds=1)
-    if current.reached is not None and just_after <= current.reached:
-        return False
-    publish(connection, number, replace(current, reached=just_after))
+    publish(connection, number, replace(current, reached=passed + timedelta(microseconds=1)))
     return True
 
 

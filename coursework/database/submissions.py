@@ -15,17 +15,17 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import (
     BindParameter,
+    Column,
+    ColumnElement,
     CompoundSelect,
     Connection,
     Select,
     bindparam,
-    distinct,
     func,
     insert,
     literal_column,
     null,
     select,
-    tuple_,
     update,
 )
 
@@ -203,19 +203,31 @@ def submissions_of(
     connection: Connection, assignment_id: int, person_id: int | None = None
 ) -> list[Submission]:
     """Return the submissions for an assignment, in order; of one person alone, if given."""
-    parameters = (
-        {"assignment": assignment_id}
-        if person_id is None
-        else {"assignment": assignment_id, "person": person_id}
-    )
-    rows = connection.execute(_submissions_query(person_id is not None), parameters)
-    return [_submission(row, is_new=False) for row in rows]
+    return submissions_by_assignment(connection, [assignment_id], person_id).get(assignment_id, [])
+
+
+def submissions_by_assignment(
+    connection: Connection, assignment_ids: Sequence[int], person_id: int | None = None
+) -> dict[int, list[Submission]]:
+    """Return the submissions for each assignment that has some, in order; of one person alone, if given."""
+    parameters: dict[str, Any] = {"assignments": assignment_ids}
+    if person_id is not None:
+        parameters["person"] = person_id
+    done: dict[int, list[Submission]] = {}
+    for row in connection.execute(_submissions_query(person_id is not None), parameters):
+        done.setdefault(row.assignment_id, []).append(_submission(row, is_new=False))
+    return done
+
+
+def _of_assignments(column: Column[int]) -> ColumnElement[bool]:
+    """Return the condition that a column is one of the parameter ``assignments``."""
+    return column.in_(bindparam("assignments", expanding=True))
 
 
 @cache
 def _submissions_query(is_of_one: bool) -> Select[Any]:
-    """Return the query of :func:`submissions_of`, cached since many requests execute it."""
-    query = select(delivery).where(delivery.c.assignment_id == bindparam("assignment"))
+    """Return the query of :func:`submissions_by_assignment`, cached since many requests execute it."""
+    query = select(delivery).where(_of_assignments(delivery.c.assignment_id))
     if is_of_one:
         query = query.where(delivery.c.person_id == bindparam("person"))
     return query.order_by(delivery.c.id)
@@ -237,30 +249,37 @@ def _answers_query() -> Select[Any]:
 @cache
 def _papers_query() -> Select[Any]:
     """Return the query of a person's papers, cached."""
-    theirs = variant.c.assignment_id == bindparam("assignment"), dealt.c.person_id == bindparam("person")
-    return select(dealt.c.sitting, variant.c.exercise, variant.c.seed).join(variant).where(*theirs)
+    theirs = _of_assignments(variant.c.assignment_id), dealt.c.person_id == bindparam("person")
+    columns = variant.c.assignment_id, dealt.c.sitting, variant.c.exercise, variant.c.seed
+    return select(*columns).select_from(dealt.join(variant)).where(*theirs)
 
 
 def attempts_used(
-    connection: Connection, assignment_id: int, person_id: int, done: Sequence[Submission]
-) -> int:
-    """Return the number of attempts that a person has used for the current paper; a make-up is another paper.
+    connection: Connection, person_id: int, done: Mapping[int, Sequence[Submission]]
+) -> dict[int, int]:
+    """Return the number of attempts that a person has used for the current paper of each assignment; a
+    make-up is another paper.
 
-    ``done`` are the person's :func:`submissions_of`.
+    ``done`` are the person's :func:`submissions_by_assignment`.
     """
-    if not done:
-        return 0
-    parameters = {"assignment": assignment_id, "person": person_id}
-    issued = [tuple(row) for row in connection.execute(_papers_query(), parameters)]
-    last = max((sitting for sitting, *_ in issued), default=1)
-    tries = [submitted.id for submitted in done if submitted.number > 0]
-    if last == 1:
-        return len(tries)
-    sheets = [(exercise, seed) for sitting, exercise, seed in issued if sitting == last]
-    of_last = answer.c.delivery_id.in_(tries), tuple_(answer.c.exercise, answer.c.seed).in_(sheets)
-    return int(
-        connection.execute(select(func.count(distinct(answer.c.delivery_id))).where(*of_last)).scalar_one()
-    )
+    tries = {number: [one.id for one in several if one.number > 0] for number, several in done.items()}
+    used = {number: len(ids) for number, ids in tries.items()}
+    if not any(tries.values()):
+        return used
+    papers: dict[int, dict[int, set[tuple[str, str]]]] = {}  #: by assignment and sitting
+    parameters = {"assignments": list(done), "person": person_id}
+    for number, sitting, *sheet in connection.execute(_papers_query(), parameters):
+        papers.setdefault(number, {}).setdefault(sitting, set()).add(tuple(sheet))
+    last = {number: sheets[max(sheets)] for number, sheets in papers.items() if max(sheets) > 1}
+    if last:
+        of_them = answer.c.delivery_id.in_([one for number in last for one in tries[number]])
+        query = select(answer.c.delivery_id, answer.c.exercise, answer.c.seed).where(of_them).distinct()
+        sheets_of: dict[int, set[tuple[str, str]]] = {}
+        for submitted, *sheet in connection.execute(query):
+            sheets_of.setdefault(submitted, set()).add(tuple(sheet))
+        for number, sheets in last.items():
+            used[number] = sum(not sheets.isdisjoint(sheets_of.get(one, ())) for one in tries[number])
+    return used
 
 
 def rows_of(

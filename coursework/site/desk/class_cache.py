@@ -71,7 +71,7 @@ def class_now(site: Site, assignment_id: int) -> ClassState:
     HTTPException
         There is no such assignment.
     """
-    pass_dates(site, assignment_id, site.clock())
+    pass_dates(site, site.clock(), assignment_id)
     now = _current_class(site, assignment_id)
     if now.is_marked:
         return now

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Sequence
 from sqlalchemy import Connection
 from starlette.responses import Response
 
+from coursework.database.assignments import contents_by_person
 from coursework.database.permissions import Permission
-from coursework.database.publication import student_assignments
+from coursework.database.publication import StudentAssignment
 from coursework.errors import BadInput
 from coursework.issuing.booklets import parted
 from coursework.issuing.students import file_stems
@@ -17,7 +18,7 @@ from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.requests import Request, Route
 from coursework.site.frame.responses import Download
 from coursework.site.papers.student_paper import StudentPaper, student_paper
-from coursework.site.publication.publishing import assignment_here, holders
+from coursework.site.publication.publishing import ListedAssignment, assignment_here, holders
 from coursework.system.zips import zipped
 
 
@@ -32,7 +33,7 @@ def sheets(request: Request) -> Response:
     """
     with request.site.store.reading() as connection:
         assignment = assignment_here(request, connection)
-        papers = _papers(request, connection, assignment.id)
+        papers = _papers(request, connection, assignment)
     if not papers:
         raise BadInput(request.words["publishing"]["print_none"])
     stem = "-".join(file_stems([assignment.name])) or "class"
@@ -43,16 +44,17 @@ def sheets(request: Request) -> Response:
     return Download(zipped(files), "application/zip", f"{stem}.zip")
 
 
-def _papers(request: Request, connection: Connection, number: int) -> list[StudentPaper]:
+def _papers(request: Request, connection: Connection, listed: ListedAssignment) -> list[StudentPaper]:
     """Return the selected papers in order of issue, each in its own language."""
     ticked = set(request.form.texts.get("who", ())) if request.is_post else set()
-    papers = []
-    for holder in holders(connection, number):
+    contents, papers = contents_by_person(connection, listed.id), []
+    for holder in holders(connection, listed.id):
         if ticked and str(holder.person) not in ticked:
             continue
-        [assignment] = student_assignments(connection, holder.person, number)[:1]
-        lang = holder.lang or request.lang
-        papers.append(student_paper(connection, request.site.course, assignment, holder.person, lang))
+        their_file = listed.stated, holder.student, listed.publication, None, listed.definition or {}
+        assignment, content = StudentAssignment(listed.id, listed.name, *their_file), contents[holder.person]
+        lang, course = holder.lang or request.lang, request.site.course
+        papers.append(student_paper(connection, course, assignment, holder.person, lang, content=content))
     return papers
 
 

@@ -161,7 +161,7 @@ class ScoreWatch:
         return sum(self._look(number, launches) for number, launches in by_assignment.items())
 
     def _look(self, number: int, launches: Sequence[tuple[int, Launch]]) -> int:
-        pass_dates(self._site, number, self._site.clock())
+        pass_dates(self._site, self._site.clock(), number)
         key, state = f"lti assignment {number}", f"{self._state_text(number)} {len(launches)}"
         with self._site.store.reading() as connection:
             if value_of(connection, key) == state:

@@ -11,11 +11,11 @@ from sqlalchemy import Connection
 from coursework.database.publication import (
     Phase,
     StudentAssignment,
-    extensions,
+    extensions_by_assignment,
     last_end,
     student_assignments,
 )
-from coursework.database.submissions import Submission, attempts_used, submissions_of
+from coursework.database.submissions import Submission, attempts_used, submissions_by_assignment
 from coursework.issuing.assignment import text_in
 from coursework.language.numbers import localise, plain
 from coursework.site.frame.requests import HTTPException, Request
@@ -86,19 +86,29 @@ def state_of(
     request: Request, assignment: StudentAssignment, connection: Connection, person: int = 0
 ) -> AssignmentState:
     """Return the state of an assignment for a person, by default the current user."""
-    assert assignment.publication is not None
-    person = person or request.user.id
-    done = submissions_of(connection, assignment.id, person)
-    ends = last_end(assignment.publication, list(extensions(connection, assignment.id).values()))
-    used = attempts_used(connection, assignment.id, person, done)
-    now = assignment.publication.counted(request.received_at, request.site.clock())
-    return AssignmentState(assignment, request.lang, now, done, ends, used)
+    return _states(request, [assignment], connection, person or request.user.id)[0]
+
+
+def _states(
+    request: Request, assignments: Sequence[StudentAssignment], connection: Connection, person: int
+) -> list[AssignmentState]:
+    numbers, states = [assignment.id for assignment in assignments], []
+    done = submissions_by_assignment(connection, numbers, person)
+    more, used = extensions_by_assignment(connection, numbers), attempts_used(connection, person, done)
+    for assignment in assignments:
+        assert assignment.publication is not None
+        number, now = assignment.id, assignment.publication.counted(request.received_at, request.site.clock())
+        ends = last_end(assignment.publication, [*more.get(number, {}).values()])
+        theirs = done.get(number, []), ends, used.get(number, 0)
+        states.append(AssignmentState(assignment, request.lang, now, *theirs))
+    return states
 
 
 def published_states(request: Request, connection: Connection) -> list[AssignmentState]:
     """Return the published assignments of the current user."""
     assignments = student_assignments(connection, request.user.id)
-    return [state_of(request, item, connection) for item in assignments if item.publication is not None]
+    published = [item for item in assignments if item.publication is not None]
+    return _states(request, published, connection, request.user.id)
 
 
 def to_hand_in(request: Request) -> list[AssignmentState]:
@@ -124,7 +134,7 @@ def user_assignment(request: Request, connection: Connection) -> StudentAssignme
 
 def state_and_paper(request: Request) -> tuple[AssignmentState, StudentPaper]:
     """Return the state of the assignment and the paper; refuse it before it opens."""
-    pass_dates(request.site, int(request.path_params["number"]), request.received_at)
+    pass_dates(request.site, request.received_at, int(request.path_params["number"]))
     with request.site.store.reading() as connection:
         assignment, paper = assignment_and_paper(request, connection, heads=True)
         return state_of(request, assignment, connection), paper

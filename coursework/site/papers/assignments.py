@@ -13,7 +13,7 @@ from coursework.database.drafts import DraftBox, drafts
 from coursework.database.people import lock_person
 from coursework.database.permissions import Permission
 from coursework.database.prepared import prepared_pieces
-from coursework.database.publication import Phase, student_assignments
+from coursework.database.publication import Phase
 from coursework.database.submissions import Submission
 from coursework.errors import BadInput
 from coursework.gradebook.by_student import as_students, for_student
@@ -52,15 +52,10 @@ _ORDER = (Phase.OPEN, Phase.LATE, Phase.TO_COME, Phase.CLOSED)
 def list_page(request: Request) -> Response:
     """Return the page of the person's assignments, by phase."""
     with request.site.store.reading() as connection:
-        numbers = [
-            item.id
-            for item in student_assignments(connection, request.user.id)
-            if item.publication is not None
-        ]
-    for number in numbers:
-        pass_dates(request.site, number, request.received_at)
-    with request.site.store.reading() as connection:
         states = published_states(request, connection)
+    if pass_dates(request.site, request.received_at, *(item.assignment.id for item in states)):
+        with request.site.store.reading() as connection:
+            states = published_states(request, connection)
     groups = [(phase.value, [item for item in states if item.phase is phase]) for phase in _ORDER]
     return request.render(
         "site/student/assignments", groups=[g for g in groups if g[1]], zone=zone_name(request.received_at)
@@ -243,7 +238,7 @@ def confirm(request: Request) -> Response:
     """Submit the confirmed answers, once."""
     site, person_id, number = request.site, request.user.id, request.form.text("_number")
     source = IN_A_FILE if request.form.text("_source") == IN_A_FILE else ON_THE_PAGE
-    pass_dates(site, int(request.path_params["number"]), request.received_at)
+    pass_dates(site, request.received_at, int(request.path_params["number"]))
     with site.store.begin() as connection:
         lock_person(connection, person_id)
         assignment, paper = assignment_and_paper(request, connection)
@@ -261,7 +256,7 @@ def confirm(request: Request) -> Response:
 
 def receipt(request: Request) -> Response:
     """Return the receipt of a submission, with the next steps."""
-    pass_dates(request.site, int(request.path_params["number"]), request.received_at)
+    pass_dates(request.site, request.received_at, int(request.path_params["number"]))
     with request.site.store.reading() as connection:
         assignment, paper = assignment_and_paper(request, connection)
         state = state_of(request, assignment, connection)

@@ -212,13 +212,16 @@ def student_paper(
     cache: LRUCache | None = None,
     *,
     heads: bool = True,
+    content: Mapping[str, Any] | None = None,
 ) -> StudentPaper:
     """Return the paper of a person; its variants are cached in ``cache``, if given.
 
     The roster's columns, which only the heading needs, are loaded if ``heads``; for a large class they are
-    long.
+    long. Nothing is loaded if the ``content`` is given.
     """
-    if heads:
+    if content is not None:
+        pass
+    elif heads:
         content = issued_content(connection, assignment.id, person)
     else:
         content = sheet_content(connection, assignment.id, person, assignment.stated)

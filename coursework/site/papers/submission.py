@@ -26,8 +26,8 @@ from coursework.database.prepared import drop_prepared
 from coursework.database.publication import (
     Phase,
     StudentAssignment,
-    extensions,
     is_over,
+    passing,
     published,
     record_passed_date,
     student_assignments,
@@ -158,7 +158,8 @@ def _check(
     rescued = sum(submission.source == AS_SAVED for submission in done)
     if (
         rules.tries is not None
-        and attempts_used(connection, assignment.id, person_id, done) - rescued >= rules.tries
+        and attempts_used(connection, person_id, {assignment.id: done})[assignment.id] - rescued
+        >= rules.tries
     ):
         raise HTTPException("no_try_left", 409)
     return now
@@ -236,14 +237,19 @@ def digest(answers: Sequence[Sequence[str]]) -> str:
 # ----------------------------------------------------------------- closing time
 
 
-def pass_dates(site: Site, number: int, at: datetime) -> None:
-    """Record the passed dates of an assignment, and submit saved answers at the closing time if the
-    publication requires it.
+def pass_dates(site: Site, at: datetime, *numbers: int) -> bool:
+    """Record the passed dates of assignments, and submit saved answers at the closing time if the
+    publication requires it; return True if a date had passed.
 
     If the site has a worker, the worker does this instead, even without any request.
     """
-    if not site.has_worker:
+    if site.has_worker or not is_steady(site.clock):
+        return False
+    with site.store.reading() as connection:
+        passed = passing(connection, numbers, at)
+    for number in passed:
         close_passed(site, number, at)
+    return bool(passed)
 
 
 def close_passed(
@@ -263,11 +269,7 @@ def close_passed(
         return
     with site.store.reading() as connection:
         publication = published(connection, number)
-        if publication is None:
-            return
-        dates = publication.dates(list(extensions(connection, number).values()))
-        passed = [date for date in dates if date < at]
-        if not passed or (publication.reached is not None and passed[-1] < publication.reached):
+        if publication is None or not passing(connection, [number], at):
             return
         wrote = unsubmitted_persons(connection, number) if publication.takes_saved else []
     for person_id in wrote:
