@@ -1,5 +1,7 @@
 """Acceleration polygon of a four-bar linkage whose velocities are known (equations 14 and 15, Figure 23)."""
 
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.four_bar import FourBar
 from coursework.model import Exercise
 
 from .._drawn import (
@@ -16,7 +18,6 @@ from .._drawn import (
     told_angle,
     told_number,
 )
-from .._told_speeds import rates
 
 
 def vectors_are_long_enough_to_draw(p, a, n, m, bb_t, mb_t, pa_b):
@@ -28,14 +29,13 @@ def vectors_are_long_enough_to_draw(p, a, n, m, bb_t, mb_t, pa_b):
 
 
 def tells(r1, r2, r3, r4, theta2, omega2, mode):
-    linkage = bars(r1, r2, r3, r4, theta2, mode)
-    _, coupler, rocker = linkage
-    omega3, omega4 = rates(linkage)
+    _, coupler, rocker = bars(r1, r2, r3, r4, theta2, mode)
+    pose = FourBar(r1, r2, r3, r4, mode).at(Degrees(theta2))
     return {
         "theta3": told_angle(coupler),
         "theta4": told_angle(rocker),
-        "V_BA": told_number(abs(omega3 * omega2 * coupler)),
-        "V_B": told_number(abs(omega4 * omega2 * rocker)),
+        "V_BA": told_number(abs(pose.coupler_ratio * omega2 * r3)),
+        "V_B": told_number(abs(pose.rocker_ratio * omega2 * r4)),
     }
 
 

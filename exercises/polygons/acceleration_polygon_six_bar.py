@@ -2,6 +2,10 @@
 
 import numpy as np
 
+from coursework.degrees import angle
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.four_bar import FourBar
+from coursework.kinematics.slider_crank import SliderCrank
 from coursework.model import Exercise, drawn
 
 from .._drawn import (
@@ -12,16 +16,12 @@ from .._drawn import (
     on_paper,
     told_number,
 )
-from .._told_speeds import six_link_rates
 from ._six_bar import (
     GIVEN,
     HELPERS,
     bars,
     crank_off_the_axes,
     figure,
-    pin_A,
-    pin_B,
-    pin_P,
     told_directions,
 )
 
@@ -40,11 +40,14 @@ def drawing_fills_its_paper(p, a, n, m, b, f, c, bb_t, pa_c):
 
 def tells(r1, r2, r3, r4, r5, theta2, omega2, mode):
     links = bars(r1, r2, r3, r4, r5, theta2, mode)
-    A = pin_A(r1, r2, theta2)
-    B = pin_B(A, r3, r4, mode)
-    turning = six_link_rates(A, B, pin_P(B, r5), r1)[:3]
-    speeds = (told_number(abs(omega2 * rate * bar)) for rate, bar in zip(turning, links[1:], strict=True))
-    return told_directions(links) | dict(zip(("V_BA", "V_B", "V_CB"), speeds, strict=True))
+    pose = FourBar(r1, r2, r3, r4, mode).at(Degrees.between(-90.0, theta2))
+    omega3, omega4 = pose.coupler_ratio * omega2, pose.rocker_ratio * omega2
+    rod = SliderCrank(r4, r5).motion(Degrees(angle(links[2])), omega4, order=1)
+    return told_directions(links) | {
+        "V_BA": told_number(abs(omega3 * r3)),
+        "V_B": told_number(abs(omega4 * r4)),
+        "V_CB": told_number(abs(rod.rod_rate * r5)),
+    }
 
 
 EXERCISE = Exercise(

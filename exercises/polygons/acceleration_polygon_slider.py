@@ -1,6 +1,7 @@
 """Acceleration polygon of a slider-crank whose velocities are known (equations 14 and 15, Figure 22)."""
 
-from coursework.degrees import polar
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slider_crank import SliderCrank
 from coursework.model import Exercise
 
 from .._drawn import (
@@ -18,7 +19,6 @@ from .._drawn import (
     told_angle,
     told_number,
 )
-from .._told_speeds import rod_rate
 
 
 def vectors_are_long_enough_to_draw(p, a, n, bb_t, pa_b):
@@ -28,11 +28,10 @@ def vectors_are_long_enough_to_draw(p, a, n, bb_t, pa_b):
 
 
 def tells(r2, r3, e, theta2, omega2):
-    vector = rod(r2, r3, e, theta2)
-    normal = rod_rate(vector, polar(r2, theta2)) ** 2 * vector
+    omega3 = SliderCrank(r2, r3, e).motion(Degrees(theta2), omega2, order=1).rod_rate
     return {
-        "theta3": told_angle(vector),
-        "V_BA": told_number((abs(normal) * r3) ** 0.5 * abs(omega2)),
+        "theta3": told_angle(rod(r2, r3, e, theta2)),
+        "V_BA": told_number(abs(omega3 * r3)),
     }
 
 

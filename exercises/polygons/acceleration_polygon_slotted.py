@@ -1,5 +1,7 @@
 """Acceleration polygon of a slotted mechanism whose velocities are known: the Coriolis term and its side (Figure 25)."""
 
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.model import Exercise
 
 from .._drawn import (
@@ -15,7 +17,6 @@ from .._drawn import (
     told_angle,
     told_number,
 )
-from .._told_speeds import guide_rates
 
 
 def vectors_are_long_enough_to_draw(p, a, k, n, nb_t, bk):
@@ -25,13 +26,12 @@ def vectors_are_long_enough_to_draw(p, a, k, n, nb_t, bk):
 
 
 def tells(r1, r2, theta2, omega2):
-    pose = guided(r1, r2, theta2)
-    guide_rate, sliding = guide_rates(pose)
+    guide = SlottedGuidePose(r1, r2, Degrees.between(90.0, theta2))
     return {
-        "theta4": told_angle(pose.arm),
-        "rA": told_number(abs(pose.arm)),
-        "omega4": told_number(omega2 * guide_rate),
-        "rA_dot": told_number(omega2 * sliding),
+        "theta4": told_angle(guided(r1, r2, theta2).arm),
+        "rA": told_number(guide.arm),
+        "omega4": told_number(omega2 * guide.guide_ratio),
+        "rA_dot": told_number(omega2 * guide.sliding_ratio),
     }
 
 
