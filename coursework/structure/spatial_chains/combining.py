@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from coursework.structure.spatial_chains.joints import Joint, TwistReference, read_joints
+from coursework.structure.spatial_chains.joints import Joint, TwistReference, Vector, read_joints
 from coursework.structure.spatial_chains.poses import all_free_at_every_pose
 from coursework.structure.spatial_chains.ranks import Rank, decompose
 from coursework.structure.spatial_chains.recognition import Equivalent, recognise
@@ -59,19 +59,9 @@ def in_series(joints: Iterable[Joint | Mapping[str, Any]]) -> Series:
     return Series(read_joints(joints))
 
 
-def _turns(twists: np.ndarray) -> int:
-    """Return the dimension of the space of rotation vectors of these independent motions."""
-    return int(np.linalg.matrix_rank(twists[:, :3], tol=1e-9)) if len(twists) else 0
-
-
-def _unit_rows(rows: list[list[float]]) -> np.ndarray:
-    matrix = np.array(rows).reshape(-1, 6)
-    return matrix / np.linalg.norm(matrix, axis=1, keepdims=True)
-
-
 @dataclass(frozen=True)
-class Parallel:
-    """Joints in parallel. Each number is computed on first use."""
+class _Combined:
+    """Several joints as one. Each number is computed on first use."""
 
     joints: tuple[Joint, ...]
 
@@ -81,14 +71,41 @@ class Parallel:
 
     @cached_property
     def _spaces(self) -> tuple[Rank, np.ndarray, np.ndarray]:
-        """Rank and basis of the wrenches, basis of the twists that none of them opposes."""
+        """Rank, basis of the twists left free, and basis of the wrenches transmitted."""
+        raise NotImplementedError
+
+    def _spanned(
+        self, rows_of: Callable[[Joint, Vector, float], list[list[float]]], subject: str
+    ) -> tuple[Rank, np.ndarray, np.ndarray]:
+        """Return the rank of the rows of all joints, and bases of what they span and of what is perpendicular to it."""
         at = self.measure
-        rows = [row for joint in self.joints for row in joint.wrenches(at.origin, at.length)]
-        return decompose(_unit_rows(rows), "the transmitted actions")
+        rows = [row for joint in self.joints for row in rows_of(joint, at.origin, at.length)]
+        matrix = np.array(rows).reshape(-1, 6)
+        return decompose(matrix / np.linalg.norm(matrix, axis=1, keepdims=True), subject)
 
     @property
     def rank(self) -> Rank:
         return self._spaces[0]
+
+    @property
+    def turns(self) -> int:
+        """Number of independent rotation vectors of the last body with respect to the first."""
+        twists = self._spaces[1]
+        return int(np.linalg.matrix_rank(twists[:, :3], tol=1e-9)) if len(twists) else 0
+
+    @cached_property
+    def equivalent(self) -> Equivalent:
+        _, twists, wrenches = self._spaces
+        return recognise(twists, wrenches, self.measure)
+
+
+class Parallel(_Combined):
+    """Joints in parallel."""
+
+    @cached_property
+    def _spaces(self) -> tuple[Rank, np.ndarray, np.ndarray]:
+        rank, wrenches, twists = self._spanned(Joint.wrenches, "the transmitted actions")
+        return rank, twists, wrenches
 
     @property
     def Ns(self) -> int:
@@ -127,37 +144,13 @@ class Parallel:
             return "both" if self.linear else "directions"
         return "positions" if self.linear else "none"
 
-    @property
-    def turns(self) -> int:
-        """Number of independent rotation vectors of the motions that all joints leave free."""
-        return _turns(self._spaces[2])
 
-    @cached_property
-    def equivalent(self) -> Equivalent:
-        _, wrenches, twists = self._spaces
-        return recognise(twists, wrenches, self.measure)
-
-
-@dataclass(frozen=True)
-class Series:
-    """Joints in series. Each number is computed on first use."""
-
-    joints: tuple[Joint, ...]
-
-    @cached_property
-    def measure(self) -> TwistReference:
-        return TwistReference.of(self.joints)
+class Series(_Combined):
+    """Joints in series."""
 
     @cached_property
     def _spaces(self) -> tuple[Rank, np.ndarray, np.ndarray]:
-        """Rank and basis of the twists, basis of the wrenches that all joints transmit."""
-        at = self.measure
-        rows = [row for joint in self.joints for row in joint.twists(at.origin, at.length)]
-        return decompose(_unit_rows(rows), "the free motions")
-
-    @property
-    def rank(self) -> Rank:
-        return self._spaces[0]
+        return self._spanned(Joint.twists, "the free motions")
 
     @property
     def Nc(self) -> int:
@@ -183,16 +176,10 @@ class Series:
         """Static indeterminacy, 0: each joint's action equals that of the whole, so it is known."""
         return 0
 
-    @property
-    def turns(self) -> int:
-        """Number of independent rotation vectors of the last body with respect to the first."""
-        return _turns(self._spaces[1])
-
     @cached_property
     def equivalent(self) -> Equivalent:
         """Equivalent joint: ``free`` only where all six freedoms exist at every pose; where they exist at
         this pose alone, ``other``."""
-        _, twists, wrenches = self._spaces
-        if len(twists) == 6 and not all_free_at_every_pose(self.joints):
+        if self.m_useful == 6 and not all_free_at_every_pose(self.joints):
             return Equivalent("other")
-        return recognise(twists, wrenches, self.measure)
+        return super().equivalent
