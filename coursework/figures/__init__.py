@@ -52,7 +52,7 @@ Each is placed by itself near what it names, on no line and on no other label; o
 room only farther away gets a thin leader. The same figure always gives the same bytes.
 
 Errors: WrongValue names the element whose point is not finite or whose length is not
-positive, and refuses a figure without extent; UnknownName refuses an unknown label command.
+positive, and refuses a figure without extent and a label that is no formula of letters, indices and accents.
 """
 
 from coursework.figures.base import Element

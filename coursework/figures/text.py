@@ -11,27 +11,30 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
-from coursework.errors import WrongValue, unknown
+from coursework.errors import BadStatement, WrongValue
 from coursework.figures.ink import added
+from coursework.markup.formula_tree import (
+    Accent,
+    FormulaRow,
+    FormulaText,
+    Name,
+    Node,
+    Num,
+    Script,
+    Space,
+    Symbol,
+    parse,
+)
 
 SIZE = 3.7  #: letter size, mm on paper
 SMALL = 0.72  #: size of a subscript relative to its base
 DROP, RAISE = -0.20, 0.36  #: shift of a subscript and of a superscript, em of the base
 _SLACK = 1.06  #: a reader's machine may draw the text in another serif, a little wider
 
-_GREEK_NAMES = """
-    alpha beta gamma delta epsilon varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau
-    phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega
-"""
-GREEK = dict(zip(_GREEK_NAMES.split(), "αβγδεεζηθικλμνξπρστφφχψωΓΔΘΛΞΠΣΦΨΩ", strict=True))
-_SIGNS = {
-    "circ": "°", "cdot": "·", "times": "×", "pm": "±", "infty": "∞", "prime": "′",
-    ",": " ", " ": " ", ";": " ",
-}  # fmt: skip
 _ACCENTS = {
     "dot": "dot", "ddot": "ddot", "vec": "arrow", "overrightarrow": "arrow", "bar": "bar", "overline": "bar",
 }  # fmt: skip
-_UPRIGHT = ("mathrm", "text", "num")
+_DRAWN = str.maketrans("ϵϕ⋅∘∗", "εφ·°*")  #: letters and signs as figures have them
 
 # Advance widths of the embedded serif, upright and italic, hundredths of an em.
 _UPRIGHT_WIDTHS = {
@@ -128,101 +131,68 @@ def advance(runs: Sequence[LetterRun]) -> float:
 
 @lru_cache(maxsize=2048)
 def read(label: str) -> LabelText:
-    """Parse a label; UnknownName for an unknown command, WrongValue for stray braces."""
+    """Read a label: words, or a formula of letters, indices and accents; WrongValue for any other."""
     label = label.strip().removeprefix("$").removesuffix("$").strip()
-    if not re.search(r"[\\_^{}]", label) and re.search(r"\s|[^\W\d]{3,}", label):
-        return LabelText((LetterRun(label, italic=False),), ())
-    reader = _LabelParser(label)
-    reader.sequence(LetterRun("", italic=True), stop=None)
-    if not reader.runs:
+    is_plain = not re.search(r"[\\_^{}]", label)
+    if is_plain and re.search(r"\s|[^\W\d]{3,}", label):
+        return _words(label)
+    letters = _Letters()
+    try:
+        letters.put(parse(label), LetterRun("", italic=True))
+    except BadStatement as fault:
+        if is_plain and label:
+            return _words(label)
+        raise WrongValue(f"label {label!r}: {fault}") from None
+    if not letters.runs:
         raise WrongValue(f"label {label!r} has no letter to print")
-    return LabelText(tuple(reader.runs), tuple(reader.accents))
+    return LabelText(tuple(letters.runs), tuple(letters.accents))
 
 
-class _LabelParser:
-    """Parser of one formula, which appends runs from left to right."""
+def _words(text: str) -> LabelText:
+    return LabelText((LetterRun(text, italic=False),), ())
 
-    def __init__(self, label: str) -> None:
-        self.label = label
-        # A space after a command only ends its name.
-        self.tokens = [a or b for a, b in re.findall(r"(\\[A-Za-z]+)\s*|(\\.|.)", label)][::-1]
+
+class _Letters:
+    """Letters of a formula, appended from left to right."""
+
+    def __init__(self) -> None:
         self.runs: list[LetterRun] = []
         self.accents: list[LabelAccent] = []
-        self.barrier = 0  # runs before this one are complete: accents, indices and exponents count on them
-        # The index or the exponent that was just read, if there is one: its sign, _ or ^, and its first run.
-        self.script: tuple[str, int] | None = None
+        self.barrier = 0  # letters are not added to the runs before this one
 
-    def sequence(self, style: LetterRun, stop: str | None) -> None:
-        while self.tokens and self.tokens[-1] != stop:
-            self.atom(style)
-        if stop is not None and not self.tokens:
-            raise WrongValue(f"label {self.label!r} lacks a closing brace")
-        if stop is not None:
-            self.tokens.pop()
+    def put(self, node: Node, style: LetterRun) -> None:
+        match node:
+            case FormulaRow(items):
+                for item in items:
+                    self.put(item, style)
+            case Symbol(text, _):
+                self.letters(text.translate(_DRAWN), style)
+            case FormulaText(text) | Name(text, _):
+                self.letters(text, replace(style, italic=False))
+            case Num(negative, digits, ""):
+                self.letters(("−" if negative else "") + digits, style)
+            case Space(_):
+                self.letters(" ", style)
+            case Accent(name, body) if name in _ACCENTS:
+                first = self.barrier = len(self.runs)
+                self.put(body, style)
+                self.barrier = len(self.runs)
+                self.accents.append(LabelAccent(_ACCENTS[name], first, self.barrier))
+            case Script(base, below, above, primes):
+                self.put(base, style)
+                self.stack(_script(above, primes, style, RAISE), _script(below, 0, style, DROP))
+            case _:
+                raise BadStatement("a figure has letters, indices, exponents and accents only")
 
-    def atom(self, style: LetterRun) -> None:
-        if not self.tokens:
-            raise WrongValue(f"label {self.label!r} ends where a symbol is expected")
-        token = self.tokens.pop()
-        if token.isspace() and style.italic:
-            return
-        before, self.script = self.script, None
-        if token in ("_", "^", "'"):
-            self.script = self.index_or_exponent(token, style, before)
-            return
-        if token == "{":
-            self.sequence(style, stop="}")
-        elif token == "}":
-            raise WrongValue(f"label {self.label!r} has a closing brace without its opening one")
-        elif token.startswith("\\"):
-            self.command(token[1:], style)
-        else:
-            self.letters(token.replace("-", "−" if style.italic else "-"), style)
-        self.script = None
-
-    def index_or_exponent(
-        self, token: str, style: LetterRun, before: tuple[str, int] | None
-    ) -> tuple[str, int] | None:
-        """Read a subscript, an exponent, or primes; a subscript and an exponent in a row are stacked."""
-        first = self.barrier = len(self.runs)
-        if token == "'":
-            self.letters("′", style)
-            while self.tokens and self.tokens[-1] == "'":
-                self.letters("′", style)
-                self.tokens.pop()
-        else:
-            shift = DROP if token == "_" else RAISE
-            self.atom(replace(style, size=style.size * SMALL, rise=style.rise + shift * style.size))
-        kind = "_" if token == "_" else "^"
-        if before is None or before[0] == kind:
-            return kind, first
-        self.stack(before[1], first)
-        return None
-
-    def stack(self, low: int, middle: int) -> None:
-        """Start the runs from ``middle`` on where those from ``low`` on start, the narrower first, so that
-        the next letters follow the wider."""
-        first, second = self.runs[low:middle], self.runs[middle:]
-        if not first or not second:
-            return
-        if advance(second) < advance(first):
-            self.accents = [_moved(it, low, middle, len(self.runs)) for it in self.accents]
-            first, second = second, first
-        self.runs[low:] = [*first, replace(second[0], back=advance(first)), *second[1:]]
-
-    def command(self, name: str, style: LetterRun) -> None:
-        if name in _ACCENTS:
-            first = self.barrier = len(self.runs)
-            self.atom(style)
-            self.barrier = len(self.runs)
-            self.accents.append(LabelAccent(_ACCENTS[name], first, self.barrier))
-        elif name in _UPRIGHT:
-            self.atom(replace(style, italic=False))
-        elif name in GREEK or name in _SIGNS:
-            self.letters(GREEK.get(name) or _SIGNS[name], style)
-        else:
-            commands = [*GREEK, *_SIGNS, *_ACCENTS, *_UPRIGHT]
-            raise unknown("label command", name, commands, f"label {self.label!r}")
+    def stack(self, *scripts: _Letters) -> None:
+        """Append an exponent and an index that start at the same place, the narrower first, so that the next
+        letters follow the wider."""
+        self.barrier, back = len(self.runs), 0.0
+        for script in sorted((s for s in scripts if s.runs), key=lambda s: advance(s.runs)):
+            start = len(self.runs)
+            self.runs += [replace(script.runs[0], back=back) if back else script.runs[0], *script.runs[1:]]
+            self.accents += [LabelAccent(a.kind, a.first + start, a.last + start) for a in script.accents]
+            back = advance(script.runs)
 
     def letters(self, text: str, style: LetterRun) -> None:
         style = replace(style, italic=style.italic and text.isalpha())
@@ -233,8 +203,12 @@ class _LabelParser:
             self.runs.append(replace(style, text=text))
 
 
-def _moved(accent: LabelAccent, low: int, middle: int, end: int) -> LabelAccent:
-    """Return an accent after the runs from ``middle`` to the end were moved before those from ``low`` to
-    ``middle``."""
-    shift = 0 if accent.first < low else end - middle if accent.first < middle else low - middle
-    return LabelAccent(accent.kind, accent.first + shift, accent.last + shift)
+def _script(node: Node | None, primes: int, style: LetterRun, shift: float) -> _Letters:
+    """Return the letters of an index or of an exponent, after its primes."""
+    script = _Letters()
+    if primes:
+        script.letters("′" * primes, style)
+    script.barrier = len(script.runs)
+    if node is not None:
+        script.put(node, replace(style, size=style.size * SMALL, rise=style.rise + shift * style.size))
+    return script

@@ -10,10 +10,10 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
-from coursework.figures.text import GREEK, SIZE, LetterRun
+from coursework.figures.text import SIZE, LetterRun
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
-from coursework.markup.formula_tree import tokens
+from coursework.markup.formula_tree import LETTERS, tokens
 from coursework.markup.formulas import quantity_formula
 from coursework.markup.line import to_line
 from coursework.markup.markdown import to_text
@@ -372,8 +372,8 @@ _MACRO = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
 _LOW = frozenset(
     rf"\{name}"
     for name in (
-        *GREEK, "num", "mathrm", "text", "dot", "ddot", "vec", "overrightarrow", "left", "right", "times", "cdot", "pm",
-        "circ", "parallel", "perp", "infty", "prime", "sin", "cos", "tan", "phi", "epsilon", "mkern", ",", " ", ";", ":",
+        *LETTERS, "num", "mathrm", "text", "dot", "ddot", "vec", "overrightarrow", "left", "right", "times", "cdot", "pm",
+        "circ", "parallel", "perp", "infty", "prime", "sin", "cos", "tan", "mkern", ",", " ", ";", ":",
     )
 )  # fmt: skip
 #: Blocks of Markdown, which are not lines of text.

@@ -111,8 +111,8 @@ def test_svg_is_black_on_white_and_measured_in_millimetres():
         (lambda: Figure(), "no element"),
         (lambda: Figure("pin"), "'pin'"),
         (lambda: four_bar_in(8, 8).svg(), "too small"),
-        (lambda: pin(0, "r_{2"), "closing brace"),
-        (lambda: pin(0, "r_"), "ends where"),
+        (lambda: pin(0, "r_{2"), "} expected after a group"),
+        (lambda: pin(0, "r_"), "nothing after _"),
     ],
 )
 def test_a_wrong_figure_is_refused_and_the_element_named(build, named):

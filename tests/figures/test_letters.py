@@ -9,7 +9,7 @@ from drawn_svg import SVG, kinds
 from figure_samples import SAMPLES, every_sample, slotted
 from tables import each_row
 
-from coursework.errors import UnknownName
+from coursework.errors import WrongValue
 from coursework.figures import (
     Figure,
     link,
@@ -137,5 +137,5 @@ def test_a_dotted_symbol_has_its_dot_above_the_letter():
 
 
 def test_an_unknown_label_command_offers_the_nearest():
-    with pytest.raises(UnknownName, match="theta"):
+    with pytest.raises(WrongValue, match="theta"):
         pin(0, r"\thetta_2")
