@@ -11,23 +11,27 @@ from pathlib import Path
 
 import coursework
 
-FOLDER = Path(__file__).parent / "golden"
+FILE = Path(__file__).with_suffix(".json")
 SEEDS = (0, 1, 2, 3, 42, 2024, 123456789, 2**40)
 
 
 def drawn(exercise) -> dict:
-    """What the file of one exercise holds."""
+    """What the file has of one exercise."""
     variants = exercise.variants(SEEDS)
-    return {
-        "exercise": exercise.name,
-        "version": exercise.version,
-        "given": {str(v.seed): dict(v.given) for v in variants},
-    }
+    return {"version": exercise.version, "given": {str(v.seed): dict(v.given) for v in variants}}
+
+
+def written(frozen) -> str:
+    """The text of the file: a line for each seed."""
+    exercises = []
+    for name, content in frozen.items():
+        rows = ",\n".join(
+            f"   {json.dumps(seed)}: {json.dumps(row)}" for seed, row in content["given"].items()
+        )
+        exercises.append(f' "{name}": {{"version": {content["version"]}, "given": {{\n{rows}}}}}')
+    return "{\n" + ",\n".join(exercises) + "\n}\n"
 
 
 if __name__ == "__main__":
-    FOLDER.mkdir(exist_ok=True)
     course = coursework.open_course()
-    for name in course.names:
-        text = json.dumps(drawn(course[name]), indent=1)
-        (FOLDER / f"{name}.json").write_text(text + "\n", "utf-8")
+    FILE.write_text(written({name: drawn(course[name]) for name in course.names}), "utf-8")

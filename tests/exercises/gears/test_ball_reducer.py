@@ -216,18 +216,6 @@ def test_the_joint_graph_has_two_contacts_of_ball_and_frame(answer, verdict, poi
     assert (mark.verdict, mark.points) == (verdict, pytest.approx(points))
 
 
-def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
-    """It asked neither the graph nor the condition at B."""
-    record = dict(EXERCISE.variant(0, parts=["usual", "graph", "omega_why", "mobility"]).record)
-    record["version"] = 1
-    record["parts"] = [part for part in record["parts"] if part["id"] not in ("graph", "no_slip_B")]
-    variant = EXERCISE.from_record(record)
-    assert "graph" not in variant.part_ids
-    right = {i: str(v) for i, v in variant.solution().items() if isinstance(v, (str, int))}
-    assert variant.grade(right).points == len(right)
-    assert variant.record["version"] == 1
-
-
 @each_row("case", range(3))
 def test_known_cases(case):
     given, expected = EXERCISE.solution.known[case]

@@ -185,13 +185,3 @@ def test_freedoms_and_cycles_are_those_of_the_graph_of_figure_14():
 )
 def test_counts_that_leave_something_out_are_told(part, answer, verdict):
     assert EXERCISE.variant(0, parts=[part]).grade({part: answer})[part].verdict == verdict
-
-
-def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
-    record = dict(EXERCISE.variant(0).record)
-    record["version"] = 1
-    record["parts"] = [part for part in record["parts"] if part["id"] not in ("w", "gamma")]
-    variant = EXERCISE.from_record(record)
-    assert "gamma" not in variant.part_ids
-    angle = f"{variant.solution()['theta3']:.4f}"
-    assert variant.grade({"theta3": angle})["theta3"].verdict == "correct"

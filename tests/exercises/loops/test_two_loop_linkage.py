@@ -193,16 +193,3 @@ def test_who_counts_a_third_independent_loop_is_told():
         {"third_loop": "one more equation, which does not follow from (1) and (2)"}
     )
     assert mark["third_loop"].verdict == "mistake:third_loop_counted_as_new"
-
-
-def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
-    record = dict(EXERCISE.variant(0, parts=["usual", "mobility", "cycles"]).record)
-    record["version"] = 1
-    record["parts"] = [part for part in record["parts"] if part["id"] not in ("third_loop", "loop_3_x")]
-    variant = EXERCISE.from_record(record)
-    assert "third_loop" not in variant.part_ids
-    marking = variant.grade({"mobility": "1", "cycles": "3"})
-    assert [marking[i].verdict for i in ("mobility", "cycles")] == [
-        "correct",
-        "mistake:notes_N_without_frame",
-    ]

@@ -105,13 +105,3 @@ def test_the_sign_of_the_notes_sends_the_piston_the_other_way():
 def test_lines_above_and_below_the_pivot_are_both_issued():
     above = [v.given["e"] > 0 for v in EXERCISE.variants(range(300))]
     assert 0.35 < np.mean(above) < 0.65
-
-
-def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
-    """It asked no acceleration."""
-    record = dict(EXERCISE.variant(0).record)
-    record["version"] = 1
-    record["parts"] = [part for part in record["parts"] if part["id"] != "a_C"]
-    variant = EXERCISE.from_record(record)
-    assert "a_C" not in variant.part_ids
-    assert variant.grade({"v_C": f"{variant.solution()['v_C']:.6g}"})["v_C"].verdict == "correct"

@@ -130,13 +130,3 @@ def test_without_a_swing_or_a_rod_that_reaches_there_are_no_strokes_while_the_in
     row = EXERCISE.solve(**{**PLAIN, **lengths}, only=TURN)
     for name, values in row.items():
         assert np.isnan(values).tolist() == [True, True, True, False], name
-
-
-def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
-    """It asked no acceleration."""
-    record = dict(EXERCISE.variant(0).record)
-    record["version"] = 1
-    record["parts"] = [part for part in record["parts"] if part["id"] != "a_C"]
-    variant = EXERCISE.from_record(record)
-    assert "a_C" not in variant.part_ids
-    assert variant.grade({"v_C": f"{variant.solution()['v_C']:.6g}"})["v_C"].verdict == "correct"

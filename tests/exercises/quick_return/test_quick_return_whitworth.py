@@ -116,13 +116,3 @@ def test_lines_through_the_pivot_above_and_below_are_all_issued():
     assert 0.3 < (h == 0).mean() < 0.7
     assert (h > 0).sum() > 30
     assert (h < 0).sum() > 30
-
-
-def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
-    """It asked no acceleration."""
-    record = dict(EXERCISE.variant(0).record)
-    record["version"] = 1
-    record["parts"] = [part for part in record["parts"] if part["id"] != "a_C"]
-    variant = EXERCISE.from_record(record)
-    assert "a_C" not in variant.part_ids
-    assert variant.grade({"v_C": f"{variant.solution()['v_C']:.6g}"})["v_C"].verdict == "correct"

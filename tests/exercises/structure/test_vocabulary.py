@@ -79,17 +79,6 @@ def test_a_contact_in_place_of_the_coupler_leaves_the_degrees_of_freedom():
     assert LIBRARY["figure_3"].counts.w == LIBRARY["figure_6_gears"].counts.w == 1
 
 
-def test_a_record_of_the_first_version_asks_its_own_questions():
-    record = dict(EXERCISE.variant(0).record)
-    record["version"] = 1
-    record["parts"] = [
-        part for part in record["parts"] if not part["id"].startswith(("inversion", "derived"))
-    ]
-    variant = EXERCISE.from_record(record)
-    marking = variant.grade({i: ANSWERS[i] for i in variant.part_ids})
-    assert (marking.points, marking.out_of) == (len(record["parts"]), len(record["parts"]))
-
-
 def test_who_is_wrong_is_told_what_was_confused():
     variant = next(v for v in EXERCISE.variants(range(100), "en") if "coriolis_size" in v.part_ids)
     mark = variant.grade({"coriolis_size": "once"})["coriolis_size"]
