@@ -171,21 +171,6 @@ def test_another_password_ends_the_sessions_elsewhere(class_of_three):
     assert sign_in(class_of_three, "zoé@example.org", new)[1].status_code == 303
 
 
-def test_an_invitation_taken_up_ends_the_sessions_before(class_of_three):
-    before = join(class_of_three, ZOE)
-    after = join(class_of_three, ZOE, "another lamp by the window")
-    assert is_in(after)
-    assert not is_in(before)
-
-
-def test_signing_out_everywhere(class_of_three):
-    here = join(class_of_three, ZOE)
-    there, _ = sign_in(class_of_three, "zoé@example.org", PASSWORD)
-    here.fill("/account", {"do": "everywhere"})
-    assert not is_in(here)
-    assert not is_in(there)
-
-
 def test_a_cookie_that_is_not_ours_is_replaced(class_of_three):
     for odd in ("x", "a.b.c", "é" * 9, Cookies(b"another key").anonymous().token, "x" * 43):
         browser = class_of_three.browser()

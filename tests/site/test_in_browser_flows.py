@@ -146,19 +146,6 @@ def test_an_hour_without_a_line_loses_nothing(room, window):
     assert page.locator("input[type=text]").first.input_value() == "12.5 mm"
 
 
-def test_what_is_typed_past_the_end_without_a_line_stays_and_that_is_said(room, window, handed_out):
-    closes = room[0].at + timedelta(minutes=30)
-    number = handed_out(closes=closes)
-    page = window(ZOE, f"/assignments/{number}", "fr", has_line=False)
-    page.context.set_offline(True)
-    page.fill("[name=e1-rA]", "12,5 mm")
-    page.wait_for_selector("[data-kept] >> text=Pas de connexion")
-    room[0].at += timedelta(hours=1)
-    page.context.set_offline(False)
-    page.wait_for_selector("[data-kept] >> text=n’est plus pris")
-    assert page.input_value("[name=e1-rA]") == "12,5 mm"
-
-
 # ------------------------------------------------------------------- coming in
 
 

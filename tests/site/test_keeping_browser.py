@@ -18,7 +18,7 @@ KEPT = "is kept|Saved"
 #: One a test: what one typed is not there for another.
 _EXERCISES = iter(
     "slotted_mechanism coriolis two_circles grashof quick_return_design havens_planetary slider_extras "
-    "ball_reducer quick_return four_bar_positions crank_rocker_design mechanical_advantage".split()
+    "ball_reducer quick_return four_bar_positions crank_rocker_design mechanical_advantage slider_crank".split()
 )
 _ON_DEVICE = "Object.entries(localStorage).filter(([key]) => key.startsWith('coursework ')).map(([, text]) => text).join()"
 
@@ -113,6 +113,22 @@ def test_two_pages_without_a_line_overwrite_nothing_of_one_another(device):
     assert left(page) == ""
 
 
+def test_of_two_pages_each_is_told_what_the_other_wrote(device):
+    one, other = device.page(), device.page()
+    one.fill(device.box(), "1")
+    told(one, KEPT)
+    other.fill(device.box(), "2")
+    other.wait_for_selector(".other-page >> text=/Another page wrote\\W* 1|Another page wrote “1”/")
+    assert device.kept == {device.boxes[0]: "1"}
+    other.click(".other-page >> text=Keep mine")
+    told(other, KEPT)
+    assert device.kept == {device.boxes[0]: "2"}
+    one.fill(device.box(), "3")
+    one.wait_for_selector(".other-page >> text=2")
+    one.click(".other-page >> text=Take that")
+    assert one.input_value(device.box()) == "2"
+
+
 def test_all_texts_are_shown_where_three_meet(device):
     pages = [device.page() for _ in range(3)]
     pages[0].fill(device.box(), "111")
@@ -153,6 +169,10 @@ def test_signed_out_while_the_line_was_down_nothing_is_lost(device):
     told(page, KEPT)
     until(lambda: left(page) == "")
     assert device.kept == {device.boxes[0]: "45"}
+    device.sign_out()
+    page.fill(device.box(), "46")
+    told(page, "You are signed out.")
+    assert "46" in left(page)
 
 
 @pytest.mark.parametrize("place", ["/practice", "/assignments"])
