@@ -181,11 +181,3 @@ def test_mistakes_carry_their_consequences():
     assert mistaken("no_normal_terms")["alpha3"] == pytest.approx(-6)
     assert mistaken("alpha2_left_out")["a_BA_t"] == pytest.approx(-18 * 40)
     assert mistaken("other_mode")["alpha3"] == pytest.approx(12)
-
-
-def test_scalars_and_rows_agree():
-    drawn = [dict(EXERCISE.variant(seed).given) for seed in range(30)]
-    row = EXERCISE.solve(**{n: np.array([g[n] for g in drawn]) for n in drawn[0]}, only=ASKED)
-    for i, given in enumerate(drawn):
-        for name, value in EXERCISE.solve(**given).items():
-            assert row[name][i] == pytest.approx(value, rel=1e-12, abs=1e-12), name

@@ -144,14 +144,6 @@ def test_the_loop_equations_hold_for_the_positions_and_fail_for_those_of_the_mis
                 assert abs(parse_equation(text, symbols).difference(values)) > 1, name
 
 
-@each_row("case", range(3))
-def test_known_cases(case):
-    given, expected = EXERCISE.solution.known[case]
-    found = EXERCISE.solve(**given, only=tuple(expected))
-    for name, value in expected.items():
-        assert found[name] == pytest.approx(value, rel=1e-12, abs=1e-12), name
-
-
 @each_row("beside", [1e-1, 1e-4, 1e-7])
 @each_row("mode", ["open", "crossed"])
 def test_nothing_is_lost_beside_a_change_point(beside, mode):

@@ -1,4 +1,4 @@
-"""What the quick returns have in common: strokes of a swept turn, apart from the instant, in rows as alone."""
+"""What the quick returns have in common: strokes of a swept turn, apart from the instant."""
 
 import numpy as np
 import pytest
@@ -44,21 +44,3 @@ def test_strokes_compute_nothing_of_the_instant(name):
     assert OF_THE_TURN.get(name) not in exercise.plan(("v_C",))
     if name == "quick_return_offset":
         assert set(exercise.plan(("v_C",))) == {"p", "q", "omega3", "v_C"}
-
-
-@pytest.mark.parametrize(
-    ("name", "rel", "absolute"),
-    [
-        ("quick_return", 1e-12, 1e-12),
-        ("quick_return_offset", 1e-13, 0),
-        ("quick_return_whitworth", 1e-12, 0),
-        ("quick_return_shaper", 1e-12, 0),
-    ],
-)
-def test_scalars_and_rows_agree(name, rel, absolute):
-    exercise = COURSE[name]
-    drawn = [dict(exercise.variant(seed).given) for seed in range(30)]
-    row = exercise.solve(**{n: np.array([g[n] for g in drawn]) for n in drawn[0]})
-    for i, given in enumerate(drawn):
-        for quantity, value in exercise.solve(**given).items():
-            assert row[quantity][i] == pytest.approx(value, rel=rel, abs=absolute), quantity

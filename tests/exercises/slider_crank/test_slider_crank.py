@@ -156,11 +156,3 @@ def test_misprint_of_the_notes_turns_the_piston_round():
     for variant in EXERCISE.variants(range(30)):
         mark = variant.grade({"r1_dot": -variant.solution()["r1_dot"]})["r1_dot"]
         assert "notes_piston_sign" in mark.mistakes
-
-
-def test_scalars_and_rows_agree():
-    drawn = [dict(EXERCISE.variant(seed).given) for seed in range(30)]
-    row = EXERCISE.solve(**{n: np.array([g[n] for g in drawn]) for n in drawn[0]}, only=(*MOTION, *DRAWN))
-    for i, given in enumerate(drawn):
-        for name, value in EXERCISE.solve(**given).items():
-            assert row[name][i] == pytest.approx(value, rel=1e-12, abs=1e-12), name
