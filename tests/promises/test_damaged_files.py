@@ -20,7 +20,7 @@ from coursework.cli import run
 from coursework.database.dump import restore
 from coursework.database.store import Store
 from coursework.errors import CourseworkError
-from coursework.gradebook.submissions import find, read_file
+from coursework.gradebook.submissions import read_file
 from coursework.selfstudy.progress import ExerciseStore, ProgressFile, entry
 
 RECORDED = Path(__file__).parents[1] / "gradebook" / "recorded"
@@ -384,34 +384,3 @@ def test_no_damage_ends_a_reader_by_a_traceback(coil, tmp_path, reader):
         generator = random.Random(f"{reader} {seed}")
         status = read_damaged(coil, tmp_path, reader, lambda data, by=generator: damaged(by, file, data))
         assert status in (None, 0, 1, 2)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("file", sorted(RECORDED.iterdir()), ids=lambda file: file.name)
-def test_no_damage_of_what_a_platform_exports_ends_a_reader(tmp_path, file):
-    for seed in range(2 * TIMES):
-        path = tmp_path / file.name
-        path.write_bytes(damaged(random.Random(f"{file.name} {seed}"), file, file.read_bytes()))
-        for found in find([path]):
-            rows = [found] if not isinstance(found, Path) else list(read_file(found))
-            assert all(isinstance(row, tuple) or row.reason for row in rows)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("platform", ["canvas", "moodle", "blackboard", "sakai"])
-def test_no_damage_of_a_gradebook_ends_what_fills_it(coil, tmp_path, platform):
-    (source,) = (p for p in RECORDED.glob(f"{platform}_gradebook.*"))
-    words = (
-        "gradebook",
-        platform,
-        coil.folder / "b/marks",
-        "--item",
-        "Quiz",
-        "--out",
-        tmp_path / "o.csv",
-        "--template",
-    )
-    for seed in range(TIMES):
-        path = tmp_path / source.name
-        path.write_bytes(damaged(random.Random(f"{platform} {seed}"), source, source.read_bytes()))
-        assert coil(*words, path) in (0, 1, 2)
