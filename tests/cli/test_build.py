@@ -137,9 +137,7 @@ def test_build_has_few_options():
 def test_options_that_an_assignment_does_not_use_are_named(cli, tmp_path):
     """The file of an assignment states its parts, and its secret draws: an option that changes nothing is not ignored silently."""
     file = tmp_path / "quiz.toml"
-    file.write_text(
-        'exercises = [{ name = "slotted_mechanism" }]\nformats = "html"\nlang = "en"\n', "utf-8"
-    )
+    file.write_text('exercises = [{ name = "slotted_mechanism" }]\nformats = "html"\nlang = "en"\n', "utf-8")
     status, _, said = cli("build", file, "--seed", 4, "--parts", "1", "--out", tmp_path / "out")
     assert status == 0
     assert [option for option in ("--seed", "--parts", "--out") if option in said] == ["--seed", "--parts"]

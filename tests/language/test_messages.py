@@ -6,11 +6,10 @@ import re
 import string
 import tomllib
 from collections import Counter
-from pathlib import Path
 
 import pytest
+from package_trees import trees
 
-import coursework
 from coursework.cli.options import UNLESS_TOLD
 from coursework.errors import BadInput, UnknownName, counted, unknown
 from coursework.gradebook.book import rejected_rows
@@ -28,8 +27,6 @@ from coursework.messages import (
     translations,
 )
 
-PACKAGE = Path(coursework.__file__).resolve().parent
-
 #: What takes a template first, and is read by those who use the product; errors in the code of a course stay English.
 FOR_USERS = {
     "BadInput",
@@ -46,15 +43,15 @@ FOR_USERS = {
 
 
 def calls():
-    for path in sorted(PACKAGE.rglob("*.py")):
-        if path.name in ("messages.py", "errors.py"):
+    for file, tree in trees().items():
+        if file.rpartition("/")[2] in ("messages.py", "errors.py"):
             continue
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        for node in ast.walk(tree):
             name = getattr(node.func, "id", "") if isinstance(node, ast.Call) else ""
-            if (name in FOR_USERS or (name == "WrongValue" and path.parent.name == "cli")) and node.args:
+            if (name in FOR_USERS or (name == "WrongValue" and file.startswith("cli/"))) and node.args:
                 first = node.args[0]
                 for template in (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,):
-                    yield f"{path.relative_to(PACKAGE)}:{template.lineno}", template, node.keywords
+                    yield f"{file}:{template.lineno}", template, node.keywords
 
 
 def places(template):
@@ -128,10 +125,10 @@ def sentences(tree):
 def test_each_sentence_that_an_instructor_reads_stands_in_the_catalogue(lang):
     known = {*translations(lang), *NOT_MESSAGES, *ADDITIONS.values(), UNLESS_TOLD}
     found = {
-        f"{path.relative_to(PACKAGE)}:{line}": text
-        for room in READ_BY_INSTRUCTORS
-        for path in sorted((PACKAGE / room).rglob("*.py"))
-        for line, text in sentences(ast.parse(path.read_text("utf-8")))
+        f"{file}:{line}": text
+        for file, tree in trees().items()
+        if file.startswith(tuple(f"{room}/" for room in READ_BY_INSTRUCTORS))
+        for line, text in sentences(tree)
         if text not in known
     }
     assert found == {}

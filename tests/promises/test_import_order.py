@@ -1,13 +1,11 @@
 """Order of imports: a file imports from its own folder and from folders below it, wherever the import stands."""
 
 import ast
-from pathlib import Path
 
+from package_trees import trees
 from tables import each_row
 
-import coursework
-
-PACKAGE = Path(coursework.__file__).resolve().parent
+FILES = trees()
 
 #: From the ground up.
 ROOMS = (
@@ -15,20 +13,14 @@ ROOMS = (
     "course marking sheets scenes rendering accuracy issuing gradebook selfstudy scanning database platforms nbgrader authoring api site __init__ cli __main__"
 ).split()
 
-FILES = {
-    path.relative_to(PACKAGE).as_posix(): path.read_text("utf-8")
-    for path in sorted(PACKAGE.rglob("*.py"))
-    if not {"skeleton", "examples", "_course"} & set(path.parts)
-}
-
 
 def room_of(file):
     return file.split("/")[0].removesuffix(".py")
 
 
-def imported(text):
+def imported(tree):
     """The modules of the package that a file imports, at its top, inside functions or for types alone, with the line."""
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (
                 (alias.name, node.lineno) for alias in node.names if alias.name.split(".")[0] == "coursework"
@@ -49,12 +41,12 @@ def file_of(module):
     return next((f for f in (f"{stem}.py", f"{stem}/__init__.py") if f in FILES), None)
 
 
-def upward(file, text):
+def upward(file, tree):
     """What a file imports from above."""
     floor = ROOMS.index(room_of(file))
     return [
         f"coursework/{file}:{line} imports {module} from above"
-        for module, line in imported(text)
+        for module, line in imported(tree)
         if ROOMS.index(room_of(file_of(module) or module.split(".")[1])) > floor
     ]
 
@@ -75,7 +67,7 @@ def test_a_file_imports_from_its_own_room_and_from_rooms_below(file):
     ],
 )
 def test_a_planted_import_from_above_is_found(planted):
-    assert upward("marking/marking.py", FILES["marking/marking.py"] + "\n" + planted)
+    assert upward("marking/marking.py", ast.parse(planted))
 
 
 def test_every_file_stands_in_a_room():
@@ -83,7 +75,7 @@ def test_every_file_stands_in_a_room():
 
 
 def test_no_files_import_each_other_in_a_circle():
-    needs = {f: {file_of(m) for m, _ in imported(text)} - {None, f} for f, text in FILES.items()}
+    needs = {f: {file_of(m) for m, _ in imported(tree)} - {None, f} for f, tree in FILES.items()}
     while needs:
         free = {f for f, others in needs.items() if not others & needs.keys()}
         assert free, f"these import each other: {', '.join(sorted(needs))}"

@@ -3,12 +3,8 @@
 import ast
 import re
 from collections import defaultdict
-from functools import cache
-from pathlib import Path
 
-import coursework
-
-PACKAGE = Path(coursework.__file__).resolve().parent
+from package_trees import trees
 
 #: The public name of a variant is the class that course authors and notebooks see, and extends the course's own.
 IN_TWO_FILES = {"Variant"}
@@ -29,18 +25,9 @@ DESCRIBED = (
 DEFINITIONS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
-@cache
-def trees():
-    return [
-        (path.relative_to(PACKAGE).as_posix(), ast.parse(path.read_text("utf-8")))
-        for path in sorted(PACKAGE.rglob("*.py"))
-        if not {"skeleton", "examples", "_course", "versions"} & set(path.parts)
-    ]
-
-
 def test_a_class_name_stands_in_one_file():
     files = defaultdict(set)
-    for file, tree in trees():
+    for file, tree in trees().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.ClassDef):
                 files[node.name].add(file)
@@ -51,7 +38,7 @@ def test_a_class_name_stands_in_one_file():
 def test_a_docstring_begins_with_a_verb_or_a_noun_and_no_clause():
     clauses = [
         (file, text.splitlines()[0])
-        for file, tree in trees()
+        for file, tree in trees().items()
         for node in ast.walk(tree)
         if isinstance(node, DEFINITIONS) and (text := ast.get_docstring(node)) and CLAUSE.match(text)
     ]
@@ -76,7 +63,7 @@ def described(text):
 
 def test_the_interface_and_the_numeric_core_describe_each_parameter_and_the_return_value():
     missing, seen = [], set()
-    for file, tree in trees():
+    for file, tree in trees().items():
         room = next((room for room in DESCRIBED if file.startswith(room)), None)
         for name, function in public_functions(tree) if room else ():
             taken = function.args
