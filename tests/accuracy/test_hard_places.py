@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ def numbers(exercise):
     return [p.quantity for p in exercise.spec.parts if p.kind in ("number", "angle")]
 
 
+@cache
 def places(course, name):
     exercise = course[name]
     return hard_places(exercise, numbers(exercise))

@@ -10,15 +10,19 @@ import shutil
 import pytest
 
 import coursework
+from coursework.authoring.scaffold import new_course
 from coursework.cli import run
 
 ADA, BO = "Ada Lovelace", "Bo"
 ALL = 4.0  #: points of the exercise
 
 
-@pytest.fixture
-def issued(small_course, tmp_path):
-    """Two students of the small course; gives their right answers."""
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """Two students of the small course, and their right answers."""
+    tmp_path = tmp_path_factory.mktemp("built")
+    small_course = tmp_path / "small"
+    new_course(small_course)
     (tmp_path / "class.csv").write_text(
         f"student,email\n{ADA},al1815@school.org\n{BO},bo@school.org\n", "utf-8"
     )
@@ -27,7 +31,15 @@ def issued(small_course, tmp_path):
     course = coursework.open_course(small_course)
     content = json.loads((tmp_path / "out" / "issued.json").read_text("utf-8"))["issued"]
     records = {item["student"]: item["record"] for item in content}
-    return {s: (r["seed"], course["crank_pin"].from_record(r).solution()) for s, r in records.items()}
+    answers = {s: (r["seed"], course["crank_pin"].from_record(r).solution()) for s, r in records.items()}
+    return tmp_path / "out", answers
+
+
+@pytest.fixture
+def issued(built, tmp_path):
+    """What was built, for one test alone; gives the right answers."""
+    shutil.copytree(built[0], tmp_path / "out")
+    return built[1]
 
 
 def notebook(issued, student=ADA, **changed):

@@ -11,6 +11,7 @@ from datetime import date
 import pytest
 
 import coursework
+from coursework.authoring.scaffold import new_course
 from coursework.cli import run
 from coursework.errors import BadInput
 from coursework.gradebook.class_marking import _waiting, marked
@@ -23,9 +24,12 @@ from coursework.rendering.renderer import renderer_of
 SOLUTION = "solutions/crank_pin.py"
 
 
-@pytest.fixture
-def issued(small_course, tmp_path):
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
     """Three students of the small course, their sheets and their answers, all right by its first version."""
+    tmp_path = tmp_path_factory.mktemp("built")
+    small_course = tmp_path / "small"
+    new_course(small_course)
     roster = tmp_path / "class.csv"
     roster.write_text("student\nAda\nBo\nCy\n", "utf-8")
     out = tmp_path / "out"
@@ -38,7 +42,15 @@ def issued(small_course, tmp_path):
     rows[1][4] = "somewhere"
     with (tmp_path / "answers.csv").open("w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([["student", "exercise", "seed", "part", "answer"], *rows])
-    return out
+    return tmp_path
+
+
+@pytest.fixture
+def issued(built, small_course, tmp_path):
+    """What was built, for one test alone."""
+    for name in ("class.csv", "answers.csv"):
+        shutil.copy(built / name, tmp_path / name)
+    return shutil.copytree(built / "out", tmp_path / "out")
 
 
 def course_run(folder, *arguments):

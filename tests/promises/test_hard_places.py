@@ -5,6 +5,8 @@ Against the formulas of its own solution in sixty digits; a new exercise is held
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from sixty_digits import SISTERS, Formulas
@@ -18,6 +20,7 @@ MOST = 8  #: times what the last digits of value and data make
 SEEDS = (0, 1)
 
 
+@cache
 def formulas(name, seed):
     return Formulas(COURSE, name, COURSE[name].variant(seed).given)
 
@@ -26,7 +29,7 @@ MEASURED = [name for name in COURSE.names if formulas(name, 0).names]
 WITH_ANGLES = [name for name in MEASURED if formulas(name, 0).of_unit("deg")]
 FEW = ("slotted_mechanism", "four_bar_motion", "velocity_polygon")
 measured = pytest.mark.parametrize("name", sampled(MEASURED, FEW))
-with_angles = pytest.mark.parametrize("name", sampled(WITH_ANGLES, FEW))
+with_angles = pytest.mark.parametrize("name", sampled(WITH_ANGLES, FEW[:1]))
 
 
 def too_far(own, changes):
