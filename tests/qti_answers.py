@@ -88,9 +88,11 @@ def ours(variant, part, answer: Answer):
     return made, made.points / made.out_of
 
 
-def lost_of(pool, platform="qti3"):
+def lost_of(drawn, platform="qti3"):
     """What the export says is lost, by exercise and part; what is lost of an exercise has no part."""
-    rows = losses(pool, platform, platform_of(platform).losses(pool))
+    chosen = platform_of(platform)
+    pool = drawn.pool("en", chosen)
+    rows = losses(pool, platform, chosen.losses(pool))
     return {(row.exercise, row.part, row.feature) for row in rows}
 
 

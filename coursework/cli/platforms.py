@@ -152,7 +152,8 @@ def export(
         _export_autograder(course, wanted, issued, students, out)
         return
     drawn = _drawn(course, wanted, students, out)
-    exported_files = exported(chosen, drawn, students, SPREADSHEETS[decimal])
+    with progress_bar("exporting", len(drawn.issues) * len(drawn.langs)) as advance:
+        exported_files = exported(chosen, drawn, students, SPREADSHEETS[decimal], advance)
     lines = list(loss_lines(exported_files.lost, drawn.langs[0]))
     if strict and lines:
         raise BadInput(
@@ -163,8 +164,7 @@ def export(
         )
     if not overwrite:
         _check_folder(out, drawn)
-    with progress_bar("exporting", len(exported_files.files)) as advance:
-        notes += write_tree(out, exported_files.files, advance, anew=overwrite)
+    notes += write_tree(out, exported_files.files, anew=overwrite)
     if not is_assignment(wanted.exercises):
         notes.append(for_practice(langs[0]))
     print_notes(notes)

@@ -10,7 +10,8 @@ from decimal import Decimal
 from fractions import Fraction
 
 from coursework.parsing.units import convert, find_unit
-from coursework.platforms.items import Item, PoolSection
+from coursework.platforms.items import PoolSection
+from coursework.platforms.pieces import Image
 from coursework.platforms.posed import Interval, Posed
 from coursework.sheets.sheet import Question
 
@@ -23,11 +24,23 @@ _PREFIXES = ("m", "µ", "n")
 
 
 @dataclass(frozen=True)
+class CanvasItem:
+    """Variant as the quiz holds it, but for what its groups decide: the unit of the numbers."""
+
+    identifier: str
+    labels: tuple[str, ...]  #: of the questions
+    opening: str  #: HTML
+    images: tuple[Image, ...]  #: of the opening
+    questions: tuple[Posed, ...]  #: without the wrong numbers, of which the platform says nothing
+
+
+@dataclass(frozen=True)
 class VariantQuestion:
     """Question of one variant."""
 
-    item: Item
+    item: CanvasItem
     posed: Posed
+    label: str
 
 
 @dataclass(frozen=True)
@@ -98,7 +111,7 @@ def _is_smaller(prefixed: str, unit: str, decades: int) -> bool:
 
 def groups(section: PoolSection) -> tuple[QuestionGroup, ...]:
     """Return the groups of an exercise. A part is in one group only, so that nobody gets it twice."""
-    first = section.items[0].questions
+    first = section.items[0].content.questions
     by_group: list[list[VariantQuestion]] = [[] for _ in first]
     for variant_question, index in _placed(section):
         if index is not None:
@@ -124,13 +137,14 @@ def left_out(section: PoolSection) -> dict[str, int]:
 
 def _placed(section: PoolSection) -> Iterator[tuple[VariantQuestion, int | None]]:
     """Yield each question of each variant with the index of its group; None if it has none."""
-    points = [posed.points for posed in section.items[0].questions]
+    contents: list[CanvasItem] = [item.content for item in section.items]
+    points = [posed.points for posed in contents[0].questions]
     places: dict[str, int] = {}
-    for item in section.items:
-        for index, posed in enumerate(item.questions):
+    for item in contents:
+        for index, (posed, label) in enumerate(zip(item.questions, item.labels, strict=True)):
             first_index = places.setdefault(posed.question.id, index)
             fits = first_index == index < len(points) and posed.points == points[index]
-            yield VariantQuestion(item, posed), index if fits else None
+            yield VariantQuestion(item, posed, label), index if fits else None
 
 
 def accepted(interval: Interval, decades: int) -> tuple[Decimal, Decimal, Decimal]:

@@ -7,9 +7,9 @@ from dataclasses import replace
 from decimal import Decimal
 from xml.etree import ElementTree as ET
 
-from coursework.platforms._canvas_groups import QuestionGroup, VariantQuestion, accepted
+from coursework.platforms._canvas_groups import CanvasItem, QuestionGroup, VariantQuestion, accepted
 from coursework.platforms._xml import below
-from coursework.platforms.items import SEPARATOR, Pool
+from coursework.platforms.items import SEPARATOR, Item, Pool
 from coursework.platforms.pieces import Image, PagePieces, with_files
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Option, Posed
 
@@ -31,14 +31,23 @@ def identified(*names: str) -> str:
     return "i" + hashlib.sha256("\n".join(names).encode()).hexdigest()[:31]
 
 
+def canvas_item(item: Item, pieces: PagePieces) -> CanvasItem:
+    """Return what the quiz holds of a variant."""
+    opening, images = with_files(pieces.opening(item, named=False), _ADDRESS)
+    questions = tuple(
+        replace(posed, intervals=tuple(interval for interval in posed.intervals if interval.is_right))
+        for posed in item.questions
+    )
+    labels = tuple(item.label_of(posed.question.id) for posed in questions)
+    return CanvasItem(item.identifier, labels, opening, images, questions)
+
+
 class Questions:
     """Writer of the questions of a pool, which collects their pictures."""
 
     def __init__(self, pool: Pool):
-        self._pool = pool
         self._pieces = PagePieces(pool.folders, pool.lang)
         self._images: dict[str, Image] = {}
-        self._openings: dict[str, str] = {}
 
     @property
     def images(self) -> list[Image]:
@@ -51,23 +60,15 @@ class Questions:
         item = below(parent, "item", ident=ident, title=label)
         self._metadata(item, posed, ident)
         presentation = below(item, "presentation")
-        self._text(
-            presentation, f"<div>{self._opening(variant_question)}{self._prompt(posed, group, label)}</div>"
-        )
+        self._store(variant_question.item.images)
+        opening = variant_question.item.opening
+        self._text(presentation, f"<div>{opening}{self._prompt(posed, group, label)}</div>")
         _BODIES[posed.kind](self, item, presentation, posed, group)
 
     def _label(self, variant_question: VariantQuestion, group: QuestionGroup) -> str:
         """Return the label of a question in reports, with the unit if it differs from the sheet's."""
-        label = variant_question.item.label_of(variant_question.posed.question.id)
+        label = variant_question.label
         return f"{label[:-1]}{SEPARATOR}{group.unit}]" if group.is_scaled else label
-
-    def _opening(self, variant_question: VariantQuestion) -> str:
-        name = variant_question.item.identifier
-        if name not in self._openings:
-            opening, images = with_files(self._pieces.opening(variant_question.item, named=False), _ADDRESS)
-            self._openings[name] = opening
-            self._store(images)
-        return self._openings[name]
 
     def _prompt(self, posed: Posed, group: QuestionGroup, label: str) -> str:
         box = _BOX if posed.kind == NUMBER else ""

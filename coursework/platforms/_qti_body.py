@@ -3,6 +3,8 @@ files."""
 
 from __future__ import annotations
 
+import copy
+from functools import lru_cache
 from html.parser import HTMLParser
 from xml.etree.ElementTree import Element
 
@@ -99,6 +101,13 @@ class _BodyReader(HTMLParser):
 
 def elements(page: str, **attributes: str) -> Element:
     """Return a piece of a page as one ``<div>``."""
+    root = copy.deepcopy(_parsed(page))
+    root.attrib.update(attributes)
+    return root
+
+
+@lru_cache(maxsize=1024)  # variants of an exercise ask the same questions
+def _parsed(page: str) -> Element:
     reader = _BodyReader()
     reader.feed(page.strip())
     reader.close()
@@ -110,7 +119,6 @@ def elements(page: str, **attributes: str) -> Element:
     ):
         root = root[0]
         root.tail = None
-    root.attrib.update(attributes)
     return root
 
 

@@ -9,14 +9,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import groupby
 from xml.etree.ElementTree import Element
 
 from coursework.language.numbers import significant
 from coursework.language.words import words
 from coursework.platforms._qti_body import elements, html, is_inline, put_in_box
-from coursework.platforms._qti_tree import FORMULA, LANG, add, decimal
+from coursework.platforms._qti_tree import BLANKED, FORMULA, LANG, add, decimal
 from coursework.platforms.items import Item
 from coursework.platforms.pieces import Image, PagePieces, with_files
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval, Option, Posed
@@ -54,6 +54,7 @@ def identifier_of(item: Item) -> str:
     return identifier(item.identifier.replace(".", "-"))
 
 
+@lru_cache(maxsize=4096)
 def identifier(text: str) -> str:
     """Return a text as a QTI identifier: letters, digits, ``_`` and ``-``, and for any other character its
     code."""
@@ -83,9 +84,14 @@ def item_file(item: Item, pieces: PagePieces) -> ItemFile:
     add(root, "stylesheet", href=STYLE, type="text/css")
     root.append(_body(item, opening, questions, pieces))
     root.append(_processing(questions))
-    for formula in root.iter(FORMULA):  # its alternative text is in this language
-        formula.set(LANG, sheet.lang)
+    _set_language(root, sheet.lang)
     return ItemFile(identifier_of(item), sheet.title, root, images)
+
+
+def _set_language(root: Element, lang: str) -> None:
+    """Set the language of the formulas: they have an alternative text."""
+    for formula in root.iter(FORMULA):
+        formula.set(LANG, lang)
 
 
 def _outcomes(item: Item, questions: Sequence[_QtiQuestion]) -> Iterator[Element]:
@@ -266,10 +272,9 @@ class _QtiQuestion:
             "feedbackBlock",
             {"outcomeIdentifier": self.named("FEEDBACK"), "identifier": name, "showHide": "show"},
         )
-        content = elements(
-            f"<p>{self.pieces.inline(identifier_shown)}</p>", **{"class": f"feedback {name.split('_')[0]}"}
-        )
-        add(block, "contentBody").append(content)
+        html, digits = self.pieces.blank_inline(identifier_shown)
+        blanks = add(add(block, "contentBody"), BLANKED, digits=digits)
+        blanks.append(_shared_feedback(f"<p>{html}</p>", f"feedback {name.split('_')[0]}", self.lang))
         return block
 
     def _feedback_texts(self) -> Iterator[tuple[str, str]]:
@@ -373,6 +378,14 @@ class _QtiQuestion:
         if self.feedback_texts:
             outcome = add(rule, "setOutcomeValue", identifier=self.named("FEEDBACK"))
             add(outcome, "baseValue", name, baseType="identifier")
+
+
+@lru_cache(maxsize=4096)
+def _shared_feedback(page: str, css_class: str, lang: str) -> Element:
+    """Return a feedback for all items that have it, their digits apart; nobody changes it."""
+    content = elements(page, **{"class": css_class})
+    _set_language(content, lang)
+    return content
 
 
 def _processing(questions: Sequence[_QtiQuestion]) -> Element:

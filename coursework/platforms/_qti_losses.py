@@ -1,4 +1,4 @@
-"""Losses of a pool in QTI that depend on its values and choices."""
+"""Losses of a variant in QTI that depend on its values and choices."""
 
 from __future__ import annotations
 
@@ -6,21 +6,19 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from coursework.language.words import words
-from coursework.platforms.items import Pool
-from coursework.platforms.losses import Loss
+from coursework.platforms.items import Item, Loss
 from coursework.platforms.posed import CHOICES, Posed
 
 
-def losses(pool: Pool) -> Iterator[Loss]:
-    """Return the known errors to which a player cannot give our points."""
-    texts = words(pool.lang)["platforms"]["qti"]
-    for section in pool.sections:
-        for item in section.items:
-            for posed in item.questions:
-                if posed.kind == CHOICES and "mistakes" in posed.features:
-                    yield Loss(section.exercise, posed.question.id, "mistakes", texts["by_share"])
-                elif _near(posed):
-                    yield Loss(section.exercise, posed.question.id, "mistakes", texts["near"])
+def losses(item: Item) -> Iterator[Loss]:
+    """Yield the known errors to which a player cannot give our points."""
+    sheet = item.handout
+    texts = words(sheet.lang)["platforms"]["qti"]
+    for posed in item.questions:
+        if posed.kind == CHOICES and "mistakes" in posed.features:
+            yield Loss(sheet.exercise, posed.question.id, "mistakes", texts["by_share"])
+        elif _near(posed):
+            yield Loss(sheet.exercise, posed.question.id, "mistakes", texts["near"])
 
 
 def _near(posed: Posed) -> bool:

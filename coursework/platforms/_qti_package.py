@@ -3,18 +3,29 @@ manifest."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
-from coursework.platforms._qti_item import IMAGES, STYLE, ItemFile, identifier, item_file
+from coursework.platforms._qti_item import IMAGES, STYLE, identifier, item_file
 from coursework.platforms._qti_tree import QtiSpelling, add, decimal, manifest_written, written
-from coursework.platforms.items import Pool, PoolSection
+from coursework.platforms.items import Item, Pool, PoolSection
 from coursework.platforms.pieces import PagePieces
 from coursework.system.writing import File
-from coursework.system.zips import zipped
+from coursework.system.zips import PackedFile, compressed, zipped
 
 _ITEMS, _TEST = "items", "test.xml"
+
+Files = dict[
+    str, PackedFile
+]  #: of an item, by their paths below the items' folder: the item, then its pictures
+
+
+def item_content(item: Item, pieces: PagePieces, spelling: QtiSpelling) -> Files:
+    """Return the files of a variant of a pool."""
+    made = item_file(item, pieces)
+    files = {f"{made.identifier}.xml": compressed(written(made.tree, spelling))}
+    return files | {f"{IMAGES}/{image.name}": compressed(image.data) for image in made.images}
 
 
 def package(pool: Pool, platform: str, spelling: QtiSpelling) -> File:
@@ -23,23 +34,19 @@ def package(pool: Pool, platform: str, spelling: QtiSpelling) -> File:
     return File(path, lambda: zipped(dict(files(pool, spelling))))
 
 
-def files(pool: Pool, spelling: QtiSpelling) -> Iterator[tuple[str, bytes]]:
+def files(pool: Pool, spelling: QtiSpelling) -> Iterator[tuple[str, bytes | PackedFile]]:
     """Yield the files of a package with their paths."""
-    pieces = PagePieces(pool.folders, pool.lang)
-    items = [[item_file(item, pieces) for item in section.items] for section in pool.sections]
-    yield f"{_ITEMS}/{STYLE}", pieces.style().encode()
-    for written_item in (section_file for some in items for section_file in some):
-        yield f"{_ITEMS}/{written_item.identifier}.xml", written(written_item.tree, spelling)
-        for image in written_item.images:
-            yield f"{_ITEMS}/{IMAGES}/{image.name}", image.data
-    yield _TEST, written(_test(pool, items), spelling)
-    yield "imsmanifest.xml", manifest_written(_manifest(pool, items, spelling), spelling)
+    yield f"{_ITEMS}/{STYLE}", PagePieces(pool.folders, pool.lang).style().encode()
+    for item in pool.items:
+        yield from ((f"{_ITEMS}/{path}", member) for path, member in item.content.items())
+    yield _TEST, written(_test(pool), spelling)
+    yield "imsmanifest.xml", manifest_written(_manifest(pool, spelling), spelling)
 
 
 # ---------------------------------------------------------------------------- test
 
 
-def _test(pool: Pool, items: Sequence[Sequence[ItemFile]]) -> Element:
+def _test(pool: Pool) -> Element:
     """Return the test: one section per exercise, from which a student gets one item."""
     root = Element(
         "assessmentTest",
@@ -52,14 +59,13 @@ def _test(pool: Pool, items: Sequence[Sequence[ItemFile]]) -> Element:
         root, "testPart", identifier="exercises", navigationMode="nonlinear", submissionMode="individual"
     )
     add(part, "itemSessionControl", maxAttempts="1", showFeedback="true", showSolution="false")
-    for section, some in zip(pool.sections, items, strict=True):
-        part.append(_section(section, some))
+    part.extend(map(_section, pool.sections))
     total = add(add(root, "outcomeProcessing"), "setOutcomeValue", identifier="SCORE")
     add(add(total, "sum"), "testVariables", variableIdentifier="SCORE")
     return root
 
 
-def _section(section: PoolSection, items: Sequence[ItemFile]) -> Element:
+def _section(section: PoolSection) -> Element:
     element = Element(
         "assessmentSection",
         identifier=identifier(section.exercise),
@@ -68,9 +74,14 @@ def _section(section: PoolSection, items: Sequence[ItemFile]) -> Element:
         keepTogether="true",
     )
     add(element, "selection", select="1")
-    for item in items:
-        add(element, "assessmentItemRef", identifier=item.identifier, href=f"{_ITEMS}/{item.identifier}.xml")
+    for item in section.items:
+        path = next(iter(item.content))
+        add(element, "assessmentItemRef", identifier=_identifier(path), href=f"{_ITEMS}/{path}")
     return element
+
+
+def _identifier(path: str) -> str:
+    return path.removesuffix(".xml")
 
 
 def _named(pool: Pool, kind: str) -> str:
@@ -80,21 +91,20 @@ def _named(pool: Pool, kind: str) -> str:
 # ------------------------------------------------------------------------ manifest
 
 
-def _manifest(pool: Pool, items: Sequence[Sequence[ItemFile]], spelling: QtiSpelling) -> Element:
+def _manifest(pool: Pool, spelling: QtiSpelling) -> Element:
     root = Element("manifest", identifier=_named(pool, "package"))
     metadata = add(root, "metadata")
     add(metadata, "schema", spelling.schema_name)
     add(metadata, "schemaversion", spelling.schema_version)
     add(root, "organizations")
     resources = add(root, "resources")
-    flat = [entry for some in items for entry in some]
     test = _resource(resources, _named(pool, "test"), spelling.test_type, _TEST)
-    for entry in flat:
-        add(test, "dependency", identifierref=entry.identifier)
-    for entry in flat:
-        item = _resource(resources, entry.identifier, spelling.item_type, f"{_ITEMS}/{entry.identifier}.xml")
-        for path in (STYLE, *(f"{IMAGES}/{image.name}" for image in entry.images)):
-            add(item, "file", href=f"{_ITEMS}/{path}")
+    for path, *_ in (item.content for item in pool.items):
+        add(test, "dependency", identifierref=_identifier(path))
+    for path, *images in (item.content for item in pool.items):
+        resource = _resource(resources, _identifier(path), spelling.item_type, f"{_ITEMS}/{path}")
+        for file in (STYLE, *images):
+            add(resource, "file", href=f"{_ITEMS}/{file}")
     return root
 
 

@@ -6,10 +6,15 @@ A tree has the names of QTI 2.1 without a namespace; HTML is in :data:`HTML`, fo
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from types import MappingProxyType
 from xml.etree import ElementTree as ET
 from xml.etree.ElementTree import Element
+from xml.sax.saxutils import escape
+
+from coursework.platforms.pieces import filled
 
 HTML = "html"  #: of no namespace in the end: QTI has taken the tags of HTML into its own
 MATHML = "http://www.w3.org/1998/Math/MathML"
@@ -17,15 +22,18 @@ FORMULA = f"{{{MATHML}}}math"
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 _XML = "http://www.w3.org/XML/1998/namespace"
 LANG = f"{{{_XML}}}lang"
+#: Element of a file that is not written: the one below it, which many files share, with these ``digits`` in its blanks.
+BLANKED = "blanked"
 
 #: Attributes that QTI 2.1 has not.
 _NEW = frozenset({"externalScored"})
 #: Elements that QTI 2.1 lacks; their content replaces them.
 _WRAPPING = frozenset({"contentBody"})
+NONE: Mapping[str, str] = MappingProxyType({})
 _CAPITAL = re.compile("(?<=[a-z])([A-Z])")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class QtiSpelling:
     """Spelling of a version of QTI."""
 
@@ -80,51 +88,69 @@ def kebab(name: str) -> str:
 
 def written(tree: Element, spelling: QtiSpelling) -> bytes:
     """Return a tree as a file of a version."""
-    root = next(_spelled(tree, spelling))
-    root.set("xmlns", spelling.namespace)
-    return _file(root, f"{spelling.namespace} {spelling.schema}")
+    more = {"xmlns": spelling.namespace, **_schemas(spelling.namespace, spelling.schema)}
+    return _file(_text(tree, spelling, more))
 
 
 def manifest_written(tree: Element, spelling: QtiSpelling) -> bytes:
     """Return a manifest, which is the same in every version."""
     tree.set("xmlns", spelling.manifest)
-    return _file(tree, f"{spelling.manifest} {spelling.manifest_schema}")
+    tree.attrib.update(_schemas(spelling.manifest, spelling.manifest_schema))
+    return _file(ET.tostring(tree, encoding="unicode", short_empty_elements=True))
 
 
-def _file(root: Element, schemas: str) -> bytes:
-    root.set("xmlns:xsi", _XSI)
-    root.set("xsi:schemaLocation", schemas)
-    text = ET.tostring(root, encoding="unicode", short_empty_elements=True)
+def _schemas(namespace: str, schema: str) -> dict[str, str]:
+    return {"xmlns:xsi": _XSI, "xsi:schemaLocation": f"{namespace} {schema}"}
+
+
+def _file(text: str) -> bytes:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
 
 
-def _spelled(element: Element, spelling: QtiSpelling) -> Iterator[Element]:
-    """Yield the element in a spelling; its content if the spelling has no such element."""
-    children = [grandchild for child in element for grandchild in _spelled(child, spelling)]
+def _text(element: Element, spelling: QtiSpelling, more: Mapping[str, str] = NONE) -> str:
+    """Return the text of an element in a spelling, with ``more`` attributes; that of its content if the spelling has no
+    such element."""
+    if element.tag == BLANKED:
+        return filled(_shared_text(element[0], spelling), element.attrib["digits"])
+    inside = "".join([_text(child, spelling) for child in element])
     if element.tag in _WRAPPING and not spelling.is_kebab:
-        yield from children
-        return
-    copy = Element(_tag(element.tag, spelling), _attributes(element, spelling))
-    copy.text, copy.tail = element.text, element.tail
-    copy.extend(children)
-    yield copy
+        return inside
+    tag, is_formula = _tag(element.tag, spelling), element.tag == FORMULA
+    # A formula's root opens its namespace for all below it.
+    marks = f' xmlns="{MATHML}"' if is_formula else ""
+    in_html = element.tag.startswith("{")
+    for name, value in element.attrib.items():
+        if spelled := _attribute(name, in_html, spelling):
+            marks += f' {spelled}="{_in_attribute(value)}"'
+    for name, value in more.items():
+        marks += f' {name}="{_in_attribute(value)}"'
+    if element.text:
+        inside = escape(element.text) + inside
+    tail = escape(element.tail) if element.tail else ""
+    return f"<{tag}{marks}>{inside}</{tag}>{tail}" if inside else f"<{tag}{marks} />{tail}"
 
 
+_shared_text = lru_cache(maxsize=4096)(_text)
+
+
+@lru_cache(maxsize=4096)
+def _in_attribute(value: str) -> str:
+    return escape(value, {'"': "&quot;", "\r": "&#13;", "\n": "&#10;", "\t": "&#09;"})
+
+
+@lru_cache(maxsize=1024)
 def _tag(tag: str, spelling: QtiSpelling) -> str:
     space, _, name = tag.rpartition("}")
     return name if space else spelling.tag(name)
 
 
-def _attributes(element: Element, spelling: QtiSpelling) -> dict[str, str]:
-    attributes = {"xml:lang" if name == LANG else name: value for name, value in element.attrib.items()}
-    if element.tag.startswith("{"):
-        # A formula's root opens its namespace for all below it.
-        return {"xmlns": MATHML, **attributes} if element.tag == FORMULA else attributes
-    return {
-        spelling.attribute(name): value
-        for name, value in attributes.items()
-        if spelling.is_kebab or not (name in _NEW or "-" in name)
-    }
+@lru_cache(maxsize=1024)
+def _attribute(name: str, in_html: bool, spelling: QtiSpelling) -> str:
+    """Return the name of an attribute in a spelling; nothing if the spelling has none."""
+    name = "xml:lang" if name == LANG else name
+    if in_html:
+        return name
+    return spelling.attribute(name) if spelling.is_kebab or not (name in _NEW or "-" in name) else ""
 
 
 def add(parent: Element, tag: str, text: str = "", **attributes: str) -> Element:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import cmath
-import copy
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from coursework.course.variant import Variant
@@ -28,6 +28,7 @@ class Following:
     earlier: tuple[int, ...]  #: the numbers of these
 
 
+@lru_cache(maxsize=64)  # of the variant at hand: its trees and its losses ask
 def following(variant: Variant, part: Part) -> Following | None:
     """Return the formula of a part's answer from earlier ones; None if Maxima cannot express it."""
     earlier = _earlier(variant, part)
@@ -88,7 +89,7 @@ class _Formulas:
                 raise KeyError(found)
             return self.of(found)
 
-        return f"({printed(copy.deepcopy(formula.tree), name, formula.space)})"
+        return f"({printed(formula.tree, name, formula.space)})"
 
     def _constant(self, quantity: str) -> str:
         variant = self._variant

@@ -9,12 +9,11 @@ from typing import ClassVar
 from xml.etree import ElementTree as ET
 
 from coursework.language.words import words
-from coursework.platforms._canvas_groups import QuestionGroup, groups, left_out
-from coursework.platforms._canvas_questions import FOLDER, Questions, identified
+from coursework.platforms._canvas_groups import CanvasItem, QuestionGroup, groups, left_out
+from coursework.platforms._canvas_questions import FOLDER, Questions, canvas_item, identified
 from coursework.platforms._xml import below, xml_bytes
-from coursework.platforms.items import Pool
-from coursework.platforms.losses import Loss
-from coursework.platforms.pieces import Image
+from coursework.platforms.items import Item, Loss, Pool
+from coursework.platforms.pieces import Image, PagePieces
 from coursework.platforms.platform import Platform
 from coursework.system.writing import File
 from coursework.system.zips import zipped
@@ -33,6 +32,9 @@ class Canvas(Platform):
     """Export for Canvas, one package per language: ``canvas.LANG.zip``."""
 
     name: ClassVar[str] = "canvas"
+
+    def content(self, item: Item, pieces: PagePieces) -> CanvasItem:
+        return canvas_item(item, pieces)
 
     def files(self, pool: Pool) -> Iterator[File]:
         yield File(Path(f"canvas.{pool.lang}.zip"), partial(_package, pool))

@@ -3,14 +3,15 @@ contains answers and is for the staff."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from coursework.issuing.issued import issued_content
 from coursework.issuing.roster import Student
-from coursework.platforms.losses import COLUMNS, Loss, losses, platform_words
+from coursework.platforms.items import Loss, MadeItem
+from coursework.platforms.losses import COLUMNS, loss_row, losses, platform_words
 from coursework.platforms.platform import Platform
 from coursework.platforms.pools import DrawnPool
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
@@ -30,10 +31,11 @@ def export(
     drawn: DrawnPool,
     students: Sequence[Student] = (),
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
+    progress: Callable[[MadeItem], None] = lambda made: None,
 ) -> Export:
     """Return the files of an export, in every language of the pool; ``students`` are those whose marks may
     come back."""
-    pools = [drawn.pool(lang) for lang in drawn.langs]
+    pools = [drawn.pool(lang, platform, progress) for lang in drawn.langs]
     lost = {
         (loss.exercise, loss.part, loss.feature): loss
         for pool in reversed(pools)
@@ -56,7 +58,7 @@ def _common_files(
     issued = pool_content(drawn, students)
     lang = drawn.langs[0]
     yield File(Path("issued.json"), lambda: json_text(issued).encode("utf-8"))
-    rows = [loss.row(lang) for loss in lost]
+    rows = [loss_row(loss, lang) for loss in lost]
     yield File(Path("lost.csv"), lambda: csv_file(rows, COLUMNS, spreadsheet))
     for code in drawn.langs:
         text = steps(platform.name, code)

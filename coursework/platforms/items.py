@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from coursework.course.variant import Variant
 from coursework.issuing.assignment import Assignment
-from coursework.issuing.issuing import Issue
 from coursework.platforms.posed import Posed, posed
 from coursework.rendering.views import variant_code
 from coursework.sheets.handout import handout
@@ -24,6 +24,7 @@ class Item:
     handout: Handout
     questions: tuple[Posed, ...]
     pool: str  #: name of the pool that it is of; identifiers hang on it
+    variant: Variant
 
     @property
     def label(self) -> str:
@@ -46,13 +47,34 @@ class Item:
         return self.handout.points
 
 
+class Loss(NamedTuple):
+    """Loss of a part, or of an exercise if the part is empty."""
+
+    exercise: str
+    part: str
+    feature: str  #: a key of ``[platforms.features]``
+    instead: str  #: the platform's behaviour, in words
+
+
+class MadeItem(NamedTuple):
+    """Item as a platform's files hold it: plain data, which any process may make."""
+
+    identifier: str
+    exercise: str
+    title: str  #: of the exercise, plain text
+    points: float
+    features: tuple[tuple[str, str], ...]  #: of our marking: the part, or none, and the feature
+    losses: tuple[Loss, ...]  #: that the platform itself finds
+    content: Any  #: as the platform makes it
+
+
 @dataclass(frozen=True)
 class PoolSection:
     """Variants of one exercise with the same parts, of which each student gets one."""
 
     exercise: str
     title: str  #: plain text
-    items: tuple[Item, ...]
+    items: tuple[MadeItem, ...]
 
     @property
     def points(self) -> float:
@@ -67,13 +89,12 @@ class Pool:
     title: str  #: plain text
     lang: str
     sections: tuple[PoolSection, ...]
-    issues: tuple[Issue, ...]  #: the variants, which belong to nobody
     folders: tuple[Path, ...]  #: of templates
     course: Path  #: the course's folder
     assignment: Assignment | None = None
 
     @property
-    def items(self) -> tuple[Item, ...]:
+    def items(self) -> tuple[MadeItem, ...]:
         return tuple(item for section in self.sections for item in section.items)
 
     @property
@@ -85,10 +106,9 @@ def item(variant: Variant, pool: str) -> Item:
     """Return a variant as a platform presents it."""
     sheet = handout(variant)
     pairs = zip(sheet.questions, variant.parts, strict=True)
-    return Item(sheet, tuple(posed(variant, question, part) for question, part in pairs), pool)
+    return Item(sheet, tuple(posed(variant, question, part) for question, part in pairs), pool, variant)
 
 
-def section(variants: Sequence[Variant], pool: str) -> PoolSection:
+def section(items: Sequence[MadeItem]) -> PoolSection:
     """Return the section of the variants of an exercise, in one language."""
-    items = tuple(item(variant, pool) for variant in variants)
-    return PoolSection(items[0].handout.exercise, items[0].handout.title, items)
+    return PoolSection(items[0].exercise, items[0].title, tuple(items))

@@ -6,11 +6,11 @@ The table is in ``[platforms.lost.NAME]`` of each language; a feature without an
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from coursework.errors import BadCourse
 from coursework.language.words import words
-from coursework.platforms.items import Pool
+from coursework.platforms.items import Item, Loss, Pool
 from coursework.platforms.posed import COLLECTED
 
 COLUMNS = ("exercise", "part", "feature", "instead")
@@ -30,17 +30,9 @@ _OF_JUDGED = (
 _OF_POOLS = ("one_variant", "corrected")
 
 
-class Loss(NamedTuple):
-    """Loss of a part, or of an exercise if the part is empty."""
-
-    exercise: str
-    part: str
-    feature: str  #: a key of ``[platforms.features]``
-    instead: str  #: the platform's behaviour, in words
-
-    def row(self, lang: str) -> dict[str, str]:
-        """Return the row of ``lost.csv``."""
-        return {**self._asdict(), "feature": feature_words(self.feature, lang)}
+def loss_row(loss: Loss, lang: str) -> dict[str, str]:
+    """Return the row of a loss in ``lost.csv``."""
+    return {**loss._asdict(), "feature": feature_words(loss.feature, lang)}
 
 
 def feature_words(feature: str, lang: str) -> str:
@@ -98,13 +90,19 @@ def _features(pool: Pool) -> Iterator[tuple[str, str, str]]:
     for section in pool.sections:
         for feature in _OF_POOLS:
             yield section.exercise, "", feature
-        if any(item.handout.drawing_mm for item in section.items):
-            yield section.exercise, "", "drawing_paper"
-        for item in section.items:
-            for posed in item.questions:
-                for feature in sorted(posed.features):
-                    if posed.kind != COLLECTED or feature not in _OF_JUDGED:
-                        yield section.exercise, posed.question.id, feature
+        found = dict.fromkeys(feature for item in section.items for feature in item.features)
+        for part, feature in sorted(found, key=lambda feature: bool(feature[0])):
+            yield section.exercise, part, feature
+
+
+def features_of(item: Item) -> Iterator[tuple[str, str]]:
+    """Yield the features of our marking of a variant, each with its part."""
+    if item.handout.drawing_mm:
+        yield "", "drawing_paper"
+    for posed in item.questions:
+        for feature in sorted(posed.features):
+            if posed.kind != COLLECTED or feature not in _OF_JUDGED:
+                yield posed.question.id, feature
 
 
 def loss_lines(lost: Sequence[Loss], lang: str) -> Iterator[str]:

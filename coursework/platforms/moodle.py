@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import io
 import math
+import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import ROUND_UP, Decimal
 from fractions import Fraction
@@ -41,6 +43,9 @@ _BOX = "\N{OBJECT REPLACEMENT CHARACTER}"  #: placeholder of a box
 class Moodle(Platform):
     name = "moodle"
 
+    def content(self, item: Item, pieces: PagePieces) -> bytes:
+        return zlib.compress(_lines(_question(Document(), item, pieces)))
+
     def files(self, pool: Pool) -> Iterator[File]:
         yield File(Path(f"{pool.name}.{pool.lang}.xml"), partial(quiz, pool))
 
@@ -48,27 +53,36 @@ class Moodle(Platform):
 PLATFORM = Moodle()
 
 
-def quiz(pool: Pool) -> bytes:
-    """Return the file to import."""
-    pieces = PagePieces(pool.folders, pool.lang)
-    page = Document()
-    root = _element(page, page, "quiz")
+def quiz(pool: Pool) -> Iterator[bytes]:
+    """Yield the file to import, question by question."""
+    yield b'<?xml version="1.0" encoding="utf-8"?>\n<quiz>\n'
     for section in pool.sections:
-        _category(root, page, (pool.title, f"{section.title} ({section.exercise}, {pool.lang})"))
+        yield _lines(
+            _category(Document(), (pool.title, f"{section.title} ({section.exercise}, {pool.lang})"))
+        )
         for item in section.items:
-            _question(root, page, item, pieces)
-    return page.toprettyxml(indent=" ", encoding="utf-8")
+            yield zlib.decompress(item.content)
+    yield b"</quiz>\n"
 
 
-def _category(root: Element, page: Document, names: Sequence[str]) -> None:
+def _lines(question: Element) -> bytes:
+    """Return a question with a line for each element, indented as in the quiz."""
+    lines = io.StringIO()
+    question.writexml(lines, " ", " ", "\n")
+    return lines.getvalue().encode("utf-8", "xmlcharrefreplace")
+
+
+def _category(page: Document, names: Sequence[str]) -> Element:
     """Return the category of the following questions; a slash in a name is doubled."""
     path = "/".join(("$course$", "top", *(name.replace("/", "//") for name in names)))
-    _text(_element(_element(root, page, "question", type="category"), page, "category"), page, path)
+    question = _element(page, page, "question", type="category")
+    _text(_element(question, page, "category"), page, path)
+    return question
 
 
-def _question(root: Element, page: Document, item: Item, pieces: PagePieces) -> None:
+def _question(page: Document, item: Item, pieces: PagePieces) -> Element:
     html, images = _page(item, pieces)
-    question = _element(root, page, "question", type="cloze")
+    question = _element(page, page, "question", type="cloze")
     _text(_element(question, page, "name"), page, item.label[1:-1])
     text_element = _element(question, page, "questiontext", format="html")
     _text(text_element, page, html)
@@ -77,6 +91,7 @@ def _question(root: Element, page: Document, item: Item, pieces: PagePieces) -> 
         file = _element(text_element, page, "file", name=image.name, path="/", encoding="base64")
         file.appendChild(page.createTextNode(data))
     _element(question, page, "idnumber").appendChild(page.createTextNode(_idnumber(item.identifier)))
+    return question
 
 
 def _page(item: Item, pieces: PagePieces) -> tuple[str, tuple[Image, ...]]:

@@ -7,8 +7,12 @@ import base64
 import hashlib
 import re
 from collections.abc import Sequence
+from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
+
+from jinja2 import Environment
 
 from coursework.language.words import words
 from coursework.markup.markdown import plain_line
@@ -21,6 +25,38 @@ from coursework.sheets.sheet import Question
 
 _INLINE = re.compile(r'src="data:image/(svg\+xml|png|jpeg);base64,([A-Za-z0-9+/=]+)"')
 _ENDINGS = {"svg+xml": "svg", "png": "png", "jpeg": "jpg"}
+
+
+_BLANK = "\N{MATHEMATICAL MONOSPACE DIGIT ZERO}"  #: a digit to every rule of typography, and in no text
+_DIGIT = re.compile("[0-9]")
+#: What gives a digit outside a formula a meaning to Markdown: code, an entity, a link, a mark, a list.
+_MEANING = re.compile(rf"[`&\[<\\{_BLANK}]|^\s*[0-9]", re.MULTILINE)
+
+
+def blanked(line: str) -> tuple[str, str]:
+    """Return a line of Markdown with blanks for its digits outside formulas, and these digits.
+
+    Variants differ by digits: lines that are the same with blanks are rendered once, and :func:`filled`.
+    """
+    pieces = line.split("$")
+    if "$$" in line or len(pieces) % 2 == 0 or any(map(_MEANING.search, pieces[::2])):
+        return line, ""
+    digits = "".join(_DIGIT.findall("".join(pieces[::2])))
+    pieces[::2] = [_DIGIT.sub(_BLANK, piece) for piece in pieces[::2]]
+    return "$".join(pieces), digits
+
+
+def filled(text: str, digits: str) -> str:
+    """Return a text with its blanks replaced by digits, in order."""
+    if not digits:
+        return text
+    first, *rest = text.split(_BLANK)
+    return first + "".join(chain.from_iterable(zip(digits, rest, strict=True)))
+
+
+@lru_cache(maxsize=4096)
+def _inline(env: Environment, line: str) -> str:
+    return render(env, "platform/_line.html.j2", {"line": line})
 
 
 class Image(NamedTuple):
@@ -66,7 +102,13 @@ class PagePieces:
 
     def inline(self, markdown: str) -> str:
         """Return a line of Markdown as HTML."""
-        return render(self._env, "platform/_line.html.j2", {"line": markdown})
+        return filled(*self.blank_inline(markdown))
+
+    def blank_inline(self, markdown: str) -> tuple[str, str]:
+        """Return a line of Markdown as HTML with blanks for some of its digits, and these digits."""
+        line, digits = blanked(markdown)
+        html = _inline(self._env, line)
+        return (html, digits) if html.count(_BLANK) == len(digits) else (_inline(self._env, markdown), "")
 
     def plain(self, markdown: str) -> str:
         """Return a line of Markdown as plain text."""

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
+from coursework.course.variant import Variant
 from coursework.errors import unknown
-from coursework.platforms.items import Pool
-from coursework.platforms.losses import Loss
+from coursework.platforms.items import Item, Loss, MadeItem, Pool, item
+from coursework.platforms.losses import features_of
+from coursework.platforms.pieces import PagePieces
+from coursework.rendering.renderer import renderer_of
 from coursework.system.writing import File
 
 
@@ -26,13 +29,41 @@ class Platform(ABC):
         True  #: it draws a variant of a pool for each student; else it marks variants issued by name
     )
 
+    def content(self, item: Item, pieces: PagePieces) -> Any:
+        """Return what the files hold of a variant that the platform draws: plain data."""
+        raise NotImplementedError
+
     @abstractmethod
     def files(self, pool: Pool) -> Iterator[File]:
         """Yield the files to import, for a pool in one language; paths are below the export's folder."""
 
+    def item_losses(self, item: Item) -> Iterable[Loss]:
+        """Return further losses that depend on a variant's values."""
+        return ()
+
     def losses(self, pool: Pool) -> Iterable[Loss]:
         """Return further losses that depend on the pool's values."""
-        return ()
+        return (loss for made in pool.items for loss in made.losses)
+
+    def made(self, item: Item, pieces: PagePieces) -> MadeItem:
+        """Return a variant as the files hold it."""
+        sheet = item.handout
+        return MadeItem(
+            item.identifier,
+            sheet.exercise,
+            sheet.title,
+            item.points,
+            tuple(features_of(item)),
+            tuple(self.item_losses(item)),
+            self.content(item, pieces),
+        )
+
+
+def made_items(name: str, variants: Sequence[Variant], pool: str) -> list[MadeItem]:
+    """Return variants of one language as the files of the platform of a name hold them."""
+    platform, first = platform_of(name), variants[0]
+    pieces = PagePieces(renderer_of(first.exercise.folder).template_folders, first.lang)
+    return [platform.made(item(variant, pool), pieces) for variant in variants]
 
 
 _ROOM = Path(__file__).parent

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,10 +20,14 @@ from coursework.issuing.issuing import Issue, chosen_parts, distinct_variants, d
 from coursework.issuing.variant_assignment import keyed, with_points
 from coursework.language.words import words
 from coursework.markup.markdown import plain_line
-from coursework.platforms.items import Pool, section
+from coursework.platforms.items import MadeItem, Pool, section
+from coursework.platforms.platform import Platform, made_items
 from coursework.rendering.renderer import renderer_of
+from coursework.system.processes import Task, in_turn, workers
 
 _TRIED = 24  #: variants in the sample that finds the most frequent parts
+_CHUNK = 8  #: variants per task of a process
+_WORTH_PROCESSES = 40  #: variants; fewer are made faster than a process starts
 _USUAL = 1 / 3  #: least share of them with the same parts, if the pool uses those parts
 
 T = TypeVar("T", bound=Any)
@@ -99,19 +104,39 @@ class DrawnPool:
             for variant in variants
         )
 
-    def pool(self, lang: str) -> Pool:
-        """Return the pool in a language."""
-        sections = tuple(section([v.in_language(lang) for v in some], self.name) for some in self.variants)
+    def pool(
+        self, lang: str, platform: Platform, progress: Callable[[MadeItem], None] = lambda made: None
+    ) -> Pool:
+        """Return the pool in a language, as a platform's files hold it."""
+        made = self._made(lang, platform, progress)
         return Pool(
             self.name,
             self._title(lang),
             lang,
-            sections,
-            self.issues,
+            tuple(section(list(islice(made, len(some)))) for some in self.variants),
             renderer_of(self.course.folder).template_folders,
             Path(self.course.folder.root),
             self.assignment,
         )
+
+    def _made(
+        self, lang: str, platform: Platform, progress: Callable[[MadeItem], None]
+    ) -> Iterator[MadeItem]:
+        """Yield each variant as it is made, by as many processes as are worth it; nothing else of it is kept."""
+        chunks = [some[at : at + _CHUNK] for some in self.variants for at in range(0, len(some), _CHUNK)]
+        tasks = (
+            Task(
+                f"{chunk[0].exercise.name} {chunk[0].seed}",
+                made_items,
+                (platform.name, [variant.in_language(lang) for variant in chunk], self.name),
+            )
+            for chunk in chunks
+        )
+        count = workers(sum(map(len, chunks)), _WORTH_PROCESSES)
+        results = in_turn(tasks, count) if count > 1 else (task.function(*task.arguments) for task in tasks)
+        for made in chain.from_iterable(results):
+            progress(made)
+            yield made
 
     def _title(self, lang: str) -> str:
         heading = text_in(self.assignment.title, lang) or self.assignment.name if self.assignment else ""

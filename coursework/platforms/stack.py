@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import zlib
 from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
@@ -21,9 +22,8 @@ from coursework.platforms._stack_trees import (
     trees,
 )
 from coursework.platforms._stack_trials import Trial, trials
-from coursework.platforms._xml import below, xml_bytes
-from coursework.platforms.items import Item, Pool
-from coursework.platforms.losses import Loss
+from coursework.platforms._xml import below, inner_bytes
+from coursework.platforms.items import Item, Loss, Pool
 from coursework.platforms.pieces import Image, PagePieces, with_files
 from coursework.platforms.platform import Platform
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Posed
@@ -46,53 +46,48 @@ class Stack(Platform):
 
     name: ClassVar[str] = "stack"
 
+    def content(self, item: Item, pieces: PagePieces) -> bytes:
+        root = ET.Element("quiz")
+        _Question(root, pieces, item).write()
+        return zlib.compress(inner_bytes(root))
+
     def files(self, pool: Pool) -> Iterator[File]:
         yield File(Path(f"stack.{pool.lang}.xml"), partial(_quiz, pool))
 
-    def losses(self, pool: Pool) -> Iterable[Loss]:
+    def item_losses(self, item: Item) -> Iterable[Loss]:
         """Return the parts whose answers may follow from others without an expression in Maxima."""
-        instead = words(pool.lang)["platforms"]["stack"]["not_followed"]
-        for item, variant in _with_variants(pool):
-            for posed, part in zip(item.questions, variant.parts, strict=True):
-                may = posed.kind == NUMBER and "follow_through" in posed.features
-                if may and following(variant, part) is None:
-                    yield Loss(variant.exercise.name, part.id, "follow_through", instead)
+        instead = words(item.handout.lang)["platforms"]["stack"]["not_followed"]
+        for posed, part in zip(item.questions, item.variant.parts, strict=True):
+            may = posed.kind == NUMBER and "follow_through" in posed.features
+            if may and following(item.variant, part) is None:
+                yield Loss(item.handout.exercise, part.id, "follow_through", instead)
 
 
-def _quiz(pool: Pool) -> bytes:
-    root = ET.Element("quiz")
-    pieces = PagePieces(pool.folders, pool.lang)
-    variants = {item.identifier: variant for item, variant in _with_variants(pool)}
+def _quiz(pool: Pool) -> Iterator[bytes]:
+    """Yield the file to import, question by question."""
+    yield b"<?xml version='1.0' encoding='utf-8'?>\n<quiz>"
     for section in pool.sections:
-        _category(root, pool.title, f"{section.title} ({section.exercise}, {pool.lang})")
+        yield _category(pool.title, f"{section.title} ({section.exercise}, {pool.lang})")
         for item in section.items:
-            _Question(root, pieces, item, variants[item.identifier]).write()
-    return xml_bytes(root)
+            yield zlib.decompress(item.content)
+    yield b"\n</quiz>\n"
 
 
-def _with_variants(pool: Pool) -> Iterator[tuple[Item, Any]]:
-    """Yield each item with its variant in the language of the pool."""
-    variants = {
-        (issue.variant.exercise.name, issue.variant.seed): issue.variant.in_language(pool.lang)
-        for issue in pool.issues
-    }
-    for item in pool.items:
-        yield item, variants[item.handout.exercise, item.handout.seed]
-
-
-def _category(root: ET.Element, *path: str) -> None:
+def _category(*path: str) -> bytes:
+    root = ET.Element("quiz")
     question = below(root, "question", type="category")
     path_text = "/".join(("$course$", "top", *(piece.replace("/", "//") for piece in path)))
     below(below(question, "category"), "text", path_text)
+    return inner_bytes(root)
 
 
 class _Question:
     """Question of STACK for one variant."""
 
-    def __init__(self, root: ET.Element, pieces: PagePieces, item: Item, variant: Any):
-        self._root, self._pieces, self._item, self._variant = root, pieces, item, variant
+    def __init__(self, root: ET.Element, pieces: PagePieces, item: Item):
+        self._root, self._pieces, self._item, self._variant = root, pieces, item, item.variant
         self._words = words(item.handout.lang)["platforms"]["stack"]
-        self._trees = trees(variant, item.questions)
+        self._trees = trees(item.variant, item.questions)
         self._images: dict[str, Image] = {}
 
     def write(self) -> None:

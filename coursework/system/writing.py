@@ -9,7 +9,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from coursework.errors import BadInput, CourseworkError
 from coursework.system.blocks import processors
@@ -17,18 +17,20 @@ from coursework.system.build_folder import install
 from coursework.system.processes import Task, in_turn, workers
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, inert
 
+Content: TypeAlias = bytes | Iterable[bytes]
+
 
 @dataclass(frozen=True)
 class File:
-    """File of the result: its path below the output folder, and a function that returns its bytes, or None
-    for no file.
+    """File of the result: its path below the output folder, and a function that returns its bytes, in pieces if
+    they are many, or None for no file.
 
     ``anywhere`` lets another process make it: ``make`` and all that it holds can be pickled. ``failed``, if
     given, receives the error, and the other files are still written.
     """
 
     path: Path
-    make: Callable[[], bytes | None]
+    make: Callable[[], Content | None]
     anywhere: bool = False
     failed: Callable[[CourseworkError], None] | None = None
 
@@ -112,7 +114,7 @@ def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = 
                 task.cancel()
 
 
-_Sent = tuple[Callable[[], bytes | None], bool]  #: how to make a file, and whether it may fail
+_Sent = tuple[Callable[[], Content | None], bool]  #: how to make a file, and whether it may fail
 
 
 def _sent(file: File) -> _Sent:
@@ -126,11 +128,11 @@ def _from_elsewhere(files: Sequence[File], count: int) -> Iterator[tuple[Sequenc
     yield from zip(chunks, in_turn(tasks, count), strict=True)
 
 
-def _contents(files: Sequence[_Sent]) -> list[bytes | CourseworkError | None]:
+def _contents(files: Sequence[_Sent]) -> list[Content | CourseworkError | None]:
     return [_content(file) for file in files]
 
 
-def _content(file: _Sent) -> bytes | CourseworkError | None:
+def _content(file: _Sent) -> Content | CourseworkError | None:
     """Return the bytes of a file, or the error if the caller handles it."""
     make, may_fail = file
     try:
@@ -145,7 +147,7 @@ def _write_one(out: Path, file: File) -> None:
     _put(out, file, _content(_sent(file)))
 
 
-def _put(out: Path, file: File, content: bytes | CourseworkError | None) -> None:
+def _put(out: Path, file: File, content: Content | CourseworkError | None) -> None:
     if isinstance(content, CourseworkError):
         assert file.failed is not None
         file.failed(content)
@@ -171,7 +173,7 @@ def removed_on_failure(part: Path) -> Iterator[None]:
         raise
 
 
-def write_whole(path: Path, data: bytes) -> None:
+def write_whole(path: Path, data: Content) -> None:
     """Write a file that appears complete or not at all.
 
     Raises
@@ -183,7 +185,8 @@ def write_whole(path: Path, data: bytes) -> None:
     with writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with removed_on_failure(part):
-            part.write_bytes(data)
+            with part.open("wb") as file:
+                file.writelines([data] if isinstance(data, bytes) else data)
             part.replace(path)
 
 

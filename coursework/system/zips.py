@@ -4,19 +4,43 @@ from __future__ import annotations
 
 import io
 import zipfile
+import zlib
 from collections.abc import Collection, Mapping
+from typing import NamedTuple
 
 _DATE = (1980, 1, 1, 0, 0, 0)  #: the earliest date of the format; the real one would change the bytes
 _FILE, _PROGRAM = 0o100644 << 16, 0o100755 << 16
+_LEVEL = 6  #: of compression
 
 
-def zipped(files: Mapping[str, bytes], programs: Collection[str] = ()) -> bytes:
+class PackedFile(NamedTuple):
+    """File of an archive, compressed before the archive is written."""
+
+    data: bytes
+    size: int
+    crc: int
+
+
+def compressed(data: bytes) -> PackedFile:
+    """Return a file as an archive holds it."""
+    packing = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
+    return PackedFile(packing.compress(data) + packing.flush(), len(data), zlib.crc32(data))
+
+
+def zipped(files: Mapping[str, bytes | PackedFile], programs: Collection[str] = ()) -> bytes:
     """Return an archive of files by their paths, sorted; those of ``programs`` are executable."""
     buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
+    with zipfile.ZipFile(buffer, "w") as archive:
         for path in sorted(files):
+            content = files[path]
+            member = content if isinstance(content, PackedFile) else compressed(content)
             info = zipfile.ZipInfo(path, _DATE)
             info.compress_type, info.create_system = zipfile.ZIP_DEFLATED, 3
             info.external_attr = _PROGRAM if path in programs else _FILE
-            archive.writestr(info, files[path])
+            info.compress_size, info.file_size, info.CRC = len(member.data), member.size, member.crc
+            # As the library does for what it compresses itself; it has no call for what is compressed already.
+            info.header_offset = buffer.tell()
+            buffer.write(info.FileHeader(zip64=False) + member.data)
+            archive.filelist.append(info)
+            archive.start_dir = buffer.tell()
     return buffer.getvalue()

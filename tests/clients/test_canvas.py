@@ -37,10 +37,8 @@ def packages(course, tmp_path_factory):
     """The package of every exercise, both languages in turn, unpacked."""
     folder = tmp_path_factory.mktemp("canvas")
     for place, name in enumerate(course.names):
-        pool = of_exercises(course, [name], 2, 0, [("en", "fr")[place % 2]], None).pool(
-            ("en", "fr")[place % 2]
-        )
-        (file,) = platform_of("canvas").files(pool)
+        canvas, lang = platform_of("canvas"), ("en", "fr")[place % 2]
+        (file,) = canvas.files(of_exercises(course, [name], 2, 0, [lang], None).pool(lang, canvas))
         for path, data in unpacked(file.make()).items():
             (folder / name / path).parent.mkdir(parents=True, exist_ok=True)
             (folder / name / path).write_bytes(data)

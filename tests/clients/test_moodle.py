@@ -18,6 +18,7 @@ from clients.answer_samples import answers_to
 from clients.moodle_site import MOODLE, ask
 
 import coursework
+from coursework.platforms.items import item as item_of
 from coursework.platforms.losses import losses
 from coursework.platforms.moodle import PLATFORM, quiz
 from coursework.platforms.pieces import PagePieces
@@ -40,13 +41,14 @@ class Imported:
 
     def __init__(self, name, lang, folder):
         self.drawn = of_exercises(COURSE, [name], 2, 0, LANGS, None)
-        self.pool = self.drawn.pool(lang)
+        self.pool = self.drawn.pool(lang, PLATFORM)
         (file,) = PLATFORM.files(self.pool)
         path = folder / file.path
-        path.write_bytes(file.make())
+        path.write_bytes(b"".join(file.make()))
         self.told = ask("import", course=NAME, file=str(path), lang=lang)
         self.questions = self.told["questions"]
         self.variants = [variant.in_language(lang) for variant in self.drawn.variants[0]]
+        self.items = [item_of(variant, self.drawn.name) for variant in self.variants]
         self.lost = {(loss.part, loss.feature) for loss in losses(self.pool, "moodle")}
 
 
@@ -79,8 +81,8 @@ def figures():
 def test_every_exercise_is_imported_whole(imported, name, lang):
     one = imported(name, lang)
     assert (one.told["done"], one.told["said"]) == (True, "")
-    assert [q["name"] for q in one.questions] == [item.label[1:-1] for item in one.pool.items]
-    for question, item in zip(one.questions, one.pool.items, strict=True):
+    assert [q["name"] for q in one.questions] == [item.label[1:-1] for item in one.items]
+    for question, item in zip(one.questions, one.items, strict=True):
         judged = [posed for posed in item.questions if posed.kind != COLLECTED]
         scale = next(n for n in (1, 2, 4) if all(n * p.points % 1 == 0 for p in item.questions))
         assert float(question["defaultmark"]) == scale * sum(posed.points for posed in judged)
@@ -93,7 +95,7 @@ def test_right_answers_get_full_marks(imported, name, lang):
     """The answers that Moodle itself shows as right, and ours; a question of which it judges nothing has no mark."""
     one = imported(name, lang)
     attempts = [{"id": q["id"], "data": "right"} for q in one.questions]
-    for question, item in zip(one.questions, one.pool.items, strict=True):
+    for question, item in zip(one.questions, one.items, strict=True):
         attempts.append(
             {"id": question["id"], "data": {k: _right(p) for k, p in enumerate(item.questions, 1)}}
         )
@@ -120,7 +122,7 @@ def _as_ours(posed, answer):
 def compared(one, lang):
     """Every answer with what Moodle and what our marking gives for it."""
     asked = []
-    for question, item, variant in zip(one.questions, one.pool.items, one.variants, strict=True):
+    for question, item, variant in zip(one.questions, one.items, one.variants, strict=True):
         a_part = -(-ANSWERS // (len(one.questions) * len(item.questions)))
         for place, (posed, part) in enumerate(zip(item.questions, variant.parts, strict=True), 1):
             for given in answers_to(posed, part, max(a_part, 36), f"{item.identifier} {part.id}"):
@@ -159,23 +161,22 @@ HOSTILE = '} ~ # " & = % \\ \\} \\# {1:SA:=x} 50%~b#c &amp; &lt;b&gt; {#1} $a$ a
 
 def test_hostile_labels_and_odd_shares_come_through(tmp_path):
     """Labels as students read them, shares that are in none of Moodle's lists, to its seven decimals."""
-    pool = of_exercises(COURSE, ["grashof"], 1, 0, ("en",), None).pool("en")
-    (item,) = pool.items
-    choice = item.questions[-1]
+    drawn = of_exercises(COURSE, ["grashof"], 1, 0, ("en",), None)
+    pool, given = drawn.pool("en", PLATFORM), item_of(drawn.variants[0][0].in_language("en"), drawn.name)
+    choice, pieces = given.questions[-1], PagePieces(pool.folders, "en")
     labels = [re.sub(r"([\\`*_{}\[\]<>#~$&])", r"\\\1", f"{HOSTILE} {k}") for k in range(len(choice.options))]
     options = tuple(
         replace(one, label=label, share=one.share or 0.3712345, says=label)
         for one, label in zip(choice.options, labels, strict=True)
     )
-    hostile = replace(item, questions=(*item.questions[:-1], replace(choice, options=options)))
-    section = replace(pool.sections[0], items=(hostile,), title=HOSTILE)
+    hostile = replace(given, questions=(*given.questions[:-1], replace(choice, options=options)))
+    section = replace(pool.sections[0], items=(PLATFORM.made(hostile, pieces),), title=HOSTILE)
     path = tmp_path / "hostile.xml"
-    path.write_bytes(quiz(replace(pool, title="Week 3/4", sections=(section,))))
+    path.write_bytes(b"".join(quiz(replace(pool, title="Week 3/4", sections=(section,)))))
     told = ask("import", course=NAME, file=str(path))
     assert (told["done"], told["said"]) == (True, "")
     (question,) = told["questions"]
     made = question["boxes"][-1]["answers"]
-    pieces = PagePieces(pool.folders, "en")
     assert [_shown(one["answer"]) for one in made] == [_shown(pieces.option(one)) for one in options]
     assert [one["share"] for one in made] == pytest.approx([one.share for one in options], abs=1e-7)
     assert HOSTILE.split("$")[0] in html.unescape(made[0]["answer"])

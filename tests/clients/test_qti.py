@@ -67,7 +67,8 @@ def package(tmp_path_factory):
     @functools.cache
     def unpacked(name, platform):
         folder = tmp_path_factory.mktemp(f"{name}-{platform}")
-        (file,) = platform_of(platform).files(pool_of(name).pool("en"))
+        chosen = platform_of(platform)
+        (file,) = chosen.files(pool_of(name).pool("en", chosen))
         whole = folder / "package.zip"
         whole.write_bytes(file.make())
         with zipfile.ZipFile(whole) as archive:
@@ -86,7 +87,7 @@ def told(found):
 
 def checked(name, play):
     """Every variant of the pool played with sheets of answers; ``play`` gives the outcomes of some sheets."""
-    count, lost = collections.Counter(), lost_of(pool_of(name).pool("en"))
+    count, lost = collections.Counter(), lost_of(pool_of(name))
     for variant, given in items_of(pool_of(name), "en"):
         some = sheets(variant, given)
         outcomes = play(given, [sheet for sheet, _ in some])
@@ -125,7 +126,8 @@ def test_the_sdk_marks_as_we_do(name, package):
 @needs_sdk
 def test_a_test_deals_one_variant_of_each_exercise_and_reports_its_answers(tmp_path):
     drawn = of_exercises(COURSE, ["grashof", "slotted_mechanism"], 3, 0, ["en"], None)
-    (file,) = platform_of("qti21").files(drawn.pool("en"))
+    chosen = platform_of("qti21")
+    (file,) = chosen.files(drawn.pool("en", chosen))
     (tmp_path / "package.zip").write_bytes(file.make())
     with zipfile.ZipFile(tmp_path / "package.zip") as archive:
         archive.extractall(tmp_path / "package")

@@ -18,6 +18,7 @@ import pytest
 import coursework
 from coursework.language.numbers import significant
 from coursework.marking.marking import mark
+from coursework.platforms.items import item
 from coursework.platforms.platform import platform_of
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import CHOICE, COLLECTED, NUMBER
@@ -38,7 +39,7 @@ RIGHT = {"score", "valid"}
 def proved(tmp_path, pool, answers=None):
     """What the Moodle tells of each question of a pool."""
     (file,) = platform_of("stack").files(pool)
-    (tmp_path / "q.xml").write_bytes(file.make())
+    (tmp_path / "q.xml").write_bytes(b"".join(file.make()))
     (tmp_path / "a.json").write_text(json.dumps(answers or {}), encoding="utf-8")
     run = subprocess.run(
         [
@@ -66,10 +67,11 @@ def proved(tmp_path, pool, answers=None):
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in FEW else pytest.mark.slow) for n in NAMES])
 def test_an_exercise_is_imported_and_its_own_trials_pass(course, tmp_path, name):
     lang = ("en", "fr")[NAMES.index(name) % 2]
-    pool = of_exercises(course, [name], 1, 0, [lang], None).pool(lang)
-    (told,) = proved(tmp_path, pool)
+    drawn = of_exercises(course, [name], 1, 0, [lang], None)
+    (told,) = proved(tmp_path, drawn.pool(lang, platform_of("stack")))
     assert told["errors"] == []
-    judged = [posed for posed in pool.items[0].questions if posed.kind != COLLECTED]
+    given = item(drawn.variants[0][0].in_language(lang), drawn.name)
+    judged = [posed for posed in given.questions if posed.kind != COLLECTED]
     assert len(told["tests"]) >= (4 if judged else 0)
     assert [test for test in told["tests"] if not test["passed"]] == []
 
@@ -94,7 +96,7 @@ def typed(value, sign, digits=6):
     return f"{value:.{digits}g}".replace(".", sign)
 
 
-def sets_of(item, variant, sign):
+def sets_of(given, variant, sign):
     """Answers to a whole variant, way by way: what is typed in STACK, and the same as our marking is handed it."""
     other = "," if sign == "." else "."
     ways = {
@@ -112,7 +114,7 @@ def sets_of(item, variant, sign):
     }
     for way, made in ways.items():
         answers, ours = {}, {}
-        for place, (posed, part) in enumerate(zip(item.questions, variant.parts, strict=True), start=1):
+        for place, (posed, part) in enumerate(zip(given.questions, variant.parts, strict=True), start=1):
             if posed.kind == NUMBER and (unit := UNITS.get(part.unit)):
                 answer = made(part, float(variant.key.reference[part.quantity]), unit)
                 answers[f"ans{place}"], ours[part.id] = answer, answer
@@ -134,17 +136,18 @@ REFUSED = {"in a wrong unit", "with the other sign"}
     [("slotted_mechanism", "en"), ("slotted_mechanism", "fr"), ("grashof", "fr"), ("slider_crank", "en")],
 )
 def test_what_students_type_is_judged_as_we_judge_it(course, tmp_path, name, lang):
-    pool = of_exercises(course, [name], 1, 0, [lang], None).pool(lang)
-    (item,), (issue,) = pool.items, pool.issues
-    variant = issue.variant.in_language(lang)
+    drawn = of_exercises(course, [name], 1, 0, [lang], None)
+    pool = drawn.pool(lang, platform_of("stack"))
+    variant = drawn.variants[0][0].in_language(lang)
+    given = item(variant, drawn.name)
     sign = {"en": ".", "fr": ","}[lang]
-    ways = list(sets_of(item, variant, sign))
-    (told,) = proved(tmp_path, pool, {item.label: [answers for _, answers, _ in ways]})
+    ways = list(sets_of(given, variant, sign))
+    (told,) = proved(tmp_path, pool, {given.label: [answers for _, answers, _ in ways]})
     told_lost = {loss.part for loss in platform_of("stack").losses(pool)}
     differ = []
     for (way, answers, ours), made in zip(ways, told["judged"], strict=True):
         marks = mark(variant, ours)
-        for place, (posed, part) in enumerate(zip(item.questions, variant.parts, strict=True), start=1):
+        for place, (posed, part) in enumerate(zip(given.questions, variant.parts, strict=True), start=1):
             box, tree = f"ans{place}", f"prt{place}"
             if box not in answers or posed.kind != NUMBER:
                 continue

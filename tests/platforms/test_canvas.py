@@ -26,8 +26,11 @@ def drawn(course):
     return of_exercises(course, EXERCISES, 3, 0, LANGS, None)
 
 
+CANVAS = platform_of("canvas")
+
+
 def packed(pool):
-    (file,) = platform_of("canvas").files(pool)
+    (file,) = CANVAS.files(pool)
     return str(file.path), file.make()
 
 
@@ -35,12 +38,12 @@ def quiz(pool):
     return quiz_of(unpacked(packed(pool)[1]))
 
 
-def questions(pool):
+def questions(drawn, lang):
     """Each question of the quiz with the variant and part that its label names."""
     variants = {
-        (issue.variant.exercise.name, str(issue.variant.seed)): issue.variant for issue in pool.issues
+        (issue.variant.exercise.name, str(issue.variant.seed)): issue.variant for issue in drawn.issues
     }
-    for _, _, some in quiz(pool).values():
+    for _, _, some in quiz(drawn.pool(lang, CANVAS)).values():
         for one in some:
             exercise, seed, _, lang, part, *_ = one["label"][1:-1].split(" · ")
             variant = variants[exercise, seed].in_language(lang)
@@ -49,7 +52,7 @@ def questions(pool):
 
 @each_row("lang", LANGS)
 def test_a_student_gets_each_question_once_and_all_points(drawn, lang):
-    pool = drawn.pool(lang)
+    pool = drawn.pool(lang, CANVAS)
     found = quiz(pool)
     assert sum(pick * points for pick, points, _ in found.values()) == pool.points
     for _, points, some in found.values():
@@ -68,7 +71,7 @@ def test_a_student_gets_each_question_once_and_all_points(drawn, lang):
 @each_row("lang", LANGS)
 def test_numbers_are_taken_as_we_take_them(drawn, lang):
     tried = 0
-    for one, variant, part in questions(drawn.pool(lang)):
+    for one, variant, part in questions(drawn, lang):
         if one["sort"] != "numerical_question":
             continue
         reference, half = float(variant.key.reference[part.quantity]), variant.key.half_width(part)
@@ -90,7 +93,7 @@ def test_numbers_are_taken_as_we_take_them(drawn, lang):
 @each_row("lang", LANGS)
 def test_choices_earn_as_we_pay_them_and_say_what_we_say(drawn, lang):
     said = 0
-    for one, variant, part in questions(drawn.pool(lang)):
+    for one, variant, part in questions(drawn, lang):
         if one["sort"] != "multiple_choice_question":
             continue
         letters = variant.letters(part)
@@ -108,9 +111,9 @@ def test_choices_earn_as_we_pay_them_and_say_what_we_say(drawn, lang):
 
 
 def test_each_question_repeats_statement_figure_and_data(drawn):
-    pool = drawn.pool("en")
+    pool = drawn.pool("en", CANVAS)
     files = unpacked(packed(pool)[1])
-    for one, variant, _ in questions(pool):
+    for one, variant, _ in questions(drawn, "en"):
         for name in re.findall(r'src="\$IMS-CC-FILEBASE\$/([^"]+)"', one["text"]):
             ET.fromstring(files[name])
         assert 'src="data:' not in one["text"]
@@ -123,7 +126,7 @@ def test_each_question_repeats_statement_figure_and_data(drawn):
 def test_what_is_exported_again_is_the_same_bytes(course, drawn):
     again = of_exercises(course, EXERCISES, 3, 0, LANGS, None)
     for lang in LANGS:
-        assert packed(drawn.pool(lang)) == packed(again.pool(lang))
+        assert packed(drawn.pool(lang, CANVAS)) == packed(again.pool(lang, CANVAS))
 
 
 def test_a_longer_pool_keeps_the_identifiers_of_a_shorter(course):
@@ -131,7 +134,7 @@ def test_a_longer_pool_keeps_the_identifiers_of_a_shorter(course):
         {
             one["label"]: one["ident"]
             for _, _, some in quiz(
-                of_exercises(course, ["slotted_mechanism"], count, 0, ["en"], None).pool("en")
+                of_exercises(course, ["slotted_mechanism"], count, 0, ["en"], None).pool("en", CANVAS)
             ).values()
             for one in some
         }
@@ -142,7 +145,7 @@ def test_a_longer_pool_keeps_the_identifiers_of_a_shorter(course):
 
 
 def test_languages_are_told_apart(drawn):
-    idents = [{q["ident"] for q, *_ in questions(drawn.pool(lang))} for lang in LANGS]
+    idents = [{q["ident"] for q, *_ in questions(drawn, lang)} for lang in LANGS]
     assert not idents[0] & idents[1]
 
 
@@ -206,12 +209,12 @@ def bolts(tmp_path_factory):
     (folder / "solutions" / "bolt.py").write_text(BOLT_SOLVED)
     for lang in LANGS:
         (folder / "exercises" / f"bolt.{lang}.md.j2").write_text(TEXT.replace("{hostile}", HOSTILE))
-    return of_exercises(open_course(folder), ["bolt"], 3, 0, ["en"], None).pool("en")
+    return of_exercises(open_course(folder), ["bolt"], 3, 0, ["en"], None)
 
 
 def test_numbers_too_small_for_the_page_are_asked_in_a_smaller_unit_and_that_is_said(bolts):
     powers = {"radius": ("mm", 3), "mass": ("10⁻⁶ kg", 6), "ratio": ("10⁻⁶", 6)}
-    for one, variant, part in questions(bolts):
+    for one, variant, part in questions(bolts, "en"):
         if part.id not in powers:
             continue
         unit, decades = powers[part.id]
@@ -225,14 +228,14 @@ def test_numbers_too_small_for_the_page_are_asked_in_a_smaller_unit_and_that_is_
             assert mark_alone(variant, part, f"{value * 10**decades:.9g} {unit}").verdict == (
                 "correct" if ours else mark_alone(variant, part, f"{value:.9g}").verdict
             )
-    told = {loss.part: loss.instead for loss in platform_of("canvas").losses(bolts)}
+    told = {loss.part: loss.instead for loss in CANVAS.losses(bolts.pool("en", CANVAS))}
     assert set(told) == set(powers)
     assert "asked in mm rather than in m" in told["radius"]
 
 
 def test_hostile_words_change_nothing_but_the_words(bolts):
-    assert len(quiz(bolts)) == 4
-    for one, _, _ in questions(bolts):
+    assert len(quiz(bolts.pool("en", CANVAS))) == 4
+    for one, _, _ in questions(bolts, "en"):
         assert "<script" not in one["text"]
         assert "&lt;script&gt;alert(1)&lt;/script&gt;" in one["text"]
         assert all("<script" not in text for text in one["offered"].values())

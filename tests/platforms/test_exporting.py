@@ -10,9 +10,11 @@ import pytest
 
 import coursework
 from coursework.issuing.roster import Student
+from coursework.platforms import pools
 from coursework.platforms.exporting import export, steps
 from coursework.platforms.platform import platform_of, platforms
 from coursework.platforms.pools import alike, of_exercises
+from coursework.system.blocks import processors
 
 COURSE = coursework.open_course()
 #: Gradescope hands nothing out: what was built is exported for it, by tests of its own.
@@ -25,7 +27,8 @@ def made(platform, langs=("en", "fr"), students=(), names=("grashof", "slotted_m
 
 
 def read(made):
-    return {file.path.as_posix(): file.make() for file in made.files}
+    contents = {file.path.as_posix(): file.make() for file in made.files}
+    return {path: data if isinstance(data, bytes) else b"".join(data) for path, data in contents.items()}
 
 
 @pytest.mark.e2e
@@ -67,3 +70,12 @@ def test_variants_of_a_pool_are_worth_the_same(name):
     assert len({v.seed for v in variants}) == 4
     fits = alike(COURSE[name], 0, None)
     assert all(fits(variant) for variant in variants)
+
+
+@pytest.mark.e2e
+def test_processes_make_the_same_pool(monkeypatch):
+    one = {platform: read(made(platform)) for platform in ("moodle", "qti3")}
+    monkeypatch.setattr(pools, "_WORTH_PROCESSES", 2)
+    monkeypatch.setattr(pools, "_CHUNK", 2)
+    assert pools.workers(2, 2) == min(2, processors())
+    assert {platform: read(made(platform)) for platform in one} == one

@@ -8,7 +8,15 @@ from tables import each_row
 import coursework
 from coursework.errors import BadCourse
 from coursework.language.words import words
-from coursework.platforms.losses import Loss, feature_words, loss_lines, losses, lost_words, platform_words
+from coursework.platforms.items import Loss, item
+from coursework.platforms.losses import (
+    feature_words,
+    loss_lines,
+    loss_row,
+    losses,
+    lost_words,
+    platform_words,
+)
 from coursework.platforms.platform import platform_of, platforms
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import COLLECTED
@@ -43,7 +51,7 @@ def pools():
 
     def pool(name):
         if name not in made:
-            made[name] = of_exercises(COURSE, [name], 1, 0, ["en"], None).pool("en")
+            made[name] = of_exercises(COURSE, [name], 1, 0, ["en"], None).pool("en", platform_of("moodle"))
         return made[name]
 
     return pool
@@ -54,11 +62,12 @@ def test_moodle_lists_what_it_does_not_do(pools, name):
     """By what the parts are, and not by what is posed: collected parts, commas, units, right methods from a wrong answer."""
     pool = pools(name)
     listed = {(loss.part, loss.feature) for loss in losses(pool, "moodle")}
-    variant = COURSE[name].variant(pool.items[0].handout.seed, "en")
+    given = item(COURSE[name].variant(int(pool.items[0].identifier.split(".")[-2]), "en"), pool.name)
+    variant = given.variant
     assert ("", "corrected") in listed
-    assert (("", "drawing_paper") in listed) == (pool.items[0].handout.drawing_mm is not None)
+    assert (("", "drawing_paper") in listed) == (given.handout.drawing_mm is not None)
     parts = {part.id: part for part in variant.parts}
-    for posed in pool.items[0].questions:
+    for posed in given.questions:
         part, features = parts[posed.question.id], {f for p, f in listed if p == posed.question.id}
         if posed.kind == COLLECTED:
             assert features & {"open", "judged_together", "either_order", "none_right", "form", "unit_asked"}
@@ -79,7 +88,7 @@ def test_what_a_platform_has_no_word_for_is_kept_and_more_is_added(pools):
     found = losses(pool, "moodle", [more])
     assert more in found
     assert not any(loss.feature in ("mistakes", "partial", "one_variant") for loss in found)
-    assert more.row("fr")["feature"] == feature_words("fraction", "fr")
+    assert loss_row(more, "fr")["feature"] == feature_words("fraction", "fr")
 
 
 def test_a_line_a_feature_says_of_how_many_parts(pools):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import base64
 import re
+import zlib
+from dataclasses import replace
 from xml.etree import ElementTree
 from xml.parsers import expat
 
@@ -13,13 +15,15 @@ from tables import each_row
 
 import coursework
 from coursework.language.words import words
-from coursework.platforms.items import Pool, PoolSection
-from coursework.platforms.moodle import escaped, numerical, quiz
+from coursework.platforms.items import item
+from coursework.platforms.moodle import PLATFORM, escaped, numerical, quiz
 from coursework.platforms.pieces import PagePieces
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval
+from coursework.rendering.renderer import renderer_of
 
 COURSE = coursework.open_course()
+FOLDERS = renderer_of(COURSE.folder).template_folders
 LANGS = ("en", "fr")
 KINDS = {NUMBER: "NUMERICAL", CHOICE: "MULTICHOICE_V", CHOICES: "MULTIRESPONSE", COLLECTED: "SHORTANSWER"}
 
@@ -29,16 +33,21 @@ every_language = pytest.mark.parametrize("lang", ["en", pytest.param("fr", marks
 
 @pytest.fixture(scope="module")
 def written():
-    """The pool of an exercise in a language, and what is written of it."""
+    """The variant of an exercise in a language, and what is written of it."""
     made = {}
 
     def of(name, lang):
         if (name, lang) not in made:
-            pool = of_exercises(COURSE, [name], 1, 0, [lang], None).pool(lang)
-            made[name, lang] = pool, quiz(pool)
+            drawn = of_exercises(COURSE, [name], 1, 0, [lang], None)
+            given = item(drawn.variants[0][0].in_language(lang), drawn.name)
+            made[name, lang] = given, written_of(drawn, lang)
         return made[name, lang]
 
     return of
+
+
+def written_of(drawn, lang, **changes):
+    return b"".join(quiz(replace(drawn.pool(lang, PLATFORM), **changes)))
 
 
 def questions(data):
@@ -56,18 +65,17 @@ def questions(data):
 @every_exercise
 def test_every_question_has_its_box(written, name, lang):
     """Type, weight, intervals, shares: as posed; what is collected weighs nothing and takes whatever is written."""
-    pool, data = written(name, lang)
+    given, data = written(name, lang)
     category, question = questions(data)
-    (item,) = pool.items
     assert category[1].startswith("$course$/top/")
-    assert question[0] == item.label[1:-1]
+    assert question[0] == given.label[1:-1]
     boxes, around = boxes_of(question[2])
-    assert [box.kind for box in boxes] == [KINDS[posed.kind] for posed in item.questions]
-    assert item.label in "".join(around)
+    assert [box.kind for box in boxes] == [KINDS[posed.kind] for posed in given.questions]
+    assert given.label in "".join(around)
     assert not re.search(r"[{}]", "".join(around))
-    least = min(posed.points for posed in item.questions)
+    least = min(posed.points for posed in given.questions)
     scale = next(n for n in (1, 2, 4) if float(n * least).is_integer())  # weights are whole numbers
-    for posed, box in zip(item.questions, boxes, strict=True):
+    for posed, box in zip(given.questions, boxes, strict=True):
         assert box.weight == (0 if posed.kind == COLLECTED else scale * posed.points)
         if posed.kind == NUMBER:
             assert [one.share for one in box.answers] == pytest.approx([one.share for one in posed.intervals])
@@ -77,7 +85,7 @@ def test_every_question_has_its_box(written, name, lang):
             assert [(one.share, one.text) for one in box.answers[1:]] == [(0.5, "*")]
             assert box.answers[0].text.strip() == words(lang)["platforms"]["moodle"]["later"]
         else:
-            pieces = PagePieces(pool.folders, lang)
+            pieces = PagePieces(FOLDERS, lang)
             assert [one.text for one in box.answers] == [pieces.option(one) for one in posed.options]
             assert [one.share for one in box.answers] == pytest.approx([one.share for one in posed.options])
 
@@ -107,27 +115,25 @@ def test_the_same_pool_gives_the_same_bytes_and_identifiers():
         of_exercises(COURSE, ["grashof", "slotted_mechanism"], 3, 0, LANGS, None) for _ in range(2)
     )
     for lang in LANGS:
-        assert quiz(first.pool(lang)) == quiz(second.pool(lang))
-    found = [one for lang in LANGS for one in questions(quiz(first.pool(lang))) if one[0] != "category"]
+        assert written_of(first, lang) == written_of(second, lang)
+    found = [one for lang in LANGS for one in questions(written_of(first, lang)) if one[0] != "category"]
     assert len({one[1] for one in found}) == len(found) == 12
     assert all(len(one[1]) <= 100 for one in found)
 
 
 def test_a_long_name_of_a_pool_leaves_identifiers_short_and_different(written):
-    pool, _ = written("grashof", "en")
-    ids = set()
+    given, _ = written("grashof", "en")
+    pieces, ids = PagePieces(FOLDERS, "en"), set()
     for tail in "ab":
-        items = tuple(type(item)(item.handout, item.questions, "week " * 40 + tail) for item in pool.items)
-        section = PoolSection("grashof", "Grashof", items)
-        data = quiz(Pool("x", "X", "en", (section,), pool.issues, pool.folders, pool.course))
-        ids |= {one[1] for one in questions(data) if one[0] != "category"}
+        made = PLATFORM.made(replace(given, pool="week " * 40 + tail), pieces)
+        ids |= {one[1] for one in questions(zlib.decompress(made.content).join((b"<quiz>", b"</quiz>")))}
     assert {len(one) for one in ids} == {100}
     assert len(ids) == 2
 
 
 def test_texts_come_in_one_piece():
     """Moodle's reader drops a piece of white space between two entities: a text that holds tags is one section."""
-    data = quiz(of_exercises(COURSE, ["slotted_mechanism"], 1, 0, ("fr",), None).pool("fr"))
+    data = written_of(of_exercises(COURSE, ["slotted_mechanism"], 1, 0, ("fr",), None), "fr")
     outside, inside = [], []
     reader = expat.ParserCreate()
     reader.StartCdataSectionHandler = lambda: inside.append(True)
@@ -157,13 +163,13 @@ def test_hostile_words_of_a_course_open_no_box(small_course):
         path = small_course / "exercises" / f"crank_pin.{lang}.md.j2"
         path.write_text(f"{{% raw %}}{path.read_text('utf-8')}{{% endraw %}}".replace("\n\n", f"\n\n{_markdown(HOSTILE)} ", 1), "utf-8")  # fmt: skip
     course = coursework.open_course(small_course)
-    pool = of_exercises(course, ["crank_pin"], 2, 0, LANGS, None).pool("en")
-    titled = Pool(pool.name, "Week 3/4", "en", pool.sections, pool.issues, pool.folders, pool.course)
-    category, *found = questions(quiz(titled))
+    drawn = of_exercises(course, ["crank_pin"], 2, 0, LANGS, None)
+    category, *found = questions(written_of(drawn, "en", title="Week 3/4"))
     assert "/top/Week 3//4/" in category[1]
-    for (_, _, text, _), item in zip(found, pool.items, strict=True):
+    for (_, _, text, _), variant in zip(found, drawn.variants[0], strict=True):
         boxes, around = boxes_of(text)
-        assert [len(box.answers) for box in boxes] == [len(posed.intervals) for posed in item.questions]
+        given = item(variant.in_language("en"), "pool")
+        assert [len(box.answers) for box in boxes] == [len(posed.intervals) for posed in given.questions]
         assert "{1:NUMERICAL:=3}" not in text
         assert "&#123;1:NUMERICAL:=3&#125;" in "".join(around)
 

@@ -11,6 +11,7 @@ from course_of_every_kind import write_course
 
 import coursework
 from coursework.language.numbers import plain, significant
+from coursework.markup.markdown import html_inline
 from coursework.platforms.items import item
 from coursework.platforms.pieces import PagePieces
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, KINDS, NUMBER
@@ -165,3 +166,13 @@ def test_options_are_read_as_reports_make_plain_text_of_them(name, lang):
         for option in posed.options:
             flat = " ".join(html.unescape(re.sub(r"<[^>]*>", "", pieces.option(option))).split())
             assert earned(variant, part, flat) == earned(variant, part, option.letter), (part.id, flat)
+
+
+def test_a_line_is_the_same_whether_its_digits_were_blank_or_not():
+    pieces = PagePieces(renderer_of(COURSE.folder).template_folders, "fr")
+    lines = (
+        "$r_2$ : −193,70 mm est 2 fois trop grand.", "1. 12 mm", "a\n2) b", "`x1`", "&#49;2", "[1](http://a.b/2)", "$$x_1$$ 3",
+        "cost 5$, or 6", r"5 \$ and 6 $x_1$ 7", "**faux** (0,5/2) 12 % de 3,5 rad/s ; 7 !", "\N{MATHEMATICAL MONOSPACE DIGIT ZERO} 1", "# 4", "<b>5</b>",
+    )  # fmt: skip
+    for line in lines:
+        assert pieces.inline(line) == html_inline(line, "fr"), line

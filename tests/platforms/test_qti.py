@@ -24,11 +24,11 @@ from coursework.issuing.assignment import read_assignment
 from coursework.marking.marking import mark
 from coursework.platforms._qti_item import identifier, identifier_of, item_file
 from coursework.platforms._qti_tree import QTI_3, QTI_21, decimal, kebab, written
-from coursework.platforms.losses import losses
 from coursework.platforms.pieces import PagePieces
 from coursework.platforms.platform import platform_of
 from coursework.platforms.pools import of_assignment, of_exercises
 from coursework.platforms.posed import COLLECTED
+from coursework.rendering.renderer import renderer_of
 
 COURSE = coursework.open_course()
 SPELLINGS = {"qti3": QTI_3, "qti21": QTI_21}
@@ -54,6 +54,10 @@ def drawn():
     return pool_of("grashof", "slotted_mechanism", "velocity_polygon", count=2, langs=("en", "fr"))
 
 
+def pieces_of(drawn):
+    return PagePieces(renderer_of(drawn.course.folder).template_folders, "en")
+
+
 def unpacked(file):
     with zipfile.ZipFile(io.BytesIO(file.make())) as archive:
         assert archive.testzip() is None
@@ -61,8 +65,13 @@ def unpacked(file):
 
 
 def package(drawn, platform, lang="en"):
-    (file,) = platform_of(platform).files(drawn.pool(lang))
+    (file,) = files_of(drawn, platform, lang)
     return unpacked(file)
+
+
+def files_of(drawn, platform, lang="en"):
+    chosen = platform_of(platform)
+    return list(chosen.files(drawn.pool(lang, chosen)))
 
 
 def items(found):
@@ -79,8 +88,7 @@ def items(found):
 @every_exercise
 def test_a_player_marks_every_answer_as_we_do_or_the_loss_is_listed(name):
     drawn = pool_of(name)
-    pool = drawn.pool("en")
-    lost, pieces = lost_of(pool), PagePieces(pool.folders, "en")
+    lost, pieces = lost_of(drawn), pieces_of(drawn)
     for variant, given in items_of(drawn, "en"):
         player = Player(written(item_file(given, pieces).tree, QTI_3))
         some = sheets(variant, given)
@@ -93,7 +101,7 @@ def test_a_player_marks_every_answer_as_we_do_or_the_loss_is_listed(name):
 @every_exercise
 def test_what_is_declared_right_has_full_marks(name):
     drawn = pool_of(name)
-    pieces = PagePieces(drawn.pool("en").folders, "en")
+    pieces = pieces_of(drawn)
     for _, given in items_of(drawn, "en"):
         player = Player(written(item_file(given, pieces).tree, QTI_3))
         outcomes = player.outcomes(player.right())
@@ -111,7 +119,7 @@ def test_what_is_declared_right_has_full_marks(name):
 def test_a_known_error_is_told_and_priced():
     drawn = pool_of("slotted_mechanism")
     (_, given), *_ = items_of(drawn, "en")
-    pieces = PagePieces(drawn.pool("en").folders, "en")
+    pieces = pieces_of(drawn)
     player = Player(written(item_file(given, pieces).tree, QTI_21))
     posed = given.questions[1]
     error = next(one for one in posed.intervals if "arctangent" in one.message)
@@ -132,9 +140,8 @@ def test_a_known_error_is_told_and_priced():
 def test_several_cases_count_each_and_never_below_nothing(tmp_path):
     write_course(tmp_path)
     drawn = of_exercises(coursework.open_course(tmp_path), ["coil"], 1, 0, ["en"], None)
-    pool = drawn.pool("en")
     (variant, given), *_ = items_of(drawn, "en")
-    player = Player(written(item_file(given, PagePieces(pool.folders, "en")).tree, QTI_3))
+    player = Player(written(item_file(given, pieces_of(drawn)).tree, QTI_3))
     part = next(one for one in variant.parts if one.id == "true_of_it")
     letter = variant.letters(part)
     for chosen, points in (
@@ -146,7 +153,7 @@ def test_several_cases_count_each_and_never_below_nothing(tmp_path):
         assert outcomes["SCORE_true_of_it"] == pytest.approx(points) == pytest.approx(ours.points), chosen
     texts = {one.get("responseIdentifier") for one in player.item.iter("extendedTextInteraction")}
     assert texts == {"RESPONSE_why", "RESPONSE_sketch"}
-    sums = {(loss.part, loss.feature) for loss in losses(pool, "qti21", platform_of("qti21").losses(pool))}
+    sums = {(part, feature) for _, part, feature in lost_of(drawn, "qti21")}
     assert {("why", "open"), ("Z", "form"), ("true_of_it", "unreadable")} & sums == {
         ("why", "open"),
         ("Z", "form"),
@@ -235,9 +242,7 @@ def _content(element):
 
 @both
 def test_the_same_bytes_again(drawn, platform):
-    (one,), (other,) = (
-        list(platform_of(platform).files(pool_of("grashof", count=2).pool("en"))) for _ in "ab"
-    )
+    (one,), (other,) = (files_of(pool_of("grashof", count=2), platform) for _ in "ab")
     assert one.path == other.path
     assert one.make() == other.make()
     with zipfile.ZipFile(io.BytesIO(one.make())) as archive:
@@ -324,7 +329,7 @@ def test_a_label_prints_as_it_is_and_does_nothing(drawn, text):
     options = (replace(posed.options[0], label=text.replace("*", "\\*")), *posed.options[1:])
     hostile = replace(given, questions=(*given.questions[:-1], replace(posed, options=options)))
     for spelling in SPELLINGS.values():
-        data = written(item_file(hostile, PagePieces(drawn.pool("en").folders, "en")).tree, spelling)
+        data = written(item_file(hostile, pieces_of(drawn)).tree, spelling)
         root = plain(ET.fromstring(data))
         label = "".join(next(root.iter("simpleChoice")).itertext())
         assert text.replace("'", "’") in label.replace("\u2060", "").replace(
@@ -379,7 +384,7 @@ def test_identifiers_are_read_as_they_are_written(drawn):
     from coursework.gradebook.qti_results import _ITEM
 
     for lang in ("en", "fr"):
-        for given in drawn.pool(lang).items:
+        for _, given in items_of(drawn, lang):
             told = _ITEM.fullmatch(identifier_of(given))
             sheet = given.handout
             assert told

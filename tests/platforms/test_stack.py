@@ -28,14 +28,17 @@ def drawn(course):
     return of_exercises(course, EXERCISES, 2, 0, LANGS, None)
 
 
+STACK = platform_of("stack")
+
+
 def written(pool):
-    (file,) = platform_of("stack").files(pool)
-    return file.make()
+    (file,) = STACK.files(pool)
+    return b"".join(file.make())
 
 
 @pytest.fixture(scope="module")
 def read(drawn):
-    return {lang: questions_of(written(drawn.pool(lang))) for lang in LANGS}
+    return {lang: questions_of(written(drawn.pool(lang, STACK))) for lang in LANGS}
 
 
 def asked(drawn, read, lang):
@@ -127,7 +130,7 @@ def test_a_right_method_from_a_wrong_answer_is_followed_as_we_follow_it(drawn, r
 
 
 def test_what_stack_cannot_follow_is_listed_as_lost(drawn, read):
-    lost = {(loss.exercise, loss.part) for loss in platform_of("stack").losses(drawn.pool("en"))}
+    lost = {(loss.exercise, loss.part) for loss in STACK.losses(drawn.pool("en", STACK))}
     found = set()
     for question, variant, judged in asked(drawn, read, "en"):
         for place, part in judged.items():
@@ -190,9 +193,10 @@ def test_what_is_exported_again_is_the_same_bytes(course, drawn):
     again = of_exercises(course, EXERCISES[:1], 2, 0, LANGS, None)
     once = of_exercises(course, EXERCISES[:1], 2, 0, LANGS, None)
     for lang in LANGS:
-        assert written(once.pool(lang)) == written(again.pool(lang))
+        assert written(once.pool(lang, STACK)) == written(again.pool(lang, STACK))
     names = [
-        {one["idnumber"] for one in questions_of(written(drawn.pool(lang)))[0].values()} for lang in LANGS
+        {one["idnumber"] for one in questions_of(written(drawn.pool(lang, STACK)))[0].values()}
+        for lang in LANGS
     ]
     assert not names[0] & names[1]
     assert all(len(name) <= 100 for some in names for name in some)
@@ -221,7 +225,7 @@ def test_hostile_words_run_nothing(tmp_path):
             + HOSTILE
             + "\n- no: it does not\n{% endraw %}"
         )
-    pool = of_exercises(open_course(tmp_path / "c"), ["bolt"], 1, 0, ["en"], None).pool("en")
+    pool = of_exercises(open_course(tmp_path / "c"), ["bolt"], 1, 0, ["en"], None).pool("en", STACK)
     (question,) = questions_of(written(pool))[0].values()
     assert re.findall(r"\[\[[^\]]*\]\]", question["text"]) == [
         "[[input:ans1]]",

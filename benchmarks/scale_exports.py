@@ -1,0 +1,117 @@
+"""Exports to platforms, booklets and feedback by the number of students: seconds, processor seconds and memory of whole commands.
+
+python benchmarks/scale_exports.py [JOB,…] [STUDENTS,…] [FOLDER]
+
+Each job is a function of the number of students and a folder; JOBS names them. Three exercises; a command is started anew for
+each measurement. Memory is that of the largest process, and of all processes of the command at one moment.
+"""
+
+from __future__ import annotations
+
+import resource
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from timing import print_table
+
+EXERCISES = ("slider_crank", "four_bar_motion", "quick_return")
+_RUN = "import sys; from coursework.cli import main; sys.exit(main())"
+_LOOK = 0.05  #: seconds between two looks at the memory
+
+
+class Cost(NamedTuple):
+    """Cost of a command."""
+
+    seconds: float
+    processor: float  #: seconds of all its processes
+    largest: float  #: MB of its largest process
+    together: float  #: MB of all its processes
+
+
+def cost_of(*arguments: str) -> Cost:
+    """Run a command and return its cost.
+
+    Raises
+    ------
+    SystemExit
+        The command failed.
+    """
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    process = subprocess.Popen(
+        [sys.executable, "-P", "-c", _RUN, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
+    peaks = [0.0, 0.0]
+    watch = threading.Thread(target=_watch, args=(process, peaks))
+    watch.start()
+    _, said = process.communicate()
+    watch.join()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if process.returncode:
+        sys.exit(f"{' '.join(arguments)}: {said.decode()[-400:]}")
+    used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Cost(time.perf_counter() - start, used, *peaks)
+
+
+def _watch(process: subprocess.Popen[bytes], peaks: list[float]) -> None:
+    """Keep the most memory of the largest process and of all, while a command runs."""
+    while process.poll() is None:
+        sizes = [_resident(pid) for pid in (process.pid, *_below(process.pid))]
+        peaks[:] = max(peaks[0], *sizes), max(peaks[1], sum(sizes))
+        time.sleep(_LOOK)
+
+
+def _below(pid: int) -> list[int]:
+    """Return the processes that a process started, and those that they started."""
+    try:
+        tasks = Path(f"/proc/{pid}/task").iterdir()
+        found = [int(child) for task in tasks for child in (task / "children").read_text().split()]
+    except OSError:
+        return []
+    return [*found, *(one for child in found for one in _below(child))]
+
+
+def _resident(pid: int) -> float:
+    try:
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * resource.getpagesize() / 2**20
+    except OSError:
+        return 0.0
+
+
+def export(platform: str, students: int, folder: Path) -> Cost:
+    """Return the cost of an export of a variant of each exercise for each student."""
+    return cost_of(
+        "export", platform, *EXERCISES, "--variants", str(students), "--lang", "fr", "--out", str(folder)
+    )
+
+
+JOBS: dict[str, Callable[[int, Path], Cost]] = {
+    platform: partial(export, platform) for platform in ("moodle", "stack", "canvas", "qti21", "qti3")
+}
+
+
+def main(
+    jobs: str = ",".join(JOBS), students: str = "30,100,300", folder: str = "build/scale_exports"
+) -> None:
+    """Print a table of the jobs."""
+    rows = []
+    for job in jobs.split(","):
+        for count in map(int, students.split(",")):
+            home = Path(folder) / f"{job}{count}"
+            shutil.rmtree(home, ignore_errors=True)
+            home.parent.mkdir(parents=True, exist_ok=True)
+            cost = JOBS[job](count, home)
+            shutil.rmtree(home, ignore_errors=True)
+            rows.append((job, str(count), *(f"{value:.1f}" for value in cost)))
+            print(*rows[-1], file=sys.stderr)
+    print_table(("job", "students", "s", "processor s", "largest process, MB", "all processes, MB"), rows)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
