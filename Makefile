@@ -112,7 +112,7 @@ wheel-test: $(VENV)/ready-test  ## The wheel has every file and does the job
 
 # What a server installs, with digests, for each Python and system: all.txt decides each version, the others follow it.
 # The versions that stand there stay while they fit pyproject.toml: make lock UPGRADE=--upgrade takes the newest.
-EXTRAS := accuracy charts cluster nbgrader parquet scan
+EXTRAS := accuracy cluster nbgrader parquet scan
 UPGRADE ?=
 COMPILE = $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --custom-compile-command "make lock" $(UPGRADE)

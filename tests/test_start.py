@@ -26,7 +26,7 @@ def loaded(command):
 def test_a_command_loads_no_library_that_it_does_not_need(command):
     modules = loaded(command)
     assert "numpy" in modules
-    assert not modules & {"scipy", "nbformat", "typst", "rich", "matplotlib", "concurrent.futures", "jinja2"}
+    assert not modules & {"scipy", "nbformat", "typst", "rich", "concurrent.futures", "jinja2"}
 
 
 @each_row("command", ["variant slotted_mechanism --seed 1 --json", SOLVE])

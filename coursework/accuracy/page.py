@@ -14,7 +14,7 @@ from coursework.accuracy.subject import ACCELERATION, MOTION, OTHER, POSITION, R
 from coursework.accuracy.verdicts import Rows, Words, cheapest, enough, halves, listed, paid_after
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
-from coursework.figures.charts import lacking, scatter
+from coursework.figures.charts import scatter
 from coursework.language.numbers import significant, unit_text
 from coursework.language.words import words
 from coursework.sheets.report import Chart, ReportContent, ReportSection, ReportTable
@@ -43,14 +43,9 @@ def report(course: Course, rows: Sequence[Measurement], lang: str) -> ReportCont
         course.folder.title(lang),
         texts["title"],
         "coursework accuracy",
-        texts["opening"].format(50) + no_charts(texts),
+        texts["opening"].format(50),
         tuple(sections),
     )
-
-
-def no_charts(texts: Words) -> str:
-    """Return the note for a report without charts."""
-    return f" {texts['no_charts']}" if lacking() else ""
 
 
 # ------------------------------------------------------------------------ sections
@@ -284,10 +279,7 @@ def _series(
 def charts_of(
     points: Mapping[str, Any], heading: str, horizontal: str, texts: Words, *, digits: bool = False
 ) -> tuple[Chart, ...]:
-    """Return the chart; none where charts cannot be drawn."""
-    if lacking():
-        return ()
-    svg = scatter(points, heading, horizontal, texts["error"], integers=digits).decode("utf-8")
+    svg = scatter(points, heading, horizontal, texts["error"], integers=digits)
     return (Chart(svg, texts["alt"].format(heading)),)
 
 

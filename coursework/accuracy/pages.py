@@ -8,7 +8,7 @@ from typing import Any
 
 from coursework.accuracy.hard_places import HardPlace
 from coursework.accuracy.overview import OverviewLine
-from coursework.accuracy.page import charts_of, no_charts, number, symbol_of, told_place
+from coursework.accuracy.page import charts_of, number, symbol_of, told_place
 from coursework.accuracy.paper import PLAIN, PaperRow, Share, total
 from coursework.accuracy.subject import Subject
 from coursework.accuracy.timing import Times, is_busy
@@ -163,7 +163,7 @@ def paper_report(course: Course, rows: Sequence[PaperRow], variants: int, lang: 
             (_by_exercise(course, rows, digits, text, lang),),
         ),
     )
-    opening = text["opening"].format(variants=variants) + no_charts(texts)
+    opening = text["opening"].format(variants=variants)
     return ReportContent(
         lang,
         course.folder.title(lang),

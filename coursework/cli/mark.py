@@ -22,7 +22,6 @@ from coursework.cli.options import (
     lang_option,
     opened,
     shared_by_cluster,
-    tell_lack_of_charts,
     writes,
 )
 from coursework.cli.printing import print_json, progress_bar, say, warn, warn_some
@@ -413,7 +412,6 @@ def _report(
         writes(context, target)
         _write_report(course, measures, lang, target, decimal)
         _tell_alike(folder, target, decimal)
-        tell_lack_of_charts()
     if not as_json:
         say(
             "{students}, {answers}, {count} to be looked at; see {stem}.html, .pdf, parts.csv, mistakes.csv",

@@ -15,7 +15,6 @@ from coursework.cli.options import (
     json_option,
     lang_option,
     opened,
-    tell_lack_of_charts,
     writes,
 )
 from coursework.cli.printing import print_json, say
@@ -186,4 +185,3 @@ def _write(course: Any, rows: list, page: ReportContent, out: Path) -> None:
     write_whole(out / "accuracy.json", (json.dumps(rows, indent=1) + "\n").encode())
     write_whole(out / "accuracy.html", renderer_of(course.folder).report_html(page).encode("utf-8"))
     write_whole(out / "accuracy.pdf", renderer_of(course.folder).report_pdf(page))
-    tell_lack_of_charts()

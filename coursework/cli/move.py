@@ -22,7 +22,6 @@ from coursework.cli.options import (
     seed_option,
     settings_given,
     split_list,
-    tell_lack_of_charts,
     writes,
 )
 from coursework.cli.printing import print_json, print_table, say
@@ -177,10 +176,9 @@ def _tell_table(scene_file: SceneFile, out: Path | None, decimal: str, as_json: 
     if out is not None:
         stem = out / f"{scene_file.name}-{'cycle' if scene_file.drive is None else 'motion'}"
         _write_rows(table.rows(), stem, decimal)
-        if not (bare := tell_lack_of_charts()):
-            _write_plot(table, scene_file.name, stem)
+        _write_plot(table, scene_file.name, stem)
         if not as_json:
-            say("table: {stem}.csv" if bare else "table and plot: {stem}.csv, .svg", stem=stem)
+            say("table and plot: {stem}.csv, .svg", stem=stem)
     elif not as_json:
         shown_rows = table.rows(max(1, len(table) // 12))
         print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
@@ -220,10 +218,9 @@ def _tell_budget(
     if out is not None:
         stem = out / f"{scene_file.name}-budget"
         _write_rows(rows, stem, decimal)
-        if not (bare := tell_lack_of_charts()):
-            _write_budget_plot(effect_budget, scene_file.name, stem)
+        _write_budget_plot(effect_budget, scene_file.name, stem)
         if not as_json:
-            say("table: {stem}.csv" if bare else "table and plot: {stem}.csv, .svg", stem=stem)
+            say("table and plot: {stem}.csv, .svg", stem=stem)
 
 
 def _each_effect_once(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, str]]:
@@ -288,7 +285,7 @@ def _write_budget_plot(effect_budget: EffectBudget, title: str, stem: Path) -> N
         time = _rounded(cost) if cost is not None else "–" if worth.needed else _below(1e3 * worth.spread)
         rows.append((worth.effect, part, f"{_rounded(part)} % ({prefix}{time} ms)"))
     plot = bars(rows, title, localised(Message("largest change without the effect, % of the output")))
-    write_whole(stem.parent / f"{stem.name}.svg", plot)
+    write_whole(stem.parent / f"{stem.name}.svg", plot.encode())
 
 
 def _rounded(value: float) -> str:
@@ -306,13 +303,19 @@ def _write_rows(rows: Sequence[dict[str, Any]], stem: Path, decimal: str) -> Non
 
 def _write_plot(table: SceneTable, title: str, stem: Path) -> None:
     """Write the curves of a scene as ``STEM.svg``."""
-    from coursework.figures.charts import curves
+    import numpy as np
+
+    from coursework.figures.plot import Axis, Plot
+    from coursework.language.numbers import unit_text
     from coursework.system.writing import write_whole
 
-    first, *others = table.columns
-    columns = {n: table.columns[n] for n in others if n != "dead_centre"}
-    plot = curves((f"{first} [{table.units[first]}]", table.columns[first]), columns, table.units, title)
-    write_whole(stem.parent / f"{stem.name}.svg", plot)
+    axes = [
+        Axis(r"\text{" + name.replace("_", r"\_") + "}", unit_text(table.units[name], "en"), values)
+        for name, values in table.columns.items()
+        if name != "dead_centre" and np.isfinite(values).any()
+    ]
+    plot = Plot(axes[0], axes[1:], title=title)
+    write_whole(stem.parent / f"{stem.name}.svg", plot.svg().encode())
 
 
 def _short_number(value: Any, digits: int = 5) -> str:

@@ -34,15 +34,6 @@ def print_notes(notes: Sequence[str]) -> None:
         warn("note: and {count} more such", count=len(notes) - 10)
 
 
-def tell_lack_of_charts() -> bool:
-    """Say why what was written has no charts; whether it has none."""
-    from coursework.figures.charts import lacking
-
-    why = lacking()
-    print_notes([Message("all is written but the charts: {why}", why=why)] if why else [])
-    return bool(why)
-
-
 def complain(message: str) -> int:
     click.echo(f"coursework: {' '.join(message.split())}", err=True)
     return BAD

@@ -1,129 +1,87 @@
-"""Charts of tables and measurements by matplotlib, an optional dependency of charts alone."""
+"""Charts of tables and measurements as SVG: bars, histograms, points on logarithmic axes. The same data give the
+same bytes."""
 
 from __future__ import annotations
 
-import io
+import math
 import re
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
-import numpy as np
+from coursework.figures.ink import number
+from coursework.figures.plot import GRID, LINE, RIGHT, WRONG, page, put, round_values
+from coursework.figures.text import SIZE, LabelText, read, words
 
-from coursework.system.extras import NotAtHand, library
+_WIDTH = 150.0  #: of a chart, mm
+_TEXT, _SMALL = 0.85, 0.75  #: sizes of letters, relative to those of a figure
+_ROW, _BAR = 5.4, 3.4  #: from a bar to the next, and the height of one, mm
+_ROOM = 2.0  #: between letters and what they stand beside, mm
+_BELOW = 11.5  #: room for the numbers and the title of a horizontal axis, mm
+_COLUMNS, _POINTS = 48.0, 72.0  #: heights of the panels of a histogram and of points, mm
+_ENTRY = 4.8  #: height of an entry of a legend, mm
+_SAMPLE = 9.0  #: length of the line before it, mm
 
-STYLE = {
-    "axes.grid": True,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "font.size": 9,
-    "grid.linewidth": 0.4,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "coursework",
-}
-INK = "#1b3a57"  #: dark enough to stand alone in black and white
-_FILLED = 0.97  #: of a chart's width, by a line of its title
-_SHORT = 0.3  #: of a chart's width: such a title fits wherever its panel stands
-_LINE = 1.3  #: of the size of letters, from a line to the next
-LINES = ("-", "--", "-.", ":")  #: told apart in black and white
+_LETTER = re.compile(r'<path transform="([^"]*)" d="([^"]*)"/>')
 
-
-def _pyplot() -> Any:
-    matplotlib: Any = library("matplotlib", "charts need", "charts")
-    matplotlib.use("agg")
-    return library("matplotlib.pyplot", "charts need", "charts")
+#: Series are told apart without colour, by their marks and dashes.
+_COLOURS = (LINE, WRONG, RIGHT, "#8a5a00", "#6a3d9a", "#007a87", "#555")
+_DASHES = ("", "2 0.8", "2 0.8 0.5 0.8", "0.5 0.7")
+_MARKS = (
+    "m-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0z", "m-.9 -.9h1.8v1.8h-1.8z", "m0 -1.3l1.3 1.3l-1.3 1.3l-1.3 -1.3z",
+    "m0 -1.2l1.1 2h-2.2z", "m0 1.2l1.1 -2h-2.2z", "m-1.2 0h2.4m-1.2 -1.2v2.4", "m-.9 -.9l1.8 1.8m-1.8 0l1.8 -1.8",
+)  # fmt: skip
 
 
-def lacking() -> str:
-    """Return the reason why no chart can be drawn; empty where matplotlib is installed."""
-    try:
-        _pyplot()
-    except NotAtHand as why:
-        return str(why)
-    return ""
+def bars(
+    rows: Sequence[tuple[LabelText | str, float, str]], title: str, horizontal: str, full: float = 0.0
+) -> str:
+    """Return a chart of horizontal bars, the first at the top, as SVG.
+
+    A row is a label, a length, and what is written at the bar's end; the axis reaches ``full``, or the longest bar.
+    """
+    texts = [(_text(label), length, words(end)) for label, length, end in rows]
+    most = full or max((length for _, length, _ in texts), default=0) or 1
+    left = _ROOM + max((_width(label) for label, _, _ in texts), default=0)
+    right = 2 * _ROOM + max((_width(end, _SMALL) for _, _, end in texts), default=0)
+    scale, height = (_WIDTH - left - right) / most, _ROW * max(3, len(texts))
+    ticks = [full * k / 5 for k in range(6)] if full else _whole_values(most)
+    body = _grid([f"M{number(left + scale * t)} 0v{number(height)}" for t in ticks])
+    for position, (label, length, end) in enumerate(texts):
+        middle = _ROW * (position + 0.5)
+        body += [
+            _box(left, middle - _BAR / 2, scale * length, _BAR),
+            put(label, complex(left - 1.5, middle + 1.0), "end", _TEXT),
+            put(end, complex(left + scale * length + 1.5, middle + 1.0), "start", _SMALL),
+        ]
+    body += _foot({left + scale * t: f"{t:g}" for t in ticks}, horizontal, left, _WIDTH - right, height)
+    return _page(height + _BELOW, body, title)
 
 
-def curves(
-    horizontal: tuple[str, np.ndarray],
-    columns: Mapping[str, np.ndarray],
-    units: Mapping[str, str],
-    title: str,
-) -> bytes:
-    """Return curves over one variable as SVG, a panel for each unit; the same data give the same bytes."""
-    pyplot = _pyplot()
-    by_unit: dict[str, list[str]] = {}
-    for name in columns:
-        by_unit.setdefault(units[name], []).append(name)
-    with pyplot.rc_context(STYLE):
-        figure, panels = pyplot.subplots(
-            len(by_unit),
-            1,
-            sharex=True,
-            squeeze=False,
-            figsize=(7.5, 1.2 + 1.9 * len(by_unit)),
-            layout="constrained",
-        )
-        for panel, (unit, names) in zip(panels[:, 0], by_unit.items(), strict=True):
-            for number, name in enumerate(names):
-                values = _without_jumps(columns[name]) if unit == "deg" else columns[name]
-                panel.plot(horizontal[1], values, LINES[number % len(LINES)], label=name, linewidth=1.2)
-            panel.set_ylabel(unit)
-            panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-        panels[-1, 0].set_xlabel(horizontal[0])
-        panels[0, 0].set_title(title)
-        return _svg(pyplot, figure)
+def histogram(
+    counts: Sequence[int], edges: Sequence[float], title: str, horizontal: str, vertical: str
+) -> str:
+    """Return a histogram as SVG, with one edge more than counts; each column carries its count."""
+    most = 1.12 * max(1, *counts)
+    left, right, above = 10.0, _WIDTH - 4.0, 6.0
+    across = (right - left) / (edges[-1] - edges[0])
 
+    def x(value: float) -> float:
+        return left + across * (value - edges[0])
 
-def _without_jumps(degrees: np.ndarray) -> np.ndarray:
-    """Return the degrees with a gap (NaN) where a direction passes from 180 to -180."""
-    values = np.array(degrees, dtype=float)
-    values[1:][np.abs(np.diff(degrees)) > 180] = np.nan
-    return values
+    def y(value: float) -> float:
+        return above + _COLUMNS * (1 - value / most)
 
-
-def _svg(pyplot: Any, figure: Any) -> bytes:
-    out = io.BytesIO()
-    _fit_title(figure, figure.axes[0])
-    figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
-    pyplot.close(figure)
-    return out.getvalue()
-
-
-def _fit_title(figure: Any, panel: Any) -> None:
-    """Replace a title wider than its panel by one over the whole chart, on as many lines as it takes."""
-    title, room = panel.title, figure.bbox.width
-    if title.get_window_extent(figure.canvas.get_renderer()).width <= _SHORT * room:
-        return
-    figure.draw_without_rendering()
-    if title.get_window_extent().x0 >= 0 and title.get_window_extent().x1 <= room:
-        return
-    over = figure.suptitle("", fontsize=title.get_fontsize())
-
-    def fits(text: str) -> bool:
-        over.set_text(text)
-        return over.get_window_extent().width <= _FILLED * room
-
-    lines = _lines(title.get_text(), fits)
-    over.set_text("\n".join(lines))
-    title.set_text("")
-    width, height = figure.get_size_inches()
-    figure.set_size_inches(width, height + (len(lines) - 1) * _LINE * title.get_fontsize() / 72)
-
-
-def _lines(text: str, fits: Callable[[str], bool]) -> list[str]:
-    """Break a text into lines that fit; a word longer than a line is cut."""
-    lines = [""]
-    for word in text.split(" "):
-        longer, rest = f"{lines[-1]} {word}".strip(), word
-        if fits(longer):
-            lines[-1] = longer
-            continue
-        lines += [""] if lines[-1] else []
-        while not fits(rest):
-            size = max((n for n in range(1, len(rest)) if fits(rest[:n])), default=len(rest))
-            lines[-1], rest = rest[:size], rest[size:]
-            lines.append("")
-        lines[-1] = rest
-    return lines
+    ticks = _whole_values(most)
+    body = [put(words(vertical), complex(left, above - 2.5), "start", _TEXT)]
+    body += _grid([f"M{number(left)} {number(y(t))}h{number(right - left)}" for t in ticks])
+    body += [put(words(f"{t:g}"), complex(left - 1.5, y(t) + 1.0), "end", _SMALL) for t in ticks]
+    for (low, high), count in zip(pairwise(edges), counts, strict=True):
+        if count:
+            body.append(_box(x(low) + 0.3, y(count), x(high) - x(low) - 0.6, y(0) - y(count)))
+            at = complex((x(low) + x(high)) / 2, y(count) - 1.2)
+            body.append(put(words(str(count)), at, "middle", _SMALL))
+    body += _foot({x(e): f"{e:g}" for e in edges}, horizontal, left, right, y(0))
+    return _page(y(0) + _BELOW, body, title)
 
 
 def scatter(
@@ -132,107 +90,121 @@ def scatter(
     horizontal: str,
     vertical: str,
     *,
-    joined: bool = True,
     integers: bool = False,
-) -> bytes:
-    """Return named series of points on two logarithmic axes, as SVG; ``integers`` puts whole numbers on a linear
-    axis."""
-    pyplot = _pyplot()
-    marks = "osD^v<>Px*hp+d"
-    with pyplot.rc_context(STYLE):
-        figure, panel = pyplot.subplots(figsize=(7.5, 4.6), layout="constrained")
-        for number, (name, (x, y)) in enumerate(points.items()):
-            line = LINES[number % len(LINES)] if joined else ""
-            panel.plot(x, y, marks[number % len(marks)] + line, label=name, markersize=5, linewidth=0.9)
-        across = "linear" if integers else "log"
-        panel.set(xscale=across, yscale="log", xlabel=horizontal, ylabel=vertical, title=title)
-        if integers:
-            panel.set_xticks(sorted({int(v) for x, _ in points.values() for v in x}))
-        panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
-        return _svg(pyplot, figure)
+) -> str:
+    """Return named series of joined points on two logarithmic axes, as SVG; ``integers`` puts whole numbers on a
+    linear axis. A point without a logarithm is left out."""
+
+    def along(value: float) -> float:
+        return value if integers else math.log10(value)
+
+    series = {
+        name: [(along(a), math.log10(b)) for a, b in zip(*both, strict=True) if b > 0 and (integers or a > 0)]
+        for name, both in points.items()
+    }
+    every = [point for run in series.values() for point in run]
+    left, above = 14.0, 6.0
+    right = _WIDTH - _SAMPLE - 3 * _ROOM - max((_width(words(name), _SMALL) for name in series), default=0)
+    height = max(_POINTS, _ENTRY * len(series))
+    (low, high), (least, most) = (_reach([point[k] for point in every]) for k in (0, 1))
+
+    def at(point: tuple[float, float]) -> complex:
+        x, y = (point[0] - low) / (high - low), (most - point[1]) / (most - least)
+        return complex(left + (right - left) * x, above + height * y)
+
+    across = sorted({round(a) for a, _ in every}) if integers else _whole_between(low, high)
+    upward = _whole_between(least, most)
+    body = [put(words(vertical), complex(left, above - 2.5), "start", _TEXT)]
+    body += _grid(
+        [f"M{number(at((t, most)).real)} {number(above)}v{number(height)}" for t in across]
+        + [f"M{number(left)} {number(at((low, t)).imag)}h{number(right - left)}" for t in upward]
+    )
+    body += [put(_power(t), at((low, t)) - 1.5 + 1j, "end", _SMALL) for t in upward]
+    for position, (name, run) in enumerate(series.items()):
+        entry = complex(right + _ROOM, above + _ENTRY * (position + 0.5))
+        body += _series(position, [at(point) for point in run])
+        body += _series(position, [entry, entry + _SAMPLE], marked=entry + _SAMPLE / 2)
+        body.append(put(words(name), entry + _SAMPLE + 1.5 + 1j, "start", _SMALL))
+    labels = {at((t, most)).real: f"{t}" if integers else _power(t) for t in across}
+    body += _foot(labels, horizontal, left, right, above + height)
+    return _page(above + height + _BELOW, body, title)
 
 
-def formula_label(tex: str, otherwise: str) -> str:
-    """Return a formula as a chart label; the plain text ``otherwise`` where matplotlib cannot set it."""
-    _pyplot()
-    from matplotlib.mathtext import MathTextParser
-
-    try:
-        MathTextParser("path").parse(f"${tex}$")
-    except ValueError:
-        return plain_label(otherwise)
-    return f"${tex}$"
-
-
-#: Scripts and signs that the charts' own font draws.
-_UNDRAWN = re.compile(
-    "[^ -~\u00a0-\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
-    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]"
-)
-
-
-def drawable_label(text: str) -> str:
-    """Replace each character that the chart font cannot draw by a square."""
-    return _UNDRAWN.sub("\N{WHITE SQUARE}", text)
+def _series(position: int, run: Sequence[complex], marked: complex | None = None) -> list[str]:
+    """Return the joined points of a series; in a legend, a line with the mark in its middle."""
+    colour = _COLOURS[position % len(_COLOURS)]
+    dash = _DASHES[position % len(_DASHES)]
+    line = "L".join(f"{number(z.real)} {number(z.imag)}" for z in run)
+    dashed = f' stroke-dasharray="{dash}"' if dash else ""
+    mark = _MARKS[position % len(_MARKS)]
+    fill = colour if position % (2 * len(_MARKS)) < len(_MARKS) else "#fff"
+    spots = "".join(
+        f"M{number(z.real)} {number(z.imag)}{mark}" for z in (run if marked is None else [marked])
+    )
+    if not run:
+        return []
+    return [
+        f'<path d="M{line}" fill="none" stroke="{colour}" stroke-width="0.3"{dashed}/>',
+        f'<path d="{spots}" fill="{fill}" stroke="{colour}" stroke-width="0.3"/>',
+    ]
 
 
-def plain_label(text: str) -> str:
-    """Return a text as a chart label, with its dollar signs escaped."""
-    return text.replace("$", r"\$")
+def _page(height: float, body: Sequence[str], title: str) -> str:
+    """Return an SVG in which each letter has its outline once: a report has many charts, as pictures of their own."""
+    head, svg = page((_WIDTH, height), body, title).split("\n", 1)
+    names: dict[str, str] = {}
+
+    def used(letter: re.Match[str]) -> str:
+        name = names.setdefault(letter[2], f"g{len(names)}")
+        return f'<use href="#{name}" transform="{letter[1]}"/>'
+
+    svg = _LETTER.sub(used, svg)
+    outlines = (f'<path id="{name}" d="{outline}"/>' for outline, name in names.items())
+    return "\n".join([head, f"<defs>{''.join(outlines)}</defs>", svg])
 
 
-def bars(rows: Sequence[tuple[str, float, str]], title: str, horizontal: str, full: float = 0.0) -> bytes:
-    """Return a chart of horizontal bars, the first at the top, as SVG.
-
-    A row is a label, a length, and what is written at the bar's end; the axis reaches ``full``, or a
-    little beyond the longest bar.
-    """
-    pyplot = _pyplot()
-    lengths = [length for _, length, _ in rows]
-    with pyplot.rc_context(STYLE):
-        figure, panel = pyplot.subplots(figsize=(6.6, 0.85 + 0.2 * max(3, len(rows))), layout="constrained")
-        panel.barh(range(len(rows)), lengths, height=0.62, color=INK)
-        for index, (_, length, text) in enumerate(rows):
-            panel.annotate(text, (length, index), (3, 0), textcoords="offset points", va="center", fontsize=8)
-        panel.set_yticks(range(len(rows)), [label for label, *_ in rows])
-        panel.set(xlabel=horizontal, title=title, xlim=(0, 1.12 * (full or max(lengths, default=0) or 1)))
-        panel.set_ylim(len(rows) - 0.4, -0.6)
-        _whole_ticks(panel.xaxis, full)
-        panel.tick_params(axis="y", length=0)
-        panel.grid(visible=False, axis="y")
-        panel.set_axisbelow(True)
-        return _svg(pyplot, figure)
+def _text(label: LabelText | str) -> LabelText:
+    return words(label) if isinstance(label, str) else label
 
 
-def _whole_ticks(axis: Any, full: float) -> None:
-    """Set five steps up to ``full``; without it, whole numbers."""
-    from matplotlib.ticker import MaxNLocator
-
-    if full:
-        axis.set_ticks(np.linspace(0, full, 6))
-    else:
-        axis.set_major_locator(MaxNLocator(nbins=8, integer=True))
+def _width(text: LabelText, size: float = _TEXT) -> float:
+    return text.width * SIZE * size
 
 
-def histogram(
-    counts: Sequence[int], edges: Sequence[float], title: str, horizontal: str, vertical: str
-) -> bytes:
-    """Return a histogram as SVG, with one edge more than counts; each column carries its count."""
-    pyplot = _pyplot()
-    with pyplot.rc_context(STYLE):
-        figure, panel = pyplot.subplots(figsize=(6.6, 2.9), layout="constrained")
-        panel.bar(
-            edges[:-1], counts, np.diff(edges), align="edge", color=INK, edgecolor="white", linewidth=1.5
-        )
-        for left, right, count in zip(edges[:-1], edges[1:], counts, strict=True):
-            if count:
-                panel.annotate(
-                    str(count), ((left + right) / 2, count), (0, 2), textcoords="offset points", ha="center"
-                )
-        panel.set_xticks(edges)
-        panel.set(xlabel=horizontal, ylabel=vertical, title=title)
-        panel.set_ylim(0, 1.12 * max(1, *counts))
-        _whole_ticks(panel.yaxis, 0)
-        panel.grid(visible=False, axis="x")
-        panel.set_axisbelow(True)
-        return _svg(pyplot, figure)
+def _power(exponent: int) -> LabelText:
+    return read(f"10^{{{exponent}}}")
+
+
+def _reach(values: Sequence[float]) -> tuple[float, float]:
+    """Return the range of an axis, with some margin."""
+    low, high = min(values, default=0.0), max(values, default=1.0)
+    margin = 0.05 * (high - low) or 0.5
+    return low - margin, high + margin
+
+
+def _whole_values(most: float) -> list[float]:
+    """Return round whole numbers from 0 on."""
+    return [t for t in round_values(0, most, 8) if t == round(t)]
+
+
+def _whole_between(low: float, high: float) -> list[int]:
+    """Return at most nine whole numbers between two."""
+    step = max(1, math.ceil((high - low) / 8))
+    return [k * step for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
+
+
+def _grid(lines: Sequence[str]) -> list[str]:
+    return [f'<path d="{"".join(lines)}" fill="none" stroke="{GRID}" stroke-width="0.2"/>']
+
+
+def _box(x: float, y: float, width: float, height: float) -> str:
+    return f'<path d="M{number(x)} {number(y)}h{number(width)}v{number(height)}h{number(-width)}z" fill="{LINE}"/>'
+
+
+def _foot(
+    ticks: Mapping[float, LabelText | str], title: str, left: float, right: float, base: float
+) -> list[str]:
+    """Return a horizontal axis with the labels of its ticks, by abscissa, and its title."""
+    axis = f'<path d="M{number(left)} {number(base)}H{number(right)}" stroke="#000" stroke-width="0.25"/>'
+    below = [put(_text(label), complex(x, base + 4.2), "middle", _SMALL) for x, label in ticks.items()]
+    return [axis, *below, put(words(title), complex((left + right) / 2, base + 9.2), "middle", _TEXT)]

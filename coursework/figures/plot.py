@@ -11,9 +11,9 @@ from functools import cached_property
 
 import numpy as np
 
-from coursework.errors import UnknownName, WrongValue
+from coursework.errors import WrongValue
 from coursework.figures.ink import number
-from coursework.figures.text import SIZE, LabelText, read
+from coursework.figures.text import SIZE, LabelText, read, words
 from coursework.figures.writing import accents, as_outlines
 from coursework.language.numbers import localise, significant
 
@@ -21,6 +21,7 @@ _WIDTH, _HEIGHT = 112.0, 26.0  #: of a panel, mm
 _LEFT, _RIGHT, _TOP, _BOTTOM, _GAP = 19.0, 5.0, 7.5, 11.5, 9.5
 _SMALL = 0.78  #: size of the numbers on the axes, relative to a label
 _LEAST = 3  #: numbers on an axis
+_LINE = 5.2  #: height of a line of a title, mm
 LINE, RIGHT, WRONG, GRID = "#1b3a57", "#1b7a4b", "#b3261e", "#d5d9de"
 
 
@@ -53,7 +54,7 @@ class Axis:
             # Words stay upright; a symbol that the label's reader does not know is written as it comes.
             symbol = self.label if not _is_words(self.label) else rf"\mathrm{{{_spaced(self.label)}}}"
             return read(symbol + unit)
-        except (UnknownName, WrongValue):
+        except WrongValue:
             return read(rf"\mathrm{{{''.join(c for c in self.label if c.isalnum())}}}" + unit)
 
 
@@ -88,6 +89,8 @@ class Plot:
         A place on the variable that is marked through all panels.
     spots
         Points beside the curve of each panel, by the panel's place.
+    title
+        Words above the panels.
 
     Raises
     ------
@@ -102,6 +105,7 @@ class Plot:
         lang: str = "en",
         at: float | None = None,
         spots: Sequence[Sequence[AnswerPoint]] = (),
+        title: str = "",
     ):
         if not panels:
             raise WrongValue("a plot has one curve at least; found none")
@@ -114,6 +118,7 @@ class Plot:
             if not np.isfinite(panel.values).any():
                 raise WrongValue(f"the curve {panel.label} has no finite value")
         self.horizontal, self.panels, self.lang, self.at = horizontal, tuple(panels), lang, at
+        self.title = title
         self.spots = tuple(tuple(s) for s in spots) or ((),) * len(panels)
 
     @property
@@ -148,19 +153,14 @@ class Plot:
 
     def svg(self) -> str:
         """Return the plot as SVG; letters are outlines, so that it looks the same everywhere."""
-        width, height = map(number, self.size)
         body = [line for k in range(len(self.panels)) for line in self._panel(k)]
         low, high = self._reach
         base = self.size[1] - _BOTTOM
         ticks = _axis_ticks(self.horizontal, low, high, 6)
         body += [self._number(value, complex(self._x(value), base + 4.2), "middle") for value in ticks]
         middle = complex(_LEFT + _WIDTH / 2, base + 9.4)
-        body.append(_letters(self.horizontal.title, middle, "middle"))
-        return "\n".join([
-            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-            f'viewBox="0 0 {width} {height}" role="img">',
-            f'<rect width="{width}" height="{height}" fill="#fff"/>', *body, "</svg>\n",
-        ])  # fmt: skip
+        body.append(put(self.horizontal.title, middle, "middle"))
+        return page(self.size, body, self.title)
 
     def _panel(self, position: int) -> list[str]:
         panel, spots = self.panels[position], self.spots[position]
@@ -172,7 +172,7 @@ class Plot:
             inside = min(max(value, low), high)
             return top + _HEIGHT * (high - inside) / (high - low)
 
-        out = [_letters(panel.title, complex(_LEFT, top - 2.0), "start")]
+        out = [put(panel.title, complex(_LEFT, top - 2.0), "start")]
         across = _axis_ticks(self.horizontal, *self._reach, 6)
         grid = [f"M{number(self._x(t))} {number(top)}v{number(_HEIGHT)}" for t in across]
         ticks = _axis_ticks(panel, low, high, 4)
@@ -215,7 +215,44 @@ class Plot:
         return [arrow, self._number(text, at, "end" if to_left else "start")]
 
     def _number(self, value: float, at: complex, anchor: str) -> str:
-        return _letters(read(localise(significant(value, 6), self.lang)), at, anchor, _SMALL)
+        return put(read(localise(significant(value, 6), self.lang)), at, anchor, _SMALL)
+
+
+def page(size: tuple[float, float], body: Sequence[str], title: str = "") -> str:
+    """Return an SVG of this size, mm, with a title above it on as many lines as it takes."""
+    lines = _title_lines(title, size[0] - 2) if title else []
+    if above := _LINE * len(lines) + 1 if lines else 0.0:
+        body = [f'<g transform="translate(0 {number(above)})">', *body, "</g>"]
+    titles = [
+        put(words(line), complex(size[0] / 2, _LINE * (k + 0.8)), "middle") for k, line in enumerate(lines)
+    ]
+    width, height = number(size[0]), number(size[1] + above)
+    return "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+        f'viewBox="0 0 {width} {height}" role="img">',
+        f'<rect width="{width}" height="{height}" fill="#fff"/>', *titles, *body, "</svg>\n",
+    ])  # fmt: skip
+
+
+def _title_lines(title: str, room: float) -> list[str]:
+    """Break a title into lines that fit; a word longer than a line is cut."""
+    lines = [""]
+    for word in title.split(" "):
+        longer, rest = f"{lines[-1]} {word}".strip(), word
+        if _fits(longer, room):
+            lines[-1] = longer
+            continue
+        lines += [""] if lines[-1] else []
+        while not _fits(rest, room):
+            size = max((n for n in range(1, len(rest)) if _fits(rest[:n], room)), default=len(rest))
+            lines[-1], rest = rest[:size], rest[size:]
+            lines.append("")
+        lines[-1] = rest
+    return lines
+
+
+def _fits(text: str, room: float) -> bool:
+    return words(text).width * SIZE <= room
 
 
 def _dot(x: float, y: float, right: bool | None) -> str:
@@ -229,7 +266,7 @@ def _dot(x: float, y: float, right: bool | None) -> str:
     return f'<circle cx="{number(x)}" cy="{number(y)}" r="1.3" fill="{fill}" stroke="{RIGHT if right else LINE}" stroke-width="0.4"/>'
 
 
-def _letters(text: LabelText, at: complex, anchor: str, size: float = 1.0) -> str:
+def put(text: LabelText, at: complex, anchor: str, size: float = 1.0) -> str:
     """Return a text as outlines; ``at`` is its start, middle or end on the baseline."""
     width = text.width * SIZE * size
     start = at - {"start": 0.0, "middle": width / 2, "end": width}[anchor]
@@ -255,7 +292,7 @@ def _range(values: np.ndarray, others: Sequence[float]) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def _ticks(low: float, high: float, count: int) -> list[float]:
+def round_values(low: float, high: float, count: int) -> list[float]:
     """Return about ``count`` round values between two."""
     rough = (high - low) / count
     power = 10.0 ** math.floor(math.log10(rough))
@@ -271,7 +308,7 @@ def _ticks(low: float, high: float, count: int) -> list[float]:
 def _axis_ticks(axis: Axis, low: float, high: float, count: int) -> list[float]:
     """Return round values; multiples of 60 or 180 degrees for a direction over a large range."""
     if axis.unit != "°" or high - low < 180:
-        return _ticks(low, high, count)
+        return round_values(low, high, count)
     step = 60.0 if count > 4 else 90.0 if high - low < 200 else 180.0
     return [step * k for k in range(math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6) + 1)]
 

@@ -15,6 +15,7 @@ from coursework.errors import BadStatement, WrongValue
 from coursework.figures.ink import added
 from coursework.markup.formula_tree import (
     Accent,
+    Fence,
     FormulaRow,
     FormulaText,
     Name,
@@ -22,6 +23,7 @@ from coursework.markup.formula_tree import (
     Num,
     Script,
     Space,
+    Styled,
     Symbol,
     parse,
 )
@@ -34,13 +36,14 @@ _SLACK = 1.06  #: a reader's machine may draw the text in another serif, a littl
 _ACCENTS = {
     "dot": "dot", "ddot": "ddot", "vec": "arrow", "overrightarrow": "arrow", "bar": "bar", "overline": "bar",
 }  # fmt: skip
+_VECTOR = re.compile("([^\\W_])\N{COMBINING RIGHT ARROW ABOVE}")
 _DRAWN = str.maketrans("ϵϕ⋅∘∗", "εφ·°*")  #: letters and signs as figures have them
 
 # Advance widths of the embedded serif, upright and italic, hundredths of an em.
 _UPRIGHT_WIDTHS = {
     19: "'|", 22: ",.", 25: "ijlI-:;·′  !", 29: "°", 32: "tJ()/[]f", 38: "rs*", 42: "cz",
     46: "aeégèêàç0123456789?ôk", 50: "bdovxhnpquùSPFyLε", 55: "+−=<>±×EBYαβζδηθκλμξτ", 60: "TRZXρσφπνω",
-    66: "CKUV&%", 71: "ADGHNOQΩΘ", 79: "mw∞œ", 95: "WM",
+    66: "CKUV&%", 71: "ADGHNOQΩΘ", 75: "²", 79: "mw∞œ", 95: "WM",
 }  # fmt: skip
 _ITALIC_WIDTHS = {
     19: "|", 23: ",.:;!", 27: "′° ·iîjlι", 32: "ftI()/[]", 37: "rsεξ", 41: "cesτéèêJz",
@@ -54,6 +57,15 @@ def _by_letter(table: dict[int, str]) -> dict[str, float]:
 
 
 _WIDTHS = {False: _by_letter(_UPRIGHT_WIDTHS), True: _by_letter(_ITALIC_WIDTHS)}
+
+
+def _measured(letter: str, italic: bool) -> float:
+    """Return the width of a letter that the tables lack, em."""
+    from coursework.figures.typesetting import glyph_width
+
+    return glyph_width(letter, italic)
+
+
 _DESCENDING = frozenset("gjpqyQJ,;()[]/βγζημξρφψχ|")
 _ITALIC_DESCENDING = _DESCENDING | {"f"}
 _LOW = frozenset("acegmnopqrsuvwxyzαεγηικμνοπρστυχω.,:·−+=×-")
@@ -72,7 +84,7 @@ class LetterRun:
     @cached_property
     def width(self) -> float:
         table = _WIDTHS[self.italic]
-        return self.size * added(table.get(letter, 0.75) for letter in self.text)
+        return self.size * added(table.get(letter) or _measured(letter, self.italic) for letter in self.text)
 
     @cached_property
     def top(self) -> float:
@@ -131,25 +143,41 @@ def advance(runs: Sequence[LetterRun]) -> float:
 
 @lru_cache(maxsize=2048)
 def read(label: str) -> LabelText:
-    """Read a label: words, or a formula of letters, indices and accents; WrongValue for any other."""
+    """Read a label: words, or a formula of one line; WrongValue for any other."""
     label = label.strip().removeprefix("$").removesuffix("$").strip()
     is_plain = not re.search(r"[\\_^{}]", label)
     if is_plain and re.search(r"\s|[^\W\d]{3,}", label):
-        return _words(label)
+        return words(label)
     letters = _Letters()
     try:
         letters.put(parse(label), LetterRun("", italic=True))
     except BadStatement as fault:
         if is_plain and label:
-            return _words(label)
+            return words(label)
         raise WrongValue(f"label {label!r}: {fault}") from None
     if not letters.runs:
         raise WrongValue(f"label {label!r} has no letter to print")
     return LabelText(tuple(letters.runs), tuple(letters.accents))
 
 
-def _words(text: str) -> LabelText:
-    return LabelText((LetterRun(text, italic=False),), ())
+def words(text: str) -> LabelText:
+    """Return words in upright letters; a letter with a combining arrow becomes one with an arrow over it."""
+    letters = _Letters()
+    pieces = _VECTOR.split(text)
+    for position, piece in enumerate(pieces):
+        if position % 2:
+            letters.put(Accent("vec", Symbol(piece, "letter")), LetterRun("", italic=True))
+        elif piece or len(pieces) == 1:
+            letters.letters(piece, LetterRun("", italic=False))
+    return LabelText(tuple(letters.runs), tuple(letters.accents))
+
+
+def joined(*texts: LabelText) -> LabelText:
+    """Return texts one after the other."""
+    letters = _Letters()
+    for text in texts:
+        letters.add(text.runs, text.accents)
+    return LabelText(tuple(letters.runs), tuple(letters.accents))
 
 
 class _Letters:
@@ -171,6 +199,12 @@ class _Letters:
                 self.letters(text, replace(style, italic=False))
             case Num(negative, digits, ""):
                 self.letters(("−" if negative else "") + digits, style)
+            case Styled(_, body):
+                self.put(body, style)
+            case Fence(left, body, right):
+                self.letters(left, style)
+                self.put(body, style)
+                self.letters(right, style)
             case Space(_):
                 self.letters(" ", style)
             case Accent(name, body) if name in _ACCENTS:
@@ -182,17 +216,22 @@ class _Letters:
                 self.put(base, style)
                 self.stack(_script(above, primes, style, RAISE), _script(below, 0, style, DROP))
             case _:
-                raise BadStatement("a figure has letters, indices, exponents and accents only")
+                raise BadStatement("a figure has no fractions, roots and tables")
 
     def stack(self, *scripts: _Letters) -> None:
         """Append an exponent and an index that start at the same place, the narrower first, so that the next
         letters follow the wider."""
         self.barrier, back = len(self.runs), 0.0
         for script in sorted((s for s in scripts if s.runs), key=lambda s: advance(s.runs)):
-            start = len(self.runs)
-            self.runs += [replace(script.runs[0], back=back) if back else script.runs[0], *script.runs[1:]]
-            self.accents += [LabelAccent(a.kind, a.first + start, a.last + start) for a in script.accents]
+            first, *rest = script.runs
+            self.add([replace(first, back=back) if back else first, *rest], script.accents)
             back = advance(script.runs)
+
+    def add(self, runs: Sequence[LetterRun], accents: Sequence[LabelAccent]) -> None:
+        """Append runs with the accents over them."""
+        start = len(self.runs)
+        self.runs += runs
+        self.accents += [LabelAccent(a.kind, a.first + start, a.last + start) for a in accents]
 
     def letters(self, text: str, style: LetterRun) -> None:
         style = replace(style, italic=style.italic and text.isalpha())

@@ -58,8 +58,17 @@ def pages(drawings: Sequence[tuple[str, float]]) -> bytes:
 
 
 @lru_cache(maxsize=512)
+def _letter(letter: str, italic: bool) -> str:
+    inputs = {"letter": letter, "style": "italic" if italic else "normal"}
+    return _compiled(_LETTER, "svg", inputs).decode()
+
+
 def glyph(letter: str, italic: bool) -> str:
     """Return the SVG path of a letter, hundredths of an em, y up; empty for a space."""
-    inputs = {"letter": letter, "style": "italic" if italic else "normal"}
-    page = _compiled(_LETTER, "svg", inputs).decode()
-    return " ".join(re.findall(r'<symbol[^>]*><path d="([^"]*)"', page)).strip()
+    return " ".join(re.findall(r'<symbol[^>]*><path d="([^"]*)"', _letter(letter, italic))).strip()
+
+
+def glyph_width(letter: str, italic: bool) -> float:
+    """Return the advance width of a letter, em."""
+    width = re.search(r'width="([\d.]+)pt"', _letter(letter, italic))
+    return float(width[1]) / 100 if width else 0.75

@@ -29,7 +29,7 @@ WITHOUT = {
     "parquet": ["grade nothere.parquet --issued nope.json"],
 }  # fmt: skip
 BLOCKED = (
-    "alembic argon2 cryptography cv2 dask distributed httpx itsdangerous jwt limits mpmath matplotlib nbgrader psycopg pyarrow "
+    "alembic argon2 cryptography cv2 dask distributed httpx itsdangerous jwt limits mpmath nbgrader psycopg pyarrow "
     "pypdfium2 python_multipart sqlalchemy starlette uvicorn zxingcpp"
 ).split()
 

@@ -355,7 +355,7 @@ def test_the_zip_needs_no_more_than_its_setup_installs(autograder):
     place, _ = autograder
     book = notebook(place, "ada-byron", {"rA": "1"}, {})
     submitted(place, {"a.ipynb": book}, ADA)
-    others = "click rich typst nbformat matplotlib pyarrow nbgrader tex2typst pytest".split()
+    others = "click rich typst nbformat pyarrow nbgrader tex2typst pytest".split()
     code = (
         "import sys\n"
         f"for name in {others!r}: sys.modules[name] = None\n"

@@ -24,23 +24,14 @@ def pdf(path, pages):
     document = pypdfium2.PdfDocument.new()
     for grey in pages:
         image = pypdfium2.PdfImage.new(document)
-        image.set_bitmap(
-            pypdfium2.PdfBitmap.from_numpy(np.dstack([grey] * 3))
-            if hasattr(pypdfium2.PdfBitmap, "from_numpy")
-            else _bitmap(grey)
-        )
+        bitmap = pypdfium2.PdfBitmap.new_native(*grey.shape[::-1], pypdfium2.raw.FPDFBitmap_BGR)
+        bitmap.to_numpy()[:] = grey[..., np.newaxis]
+        image.set_bitmap(bitmap)
         image.set_matrix(pypdfium2.PdfMatrix().scale(grey.shape[1], grey.shape[0]))
         sheet = document.new_page(grey.shape[1], grey.shape[0])
         sheet.insert_obj(image)
         sheet.gen_content()
     document.save(path)
-
-
-def _bitmap(grey):
-    import pypdfium2
-    from PIL import Image
-
-    return pypdfium2.PdfBitmap.from_pil(Image.fromarray(grey).convert("RGB"))
 
 
 @pytest.mark.parametrize("ending", [".png", ".jpg", ".tif", ".pdf"])

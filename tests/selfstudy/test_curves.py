@@ -11,7 +11,7 @@ from tables import each_row
 
 import coursework
 from coursework.errors import UnknownName, WrongValue
-from coursework.figures.plot import AnswerPoint, Axis, Plot, _ticks
+from coursework.figures.plot import AnswerPoint, Axis, Plot, round_values
 from coursework.selfstudy import predictions
 
 
@@ -97,7 +97,7 @@ def test_a_wrong_angle_is_not_drawn_as_if_it_were_nearly_right(lang, here):
 
 @each_row(("low", "high"), [(-4.7, 3.6), (-5.5, 3.5), (-1, 1), (40, 110), (0.013, 0.0189)])
 def test_a_scale_has_three_round_numbers_at_least(low, high):
-    ticks = _ticks(low, high, 4)
+    ticks = round_values(low, high, 4)
     assert 3 <= len(ticks) <= 6
     assert all(low <= t <= high for t in ticks)
     assert np.ptp(np.diff(ticks)) < 1e-9 * (high - low)

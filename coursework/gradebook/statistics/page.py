@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from coursework.course.course import Course
-from coursework.figures.charts import bars, drawable_label, formula_label, histogram, lacking, plain_label
+from coursework.errors import WrongValue
+from coursework.figures.charts import bars, histogram
+from coursework.figures.text import LabelText, joined, read
+from coursework.figures.text import words as printed
 from coursework.gradebook.columns import VERDICTS
 from coursework.gradebook.statistics.captions import SHORT, Names
 from coursework.gradebook.statistics.measures import (
@@ -47,8 +49,7 @@ def sheet_order(course: Course, exercises: Iterable[str]) -> dict[str, tuple[str
 
 
 def report(course: Course, statistics: Statistics, lang: str) -> ReportContent:
-    """Return the report: conclusions, points, a section for each exercise, mistakes; with a note where no
-    chart can be drawn."""
+    """Return the report: conclusions, points, a section for each exercise, mistakes."""
     page = _StatisticsPage(course, statistics, lang)
     sections = [page.short()]
     if statistics.percents.size:
@@ -61,7 +62,7 @@ def report(course: Course, statistics: Statistics, lang: str) -> ReportContent:
         course.folder.title(lang),
         page.texts["title"],
         page.texts["source"],
-        page.texts["opening"] if page.drawn else f"{page.texts['opening']} {page.texts['no_charts']}",
+        page.texts["opening"],
         tuple(sections),
     )
 
@@ -83,7 +84,6 @@ class _StatisticsPage:
         self.texts: Words = words(lang)["statistics"]
         self.verdicts: Words = words(lang)["verdicts"]
         self.names = Names(course, statistics, lang)
-        self.drawn = not lacking()
 
     # ---------------------------------------------------------------- sections
 
@@ -118,7 +118,7 @@ class _StatisticsPage:
         return ReportSection(
             self.texts["points"],
             self.texts["points_text"],
-            self._charts(lambda: histogram(counts, edges, *named), self.texts["chart_points"]),
+            (self._chart(histogram(counts, edges, *named), self.texts["chart_points"]),),
             (table,),
         )
 
@@ -126,12 +126,12 @@ class _StatisticsPage:
         parts = [p for p in self.statistics.parts if p.exercise == name]
         title = self._heading(name)
         heading = self.texts["chart_right"].format(title)
-        charts: list[Chart] = []
-        for rows in _shared_out(parts, _CHART_ROWS):
-            charts += self._charts(partial(self._right_chart, rows, heading), heading)
-        return ReportSection(title, "", tuple(charts), (self._part_table(parts), self._verdict_table(parts)))
+        charts = tuple(
+            self._chart(self._right_chart(rows, heading), heading) for rows in _shared_out(parts, _CHART_ROWS)
+        )
+        return ReportSection(title, "", charts, (self._part_table(parts), self._verdict_table(parts)))
 
-    def _right_chart(self, parts: Sequence[PartStatistics], heading: str) -> bytes:
+    def _right_chart(self, parts: Sequence[PartStatistics], heading: str) -> str:
         rows = [(self._label(p), 100 * p.right, self._chart_text(self._percent(p.right))) for p in parts]
         return bars(rows, self._chart_text(heading), self.texts["axis_right"], full=100)
 
@@ -142,9 +142,7 @@ class _StatisticsPage:
             for m in wording.mistakes_of_exercises()[:_CHARTED]
         ]
         heading = self.texts["chart_mistakes"]
-        charts = self._charts(
-            lambda: bars(rows, self._chart_text(heading), self.texts["axis_answers"]), heading
-        )
+        chart = self._chart(bars(rows, self._chart_text(heading), self.texts["axis_answers"]), heading)
         tables, left_out = [], 0
         for name in wording.exercises:
             selected = [m for m in wording.mistakes if m.exercise == name]
@@ -154,7 +152,7 @@ class _StatisticsPage:
         text = [self.texts["mistakes_text"]]
         if left_out:
             text.append(self.texts["mistakes_more"].format(left_out))
-        return ReportSection(self.texts["mistakes"], " ".join(text), charts, tuple(tables))
+        return ReportSection(self.texts["mistakes"], " ".join(text), (chart,), tuple(tables))
 
     # ------------------------------------------------------------------ tables
 
@@ -293,16 +291,20 @@ class _StatisticsPage:
         note = f"{self._title(part.exercise)}, {value}" if several else value
         return f"{self._name(part)} ({note})"
 
-    def _label(self, part: PartStatistics) -> str:
-        symbol, name = self.names.symbol(part), _charted(_short(self.names.question(part), SHORT))
-        return self._numbered(
-            part, formula_label(symbol, drawable_label(_short(part.part))) if symbol else name
-        )
+    def _label(self, part: PartStatistics) -> LabelText:
+        """Return the label of a part in a chart: its number, and its symbol where a figure can have it."""
+        number = self._numbered(part, "")
+        try:
+            if symbol := self.names.symbol(part):
+                return joined(printed(number), read(symbol)) if number else read(symbol)
+        except WrongValue:
+            return printed(number + _short(part.part))
+        return printed(number + _short(self.names.question(part), SHORT))
 
     def _mistake_label(self, item: MistakeStatistics) -> str:
         several = len(self.statistics.exercises) > 1
         name = _short(self.names.mistake(item), SHORT)
-        return _charted(f"{name} ({_short(self._heading(item.exercise), 24)})" if several else name)
+        return f"{name} ({_short(self._heading(item.exercise), 24)})" if several else name
 
     # ------------------------------------------------------------------ pieces
 
@@ -324,11 +326,10 @@ class _StatisticsPage:
         return self.texts["percent"].format(self._hundredths(share))
 
     def _chart_text(self, text: str) -> str:
-        return _charted(typeset(_short(text, _HEADED), self.lang))
+        return typeset(_short(text, _HEADED), self.lang)
 
-    def _charts(self, draw: Callable[[], bytes], heading: str) -> tuple[Chart, ...]:
-        """Return the chart; none where charts cannot be drawn."""
-        return (Chart(draw().decode("utf-8"), self.texts["alt"].format(heading)),) if self.drawn else ()
+    def _chart(self, svg: str, heading: str) -> Chart:
+        return Chart(svg, self.texts["alt"].format(heading))
 
 
 def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[PartStatistics]]:
@@ -342,18 +343,6 @@ def _short(name: str, most: int = 40) -> str:
     """Shorten a name from a file to one line of a chart."""
     one_line = " ".join(name.split())
     return one_line if len(one_line) <= most else one_line[: most - 1] + "…"
-
-
-#: A letter with an arrow above it.
-_VECTOR = re.compile("([^\\W_])\N{COMBINING RIGHT ARROW ABOVE}")
-
-
-def _charted(text: str) -> str:
-    """Return a text as a chart label, in characters of its font; an arrow over a letter becomes a formula."""
-    pieces = _VECTOR.split(text)
-    pieces[::2] = [plain_label(drawable_label(piece)) for piece in pieces[::2]]
-    pieces[1::2] = [rf"$\vec{{{letter}}}$" for letter in pieces[1::2]]
-    return "".join(pieces)
 
 
 def _as_it_is(name: str) -> str:
