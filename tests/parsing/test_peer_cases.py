@@ -26,11 +26,11 @@ ALIKE = {
 
 #: Where we differ, by the rule of ours that says so: what ours gives, and the cases by their id.
 DIFFERENCES = {
-    "No part is asked in a unit that the table of units has not": {
+    "No part can ask for a unit that is not in the table of units": {
         "no_such_unit": (135, 136, 210, 211, 212, 213, 214, 215, 221, 225, 226),
     },
-    "An electronvolt is that of the SI since 2019": {"wrong": (35,)},
-    "A unit that is not known is unreadable, listed for a human: neither ignored nor wrong": {
+    "The electronvolt is that of the SI since 2019": {"wrong": (35,)},
+    "An unknown unit is unreadable and listed for a person, neither ignored nor wrong": {
         "unreadable": (89, 94, 112, 116, 209, 218, 222),
     },
     "A unit is written after its number, not within a formula": {
@@ -39,16 +39,16 @@ DIFFERENCES = {
     "Without a unit, a number is in the unit printed beside the box": {
         "correct": (95, 106, 113, 114, 178, 197, 202),
     },
-    "A part has one tolerance and no half marks inside a second one": {"wrong": (107, 108, 109)},
-    "A number is judged in the unit that is written with it": {"wrong": (99,)},
+    "A part has one tolerance, without half marks inside a second one": {"wrong": (107, 108, 109)},
+    "A number is judged in the unit written with it": {"wrong": (99,)},
     "A unit may be spelled out or glued, `Joule`, `Nm`": {"correct": (204, 205)},
-    "Dollar signs are LaTeX's and are set aside": {"correct": (115,)},
-    "How a right value is written takes nothing off: fraction, formula or decimals": {
+    "Dollar signs belong to LaTeX and are ignored": {"correct": (115,)},
+    "The form of a right value costs nothing: fraction, formula or decimals": {
         "correct": (121, 123, 127),
         "read": (142,),
     },
-    "Infinity is no value: unreadable rather than wrong": {"unreadable": (128,)},
-    "An answer equal to the reference is right, whatever unit the tolerance is written in": {
+    "Infinity is not a value: unreadable rather than wrong": {"unreadable": (128,)},
+    "An answer equal to the reference is right, whatever the unit of the tolerance": {
         "correct": (180,)
     },
 }  # fmt: skip
