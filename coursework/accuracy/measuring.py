@@ -93,7 +93,10 @@ def subject_of(exercise: CourseExercise) -> Subject:
     needs_mpmath()
     if not numbers_of(exercise):
         raise BadInput(
-            "{name} asks for no number that could lose digits: nothing to measure; counts, choices and equations are exact",
+            (
+                "{name} asks for no number that could lose digits, so there is nothing to measure: counts, choices "
+                "and equations are exact"
+            ),
             name=exercise.name,
         )
     return Subject(exercise)
@@ -113,7 +116,10 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Measur
     checked(subject)
     if not subject.reference.wanted:
         raise BadInput(
-            "{name}: there is no reference of {lacking}: its formula cannot be followed in many digits; plain formulas with coursework.degrees and numpy's functions of numbers can",
+            (
+                "{name}: no reference for {lacking}: its formula cannot be evaluated with many digits; formulas with "
+                "coursework.degrees and numpy's elementary functions can"
+            ),
             name=exercise.name,
             lacking=", ".join(subject.reference.lacking),
         )

@@ -55,11 +55,11 @@ def copy_exercise(source: Folder, name: str, target: Path, renamed: str, langs: 
     is_course = (target / "exercises").is_dir()
     spoken = course_folder(target).languages if is_course else langs
     if is_course and (home := course_folder(target).home("exercises", renamed)):
-        raise BadInput("{home} exists already; name the copy otherwise: --as NAME", home=home)
+        raise BadInput("{home} exists already; give the copy another name: --as NAME", home=home)
     if not set(spoken) & source.texts("exercises", name).keys():
         have = ", ".join(source.texts("exercises", name))
         raise BadInput(
-            "{name} has no text in {spoken}, which {target} speaks; it has {have}",
+            "{name} has no text in {spoken}, a language of {target}; it has {have}",
             name=name,
             spoken=" or ".join(spoken),
             target=target,
@@ -71,7 +71,10 @@ def copy_exercise(source: Folder, name: str, target: Path, renamed: str, langs: 
         if path.read_bytes() != files[path]:
             more = f" (and {counted(len(there) - 1, 'file')} more)" if len(there) > 1 else ""
             raise BadInput(
-                "{path}{more} exists already, with other content than {name} needs; copy it into another folder",
+                (
+                    "{path}{more} exists already, and differs from what {name} needs; copy the exercise into another "
+                    "folder"
+                ),
                 path=path,
                 more=more,
                 name=name,

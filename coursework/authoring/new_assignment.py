@@ -45,7 +45,7 @@ def new_assignment(
         if silent := [name for name in names if lang not in course[name].languages]:
             speaks = ", ".join(course[silent[0]].languages)
             raise BadInput(
-                "{silent} is not written in {lang!r}; it is in {speaks}",
+                "{silent} is not available in {lang!r}, only in {speaks}",
                 silent=silent[0],
                 lang=lang,
                 speaks=speaks,

@@ -99,6 +99,8 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
 
     file = Path(exercises[0]) if is_assignment(exercises) else None
     given = context.params
+    if "scan" in given["additions"]:  # what is missing on this machine before any other fault
+        codes_ready()
     course = opened(context)
     assignment = None if file is None else read_assignment(file, course)
     settings = BuildSettings(context, file, {} if assignment is None else assignment.options)
@@ -106,12 +108,15 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
     if (out := settings.path("out")) is None:
         if assignment is None:
             raise BadInput("no folder to write: --out DIR")
-        raise BadInput('{path} says no folder to write: --out DIR, or out = "…" in the file', path=file)
+        raise BadInput('{path} names no folder to write: --out DIR, or out = "…" in the file', path=file)
     if "scan" in formats:
         codes_ready()
         if not {"pdf", "booklet"} & {*formats}:
             raise BadInput(
-                "scan adds answer pages to PDFs, and none is asked (--formats {formats}): add pdf, or --with booklet",
+                (
+                    "scan adds answer pages to PDFs, but none is written (--formats {formats}): add pdf, or --with "
+                    "booklet"
+                ),
                 formats=",".join(formats),
             )
     names = () if assignment else exercise_names(course, exercises)
@@ -121,7 +126,7 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
     before = None if given["overwrite"] else stood
     if before is None and (given["again"] or given["make_up"]):
         which = "--again" if given["again"] else "--make-up"
-        raise BadInput("{which} is for what was issued: there is no {value}", which=which, value=record)
+        raise BadInput("{which} needs issued papers, but there is no {value}", which=which, value=record)
     if assignment is not None and file is not None:
         for option in ("seed", "parts"):
             if settings.is_given(option):
@@ -168,11 +173,11 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
             out=out,
             files=files,
         )
-    say("worked solutions and the key, for the staff alone: {folder}", folder=out / "instructor")
+    say("worked solutions and the key, for the staff only: {folder}", folder=out / "instructor")
     if "nbgrader" in formats and only is None:
         title = assignment.name if assignment else names[0]
         say(
-            "a course of nbgrader: {folder}; how to go on stands there, in {name}.md",
+            "a course for nbgrader: {folder}; the next steps are there, in {name}.md",
             folder=out / "nbgrader",
             name=title,
         )
@@ -247,7 +252,7 @@ def _issued_assignment(
         students = []
         if not given["again"] and not given["make_up"]:
             raise BadInput(
-                "papers were issued by a roster: name it, --roster FILE.csv ({value})", value=record
+                "the papers were issued for a roster: name it, --roster FILE.csv ({value})", value=record
             )
     else:
         students = [Student("") for _ in range(given["count"] or 1)]
@@ -287,7 +292,10 @@ def write_build(
     text, record = json_text(content), out / "issued.json"
     if before is not None and assignment is None and not _goes_on(before, json.loads(text)):
         raise BadInput(
-            "{before} holds other variants, issued before; choose another --out, or --overwrite to replace them (files that were filled in or changed are set aside, not lost)",
+            (
+                "{before} contains other variants that were issued before; choose another --out, or --overwrite to "
+                "replace them (files that were filled in or changed are kept under other names)"
+            ),
             before=record,
         )
     wanted = list(files(course, issued.issues, formats, assignment, only=only, secret=issued.secret))

@@ -41,7 +41,7 @@ from coursework.system.limits import MOST_VARIANTS
 def check(
     context: click.Context, exercises: Sequence[str], count: int, cluster: str | None, as_json: bool
 ) -> int:
-    """Prove the promises of every exercise of the course; status 1 when one is broken."""
+    """Check every exercise of the course; the exit status is 1 if one fails."""
     from coursework.authoring import check_report, checks
 
     course = opened(context)
@@ -76,17 +76,19 @@ def check(
     "source",
     metavar="EXERCISE",
     shell_complete=completion.exercises,
-    help="Copy this exercise of the course (the built-in one unless --course says another) with all that it needs.",
+    help=(
+        "Copy this exercise, with all that it needs, from the course of --course or from the built-in one."
+    ),
 )
-@click.option(
-    "--as", "renamed", metavar="NAME", help="What the copy is called; as what it is copied from unless told."
-)
+@click.option("--as", "renamed", metavar="NAME", help="Name of the copy; by default that of the original.")
 @click.option(
     "--lang",
     "langs",
     type=Lists(known_languages, unknown_language),
-    help="Languages of a new course, or of the sheets of a new assignment; unless told, that of the environment (LANG), else all "
-    "those of a course, and a course's own for an assignment.",
+    help=(
+        "Languages of a new course, or of the sheets of a new assignment. By default, a course has the "
+        "language of the environment (LANG), or all languages; an assignment has that of its course."
+    ),
 )
 @click.option(
     "--example", metavar="NAME", help="Copy a whole course that comes with the package: engineering."
@@ -102,8 +104,10 @@ def new(
     asked: Sequence[str],
     example: str | None,
 ) -> None:
-    """Write a working course folder, a working exercise in one, or a copy of an exercise to be changed; or an
-    assignment of exercises: new assignment FILE.toml EXERCISE…"""
+    """Create a course folder, an exercise in a course, or a copy of an exercise to change.
+
+    An assignment of exercises is created by: new assignment FILE.toml EXERCISE…
+    """
     from coursework.authoring.scaffold import languages_around, new_course, new_exercise
 
     if str(folder) != "assignment":
@@ -120,14 +124,14 @@ def new(
         )
     if (folder / "exercises").is_dir() and langs:
         raise BadInput(
-            "{folder} is a course already, and its own course.toml says its languages; leave --lang out",
+            "{folder} is already a course, and its course.toml states the languages; omit --lang",
             folder=folder,
         )
     if source is None and renamed is not None:
-        raise BadInput("--as names a copy; say of which exercise: --from EXERCISE")
+        raise BadInput("--as names a copy; state the exercise to copy: --from EXERCISE")
     if source is not None and exercise is not None:
         raise BadInput(
-            "a copy is called by --as: coursework new {folder} --from {source} --as {exercise}",
+            "name the copy with --as: coursework new {folder} --from {source} --as {exercise}",
             folder=folder,
             source=source,
             exercise=exercise,
@@ -143,7 +147,7 @@ def new(
     for path in written:
         say("wrote {path}", path=path)
     for path in there:
-        say("{path} is there already, the same", path=path)
+        say("{path} exists already with the same content", path=path)
     say("try: coursework --course {folder} check", folder=folder)
 
 
@@ -152,7 +156,9 @@ def _new_example(folder: Path, name: str, more: object) -> None:
 
     if more:
         raise BadInput(
-            "an example is copied whole: coursework new {folder} --example {name}", folder=folder, name=name
+            "an example is copied as a whole: coursework new {folder} --example {name}",
+            folder=folder,
+            name=name,
         )
     for path in new_example(folder, name):
         say("wrote {path}", path=path)

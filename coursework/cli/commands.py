@@ -84,7 +84,7 @@ class _Commands(click.Group):
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.option("--course", "folder", type=FilePath(), help="Course folder; the built-in course unless given.")
+@click.option("--course", "folder", type=FilePath(), help="Course folder; by default the built-in course.")
 @click.version_option(VERSION, prog_name="coursework")
 @click.pass_context
 def commands(context: click.Context, folder: str | None) -> None:

@@ -172,7 +172,7 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
         click.echo(_change(change))
     if len(now.marked.changes) > _TOLD:
         say(
-            "and {count} more; coursework database history tells them all",
+            "and {count} more; coursework database history lists them all",
             count=len(now.marked.changes) - _TOLD,
         )
     sheets = now.work.sheets
@@ -227,7 +227,7 @@ def written_marks(context: click.Context, url: str, name: str, folder: Path, dec
 
 @click.group()
 def database() -> None:
-    """Look into a database of what is issued, answered, marked and decided; write it out, put it back."""
+    """Inspect, dump and restore a database of papers, answers, marks and decisions."""
 
 
 _url_argument = click.argument("url", metavar="URL")
@@ -238,7 +238,7 @@ _url_argument = click.argument("url", metavar="URL")
 @json_option
 @click.pass_context
 def show(context: click.Context, url: str, as_json: bool) -> None:
-    """Say what a database holds: its assignments, and how far each is marked."""
+    """List the assignments of a database, with how far each is marked."""
     from coursework.database.summary import summaries
 
     store = store_at(context, url)
@@ -249,14 +249,14 @@ def show(context: click.Context, url: str, as_json: bool) -> None:
     elif rows:
         print_table(rows)
     else:
-        say("the database holds no assignment")
+        say("the database contains no assignment")
 
 
 @database.command(cls=NeedingExtra, ready=database_ready)
 @_url_argument
 @click.argument("student", required=False)
-@click.option("--exercise", default="", help="Of this exercise alone.")
-@click.option("--part", default="", help="Of this part alone.")
+@click.option("--exercise", default="", help="Show this exercise only.")
+@click.option("--part", default="", help="Show this part only.")
 @assignment_option
 @json_option
 @click.pass_context
@@ -269,7 +269,7 @@ def history(
     assignment: str,
     as_json: bool,
 ) -> None:
-    """Tell every mark of a student's answers, or of everybody's: when it was given, by whom, and why."""
+    """List every mark of the answers of one student, or of all: when it was given, by whom, and why."""
     from coursework.database.assignments import assignment_called
     from coursework.database.decisions import history as history_of
 
@@ -321,7 +321,10 @@ def _happened(entry: Any) -> str:
 @_url_argument
 @click.pass_context
 def new_key(context: click.Context, url: str) -> None:
-    """Replace the key that signs a site's cookies and forms, where somebody else may have read it; then start the site again."""
+    """Replace the key that signs the cookies and forms of a site, if somebody else may have read it.
+
+    Then start the site again.
+    """
     store = store_at(context, url)
     from datetime import UTC, datetime
 
@@ -332,7 +335,7 @@ def new_key(context: click.Context, url: str) -> None:
         renew_secret(connection)
         secret(connection)
         note(connection, datetime.now(UTC), "command line", "signing key replaced")
-    say("a new key was drawn: start the site again, and forms of pages that are open are to be loaded anew")
+    say("a new key was created: start the site again; open pages with forms must be reloaded")
 
 
 @database.command("sign-out", cls=NeedingExtra, ready=database_ready)
@@ -340,7 +343,7 @@ def new_key(context: click.Context, url: str) -> None:
 @click.argument("login", required=False)
 @click.pass_context
 def sign_out(context: click.Context, url: str, login: str | None) -> None:
-    """End the sessions of a site, those of one LOGIN or of everybody: who is signed in must sign in again, at once."""
+    """End the sessions of a site at once: those of one LOGIN, or all."""
     store = store_at(context, url)
     from datetime import UTC, datetime
 
@@ -367,7 +370,7 @@ def sign_out(context: click.Context, url: str, login: str | None) -> None:
 @click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))
 @click.pass_context
 def dump(context: click.Context, url: str, folder: Path) -> None:
-    """Write a database into the folder DIR, a table a CSV; restore puts it back, into any database."""
+    """Write a database into the folder DIR as CSV files, one for each table; 'restore' reads them into any database."""
     store = store_at(context, url)
     from coursework.database.dump import dump as dump_to
 
@@ -386,7 +389,7 @@ def dump(context: click.Context, url: str, folder: Path) -> None:
 @_url_argument
 @click.pass_context
 def restore(context: click.Context, folder: Path, url: str) -> None:
-    """Put what dump wrote into an empty database, of whatever kind."""
+    """Read a dump into an empty database of any kind."""
     store = store_at(context, url, new=True)
     from coursework.database.dump import restore as restore_from
 

@@ -193,7 +193,7 @@ def class_of_twelve(
             rejected=len(book.rejected),
         ),
         *(Message("  rejected: {source}: {reason}", source=r.source, reason=r.reason) for r in book.rejected),
-        Message("  a second answer, a stranger and a damaged notebook are among the answers on purpose."),
+        Message("  The answers contain a second answer, a stranger and a damaged notebook on purpose."),
         *(f"{localised(words):{width}}  {out / folder}" for words, folder in folders.items()),
     ]
     return rows, [localised(line) for line in report]

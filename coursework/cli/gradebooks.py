@@ -30,29 +30,40 @@ _SIGNS = {"point": ".", "comma": ",", None: ""}
 @click.option(
     "--template",
     type=FilePath(path_type=Path, dir_okay=False),
-    help="The gradebook as the platform exports it. Without one, XML for Moodle, which names students by their ID numbers.",
+    help=(
+        "The gradebook as the platform exports it. Without it, XML for Moodle is written, in which students "
+        "are named by their ID numbers."
+    ),
 )
-@click.option("--item", required=True, help="The item to fill, by its name; for XML its ID number.")
+@click.option("--item", required=True, help="Name of the item to fill; for XML its ID number.")
 @click.option("--out", type=FilePath(path_type=Path, dir_okay=False), required=True, help="File to write.")
 @click.option(
     "--score",
     type=click.Choice(("points", "mark", "percent")),
     default="points",
     show_default=True,
-    help="Which column of summary.csv: points and percent are scaled to the item's maximum, a mark is written as it stands.",
+    help=(
+        "Column of summary.csv to copy. Points and percentages are scaled to the maximum of the item; a mark "
+        "is written as it is."
+    ),
 )
 @click.option(
     "--out-of",
     type=click.FloatRange(min=0, min_open=True),
-    help="The item's maximum, where the export does not tell it.",
+    help="Maximum of the item, if the export does not state it.",
 )
 @click.option(
     "--decimal",
     type=click.Choice(("point", "comma")),
-    help="Decimal sign of the marks written; that of the file's own marks unless told, for Moodle and Canvas a point.",
+    help=(
+        "Decimal sign of the marks. By default a point for Moodle and Canvas, else the sign of the marks in "
+        "the file."
+    ),
 )
 @click.option(
-    "--zeros", is_flag=True, help="Write 0 for who answered nothing, who is left as they are otherwise."
+    "--zeros",
+    is_flag=True,
+    help="Write 0 for students without an answer; by default their cells stay as they are.",
 )
 def gradebook(
     platform: str,
@@ -65,10 +76,10 @@ def gradebook(
     decimal: str | None,
     zeros: bool,
 ) -> int:
-    """Fill a platform's own export of its gradebook with the marks of the folder MARKS that grade wrote.
+    """Write the marks of the folder MARKS, made by grade, into a platform's own export of its gradebook.
 
-    One column is touched, byte for byte. Students are found by e-mail or number, then by name. Who is not in the export is told
-    and never written; who has no marks is left as they are, and told.
+    Only one column changes; all else keeps its bytes. Students are matched by e-mail address or number, then by name. Students who are
+    not in the export are listed and not added; students without marks are listed and stay as they are.
     """
     from coursework.gradebook.class_points import class_points
     from coursework.gradebook.platform_gradebooks import platform_gradebook
@@ -102,7 +113,7 @@ def gradebook(
 def _check_out(out: Path, template: Path) -> None:
     if out.exists() and template.exists() and out.resolve() == template.resolve():
         raise BadInput(
-            "--out is the --template itself, {value}: keep the platform's export as it came, and name another file",
+            "--out is the --template itself, {value}: keep the platform's export, and name another file",
             value=template,
         )
 
@@ -114,17 +125,17 @@ def _of(filled: Filled, scored: Sequence[Scored]) -> str:
     if not totals:
         return ""
     return Message(
-        ", out of {most}: that must be the item's maximum (--out-of says another)", most=totals.pop()
+        ", out of {most}: this must be the maximum of the item (--out-of states another)", most=totals.pop()
     )
 
 
 def _print_filled(filled: Filled, out: Path) -> int:
     """Say who is left as they were, and why; whether somebody must look."""
     for description, names in (
-        (Message("marks, but no line in the export, and not written"), filled.strangers),
-        (Message("marks, but several lines or none that is surely theirs, and not written"), filled.unclear),
-        (Message("no marks, and left as they were"), filled.absent),
-        (Message("what stays as the platform has it"), filled.unchanged),
+        (Message("marks but no line in the export; not written"), filled.strangers),
+        (Message("marks but no line, or several, that could be theirs; not written"), filled.unclear),
+        (Message("no marks; left as they were"), filled.absent),
+        (Message("cells that keep the platform's value"), filled.unchanged),
     ):
         if names:
             warn(

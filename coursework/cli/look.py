@@ -31,7 +31,7 @@ from coursework.system.limits import MOST_VARIANTS
 @json_option
 @click.pass_context
 def list_exercises(context: click.Context, as_json: bool) -> int:
-    """Say which exercises the course has, in the order in which they are learnt; status 1 when one of them is broken."""
+    """List the exercises of the course in the order of learning; the exit status is 1 if one is broken."""
     from coursework.course.folder import course_folder
     from coursework.course.listing import listing
 
@@ -127,9 +127,9 @@ def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[A
     type=WholeNumber(1, MOST_VARIANTS),
     default=1,
     show_default=True,
-    help="How many, seed after seed.",
+    help="Number of variants, with consecutive seeds.",
 )
-@click.option("--solution", is_flag=True, help="With the reference answers.")
+@click.option("--solution", is_flag=True, help="Include the reference answers.")
 @lang_option
 @parts_option
 @json_option
@@ -144,7 +144,7 @@ def variant(
     parts: str,
     as_json: bool,
 ) -> None:
-    """Print the records of variants, one JSON object a line with --json."""
+    """Print the records of variants; with --json one JSON object on each line."""
     for drawn in _drawn(opened(context)[exercise], range(seed, seed + count), lang, parts):
         record = _with_answers(drawn) if solution else drawn.record
         if as_json:
@@ -166,13 +166,15 @@ def _with_answers(drawn: Any) -> dict[str, Any]:
 
 @click.command()
 @exercise_argument
-@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
-@click.option("--only", default="", metavar="Q,Q", help="The quantities wanted; every part's unless told.")
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Set a given value: r1=228.6mm.")
+@click.option(
+    "--only", default="", metavar="Q,Q", help="Quantities to compute; by default those of every part."
+)
 @click.option(
     "--effects",
     default=None,
     metavar="E,E",
-    help="Optional effects to call for, '' for none; those of the exercise's questions unless told.",
+    help=("Optional effects to include, '' for none; by default those of the questions of the exercise."),
 )
 @json_option
 @click.pass_context
@@ -184,7 +186,7 @@ def solve(
     effects: str | None,
     as_json: bool,
 ) -> None:
-    """Solve an exercise for one's own numbers."""
+    """Solve an exercise for given values."""
     from coursework.issuing.issued import plain_value
     from coursework.language.numbers import significant, unit_text
 

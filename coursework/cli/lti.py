@@ -43,7 +43,7 @@ db_option = click.option(
     metavar="URL",
     default=SITE_DATABASE,
     show_default=True,
-    help="The database of the site, as 'serve' has it.",
+    help="Database of the site, as for 'serve'.",
 )
 
 
@@ -71,25 +71,25 @@ def lti() -> None:
 @click.argument("kind", required=False, metavar="[moodle|canvas|other]")
 @click.argument("site", required=False)
 @folder_option
-@click.option("--client-id", help="By which the platform knows this tool.")
+@click.option("--client-id", help="ID of this tool on the platform.")
 @click.option(
-    "--deployment", "deployments", multiple=True, help="A deployment ID; may be told several times."
+    "--deployment", "deployments", multiple=True, help="A deployment ID; the option may be repeated."
 )
-@click.option("--url", help="Where browsers find the links of the site: https://exercises.example.org/lti.")
-@click.option("--name", default="", help="What logs call the platform.")
-@click.option("--issuer", help="Unless the platform's kind says it.")
-@click.option("--auth-url", help="Unless the platform's kind says it.")
-@click.option("--token-url", help="Unless the platform's kind says it.")
-@click.option("--jwks-url", help="Unless the platform's kind says it.")
-@click.option("--check", is_flag=True, help="Ask the platforms for their keys, and for a token.")
+@click.option("--url", help="Address of the links for browsers: https://exercises.example.org/lti.")
+@click.option("--name", default="", help="Name of the platform in logs.")
+@click.option("--issuer", help="Needed if it does not follow from the kind of platform.")
+@click.option("--auth-url", help="Needed if it does not follow from the kind of platform.")
+@click.option("--token-url", help="Needed if it does not follow from the kind of platform.")
+@click.option("--jwks-url", help="Needed if it does not follow from the kind of platform.")
+@click.option("--check", is_flag=True, help="Ask each platform for its keys and for a token.")
 @json_option
 def platform(
     kind: str | None, site: str | None, folder: Path, client_id: str | None, deployments: Sequence[str], url: str | None, name: str,
     check: bool, as_json: bool, **addresses: str | None,
 ) -> int:  # fmt: skip
-    """Write a platform down, or list those that are known.
+    """Register a platform, or list the registered ones.
 
-    First, without --client-id, it tells what to fill in on the platform's registration page; the platform then shows the
+    First, without --client-id, the command prints the values for the platform's registration page; the platform then shows the
     client ID and the deployment ID.
     """
     from dataclasses import replace
@@ -132,7 +132,9 @@ def _platform(
     if kind not in KINDS:
         raise BadInput("no kind of platform {kind!r}{nearest}", kind=kind, nearest=nearest(kind, KINDS))
     if site is None:
-        raise BadInput("where is it? coursework lti platform {kind} https://{kind}.example.org", kind=kind)
+        raise BadInput(
+            "state its address: coursework lti platform {kind} https://{kind}.example.org", kind=kind
+        )
     base = checked_url(site, "the site")
     endpoints: dict[str, Any] = known[kind](base) if kind in known else {"issuer": base}
     endpoints |= {key: text for key, text in addresses.items() if text}
@@ -143,7 +145,9 @@ def _platform(
     for key in ("auth_url", "token_url", "jwks_url"):
         if not endpoints.get(key):
             raise BadInput(
-                "--{replace} is missing, which {kind} does not say", replace=key.replace("_", "-"), kind=kind
+                "--{replace} is missing: it does not follow from {kind}",
+                replace=key.replace("_", "-"),
+                kind=kind,
             )
         endpoints[key] = checked_url(str(endpoints[key]), f"--{key.replace('_', '-')}")
     origins = tuple(origin(checked_url(address, "the site")) for address in endpoints.pop("origins", ()))
@@ -252,23 +256,23 @@ def _checked(settings: Settings, registered: LTIPlatform) -> str:
 @folder_option
 @json_option
 def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
-    """Make the tool's key, another one, list them, or take an old one away.
+    """Create, list, rotate or retire the keys of the tool.
 
-    'rotate' makes a key that signs from now on; the one before stays public, since platforms keep keys for a while, until
-    'retire KID' takes it away.
+    'rotate' creates a key that signs from now on. The one before stays public, since platforms cache keys, until 'retire KID'
+    removes it.
     """
     from coursework.platforms.lti.keys import KeyFolder
 
     key_folder = KeyFolder(folder / "keys")
     if action not in ("list", "new", "rotate", "retire"):
         raise BadInput(
-            "keys knows list, new, rotate and retire; found {action!r}{nearest}",
+            "keys takes list, new, rotate or retire; found {action!r}{nearest}",
             action=action,
             nearest=nearest(action, ("list", "new", "rotate", "retire")),
         )
     if (kid is None) == (action == "retire"):
         if action == "retire":
-            raise BadInput("which key? coursework lti keys retire KID")
+            raise BadInput("state the key: coursework lti keys retire KID")
         raise BadInput("'keys {action}' takes no key", action=action)
     if action == "new" and key_folder.keys:
         raise BadInput(
@@ -297,11 +301,11 @@ def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
 @lti.command(cls=NeedingExtra, ready=_stored_ready)
 @folder_option
 @db_option
-@click.option("--send", is_flag=True, help="Try now to send what waits.")
+@click.option("--send", is_flag=True, help="Try now to send the points that wait.")
 @json_option
 @click.pass_context
 def scores(context: click.Context, folder: Path, db: str, send: bool, as_json: bool) -> int:
-    """Tell which points have not reached their gradebook, and why; exit status 1 where some wait."""
+    """List the points that have not reached their gradebook, and why; the exit status is 1 if some wait."""
     storage = _storage(context, db)
     if send:
         _send(folder, storage)
@@ -352,13 +356,15 @@ def _send(folder: Path, storage: Storage) -> None:
 @folder_option
 @db_option
 @click.option(
-    "--out", type=FilePath(path_type=Path, dir_okay=False), help="The CSV to write; printed unless told."
+    "--out",
+    type=FilePath(path_type=Path, dir_okay=False),
+    help="CSV to write; by default the list is printed.",
 )
 @click.pass_context
 def roster(context: click.Context, course_title: str | None, folder: Path, db: str, out: Path | None) -> None:
-    """Write the class list that a platform gives as the CSV that 'build --roster' reads.
+    """Write the class list of a platform as a CSV for 'build --roster'.
 
-    COURSE is its title, or the start of it; without it, the courses are listed that were opened from a platform.
+    COURSE is the title of the course, or its beginning; without it, the courses that were opened from a platform are listed.
     """
     import httpx
 

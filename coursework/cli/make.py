@@ -10,7 +10,7 @@ import click
 
 from coursework.cli.assignments import build_papers, write_build
 from coursework.cli.options import (
-    UNLESS_TOLD,
+    LANGUAGE_DEFAULT,
     FilePath,
     Lists,
     WholeNumber,
@@ -40,13 +40,13 @@ from coursework.system.limits import MOST_VARIANTS
     "--variants",
     "count",
     type=WholeNumber(1, MOST_VARIANTS),
-    help="How many variants; with a roster, one a student.",
+    help="Number of variants of each exercise; a roster has one for each student.",
 )
 @seed_option
 @click.option(
     "--roster",
     type=FilePath(path_type=Path),
-    help="CSV with a column student, or surname and first name, and, if wanted, lang.",
+    help=("CSV with a column student, or with surname and first name; a column lang is optional."),
 )
 @columns_option
 @click.option("--formats", type=Lists(known_formats), default="pdf,ipynb,html", show_default=True)
@@ -63,27 +63,33 @@ from coursework.system.limits import MOST_VARIANTS
     "langs",
     type=Lists(known_languages, unknown_language),
     callback=spoken,
-    help="Languages of the sheets: fr, en, or both as fr,en. A student whose roster line says lang has that one. "
-    f"Unless told, {UNLESS_TOLD}.",
+    help=f"Languages of the sheets: fr, en, or both as fr,en; {LANGUAGE_DEFAULT}. "
+    "A student with a language in the roster has that one.",
 )
 @parts_option
 @click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder to write.")
 @click.option(
     "--overwrite",
     is_flag=True,
-    help="Replace what was issued there before. Files that were filled in or changed are set aside, not lost.",
+    help=(
+        "Replace what was issued there before. Files that students filled in or that were changed are kept "
+        "under other names."
+    ),
 )
+@click.option("--again", multiple=True, metavar="STUDENT", help="Write a lost paper again, as it was issued.")
 @click.option(
-    "--again", multiple=True, metavar="STUDENT", help="Write a lost paper once more, as it was issued."
+    "--make-up",
+    multiple=True,
+    metavar="STUDENT",
+    help="Write another paper for a student who sits the exam again.",
 )
-@click.option("--make-up", multiple=True, metavar="STUDENT", help="Another paper for who makes up.")
 @db_option
 @cluster_option
 @click.pass_context
 def build(context: click.Context, /, exercises: Sequence[str], **options: Any) -> None:
-    """Make sheets, notebooks and pages for a class, with the staff's half beside them.
+    """Write sheets, notebooks and pages for a class, with solutions and key for the staff.
 
-    Of exercises, each on a paper of its own; or of an assignment, a file such as midterm.toml, which makes one paper of several
+    With exercises, each is a paper of its own; with the file of an assignment, such as midterm.toml, one paper has several
     exercises.
     """
     build_papers(context, exercises)
@@ -96,12 +102,12 @@ def build(context: click.Context, /, exercises: Sequence[str], **options: Any) -
 @click.option("--out", type=FilePath(path_type=Path, file_okay=False), default="demo", show_default=True)
 @click.pass_context
 def demo(context: click.Context, out: Path) -> None:
-    """Do the whole job on a small class: sheets, answers of all kinds, marks."""
+    """Do the whole job for a small class: sheets, answers of all kinds, marks."""
     from coursework.cli.demo import class_of_twelve
     from coursework.cli.mark import grade_with_bar
 
     writes(context, out)
     rows, lines = class_of_twelve(out, write_build, grade_with_bar)
-    print_table(rows, title=localised(Message("What became of the answers")))
+    print_table(rows, title=localised(Message("Results of the answers")))
     for line in lines:
         click.echo(line)

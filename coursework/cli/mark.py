@@ -44,24 +44,24 @@ if TYPE_CHECKING:
 @click.option(
     "--issued",
     type=FilePath(path_type=Path),
-    help="The issued.json of the build; with --db only where the database has it not yet.",
+    help="The issued.json of the build; with --db only the first time.",
 )
 @db_option
 @assignment_option
 @click.option(
     "--replace",
     is_flag=True,
-    help="With --db: a file takes the place of what came from it before, where it was mended or exported anew.",
+    help=("With --db: a file replaces the earlier one of the same name, for a corrected or a new export."),
 )
 @click.option(
     "--out",
     type=FilePath(path_type=Path, file_okay=False),
-    help="Folder to write; marks/ beside issued.json unless told, and none with --db.",
+    help="Folder to write; by default marks/ beside issued.json, and none with --db.",
 )
 @click.option(
     "--feedback/--no-feedback",
     default=None,
-    help="Feedback sheets, a file a student; unless told, for up to 1000 students.",
+    help=("Write a feedback sheet for each student; by default for classes of up to 1000 students."),
 )
 @click.option(
     "--formats",
@@ -73,26 +73,34 @@ if TYPE_CHECKING:
 @click.option(
     "--with-solutions",
     is_flag=True,
-    help="Feedback sheets have the worked solution of the student's own variant; of an assignment that states "
-    "solutions_after they have it from that day on, and never before.",
+    help=(
+        "Add the worked solution of the student's own variant to the feedback sheet. If the assignment states "
+        "solutions_after, the solution appears from that day on and never before."
+    ),
 )
 @click.option(
     "--today",
     type=click.DateTime(["%Y-%m-%d"]),
     metavar="DAY",
-    help="The day it is, for solutions_after; that of the machine unless told.",
+    help="Date to compare with solutions_after; by default today.",
 )
 @click.option(
     "--accepted",
     type=FilePath(path_type=Path, dir_okay=False, exists=True),
-    help="CSV of answers accepted by hand: student,exercise,seed,part and, if wanted, points,reason. decisions.csv in the folder of the marks counts without it.",
+    help=(
+        "CSV of answers accepted by hand: student,exercise,seed,part and optionally points,reason. The "
+        "decisions.csv in the folder of the marks is always read."
+    ),
 )
 @decimal_option
 @click.option(
     "--from",
     "marks",
     type=FilePath(path_type=Path, dir_okay=False, exists=True),
-    help="Marks as they stand in a marks.csv, changed by hand; no SUBMISSIONS then. Summary and feedback are made of them.",
+    help=(
+        "Take the marks from a marks.csv that was edited by hand, without SUBMISSIONS; the summary and the "
+        "feedback are written from it."
+    ),
 )
 @cluster_option
 @click.pass_context
@@ -113,13 +121,12 @@ def grade(
     marks: Path | None,
     cluster: str | None,
 ) -> int:
-    """Mark CSV, JSON, Parquet and notebooks of answers, files or folders of them.
+    """Mark answers in CSV, JSON, Parquet and notebooks, files or folders of them.
 
-    What platforms export is read as it comes: the Responses report of Moodle's quiz, Canvas's Student Analysis, results of QTI,
-    the folders of nbgrader, Moodle and Canvas. Marked again, it says what changed and for whom.
+    Exports of platforms are read as they are: the Responses report of a Moodle quiz, Canvas's Student Analysis, QTI results,
+    and the folders of nbgrader, Moodle and Canvas. A second run lists what changed and for whom.
 
-    With --db what comes is kept in a database, with all that came before; only sheets that are new or changed are marked,
-    and no files are written unless --out names a folder.
+    With --db the answers are added to a database; only new or changed sheets are marked, and files are written only with --out.
     """
     if any(path.suffix.lower() == ".parquet" for path in submissions):
         libraries(("pyarrow",), "Parquet needs", "parquet")
@@ -128,10 +135,10 @@ def grade(
         would_do = (
             Message("did you mean {inside}?", inside=inside)
             if inside.exists()
-            else Message("name the issued.json that build wrote")
+            else Message("name the issued.json of the build")
         )
         raise BadInput(
-            "--issued takes a file; {issued} is a folder: {would_do}", issued=issued, would_do=would_do
+            "--issued takes a file, and {issued} is a folder: {would_do}", issued=issued, would_do=would_do
         )
     if db is None and issued is None:
         raise BadInput(
@@ -216,9 +223,7 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
         )
     if book.changes:
         say(
-            "{count} mark is not what it was before; see {file}"
-            if book.changes == 1
-            else "{count} marks are not what they were before; see {file}",
+            "{count} mark changed; see {file}" if book.changes == 1 else "{count} marks changed; see {file}",
             count=book.changes,
             file=out / "changes.csv",
         )
@@ -239,19 +244,26 @@ def _check_source(
     database."""
     if marks is not None and in_database:
         raise BadInput(
-            "--from takes the marks as they stand in {marks}, and --db those of the database: what is to count there is named in decisions.csv",
+            (
+                "--from takes the marks in {marks}, and --db those of the database, where decisions.csv changes "
+                "marks: use one of them"
+            ),
             marks=marks,
         )
     if marks is None and not submissions and not in_database:
         raise BadInput("nothing to mark; name SUBMISSIONS, files or folders of answers, or --from marks.csv")
     if marks is not None and submissions:
         raise BadInput(
-            "--from takes the marks as they stand in {marks}: name no SUBMISSIONS, or leave --from to mark them anew",
+            (
+                "--from takes the marks in {marks} as they are: omit SUBMISSIONS, or omit --from to mark them again"
+            ),
             marks=marks,
         )
     if marks is not None and accepted is not None:
         raise BadInput(
-            "--from takes the marks as they stand in {marks}: change them there, or leave --from to accept answers",
+            (
+                "--from takes the marks in {marks} as they are: edit them there, or omit --from to accept answers"
+            ),
             marks=marks,
         )
 
@@ -283,7 +295,7 @@ def _grade_standing(
 
 def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
     say(
-        "{marks} as they stand in {source}; see {out}",
+        "{marks} taken from {source}; see {out}",
         marks=counted(book.rows_in, "mark"),
         source=marks,
         out=out,
@@ -344,7 +356,7 @@ def grade_with_bar(
 @assignment_option
 @lang_option
 @click.option(
-    "--out", type=FilePath(path_type=Path, file_okay=False), help="Folder to write; DIR/report unless told."
+    "--out", type=FilePath(path_type=Path, file_okay=False), help="Folder to write; by default DIR/report."
 )
 @decimal_option
 @cluster_option
@@ -361,9 +373,9 @@ def report(
     cluster: str | None,
     as_json: bool,
 ) -> None:
-    """Say how a class did, from the folder DIR that grade wrote, or from a database: a page (HTML, PDF) and tables.
+    """Write a report on a class from the folder DIR of grade, or from a database: a page (HTML, PDF) and tables.
 
-    With --json and no --out nothing is written.
+    With --json and without --out nothing is written.
     """
     shared_by_cluster(context, cluster)
     if db is None and folder is not None:
@@ -371,7 +383,7 @@ def report(
         return
     if db is None or folder is not None:
         raise BadInput(
-            "a report is of a folder DIR that grade wrote, or of a database, --db URL: name one of them"
+            "a report needs a folder DIR written by grade, or a database, --db URL: name one of them"
         )
     if out is None and not as_json:
         raise BadInput("no folder to write: --out DIR")

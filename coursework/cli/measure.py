@@ -29,13 +29,15 @@ if TYPE_CHECKING:
 
 @click.command()
 @exercises_argument
-@click.option("--quick", is_flag=True, help="Fewer places and shorter timings: a minute or so.")
-@click.option("--paper", is_flag=True, help="The accuracy of students on paper: digits kept, and the margin.")
+@click.option("--quick", is_flag=True, help="Take fewer places and shorter timings: about a minute.")
+@click.option(
+    "--paper", is_flag=True, help="Measure the accuracy of students on paper: digits kept, and the margin."
+)
 @lang_option
 @click.option(
     "--out",
     type=FilePath(path_type=Path, file_okay=False),
-    help="Folder for the page (HTML, PDF) and JSON.",
+    help="Folder for the page (HTML, PDF) and the JSON.",
 )
 @json_option
 @click.pass_context
@@ -48,11 +50,11 @@ def accuracy(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    """Measure what accuracy costs in time, here and now.
+    """Measure the cost of accuracy in time on this machine.
 
-    Without names, one row for every exercise that asks for numbers: digits kept at generic and at the hardest places,
-    and time a configuration, beside the textbook formula. With names, every way to compute them: time and
-    largest error against fifty digits.
+    Without names: one row for each exercise with numerical answers, with the digits kept in ordinary and in the hardest places
+    and the time for each configuration, beside the textbook formula. With names: every method of these exercises, with its time and
+    its largest error against fifty digits.
     """
     if not paper:
         from coursework.accuracy.measuring import needs_mpmath
@@ -123,7 +125,7 @@ def overview_text(line: Any) -> str:
 
     if not line.quantities:
         lacking = Message(
-            "no reference: the formula of {names} cannot be followed in many digits",
+            "no reference: the formula of {names} cannot be evaluated with many digits",
             names=", ".join(line.lacking),
         )
         return f"{line.exercise:28} {localised(lacking)}"

@@ -40,15 +40,13 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("exercise", metavar="EXERCISE|SCENE.toml", shell_complete=completion.exercises)
-@click.option(
-    "--effects", default="", metavar="E,E", help="What the scene calls for; positions alone unless told."
-)
-@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
+@click.option("--effects", default="", metavar="E,E", help="Effects to simulate; by default positions only.")
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Set a given value: r1=228.6mm.")
 @click.option(
     "--show",
     multiple=True,
     metavar="WHAT",
-    help="Show this, too: stroke, drive_torque, 'reaction B', 'velocity B'.",
+    help="Show this as well: stroke, drive_torque, 'reaction B', 'velocity B'.",
 )
 @seed_option
 @click.option(
@@ -56,24 +54,30 @@ if TYPE_CHECKING:
     type=click.Choice(["cycle"]),
     default="cycle",
     show_default=True,
-    help="One turn of the driver, or the travel of its jack.",
+    help="Run over one turn of the driver, or over the travel of its jack.",
 )
-@click.option("--steps", type=WholeNumber(1, MOST_STEPS), help="Steps of a cycle; 360 unless told.")
+@click.option("--steps", type=WholeNumber(1, MOST_STEPS), help="Steps of a cycle; 360 by default.")
 @click.option(
-    "--drive", metavar="torque=VALUE", help="Integrate the motion under this constant torque instead."
+    "--drive",
+    metavar="torque=VALUE",
+    help="Integrate the motion under this constant torque instead of a cycle.",
 )
-@click.option("--duration", metavar="SECONDS", help="Of a motion in time; 1 s unless told.")
-@click.option("--plan", is_flag=True, help="Say what would be evaluated and why, and stop.")
+@click.option("--duration", metavar="SECONDS", help="Duration of a motion in time; 1 s by default.")
+@click.option("--plan", is_flag=True, help="Print what would be computed and why, and stop.")
 @click.option(
-    "--budget", is_flag=True, help="Say what each effect costs in time, and changes of what is shown."
+    "--budget",
+    is_flag=True,
+    help="Print the cost of each effect in time, and its influence on the results shown.",
 )
 @click.option(
     "--tolerance",
     default=0.01,
     show_default=True,
-    help="With --budget: a part that may be left out of an output.",
+    help="With --budget: part of an output that may be neglected.",
 )
-@click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder for table and plot.")
+@click.option(
+    "--out", type=FilePath(path_type=Path, file_okay=False), help="Folder for the table and the plot."
+)
 @decimal_option
 @json_option
 @click.pass_context
@@ -89,7 +93,7 @@ def simulate(
     as_json: bool,
     **options: Any,
 ) -> None:
-    """Move a mechanism over a cycle or in time, with only the effects named.
+    """Simulate a mechanism over a cycle or in time, with only the effects that are named.
 
     A scene is a file, or an exercise with options; values that are not set are those of the variant of --seed.
     """
@@ -353,15 +357,15 @@ def _drive(exercise: Any, text: str) -> Motor:
     "--effects",
     default="",
     metavar="E,E",
-    help="What is seen: position (paths), velocity, acceleration, coriolis; paths alone unless told.",
+    help=("Effects to draw: position (paths), velocity, acceleration, coriolis; by default paths only."),
 )
 @lang_option
 @click.option("--out", type=FilePath(path_type=Path, file_okay=False), default=".", help="Folder to write.")
 @click.pass_context
 def animate(context: click.Context, exercise: str, seed: int, effects: str, lang: str, out: Path) -> None:
-    """Show a mechanism in motion: over the cycle of its driver, or over the turns of its film.
+    """Draw a moving mechanism over the cycle of its driver, or over the turns of its film.
 
-    Writes a moving picture (SVG) and a page with a slider (HTML).
+    Writes an animated picture (SVG) and a page with a slider (HTML).
     """
     from coursework.system.writing import write_whole
 

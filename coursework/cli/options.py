@@ -206,29 +206,34 @@ columns_option = click.option(
     "--columns",
     type=Columns(),
     metavar="WHAT=COLUMN,…",
-    help="Columns of the roster whose titles do not say what they hold, by place or title: name=3,first=4,number=1; "
-    "also email and lang.",
+    help=(
+        "Columns of the roster that are not recognised by their titles, by position or title: "
+        "name=3,first=4,number=1; also email and lang."
+    ),
 )
 db_option = click.option(
     "--db",
     is_eager=True,
     callback=needing_extra(database_ready),
     metavar="URL",
-    help="A database: sqlite:///marks.db or its file's name, postgresql+psycopg://user@host/name.",
+    help=("A database: sqlite:///marks.db or the name of its file, or postgresql+psycopg://user@host/name."),
 )
 assignment_option = click.option(
     "--assignment",
     default="",
     metavar="NAME",
-    help="What it is called in the database; needed where there are several.",
+    help="Name of the assignment in the database; needed if there are several.",
 )
 cluster_option = click.option(
     "--cluster",
     is_eager=True,
     callback=needing_extra(_cluster_ready),
     metavar="ADDRESS",
-    help="Share the work: tcp://HOST:8786 of a Dask scheduler, whose workers have this package; or local:N, N workers of this "
-    "machine. A scheduler runs what it is sent: only on a network of your own.",
+    help=(
+        "Share the work with a cluster: tcp://HOST:8786 of a Dask scheduler whose workers have this package, "
+        "or local:N for N workers on this machine. A scheduler runs whatever it is sent: use it only on a "
+        "network of your own."
+    ),
 )
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
@@ -250,11 +255,11 @@ def spoken(context: click.Context, parameter: click.Parameter, told: Any) -> Any
     return (lang,) if isinstance(parameter.type, Lists) else lang
 
 
-UNLESS_TOLD = "that of the environment (LANG) where the course speaks it, else the course's"
+LANGUAGE_DEFAULT = "by default that of the environment (LANG) if the course has it, else that of the course"
 lang_option = click.option(
     "--lang",
     callback=spoken,
-    help=f"Language of the sheet; unless told, {UNLESS_TOLD}.",
+    help=f"Language of the sheet; {LANGUAGE_DEFAULT}.",
     shell_complete=completion.languages,
 )
 decimal_option = click.option(
@@ -262,7 +267,9 @@ decimal_option = click.option(
     type=click.Choice(["point", "comma"]),
     default="point",
     show_default=True,
-    help="The tables' decimal sign; 'comma' parts their cells by semicolons, as a French spreadsheet expects.",
+    help=(
+        "Decimal sign of the tables; 'comma' separates cells by semicolons, as a French spreadsheet expects."
+    ),
 )
 exercise_argument = click.argument("exercise", shell_complete=completion.exercises)
 exercises_argument = click.argument("exercises", nargs=-1, shell_complete=completion.exercises)
@@ -270,17 +277,17 @@ parts_option = click.option(
     "--parts",
     default="",
     metavar="P,P",
-    help="The parts to ask: ids, 'usual' for those asked unless told, 'all' for every one.",
+    help="Parts to ask: their ids, 'usual' for the default ones, 'all' for every one.",
 )
 replace_option = click.option(
-    "--overwrite", is_flag=True, help="Replace notebooks that are there, and what was written in them."
+    "--overwrite", is_flag=True, help="Replace existing notebooks, with all that was written in them."
 )
 seed_option = click.option(
     "--seed",
     type=WholeNumber(0, MOST_SEED),
     default=0,
     show_default=True,
-    help="Which variant (the first one).",
+    help="Seed of the variant, or of the first one.",
 )
 
 

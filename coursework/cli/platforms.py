@@ -10,7 +10,7 @@ import click
 
 from coursework.cli.assignments import for_practice, is_assignment, secret_made
 from coursework.cli.options import (
-    UNLESS_TOLD,
+    LANGUAGE_DEFAULT,
     FilePath,
     Lists,
     WholeNumber,
@@ -77,12 +77,12 @@ class _PlatformName(click.ParamType):
     "--variants",
     "count",
     type=WholeNumber(1, MOST_VARIANTS),
-    help=f"How many variants of each exercise; unless told, as many as the roster has students, else {_VARIANTS}.",
+    help=f"Number of variants of each exercise; by default that of the students of the roster, else {_VARIANTS}.",
 )
 @click.option(
     "--roster",
     type=FilePath(path_type=Path),
-    help="CSV of the students, as the platform exports it: answers that come back are told apart by it.",
+    help=("CSV of the students, as the platform exports it; it identifies the answers that come back."),
 )
 @columns_option
 @seed_option
@@ -91,15 +91,20 @@ class _PlatformName(click.ParamType):
     "langs",
     type=Lists(known_languages, unknown_language),
     callback=spoken,
-    help=f"Languages of the questions: fr, en, or both as fr,en. Unless told, {UNLESS_TOLD}.",
+    help=f"Languages of the questions: fr, en, or both as fr,en; {LANGUAGE_DEFAULT}.",
 )
 @parts_option
 @click.option(
     "--issued",
     type=FilePath(path_type=Path, dir_okay=False, exists=True),
-    help="Of gradescope: the issued.json of the build whose sheets were handed out; no exercises then. With exercises and a roster instead, it is that of the build with the same.",
+    help=(
+        "For gradescope: the issued.json of the build whose sheets were handed out, in place of exercises. "
+        "With exercises and a roster, it is that of the same build."
+    ),
 )
-@click.option("--strict", is_flag=True, help="Stop where anything is lost, and write nothing.")
+@click.option(
+    "--strict", is_flag=True, help="Stop without writing anything if the platform cannot do something."
+)
 @decimal_option
 @click.option("--out", type=FilePath(path_type=Path, file_okay=False), required=True, help="Folder to write.")
 @click.option("--overwrite", is_flag=True, help="Replace another pool that was exported there before.")
@@ -120,10 +125,10 @@ def export(
     out: Path,
     overwrite: bool,
 ) -> None:
-    """Write what a PLATFORM imports: moodle, qti3, qti21, canvas, stack or gradescope.
+    """Write a question bank for a PLATFORM: moodle, qti3, qti21, canvas, stack or gradescope.
 
-    Of exercises, or of an assignment's file. The export holds the answers: it is for the staff. What the platform cannot do is
-    told, and listed in lost.csv; what comes back from it is marked by 'coursework grade' against issued.json.
+    From exercises, or from the file of an assignment. The export contains the answers: it is for the staff. What the platform cannot do
+    is printed and listed in lost.csv; 'coursework grade' marks the answers that come back with issued.json.
     """
     from coursework.issuing.roster import read_roster
     from coursework.platforms.exporting import export as exported
@@ -139,11 +144,11 @@ def export(
     students = read_roster(roster, notes.append, columns) if roster else []
     if issued is not None and (exercises or roster):
         raise BadInput(
-            "--issued {issued} says what was issued: name no exercises and no roster beside it", issued=issued
+            "--issued {issued} already names the papers: omit the exercises and the roster", issued=issued
         )
     if issued is not None and chosen.draws_variants:
         raise BadInput(
-            "--issued is of gradescope, which marks what a build issued; {platform} deals a pool of its own",
+            "--issued is for gradescope, which marks the papers of a build; {platform} has a pool of its own",
             platform=platform,
         )
     wanted = _Wanted(context, exercises, count or 0, seed, langs, split_list(parts) or None)
@@ -157,7 +162,7 @@ def export(
     lines = list(loss_lines(exported_files.lost, drawn.langs[0]))
     if strict and lines:
         raise BadInput(
-            "--strict: {platform} loses {features}, and nothing is written: {lines}",
+            "--strict: {platform} cannot represent {features}, so nothing is written: {lines}",
             platform=platform,
             features=counted(len(lines), "feature"),
             lines=" | ".join(lines),
@@ -171,8 +176,10 @@ def export(
     for line in lines:
         click.echo(line)
     say(
-        "{variants} for {platform} in {out}, with the answers, for the staff alone: how to import them is in "
-        "IMPORT.{lang}.txt, what is lost part by part in lost.csv",
+        (
+            "{variants} for {platform} in {out}, with the answers, for the staff only: see IMPORT.{lang}.txt for "
+            "the import, and lost.csv for what the platform cannot do"
+        ),
         variants=counted(len(drawn.issues), "variant"),
         platform=platform,
         out=out,
@@ -189,7 +196,8 @@ def _export_autograder(
 
     if issued is None and not wanted.exercises:
         raise BadInput(
-            "an autograder is of what a build issued: --issued DIR/issued.json, or the exercises and the roster of the build"
+            "an autograder needs the papers of a build: --issued DIR/issued.json, or the exercises and the roster"
+            " of the build"
         )
     if issued is not None:
         try:
@@ -206,7 +214,7 @@ def _export_autograder(
     with progress_bar("exporting", len(files)) as advance:
         print_notes(write_tree(out, files, advance))
     say(
-        "{archive}, for the staff alone; how to put it up is in {file}",
+        "{archive}, for the staff only; the installation is described in {file}",
         archive=out / "autograder.zip",
         file=files[1].path,
     )
@@ -238,7 +246,10 @@ def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student])
     assignment, langs = _assignment(course, wanted)
     if assignment.secret is None:
         raise BadInput(
-            "{exercises} has no secret, so that its build has drawn papers of its own: name what was issued, --issued DIR/issued.json",
+            (
+                "{exercises} has no secret, so its build drew other papers: name the issued ones, --issued "
+                "DIR/issued.json"
+            ),
             exercises=wanted.exercises[0],
         )
     dealt = assign_variants(course, assignment, students or [Student("") for _ in range(count)], langs)
@@ -312,7 +323,10 @@ def _check_folder(out: Path, drawn: DrawnPool) -> None:
     before = {_variant_key(item["record"]) for item in Issued.read_previous(path)["issued"]}
     if not before <= {_variant_key(issue.variant.record) for issue in drawn.issues}:
         raise BadInput(
-            "{path} holds other variants, exported before; choose another --out, or --overwrite to replace them (answers to them could no longer be marked from there)",
+            (
+                "{path} contains other variants from an earlier export; choose another --out, or --overwrite to "
+                "replace them (answers to them could then no longer be marked)"
+            ),
             path=path,
         )
 

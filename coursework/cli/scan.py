@@ -36,20 +36,23 @@ def _ready() -> None:
 @click.option(
     "--out",
     type=FilePath(path_type=Path, file_okay=False),
-    help="Folder to write, and to go on with; read/ beside issued.json unless told.",
+    help="Folder to write, or to continue with; by default read/ beside issued.json.",
 )
 @click.option(
     "--typed",
     multiple=True,
     type=FilePath(path_type=Path, dir_okay=False),
-    help="What was typed on the page of the queue; typed.csv in the folder is read without this.",
+    help="Readings typed on the page of the queue; by default typed.csv in the folder.",
 )
 @click.option(
     "--sure",
     type=click.FloatRange(0.9, 1.0),
     default=0.995,
     show_default=True,
-    help="The confidence in a box below which nothing is guessed: a person reads it. In black and white doubt counts fivefold.",
+    help=(
+        "Confidence below which a box is left to a person. For black-and-white scans the doubt counts "
+        "fivefold."
+    ),
 )
 @decimal_option
 @click.pass_context
@@ -62,14 +65,14 @@ def scan(
     sure: float,
     decimal: str,
 ) -> int:
-    """Read scans of answer pages: PDFs, pictures, zips and folders of them, in any order.
+    """Read scans of answer pages: PDFs, pictures, and zips or folders of them, in any order.
 
-    What could be read is in answers.csv, for 'coursework grade'; what a person must look at, on the page queue/index.html;
-    what is no page of this paper, in rejected.csv. Run again on more scans it adds to what is there.
+    The readings are in answers.csv, for 'coursework grade'; doubtful ones wait on the page queue/index.html; pages that do not
+    belong to this paper are listed in rejected.csv. A second run with more scans adds to what is there.
     """
     if issued.is_dir():
         raise BadInput(
-            "--issued takes a file; {issued} is a folder: name the issued.json that build wrote",
+            "--issued takes a file, and {issued} is a folder: name the issued.json of the build",
             issued=issued,
         )
     from coursework.scanning import scan as scanning
@@ -117,7 +120,7 @@ def _print_scan_book(book: ScanBook, out: Path) -> int:
             "{papers} not scanned; see {file}", papers=counted(book.absent, "paper"), file=out / "missing.csv"
         )
     if book.unused:
-        warn("note: {lines} of typed.csv fit nothing that was scanned", lines=counted(book.unused, "line"))
+        warn("note: {lines} of typed.csv match no scanned page", lines=counted(book.unused, "line"))
     warn_some([Message("{owner} missing", owner=owner) for owner in book.missing], out / "missing.csv")
     warn_some(
         [Message("{source}: {reason}", source=row, reason=why) for row, why in book.rejected],

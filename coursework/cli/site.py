@@ -39,7 +39,7 @@ _LIBRARIES = (
 )  # fmt: skip
 _LOOPBACK = "127.0.0.1"
 
-open_option = click.option("--open/--no-open", "opens", help="Open it in the browser.")
+open_option = click.option("--open/--no-open", "opens", help="Open the page in the browser.")
 
 
 def _ready() -> None:
@@ -57,37 +57,42 @@ def _lti_ready() -> None:
 @click.option(
     "--db",
     metavar="URL",
-    help=f"Where all is kept: a file of SQLite, or postgresql+psycopg://…; {SITE_DATABASE} in the current folder unless told.",
+    help=f"Database of the site: a file of SQLite, or postgresql+psycopg://…; by default {SITE_DATABASE} in the current folder.",
 )
 @click.option(
-    "--host", default="127.0.0.1", show_default=True, help="Where to listen; 0.0.0.0 is every address."
+    "--host",
+    default="127.0.0.1",
+    show_default=True,
+    help="Address to listen on; 0.0.0.0 for every address of the machine.",
 )
 @click.option(
     "--port",
     type=WholeNumber(0, MOST_PORT),
     default=8000,
     show_default=True,
-    help="0 takes any that is free.",
+    help="Port to listen on; 0 for any free one.",
 )
-@click.option("--url", help="Where browsers find it, behind a proxy: https://mechanics.example.org.")
+@click.option("--url", help="Address for browsers, behind a proxy: https://mechanics.example.org.")
 @click.option(
     "--workers",
     type=WholeNumber(1, MOST_WORKERS),
     default=1,
     show_default=True,
-    help="Processes that answer.",
+    help="Number of server processes.",
 )
 @click.option(
     "--demo",
     is_flag=False,
     flag_value="",
     metavar="[FOLDER]",
-    help="A class of twelve with its assignment, in a folder, or in one that is gone afterwards.",
+    help=(
+        "Serve a demonstration, a class of twelve with its assignment, from a folder or from a temporary one."
+    ),
 )
 @click.option(
     "--administrator",
     metavar="LOGIN",
-    help="Print a link by which an administrator chooses a password, and end.",
+    help="Print a link with which an administrator chooses a password, and stop.",
 )
 @click.option(
     "--instructor",
@@ -100,7 +105,7 @@ def _lti_ready() -> None:
     callback=needing_extra(_lti_ready),
     type=FilePath(path_type=Path, exists=True, file_okay=False),
     metavar="FOLDER",
-    help="Open to the learning platforms of a folder's platforms.toml, under /lti (see 'coursework lti').",
+    help=("Serve the learning platforms of this folder's platforms.toml under /lti (see 'coursework lti')."),
 )
 @open_option
 @click.pass_context
@@ -108,15 +113,15 @@ def serve(
     context: click.Context, db: str | None, host: str, port: int, url: str | None, workers: int, demo: str | None,
     administrator: str | None, instructor: str | None, lti: Path | None, opens: bool,
 ) -> None:  # fmt: skip
-    """Start the site: practice for students, a desk for instructors.
+    """Serve the site: practice for students, a desk for instructors.
 
-    On this machine alone, without --url, it opens without an account. Ctrl-C ends it.
+    Without --url it is for this machine only and opens without an account. Ctrl-C stops it.
     """
     from coursework.site import server
     from coursework.site.frame.settings import Entrance
 
     if demo is not None and db is not None:
-        raise BadInput("--demo brings its own database: leave --db out, or name a folder, --demo FOLDER")
+        raise BadInput("--demo has its own database: omit --db, or name a folder, --demo FOLDER")
     for role, login in (("administrator", administrator), ("instructor", instructor)):
         if login is not None:
             _invite(context.obj, db, login, role, _checked_url(url) if url else f"http://{host}:{port}")
@@ -166,8 +171,11 @@ def _check_lti(folder: Path, url: str) -> None:
         )
     if (old := folder / "lti.sqlite").exists():
         note = Message(
-            "{file} is of an earlier version, and nothing reads it now: answers to links of exercises are in it alone. Take them out with "
-            "that version, answers.csv and issued.json on the class page of each link, which 'coursework grade' reads; then delete the file",
+            (
+                "{file} is of an earlier version and no longer read, and some answers to links of exercises are only "
+                "there. Export them with that version, as answers.csv and issued.json on the class page of each link,"
+                " for 'coursework grade'; then delete the file"
+            ),
             file=old,
         )
         print_notes([note])
@@ -215,7 +223,7 @@ def _address(host: str, at: socket.socket) -> str:
     """
     if host in ("0.0.0.0", "::"):
         raise BadInput(
-            "--host {host}: where do browsers find it? --url https://mechanics.example.org", host=host
+            "--host {host} needs the address for browsers: --url https://mechanics.example.org", host=host
         )
     return f"http://{f'[{host}]' if ':' in host else host}:{at.getsockname()[1]}"
 
@@ -257,7 +265,7 @@ def _entrance(host: str, url: str, demo: str | None, *, is_stated: bool) -> Entr
         return Entrance.LOCAL if demo is None else Entrance.DEMO
     if demo is not None:
         raise BadInput(
-            "--demo lets anybody be anybody: it is for this machine alone, without --host and --url"
+            "in --demo everybody can sign in as anybody: it is for this machine only, without --host and --url"
         )
     if url.startswith("http:") and not is_own:
         warn(
@@ -286,21 +294,23 @@ def _say(url: str, where: str, opens: bool) -> None:
 
 @click.command(cls=NeedingExtra, ready=_ready)
 @exercise_argument
-@click.option("--port", type=WholeNumber(0, MOST_PORT), default=0, help="Any that is free unless told.")
+@click.option(
+    "--port", type=WholeNumber(0, MOST_PORT), default=0, help="Port to listen on; by default any free one."
+)
 @click.option(
     "--variants",
     type=WholeNumber(1, MOST_VARIANTS),
     default=50,
     show_default=True,
-    help="That each check tries.",
+    help="Number of variants that each check tries.",
 )
 @lang_option
 @open_option
 @click.pass_context
 def preview(context: click.Context, exercise: str, port: int, variants: int, lang: str, opens: bool) -> None:
-    """Show an exercise while its files are written: sheet, solution, key and check, anew at each save.
+    """Show an exercise while its files are edited: sheet, solution, key and checks, updated at each save.
 
-    The page is on this machine alone. Ctrl-C ends it.
+    The page is for this machine only. Ctrl-C stops it.
     """
     from coursework.course.folder import course_folder
     from coursework.site import server

@@ -21,15 +21,15 @@ from coursework.errors import BadInput
 @click.command()
 @click.argument("folder", type=FilePath(path_type=Path, file_okay=False), default=".")
 @click.option(
-    "--on", "day", type=click.DateTime(["%Y-%m-%d"]), help="What is due on a day; today unless told."
+    "--on", "day", type=click.DateTime(["%Y-%m-%d"]), help="Show what is due on this day; by default today."
 )
 @lang_option
 @json_option
 @click.pass_context
 def progress(context: click.Context, folder: Path, day: datetime | None, lang: str, as_json: bool) -> None:
-    """Tell what was done in the self-study notebooks of a folder, and what comes next.
+    """Show the progress in the self-study notebooks of a folder, and what comes next.
 
-    FOLDER holds their progress.json; the folder where we are unless told. What earlier versions kept beside it counts too.
+    FOLDER contains their progress.json; by default it is the current one. The record of earlier versions counts too.
     """
     from dataclasses import asdict
 

@@ -11,7 +11,7 @@ import click
 from coursework.cli.options import (
     DONE,
     FOUND,
-    UNLESS_TOLD,
+    LANGUAGE_DEFAULT,
     FilePath,
     Lists,
     WholeNumber,
@@ -44,14 +44,16 @@ if TYPE_CHECKING:
 @lang_option
 @click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder for the notebooks.")
 @click.option(
-    "--check", is_flag=True, help="Read, draw and run them in every language; status 1 when one fails."
+    "--check",
+    is_flag=True,
+    help=("Read, draw and run the lessons in every language; the exit status is 1 if one fails."),
 )
 @replace_option
 @click.pass_context
 def lesson(
     context: click.Context, lessons: Sequence[str], lang: str, out: Path | None, check: bool, overwrite: bool
 ) -> int:
-    """Write the course's lessons as notebooks; without --out, list them."""
+    """Write the lessons of the course as notebooks; without --out, list them."""
     from coursework.course.lessons import lesson_file
 
     course = opened(context)
@@ -111,9 +113,15 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
     there = [] if overwrite else [path for path in paths if path.exists()]
     if there:
         template = (
-            "{path} exists already, and may hold what somebody wrote; choose another --out, or --overwrite to replace"
+            (
+                "{path} exists already and may contain somebody's work; choose another --out, or --overwrite to "
+                "replace it"
+            )
             if len(there) == 1
-            else "{path} and {count} more exist already, and may hold what somebody wrote; choose another --out, or --overwrite to replace"
+            else (
+                "{path} and {count} more exist already and may contain somebody's work; choose another --out, or "
+                "--overwrite to replace them"
+            )
         )
         raise BadInput(template, path=there[0], count=len(there) - 1)
 
@@ -129,7 +137,7 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
     "langs",
     type=Lists(known_languages, unknown_language),
     callback=spoken,
-    help=f"Languages of the notebooks: fr, en, or both as fr,en; unless told, {UNLESS_TOLD}.",
+    help=f"Languages of the notebooks: fr, en, or both as fr,en; {LANGUAGE_DEFAULT}.",
 )
 @click.option(
     "--out",
@@ -150,7 +158,7 @@ def notebook(
 ) -> None:
     """Write self-study notebooks: predictions, instant feedback, hints, plots, fresh variants.
 
-    One for each exercise named, else for every exercise of the course; and the lessons that teach them, which they lead to.
+    One for each exercise named, or for every exercise of the course, and the lessons that they refer to.
     """
     from coursework.course.lessons import taught_by
     from coursework.issuing.issuing import distinct_variants
@@ -215,23 +223,23 @@ def _formats() -> tuple[str, ...]:
     type=WholeNumber(0, MOST_SEED),
     default=0,
     show_default=True,
-    help="Which book: each has its own variants.",
+    help="Seed of the book: each has its own variants.",
 )
-@click.option("--chapters", default="", help="Numbers of the chapters wanted, as 1,2; all unless told.")
+@click.option("--chapters", default="", help="Numbers of the chapters, as 1,2; by default all.")
 @click.option("--formats", type=Lists(_formats), default="pdf,html,ipynb", show_default=True)
 @click.option(
     "--solutions",
     type=click.Choice(["end", "apart", "none"]),
     default="end",
     show_default=True,
-    help="Where the solutions stand: at the end, in a PDF and pages of their own, or nowhere.",
+    help="Place of the solutions: at the end, in a PDF and pages of their own, or nowhere.",
 )
 @click.option("--paper", type=click.Choice(["a4", "letter"]), default="a4", show_default=True)
 @click.option("--out", type=FilePath(path_type=Path, file_okay=False), required=True, help="Folder to write.")
 @click.option(
     "--overwrite",
     is_flag=True,
-    help="Replace what is there. Files that were changed are set aside, not lost.",
+    help="Replace what is there. Files that were changed are kept under other names.",
 )
 @click.pass_context
 def workbook(
@@ -245,8 +253,10 @@ def workbook(
     out: Path,
     overwrite: bool,
 ) -> None:
-    """Bind the whole course into a book: lessons and exercises in their order, as one PDF with contents, index and solutions, as
-    pages and as notebooks that lead to one another."""
+    """Bind the course into a book: lessons and exercises in order.
+
+    It is one PDF with contents, index and solutions, web pages, and notebooks with links between them.
+    """
     from coursework.selfstudy.workbook.binding import bound, pieces_of
     from coursework.selfstudy.workbook.files import files
     from coursework.system.writing import write_tree

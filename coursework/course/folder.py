@@ -209,7 +209,7 @@ class Folder:
         """
         if lang in languages() and lang not in self.languages:
             raise BadInput(
-                "{label} does not speak {lang!r}; it speaks {languages}: languages = … in {relative}",
+                "{label} is not available in {lang!r}, only in {languages}: languages = … in {relative}",
                 label=self.label,
                 lang=lang,
                 languages=", ".join(self.languages),

@@ -118,7 +118,7 @@ class Records:
         fits = value in spec.choices if spec.is_choice else isinstance(value, (int, float))
         if not fits or isinstance(value, bool):
             raise BadInput(
-                "{name}: a record gives {name_2} = {value!r}, which is no value of it",
+                "{name}: a record states {name_2} = {value!r}, which is not one of its values",
                 name=self.name,
                 name_2=name,
                 value=value,

@@ -75,7 +75,7 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
     name = name or name_of(content)
     issued = Issued(content, "what was issued")
     if not name:
-        raise BadInput("what was issued has no name, since it is of no assignment: name it")
+        raise BadInput("the papers have no name, as they belong to no assignment: name them")
     values: dict[str, Any] = {
         "stated": content.get("assignment"),
         "has_roster": issued.has_roster,
@@ -107,8 +107,8 @@ def _assignment(
         connection.execute(update(assignment).where(assignment.c.id == known_row.id).values(values))
     if known_row.has_roster != values["has_roster"] and not values["is_pool"]:
         if values["has_roster"]:
-            raise BadInput("{name} was issued without a roster: give it another name", name=name)
-        raise BadInput("{name} was issued by a roster: give it another name", name=name)
+            raise BadInput("{name} was issued without a roster: choose another name", name=name)
+        raise BadInput("{name} was issued for a roster: choose another name", name=name)
     rows = [row._asdict() for row in connection.execute(_dealt(known_row.id))]
     return known_row.id, dict(zip(_places(rows), rows, strict=True))
 
@@ -151,7 +151,10 @@ def _put_variants(
             new.setdefault(key, item)
         elif _in_no_language(variants[key].record) != _in_no_language(item["record"]):
             raise BadInput(
-                "{name}: {exercise} {seed} was issued with other data before, and what is issued stays issued: give it another name",
+                (
+                    "{name}: {exercise} {seed} was issued with other data before, and issued papers do not change: choose"
+                    " another name"
+                ),
                 name=name,
                 exercise=key[0],
                 seed=key[1],
@@ -193,7 +196,10 @@ def _put_dealt(
         had = given.get(place_key[:3], item["seed"])
         if had != item["seed"]:
             raise BadInput(
-                "{name}: {student} was issued {exercise} {before}, and what is issued stays issued; {seed} is another: give it another name",
+                (
+                    "{name}: {student} was issued {exercise} {before}, not {seed}, and issued papers do not change: "
+                    "choose another name"
+                ),
                 name=name,
                 student=place_key[0],
                 exercise=place_key[2],

@@ -49,9 +49,7 @@ def dump(store: Store, folder: Path) -> dict[str, int]:
         The folder holds other files, or cannot be written.
     """
     if not is_bare(folder) and not (folder / _ABOUT).exists():
-        raise BadInput(
-            "{folder} holds other files: name an empty folder, or one that does not exist", folder=folder
-        )
+        raise BadInput("{folder} contains other files: name an empty folder, or a new one", folder=folder)
     (folder / _ABOUT).unlink(missing_ok=True)  # what is half written is no dump
     rows = {}
     with store.reading() as connection:
@@ -147,7 +145,7 @@ def _naming_folder(folder: Path) -> Iterator[None]:
     except (DBAPIError, OverflowError, UnicodeEncodeError) as fault:
         reason = " ".join(str(getattr(fault, "orig", fault)).split())[:120]
         raise BadInput(
-            "{folder} is damaged, and nothing of it is kept: {reason}", folder=folder, reason=reason
+            "{folder} is damaged, and nothing was restored: {reason}", folder=folder, reason=reason
         ) from fault
 
 
@@ -167,7 +165,7 @@ def _check_readable(connection: Connection) -> None:
         except (KeyError, TypeError, ValueError, AttributeError) as fault:
             reason = fault if isinstance(fault, BadInput) else f"{type(fault).__name__} {str(fault)[:60]}"
             raise BadInput(
-                "what the dump has of {name} cannot be read: {reason}; nothing of it is kept",
+                "the part of the dump about {name} cannot be read: {reason}; nothing was restored",
                 name=name,
                 reason=reason,
             ) from fault
@@ -177,7 +175,7 @@ def _about(folder: Path) -> tuple[Mapping[str, int], CellText]:
     """Return the number of rows of each table, and the function that reads the text of a cell."""
     if not (folder / _ABOUT).is_file():
         raise BadInput(
-            "{folder} holds no dump: there is no {file} in it; 'coursework database dump' makes one",
+            "{folder} contains no dump, as it has no {file}; 'coursework database dump' makes one",
             folder=folder,
             file=_ABOUT,
         )
@@ -185,14 +183,14 @@ def _about(folder: Path) -> tuple[Mapping[str, int], CellText]:
     about = read_json(folder / _ABOUT)
     if not isinstance(about, dict) or about.get("format") not in (FORMAT, _BEFORE):
         raise BadInput(
-            "{folder} is of another version: {file} says {content}",
+            "{folder} is of another version: {file} states {content}",
             folder=folder,
             file=_ABOUT,
             content=str(about)[:60],
         )
     rows = about.get("rows")
     if not isinstance(rows, dict) or not all(isinstance(count, int) for count in rows.values()):
-        raise BadInput("{file} says not how many rows each table has", file=folder / _ABOUT)
+        raise BadInput("{file} does not state the number of rows of each table", file=folder / _ABOUT)
     if strangers := rows.keys() - {table.name for table in _dumped()}:
         raise BadInput(
             "{folder} is of a later version: there is no table {tables}",
@@ -268,7 +266,7 @@ def _row(
             row[name] = None if cell == _NULL else make(cell)
         except (ValueError, RecursionError) as fault:
             raise BadInput(
-                "{file}, line {line}: {column} is not what it is in a dump: {cell!r}",
+                "{file}, line {line}: {column} has a value that no dump has: {cell!r}",
                 file=path,
                 line=line,
                 column=name,

@@ -102,7 +102,7 @@ class Store:
             if _is_ours(fault):
                 raise
             raise BadInput(
-                "{database}: {cause}; nothing of this was kept",
+                "{database}: {cause}; nothing was stored",
                 database=_without_password(self.url),
                 cause=_cause(fault),
             ) from fault

@@ -43,9 +43,7 @@ def is_another(header: Sequence[str]) -> str:
     """Return a message if this is another report of a Canvas quiz; empty otherwise."""
     titles = {title.strip().casefold() for title in header}
     if {"question id", "question title", "answered student count"} <= titles:
-        return Message(
-            "this is Canvas's Item Analysis, which holds nobody's answers: download the Student Analysis"
-        )
+        return Message("this is the Item Analysis of Canvas, without answers: download the Student Analysis")
     return ""
 
 
@@ -70,7 +68,7 @@ def read_answers(
             if label is None:
                 yield Rejected(where, NO_LABEL, {"student": student, "answer": answer})
             elif not label.part:
-                reason = Message("the question's label names no part, and a question of Canvas asks one")
+                reason = Message("the label of the question names no part, and a question of Canvas asks one")
                 yield Rejected(
                     where, reason, {"student": student, "exercise": label.exercise, "answer": answer}
                 )

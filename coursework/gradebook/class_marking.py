@@ -93,7 +93,7 @@ def _rejecting(sheets: Sheets, results: Iterable[_MarkedSheet]) -> Iterator[Grad
             yield result
             continue
         unmarked[sheet[1], result] += 1
-        reason = Message("cannot be marked, somebody must look at it ({problem})", problem=result)
+        reason = Message("cannot be marked; it waits for a person ({problem})", problem=result)
         rows = among.sheets[sheet].values()
         sheets.rejected += [Rejected(row.source, reason, as_texts(row)) for row in rows]
     for (exercise, why), count in unmarked.items():

@@ -74,7 +74,7 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
         for column, text in ((score, points), ("out_of", out_of), (LATE, cells)):
             if text and not math.isfinite(_number(text)):
                 raise BadInput(
-                    "{file}, line {number}: {column} of {student} are a number; found {found!r}",
+                    "{file}, line {number}: {column} of {student} must be a number; found {found!r}",
                     file=path,
                     number=number,
                     column=column,
@@ -87,7 +87,7 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
             points = "0"
         if math.isnan(_number(points)):
             raise BadInput(
-                "{file}, line {number}: {column} of {student} are a number; found {found!r}",
+                "{file}, line {number}: {column} of {student} must be a number; found {found!r}",
                 file=path,
                 number=number,
                 column=score,

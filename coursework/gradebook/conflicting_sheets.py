@@ -75,14 +75,17 @@ def _reasons_to_wait(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict
         if len(files) > 2:
             listed = Message("{files} and {count} more", files=listed, count=len(files) - 2)
         why = Message(
-            "{files} are different sheets of {student}: a person must say which is theirs; take the other away, or call the file by its student",
+            (
+                "{files} are different sheets of {student}: a person must decide which one counts; remove the other, "
+                "or name the file after its student"
+            ),
             files=listed,
             student=student,
         )
         return dict.fromkeys(files, why)
     return {
         file: Message(
-            "it names {student}, whose own sheet in {file} is another: a person must say whose it is",
+            "it names {student}, who has another sheet in {file}: a person must decide whose it is",
             student=student,
             file=theirs[0],
         )

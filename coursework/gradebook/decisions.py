@@ -154,7 +154,7 @@ def check_points(points: float, part: str, out_of: float, location: str) -> None
     """Refuse more points than a part has."""
     if points > out_of:
         raise BadInput(
-            "{place}: {points:g} points for {part}, which has {out_of:g}; give that or fewer",
+            "{place}: {points:g} points for {part}, which has {out_of:g}; give at most these",
             place=location,
             points=points,
             part=part,
@@ -390,7 +390,7 @@ def _misspelt(columns: Iterable[str]) -> Iterator[str]:
             meant := difflib.get_close_matches(column, absent, n=1, cutoff=_ALIKE)
         ):
             yield Message(
-                "no column {column!r} is read; did you mean {near!r}?", column=column, near=meant[0]
+                "the column {column!r} is not read; did you mean {near!r}?", column=column, near=meant[0]
             )
 
 
@@ -418,7 +418,9 @@ def _contradictions(decisions: Sequence[Decision], issued_parts: _IssuedParts) -
         for before, decision in _in_turn(group):
             if issued_parts.points(before) != issued_parts.points(decision):
                 yield Message(
-                    "{place}: {gives} for {answer}, and line {line} says {before}; line {last} counts: take one of them away",
+                    (
+                        "{place}: {gives} for {answer}, but {before} in line {line}; line {last} counts: delete one of them"
+                    ),
                     place=decision.location,
                     gives=decision.gives,
                     answer=decision.answer_text,

@@ -64,7 +64,7 @@ class EditedMarks:
         self.refuse(self.sheets.rejected)
         if not self.sheets.sheets:
             raise BadInput(
-                "{file} holds no mark, so nothing is written; 'coursework grade' writes it", file=path
+                "{file} contains no mark, so nothing is written; 'coursework grade' writes it", file=path
             )
         self.sheets.rejected += _rejected_before(path.with_name("rejected.csv"))
 
@@ -89,7 +89,7 @@ class EditedMarks:
             named = folded(row["student"]), row["exercise"], row["seed"], row["part"], sitting
             if named in met:
                 raise BadInput(
-                    "{place}: repeats {line}; leave one mark an answer", place=location, line=met[named]
+                    "{place}: repeats {line}; keep one mark for each answer", place=location, line=met[named]
                 )
             met[named] = f"line {number}"
             _check_verdict(location, row["verdict"])

@@ -36,7 +36,7 @@ def shows_solutions(issued: Issued, form: FeedbackForm) -> bool:
     stated = issued.assignment or {}
     if stated.get("answers") == "never":
         if form.solutions:
-            raise BadInput('the assignment keeps its answers back (answers = "never"), and so its solutions')
+            raise BadInput('the assignment never shows its answers (answers = "never"), nor its solutions')
         return False
     if not (after := str(stated.get("solutions_after") or "")):
         return form.solutions
@@ -48,5 +48,7 @@ def shows_solutions(issued: Issued, form: FeedbackForm) -> bool:
             found=after,
         ) from None
     if form.solutions and not is_time:
-        raise BadInput("the assignment keeps its solutions back until {after} (solutions_after)", after=after)
+        raise BadInput(
+            "the assignment does not show its solutions before {after} (solutions_after)", after=after
+        )
     return is_time

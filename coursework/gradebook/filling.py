@@ -60,7 +60,7 @@ def fill(
         table = CellTable(_bytes_of(template))
     except UnicodeDecodeError as fault:
         raise BadInput(
-            "{file} is damaged: it begins as {encoding} and does not go on as such",
+            "{file} is damaged: it begins in {encoding}, but is not valid {encoding}",
             file=template,
             encoding=fault.encoding,
         ) from fault
@@ -75,7 +75,7 @@ def fill(
             result.absent.append(name)
         elif sheet.column >= len(row):
             raise BadInput(
-                "{file}: the line of {name} has {cells} cells, and {column} is further on",
+                "{file}: the line of {name} has only {cells} cells, so none for {column}",
                 file=template,
                 name=name,
                 cells=len(row),
@@ -118,7 +118,10 @@ def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Pat
     if not (people.names or people.ids):
         titles_text = ", ".join(title.strip() for title in titles if title.strip())[:200] or "nothing"
         raise BadInput(
-            "{file} names nobody: a gradebook of {platform} has columns for names or e-mails; found {found}; download it by {menu}",
+            (
+                "{file} names nobody: a gradebook of {platform} has columns for names or e-mail addresses; found "
+                "{found}; download it from {menu}"
+            ),
             file=source,
             platform=platform.title_of_platform,
             found=titles_text,
@@ -181,7 +184,7 @@ def column_of(
         if columns:
             named = ", ".join(repr(titles[k].strip()) for k in columns)
             raise BadInput(
-                "{file} has several columns of {item!r}: {columns}; name one whole, --item {column!r}",
+                "{file} has several columns {item!r}: {columns}; give the full name, --item {column!r}",
                 file=source,
                 item=item,
                 columns=named,
@@ -191,7 +194,7 @@ def column_of(
         dict.fromkeys(name for k in places if k > people.last and (name := platform.item_in(titles[k])))
     )
     raise BadInput(
-        "{file} has no column of {item!r}{nearest}; make the item in {platform} first, then export",
+        "{file} has no column {item!r}{nearest}; create the item in {platform} first, then export",
         file=source,
         item=item,
         nearest=nearest(item, names),
@@ -208,7 +211,10 @@ def _most(platform: PlatformGradebook, sheet: _Sheet, stated: float | None, sour
         in_file = None
     if in_file is not None and stated is not None and in_file != stated:
         raise BadInput(
-            "{file} says that {column} is out of {maximum:g}; --out-of says {stated:g}: leave it away, or change the item",
+            (
+                "{file} states that {column} is out of {maximum:g}, and --out-of states {stated:g}: omit the option, "
+                "or change the item"
+            ),
             file=source,
             column=sheet.title,
             maximum=in_file,
@@ -221,7 +227,10 @@ def _check_alike(scored: Iterable[Scored], platform: PlatformGradebook, item: st
     totals = sorted({student.out_of for student in scored if student.out_of})
     if len(totals) > 1:
         raise BadInput(
-            "the class has points out of {totals}, and {platform}'s export does not tell what {item!r} is out of: say it, --out-of 20",
+            (
+                "the class has points out of {totals}, and the export of {platform} does not state the maximum of "
+                "{item!r}: state it, --out-of 20"
+            ),
             totals=joined_by_and(totals[:3]),
             platform=platform.title_of_platform,
             item=item,

@@ -97,7 +97,10 @@ def usual_feedback(sheets: Sheets) -> bool:
     if count > FEEDBACK_STUDENTS:
         sheets.warnings.append(
             Message(
-                "no feedback sheets are printed for {count:,} students who answered, more than {most:,}: ask for them, --feedback",
+                (
+                    "no feedback sheets are printed for more than {most:,} students, and {count:,} answered: add "
+                    "--feedback to print them"
+                ),
                 count=count,
                 most=FEEDBACK_STUDENTS,
             )
@@ -254,7 +257,7 @@ def _write_decisions(
         write_whole(copy, replaced.read_bytes())
         book.warnings += [
             *lost,
-            Message("{file} as it was is kept as {copy}", file=replaced.name, copy=copy),
+            Message("the earlier {file} is now {copy}", file=replaced.name, copy=copy),
         ]
     if files.path is not None and (rows or replaced is not None):
         table = tables.open(files.path.name, DECISION_COLUMNS)
@@ -273,7 +276,10 @@ def _kept_copy(marks: Path) -> str:
     copy = free_name(marks)
     write_whole(copy, marks.read_bytes())
     return Message(
-        "{file} had been edited, and is written anew: the edited one is kept as {copy}; a mark that is to last is named in {accepted}",
+        (
+            "{file} had been edited and is written again: the edited file is now {copy}; to change a mark for "
+            "good, name it in {accepted}"
+        ),
         file=marks.name,
         copy=copy,
         accepted=marks.with_name(DECISIONS_FILE),
@@ -286,13 +292,14 @@ def nothing_in(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str
     message = Message("nothing in {where} can be marked, so nothing is written", where=where)
     if not rejected:
         return Message(
-            "{nothing}; a file of answers has a line of headings, then a line an answer", nothing=message
+            "{nothing}; a file of answers has a line of headings, then one line for each answer",
+            nothing=message,
         )
     first = rejected[0]
     if len(rejected) == 1:
         return Message("{nothing}: {file}: {reason}", nothing=message, file=first.source, reason=first.reason)
     return Message(
-        "{nothing} ({count} rows rejected; the first is told): {file}: {reason}",
+        "{nothing} ({count} rows rejected; the first one): {file}: {reason}",
         nothing=message,
         count=len(rejected),
         file=first.source,

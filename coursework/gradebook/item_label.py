@@ -34,7 +34,8 @@ class ItemLabel(NamedTuple):
 
 
 NO_LABEL = Message(
-    "the question's text has no label as [slotted_mechanism · 4 · v1 · en], which says whose answers these are"
+    "the text of the question has no label such as [slotted_mechanism · 4 · v1 · en], which identifies "
+    "the variant"
 )
 
 

@@ -28,8 +28,8 @@ _AVERAGE = ("average", "moyenne", "durchschnitt", "promedio", "media", "média",
 
 WHAT = Message("Moodle's Responses report")
 NO_RESPONSES = Message(
-    "the Responses report tells neither questions nor responses: tick 'question text' and 'response' among what it displays, and "
-    "download it again"
+    "the Responses report contains neither questions nor responses: tick 'question text' and 'response' "
+    "in its display options, and download it again"
 )
 
 
@@ -88,7 +88,7 @@ def is_another(header: Sequence[str]) -> str:
         is_called(title, EMAIL) for title in header
     ):
         return Message(
-            "this is the Grades report of a Moodle quiz, which holds no answers: download the Responses report"
+            "this is the Grades report of a Moodle quiz, without answers: download the Responses report"
         )
     singles = [match["number"] for match in map(_NUMBERED.fullmatch, map(str.strip, header)) if match]
     if (
@@ -168,7 +168,10 @@ def _unfinished(
     """Yield the responses of an attempt that was not submitted, which has no end."""
     state = cells[columns.state].strip()
     reason = Message(
-        "the attempt is not finished, it is {state!r}: close it in Moodle, or let it be handed in, and download again",
+        (
+            "the attempt is not finished but {state!r}: close or submit it in Moodle, and download the report "
+            "again"
+        ),
         state=state,
     )
     answered = [pair for pair in columns.questions if cells[pair[1]].strip() not in _NONE]
@@ -216,7 +219,8 @@ def _response(
     else:
         columns = {"student": student, "exercise": label.exercise, "seed": label.seed, "answer": text}
         reason = Message(
-            "a response of several parts is written 'part 1: …; part 2: …', each once: a person must look"
+            "a response of several parts is written 'part 1: …; part 2: …', each once: this one waits for a "
+            "person"
         )
         yield Rejected(location, reason, columns)
 

@@ -181,7 +181,7 @@ def _read_paper(
             yield Rejected(location, cell_answers, _about(identity, source) | {"answer": quoted(code)})
         elif not exercise:
             which = Message(
-                "which exercise an answers cell is of cannot be told: write {example} after its {{",
+                "the exercise of an answers cell is unknown: write {example} after its {{",
                 example=_example(sheets),
             )
             yield Rejected(location, which, _about(identity, source) | {"answer": quoted(code)})
@@ -194,11 +194,11 @@ def _read_paper(
         if (exercise, seed) not in there:
             identity = {"student": name, "exercise": exercise, "seed": seed}
             reason = Message(
-                "no cell tagged 'answers' is of {exercise}, seed {seed}", exercise=exercise, seed=seed
+                "no cell tagged 'answers' belongs to {exercise}, seed {seed}", exercise=exercise, seed=seed
             )
             yield Rejected(f"{source}, {exercise}", reason, _about(identity, source) | {"answer": code})
     if not sheets and not tagged:
-        yield Rejected(source, Message("the notebook holds no answers"), _about({"student": name}, source))
+        yield Rejected(source, Message("the notebook contains no answers"), _about({"student": name}, source))
 
 
 _OF = re.compile(r"#[ \t]*(\w+)[ \t]+([0-9]{1,30})[ \t]*$", re.MULTILINE)
@@ -279,17 +279,19 @@ def _literal_answers(code: str) -> dict[Any, Any] | str:
         return _answers_by_line(code)
     if len(statements) != 1:
         return Message(
-            "the answers cell must hold one dict and nothing else; found {count} statements",
+            "the answers cell must contain one dict and nothing else; found {count} statements",
             count=len(statements),
         )
     statement = statements[0]
     value = statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign, ast.Expr)) else None
     if not isinstance(value, ast.Dict):
-        return Message("the answers cell must hold one dict and nothing else; found code, which is never run")
+        return Message(
+            "the answers cell must contain one dict and nothing else; found code, which is never run"
+        )
     try:
         return object_once(_pairs(value, code))
     except _NO_PYTHON:
-        return Message("the answers cell must hold texts and numbers only; found code, which is never run")
+        return Message("the answers cell must contain texts and numbers only; found code, which is never run")
 
 
 _NO_PYTHON = (SyntaxError, ValueError, TypeError, RecursionError, MemoryError)
@@ -315,7 +317,7 @@ def _pairs(literal: ast.Dict, code: str) -> list[tuple[Any, Any]]:
 
 # ----------------------------------------------------------------- behind a hash
 
-_HIDDEN = Message("an answer stands behind a #, where nothing is read")
+_HIDDEN = Message("an answer is behind a #, in a comment, which is not read")
 _QUOTED_NUMBER = re.compile(r'"[^"]*[0-9][^"]*"')
 _NUMBER_OF = re.compile(r"""[0-9]\s*["']?\s*,""")  #: as a line of the cell ends
 _NUMBER_LAST = re.compile(r"""[0-9]\s*["']?\s*,\s*$""")  #: as the line of an answer ends

@@ -155,7 +155,7 @@ def _stated_student(issued: Issued, name: str, origin: RowOrigin) -> str | None:
     student = issued.student(name, origin.ids)
     if None not in (by, student) and by != student:
         raise UnplacedError(
-            "handed in by {by} ({account}), but it names {student}: a person must say whose it is",
+            "submitted by {by} ({account}), but it names {student}: a person must decide whose it is",
             by=by,
             account=origin.by[0],
             student=student,
@@ -166,7 +166,10 @@ def _stated_student(issued: Issued, name: str, origin: RowOrigin) -> str | None:
 def _check_version(record: Mapping[str, Any], version: str) -> None:
     if version and version != str(record["version"]):
         raise UnplacedError(
-            "version {version} of {exercise} was answered, and version {issued} is issued: name the issued.json of the export that the platform had",
+            (
+                "the answers are to version {version} of {exercise}, and version {issued} was issued: name the "
+                "issued.json of the export that is on the platform"
+            ),
             version=version,
             exercise=record["exercise"],
             issued=record["version"],
@@ -396,7 +399,10 @@ def _note(sheets: Sheets, key: SheetKey, origin: RowOrigin) -> None:
 def _latest_warning(issued: Issued, key: SheetKey) -> str:
     """Return the warning that answers without a seed count for the latest sitting."""
     return Message(
-        "{student}, {exercise}: answers without a seed are taken for sitting {sitting}, seed {seed}, the latest; write the seed of the other sitting where they are of that one",
+        (
+            "{student}, {exercise}: answers without a seed count for sitting {sitting}, seed {seed}, the latest; "
+            "write the seed of the other sitting if they belong to it"
+        ),
         student=key[0],
         exercise=key[1],
         sitting=issued.sitting_of(*key[:3]),

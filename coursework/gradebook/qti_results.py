@@ -22,7 +22,7 @@ def read_results(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Pl
     """Yield the answers of a file of results; entities declared in a file are never followed."""
     text, warning = decoded_text(data, source)
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        yield Rejected(source, Message("results of QTI declare no entities; this file does, and is not read"))
+        yield Rejected(source, Message("QTI results declare no entities; this file does, so it is not read"))
         return
     try:
         root = ET.fromstring(data)
@@ -50,7 +50,7 @@ def read_results(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Pl
         yield Rejected(
             source,
             Message(
-                "no answers: XML is read where it is {what}, assessmentResult with itemResult in it",
+                "no answers: an XML file must be {what}, an assessmentResult with itemResult in it",
                 what=WHAT,
             ),
         )
@@ -82,7 +82,8 @@ def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator
     ]
     if match is None:
         reason = Message(
-            "an item is called as exported, set-exercise-v1-4-en: which variant this one is cannot be told"
+            "this item has another name than the export gave it, such as set-exercise-v1-4-en, so its variant is "
+            "unknown"
         )
         yield from (
             Rejected(location, reason, {"student": student, "answer": _values(answer)})

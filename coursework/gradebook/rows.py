@@ -127,7 +127,7 @@ def sheet_rows(
 ) -> Iterator[AnswerRow | Rejected]:
     names = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
     if not answers and not getattr(answers, "unread", ()):
-        yield Rejected(location, Message("the sheet holds no answer"), {**names, "part": "", "answer": ""})
+        yield Rejected(location, Message("the sheet contains no answer"), {**names, "part": "", "answer": ""})
     for key, text, why in getattr(answers, "unread", ()):
         row = {**names, "part": name_in(key), "answer": quoted(text)}
         where = f"{location}, part {name_in(key)[:40]}" if key else location

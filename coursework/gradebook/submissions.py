@@ -78,7 +78,7 @@ def _files_below(folder: Path) -> Iterator[Path | Rejected]:
     yield from (Rejected(path_text(p), LEADS_OUT) for p in refused)
     yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in SIDE_FILES)
     if not files and not refused:
-        yield Rejected(path_text(folder), Message("the folder holds no file"))
+        yield Rejected(path_text(folder), Message("the folder contains no file"))
 
 
 def _similar_file(path: Path) -> str:
@@ -182,7 +182,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
         return
     text, warning = decoded_text(data, source)
     if "\0" in text:
-        yield Rejected(source, Message("the file holds NUL bytes: it is not a CSV of answers"))
+        yield Rejected(source, Message("the file contains NUL bytes: it is not a CSV of answers"))
         return
     lines = re.split(r"\r\n|\n|\r", text)
     del text, data
@@ -258,7 +258,7 @@ def _row_of(cells: Sequence[str], location: str, warning: str) -> AnswerRow:
 
 _kept = sys.intern
 
-NO_ANSWERS = Message("the file holds no answers")
+NO_ANSWERS = Message("the file contains no answers")
 
 
 def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[AnswerRow | Rejected]:
@@ -339,7 +339,7 @@ def _odd_columns(types: Any, schema: Any) -> str:
         if not is_read(kind := schema.field(column).type):
             kind = getattr(kind, "value_type", kind)
             return Message(
-                "the column {column} holds {kind}: an answer is a text or a number, a name a text",
+                "the column {column} contains {kind}: an answer is a text or a number, a name is a text",
                 column=column,
                 kind=str(kind)[:40],
             )

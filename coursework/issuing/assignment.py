@@ -231,11 +231,11 @@ class _AssignmentReader(TomlReader):
         if "solutions_after" in values and values.get("answers") == "never":
             raise self.refused_key(
                 "solutions_after",
-                Message('answers = "never" keeps the solutions back for good; leave one of the two out'),
+                Message('answers = "never" never shows the solutions; omit one of the two'),
             )
         if "logo" in values and not values.get("logo_alt"):
             raise self.refused_key(
-                "logo", Message('a logo needs words for who cannot see it: logo_alt = "…"')
+                "logo", Message('a logo needs a text for those who cannot see it: logo_alt = "…"')
             )
         return Assignment(self.path.stem, options=options, **values)
 
@@ -249,7 +249,7 @@ class _AssignmentReader(TomlReader):
                 raise self.refused_key(
                     key,
                     Message(
-                        '{key} is a text, or one a language: {{ fr = "…", en = "…" }}; found {found}',
+                        '{key} is a text, or one for each language: {{ fr = "…", en = "…" }}; found {found}',
                         key=key,
                         found=reprlib.repr(value),
                     ),
@@ -408,7 +408,7 @@ class _AssignmentReader(TomlReader):
             if name in names[:number]:
                 raise self.refused_key(
                     "name",
-                    Message("{name} stands twice; an assignment asks an exercise once", name=name),
+                    Message("{name} appears twice; an assignment has each exercise once", name=name),
                     number,
                 )
         return exercises

@@ -36,7 +36,8 @@ class Issued:
         records = content.get("issued") if isinstance(content, Mapping) else None
         if not isinstance(records, list) or not records:
             raise BadInput(
-                "{source} is no list of issued records; 'coursework build' writes issued.json", source=source
+                "{source} is not a list of issued records; 'coursework build' writes issued.json",
+                source=source,
             )
         if isinstance(content, Mapping) and _is_later(content.get("format")):
             raise BadInput(
@@ -66,7 +67,10 @@ class Issued:
                     record["parts"] = usual
             except _Unfit as fault:
                 raise BadInput(
-                    "{source}, item {number} of {count}: no issued record: {problem}; 'coursework build' writes them",
+                    (
+                        "{source}, item {number} of {count} is not an issued record: {problem}; 'coursework build' writes "
+                        "them"
+                    ),
                     source=source,
                     number=number,
                     count=len(records),
@@ -354,7 +358,8 @@ def _stated(content: Any, source: str) -> Mapping[str, Any] | None:
         fits = isinstance(mark, Mapping) and all(_is_size(mark.get(n)) for n in ("of", "step"))
     if not fits:
         raise BadInput(
-            "{source}: its assignment is none; 'coursework build FILE.toml' writes it", source=source
+            "{source}: the assignment in it is not valid; 'coursework build FILE.toml' writes it",
+            source=source,
         )
     return dict(content)
 
@@ -369,7 +374,8 @@ def _columns(content: Any, source: str) -> dict[str, Mapping[str, str]]:
         return {}
     if not isinstance(content, Mapping) or not all(isinstance(row, Mapping) for row in content.values()):
         raise BadInput(
-            "{source}: its students are no columns by name; 'coursework build' writes them", source=source
+            "{source}: the students in it are not columns by name; 'coursework build' writes them",
+            source=source,
         )
     return {str(s): {str(c): str(v) for c, v in row.items()} for s, row in content.items()}
 

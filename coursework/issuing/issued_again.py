@@ -24,7 +24,9 @@ def issued_again(course: Course, issued: Issued, langs: Sequence[str] = ()) -> l
         The course lacks an exercise.
     """
     if issued.assignment is not None or issued.is_pool:
-        raise BadInput("what was issued there is of an assignment or a pool: name its file, or another --out")
+        raise BadInput(
+            "the folder has the papers of an assignment or a pool: name its file, or another --out"
+        )
     stems = dict(zip(issued.students, file_stems(issued.students), strict=True))
     issues = []
     for key in issued.records:

@@ -85,7 +85,9 @@ def distinct_variants(
             else Message("only {count} exist", count=exist)
         )
         raise Starved(
-            "{exercise}: {variants} asked, {reason}{flaws}; ask for fewer, widen a range or make a step finer",
+            (
+                "{exercise}: {variants} requested, {reason}{flaws}; request fewer, widen a range or make a step finer"
+            ),
             exercise=exercise.name,
             variants=counted(count, "different variant"),
             reason=reason,
@@ -99,7 +101,7 @@ def _passed_over(refused: Counter[str]) -> str:
     if not refused:
         return ""
     flaws = ", ".join(f"{localised(flaw)} ({number}×)" for flaw, number in refused.most_common(3))
-    return Message("; passed over as {flaws}", flaws=flaws)
+    return Message("; skipped: {flaws}", flaws=flaws)
 
 
 def _that_ask(variants: Sequence[V], fits: Callable[[V], bool] | None) -> list[V]:
@@ -186,7 +188,9 @@ def drawn_by(
     variants |= {person: spare[person] for person in shared}
     if len(variants) < len(people):
         raise Starved(
-            "{exercise}: no variant that is worth issuing was found for {students}{flaws}; widen a range or make a step finer",
+            (
+                "{exercise}: no valid variant was found for {students}{flaws}; widen a range or make a step finer"
+            ),
             exercise=exercise.name,
             students=counted(len(people) - len(variants), "student"),
             flaws=_passed_over(refused),
@@ -290,7 +294,7 @@ def whose_languages(students: Sequence[Student]) -> tuple[dict[str, str], str]:
     """Return the first student of each language in a roster, and the words of a message that name the
     student's row."""
     first = {student.lang: student.name for student in reversed(students) if student.lang}
-    return first, ", which the line of {name} in the roster asks for"
+    return first, ", which the line of {name} in the roster requests"
 
 
 def check_languages(

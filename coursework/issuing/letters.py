@@ -19,8 +19,10 @@ def unprinted_names(renderer: Renderer, names: Iterable[str]) -> list[str]:
     named = ", ".join(f"{name} ({letters})" for name, letters in list(lacking.items())[:_NAMED])
     more = ", …" if len(lacking) > _NAMED else ""
     note = Message(
-        "{names} with letters that no font of the PDF draws, printed as squares: {named}; "
-        "put a font that has them (.ttf, .otf) into templates/fonts of the course",
+        (
+            "{names} with letters that no font of the PDF has, printed as squares: {named}; put a font with these"
+            " letters (.ttf, .otf) into templates/fonts of the course"
+        ),
         names=counted(len(lacking), "name"),
         named=named + more,
     )

@@ -34,7 +34,7 @@ def without_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> tuple[li
                 named = ", ".join(name or "(no name)" for name in gone[:3])
                 notes.append(
                     Message(
-                        "{lines} of no student left out: {named}",
+                        "{lines} without a student left out: {named}",
                         lines=counted(len(gone), "line"),
                         named=named + (", …" if len(gone) > 3 else ""),
                     )
@@ -43,7 +43,7 @@ def without_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> tuple[li
                 named = ", ".join(header[c].strip() for c in sorted(columns)[:2])
                 notes.append(
                     Message(
-                        "{columns} of marks not carried: {named}",
+                        "{columns} of marks not used: {named}",
                         columns=counted(len(columns), "column"),
                         named=named + (", …" if len(columns) > 2 else ""),
                     )

@@ -78,7 +78,7 @@ def read_roster(
     named = _name_columns(titles)
     if not named:
         raise BadInput(
-            "the roster {file}: no column says who a student is; {advice}", file=path, advice=_which(header)
+            "the roster {file}: no column identifies the students; {advice}", file=path, advice=_which(header)
         )
     if duplicate := duplicate_column(
         titles, (*(titles[group[0]] for group in named), *_LANG, *NUMBER, *EMAIL)
@@ -95,7 +95,10 @@ def read_roster(
         location = Message("the roster {file}, line {number}", file=path, number=number)
         if any(cell.strip() for cell in cells[len(titles) :]):
             raise BadInput(
-                "{location}: {cells} where the header has {most}; put a name that holds a comma or a semicolon between quotation marks, or give the column a title",
+                (
+                    "{location}: {cells} where the header has {most}; put a name with a comma or a semicolon between "
+                    "quotation marks, or give the column a title"
+                ),
                 location=location,
                 cells=counted(len(cells), "cell"),
                 most=len(titles),
@@ -105,7 +108,7 @@ def read_roster(
         name = first_name_first(name) if unused.turned else name
         lang = cells[lang_column].strip().lower() if lang_column is not None else ""
         if not name:
-            raise BadInput("{location}: no name; write it, or take the line away", location=location)
+            raise BadInput("{location}: no name; write it, or delete the line", location=location)
         if lang and lang not in languages():
             raise BadInput(
                 "{location}: no language {lang!r}; there is {languages}",
@@ -125,7 +128,7 @@ def read_roster(
     if untitled:
         warn(
             Message(
-                "the roster {file} has a column without a title, which is not used; give it one to carry it through",
+                "the roster {file} has a column without a title, which is not used; give it a title to use it",
                 file=path,
             )
         )
@@ -145,7 +148,7 @@ def _heading(
                 above = " ".join(cell.strip() for _, row in lines[:index] for cell in row if cell.strip())
                 warn(
                     Message(
-                        "the roster {file}: passed over above the heading: {above}",
+                        "the roster {file}: skipped above the heading: {above}",
                         file=path,
                         above=above[:60] + ("…" if len(above) > 60 else ""),
                     )
@@ -154,7 +157,7 @@ def _heading(
     if columns:
         warn(
             Message(
-                "the roster {file}: line {line} is taken for the heading: {cells}",
+                "the roster {file}: line {line} is taken as the heading: {cells}",
                 file=path,
                 line=lines[0][0],
                 cells=", ".join(lines[0][1])[:60],
@@ -190,7 +193,10 @@ def _retitled(path: Path, header: Sequence[str], columns: Mapping[str, str]) -> 
 def _which(header: Sequence[str]) -> Message:
     titles = ", ".join(f"{k} {cell.strip()}" for k, cell in enumerate(header, 1) if cell.strip())
     return Message(
-        "found {titles}. Give the name a title such as student, or nom and prénom, or say which column is what: --columns name=1,first=2",
+        (
+            "found {titles}. Give the name a title such as student, or nom and prénom, or state the columns: "
+            "--columns name=1,first=2"
+        ),
         titles=titles or Message("nothing"),
     )
 
@@ -211,7 +217,7 @@ def _tell_lost(path: Path, titles: Sequence[str], warn: Callable[[str], None]) -
         if often > 1:
             warn(
                 Message(
-                    "the roster {file} has {count} columns {title}; the last is kept: give each a title of its own",
+                    "the roster {file} has {count} columns {title}; the last one is used: give each its own title",
                     file=path,
                     count=often,
                     title=title,
@@ -229,7 +235,10 @@ def _apart(path: Path, lines: Sequence[tuple[int, Student]]) -> list[Student]:
             student = replace(student, name=f"{student.name} ({by})")
         if folded(student.name) in seen:
             raise BadInput(
-                "the roster {file}, line {number}: {student} stands on line {other} already; tell them apart, by a number for instance",
+                (
+                    "the roster {file}, line {number}: {student} is already on line {other}; distinguish them, for "
+                    "instance by a number"
+                ),
                 file=path,
                 number=number,
                 student=student.name,
@@ -263,7 +272,7 @@ def _rows(path: Path, warn: Callable[[str], None]) -> list[tuple[int, list[str]]
         ) from fault
     text, warning = decode(data)
     if "\0" in text:
-        raise BadInput("the roster {file} is no CSV; save it as “CSV UTF-8”", file=path)
+        raise BadInput("the roster {file} is not a CSV; save it as “CSV UTF-8”", file=path)
     if warning:
         warn(Message("the roster {file}: {problem}", file=path, problem=warning))
     return list(_records(re.split(r"\r\n|\n|\r", text)))

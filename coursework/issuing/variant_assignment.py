@@ -134,7 +134,10 @@ class _Assigner:
             stated is None or list(stated.get("exercises", ())) != list(assignment.names)
         ):
             raise BadInput(
-                "{assignment} was not issued there as it is now: what is issued stays issued; choose another --out, or --overwrite to deal anew",
+                (
+                    "{assignment} has changed since it was issued there, and issued papers do not change; choose another "
+                    "--out, or --overwrite to issue new ones"
+                ),
                 assignment=assignment.name,
             )
         self._records: dict[tuple[str, str, int], Mapping[str, Any]] = {}
@@ -171,7 +174,7 @@ class _Assigner:
         if issued and gone:
             self.notes.append(
                 Message(
-                    "kept, though no longer on the roster: {names}",
+                    "papers kept although no longer on the roster: {names}",
                     names=", ".join(gone[:5]) + (", …" if len(gone) > 5 else ""),
                 )
             )
@@ -311,7 +314,9 @@ class _Assigner:
         if shared:
             self.notes.append(
                 Message(
-                    "{exercise}: {count} of {papers} share a variant with another; so many different ones do not exist",
+                    (
+                        "{exercise}: {count} of {papers} share a variant with another, as there are not enough different ones"
+                    ),
                     exercise=exercise.name,
                     count=len(shared),
                     papers=counted(len(people), "paper"),

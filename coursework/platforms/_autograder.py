@@ -112,7 +112,7 @@ def _student(issued: Issued, user: Mapping[str, Any]) -> str:
 def _rows(submission: Path) -> Iterator[AnswerRow | Rejected]:
     """Yield the rows of a submission; links that lead out of its folder are not followed."""
     if not submission.is_dir():
-        yield Rejected("submission", Message("the folder holds no file"))
+        yield Rejected("submission", Message("the folder contains no file"))
         return
     for folder_file in find([submission]):
         if isinstance(folder_file, Rejected):

@@ -82,8 +82,8 @@ class Gradescope(Platform):
 
     def files(self, pool: Pool) -> Iterator[File]:
         raise BadInput(
-            "Gradescope deals no variants: its autograder is of what a build issued, coursework export gradescope --issued "
-            "DIR/issued.json --out FOLDER"
+            "Gradescope assigns no variants: its autograder needs the papers of a build, coursework export "
+            "gradescope --issued DIR/issued.json --out FOLDER"
         )
 
     def autograder(self, folder: Folder, data: bytes, source: str) -> Iterator[File]:

@@ -107,7 +107,7 @@ def _check_places(folders: Sequence[Path]) -> None:
         }
         if meant := sorted(place for place in found if place.rpartition("/")[2].lstrip("_") == name):
             raise BadCourse(
-                "{file}: templates have folders, and none is read here; move it to {places}",
+                "{file}: templates are in folders, so this one is not read; move it to {places}",
                 file=str(file),
                 places=" | ".join(meant),
             )

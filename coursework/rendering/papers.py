@@ -172,7 +172,7 @@ def logo_svg(logo: Logo) -> str:
     if logo.format == "svg":
         return _harmless(_text(logo.data))
     if logo.data[:8] != _PNG or len(logo.data) < 24:
-        raise BadInput("the logo is no PNG picture; give a file that is one, or an SVG")
+        raise BadInput("the logo is not a PNG picture; give a PNG or an SVG file")
     wide, high = (int.from_bytes(logo.data[start : start + 4], "big") for start in (16, 20))
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" width="{wide}" height="{high}">'
@@ -196,7 +196,7 @@ def _text(data: bytes) -> str:
     except UnicodeDecodeError:
         text = ""
     if "<svg" not in text:
-        raise BadInput("the logo is no SVG picture; give a file that is one, or a PNG")
+        raise BadInput("the logo is not an SVG picture; give an SVG or a PNG file")
     return text
 
 

@@ -147,7 +147,7 @@ def scan(
     files, read_now = read_files(papers, sources, issued, out, least, progress)
     everything = joined(stored_files(out), files)
     if not everything:
-        raise BadInput("nothing to read: name scans; {out} holds none of before", out=out)
+        raise BadInput("nothing to read: name the scans; {out} contains none from before", out=out)
     put_files(out, everything)
     if typed_texts:
         write_whole(typed_path, typed_file(typed_texts))
@@ -188,7 +188,7 @@ def _read_issued(path: Path) -> Mapping[str, Any]:
         raise BadInput("{path} is not JSON: {fault}", path=path, fault=str(fault)[:100]) from fault
     if not isinstance(content, dict):
         raise BadInput(
-            "{path} is no list of issued records; 'coursework build' writes issued.json", path=path
+            "{path} is not a list of issued records; 'coursework build' writes issued.json", path=path
         )
     Issued(content, str(path))
     return content

@@ -178,7 +178,10 @@ def stored_files(out: Path) -> list[ScannedFile]:
         return [_checked_file(ScannedFile(**entry)) for entry in read_json(path)]
     except (ValueError, TypeError) as fault:
         raise BadInput(
-            "{path} is not as 'coursework scan' leaves it ({fault}): remove it and name all scans again, or choose another --out",
+            (
+                "{path} is not as 'coursework scan' wrote it ({fault}): remove it and name all scans again, or choose"
+                " another --out"
+            ),
             path=path,
             fault=str(fault)[:80],
         ) from fault
@@ -269,7 +272,7 @@ def scanned(out: Path, files: Iterable[ScannedFile]) -> Iterator[Scanned]:
         for number in range(1, file.pages + 1):
             name = page_id(file.digest, number)
             page = stored_page(out, name) or PageScan(
-                REFUSED, Message("what was read of it is gone: name its scan again"), has_picture=False
+                REFUSED, Message("its reading is missing: name its scan again"), has_picture=False
             )
             yield Scanned(file, number, name, page, file.digest in met)
         met.add(file.digest)

@@ -67,7 +67,7 @@ def read_typed(path: Path) -> list[Typed]:
             raise BadInput("{path}: {twice}", path=path, twice=twice)
         return [_typed(header, row) for row in rows if any(cell.strip() for cell in row)]
     except csv.Error as fault:
-        raise BadInput("{path} is no CSV: {fault}", path=path, fault=fault) from fault
+        raise BadInput("{path} is not a CSV: {fault}", path=path, fault=fault) from fault
 
 
 def _typed(header: Sequence[str], cells: Sequence[str]) -> Typed:

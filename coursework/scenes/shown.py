@@ -53,7 +53,7 @@ def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
     elif of == "drive_thrust" and linkage.pushed is None:
         raise WrongValue(Message("no jack drives the mechanism; show drive_torque"))
     elif of == "drive_torque" and linkage.pushed is not None:
-        raise WrongValue(Message("a jack drives the mechanism, and no crank; show drive_thrust"))
+        raise WrongValue(Message("a jack drives the mechanism, not a crank; show drive_thrust"))
     elif of not in DRIVE and of not in quantities:
         kinds = [f"{kind} …" for kind in (*OF_POINTS, REACTION)]
         raise unknown("quantity to show", of, [*quantities, *DRIVE, *kinds])

@@ -101,20 +101,26 @@ def listening(host: str, port: int) -> socket.socket:
 def _refusal(host: str, port: int, fault: OSError) -> Message:
     if fault.errno == errno.EADDRINUSE:
         return Message(
-            "port {port} of {host} is taken, perhaps by another 'coursework serve': end that one, or say another, "
-            "--port {other}, or --port 0 for any that is free",
+            (
+                "port {port} of {host} is in use, perhaps by another 'coursework serve': stop that one, or choose "
+                "another, --port {other}, or --port 0 for any free one"
+            ),
             port=port,
             host=host,
             other=port + 1 if port < 65535 else port - 1,
         )
     if fault.errno == errno.EACCES:
         return Message(
-            "port {port} is kept for the system: say one from 1024 on, and let a proxy in front listen at {port}",
+            (
+                "port {port} is reserved for the system: choose one from 1024 on, and let a proxy listen at {port}"
+            ),
             port=port,
         )
     return Message(
-        "--host {host}: this machine cannot listen there ({problem}); 127.0.0.1 is this machine alone, "
-        "0.0.0.0 every address that it has",
+        (
+            "--host {host}: this machine cannot listen there ({problem}); 127.0.0.1 is for this machine only, "
+            "0.0.0.0 for every address of it"
+        ),
         host=host,
         problem=fault.strerror or str(fault),
     )

@@ -51,9 +51,7 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
         if anew:
             aside[obstacle] = None
         elif same and obstacle in before and (out / obstacle).is_file():
-            unchanged[path] = Message(
-                "{file} was changed since it was built, and is kept as it is", file=out / path
-            )
+            unchanged[path] = Message("{file} was changed since it was built; it is kept", file=out / path)
         else:
             strange[obstacle] = None
     if strange:
@@ -64,14 +62,17 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
             else Message("{first} and {count} more", first=first, count=len(strange) - 1)
         )
         raise BadInput(
-            "not as a build wrote it, and in the way of this one: {names}; move it, choose another --out, or --overwrite to set it aside under another name",
+            (
+                "{names} was changed since the last build, and this one would replace it; move it, choose another "
+                "--out, or --overwrite to keep it under another name"
+            ),
             names=names,
         )
     notes = [*damage, *unchanged.values()]
     gone = [path for path in before if not same and path not in new_digests and os.path.lexists(out / path)]
     mine = [path for path in gone if not _holds(out / path, before[path])]
     notes += [
-        Message("{file} is of what was issued before; it was changed since, and is kept", file=out / path)
+        Message("{file} belongs to papers issued before and was changed since; it is kept", file=out / path)
         for path in mine
     ]
     installed = sorted((path for path in new_digests if path not in unchanged), key=lambda path: path == LAST)
@@ -83,7 +84,7 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
             _move(out / path, backup, undo)
             notes.append(
                 Message(
-                    "{file} was not as a build leaves it; it is now {backup}",
+                    "{file} was changed since the last build; it is now {backup}",
                     file=out / path,
                     backup=backup.name,
                 )
@@ -130,7 +131,9 @@ def renew(new: Path, out: Path, record: Path) -> list[str]:
             (out / name).unlink()
         elif os.path.lexists(out / name):
             notes.append(
-                Message("{file} is of an earlier marking; it was changed since, and is kept", file=out / name)
+                Message(
+                    "{file} is from an earlier marking and was changed since; it is kept", file=out / name
+                )
             )
     _write(record, {name: [digest] for name, digest in new_digests.items()})
     return notes
@@ -206,7 +209,7 @@ def _read(path: Path) -> tuple[Written, list[str]]:
         return _written(path), []
     except BadInput as fault:
         return {}, [
-            Message("{problem}; so its files count as somebody's own, and are not lost", problem=fault)
+            Message("{problem}; so its files count as somebody's own work, and are kept", problem=fault)
         ]
 
 
@@ -214,7 +217,7 @@ def _written(path: Path) -> Written:
     content = read_json(path)
     files = content.get("files") if isinstance(content, dict) else None
     if not isinstance(files, dict) or not all(_is_written(*entry) for entry in files.items()):
-        raise BadInput("{file} is no list of what was written", file=path)
+        raise BadInput("{file} is not a list of written files", file=path)
     return files
 
 

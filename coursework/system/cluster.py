@@ -244,7 +244,9 @@ class _Cluster:
             self._at_hand.clear()
             await self._at_hand.wait()
         raise Lost(
-            "the scheduler at {address} comes and goes ({message})", address=self._address, message=message
+            "the connection to the scheduler at {address} is unstable ({message})",
+            address=self._address,
+            message=message,
         )
 
     def _sent(self, task: bytes, key: str) -> tuple[Any, ...]:
@@ -278,7 +280,7 @@ class _Cluster:
             threads = await asyncio.wait_for(self._client.nthreads(), CONNECT)
         except Exception:  # a network has many ways to fail
             self._at_hand.clear()
-            return Message("the scheduler at {address} answers no more", address=self._address)
+            return Message("the scheduler at {address} no longer answers", address=self._address)
         self.capacity = sum(threads.values())
         return None if threads else Message("no worker is left at {address}", address=self._address)
 
@@ -291,7 +293,10 @@ async def _left(resource: Any) -> None:
 
 def _without_package(address: str, fault: Exception) -> CourseworkError:
     return CourseworkError(
-        "a worker at {address} has not this package, or another version of it ({problem}): install there what is installed here",
+        (
+            "a worker at {address} does not have this package, or has another version ({problem}): install the "
+            "same version there"
+        ),
         address=address,
         problem=_line(fault),
     )

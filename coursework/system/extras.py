@@ -39,7 +39,10 @@ def library(module: str, job: str, extra: str) -> ModuleType:
             ) from fault
         message = " ".join(str(fault).split())[:120]
         raise NotAtHand(
-            "{job} {name}, which is installed and cannot be loaded ({error}: {message}): pip install --upgrade --force-reinstall {name}, or a version that fits the NumPy that is there",
+            (
+                "{job} {name}, which is installed but cannot be loaded ({error}: {message}): pip install --upgrade "
+                "--force-reinstall {name}, or a version that fits the installed NumPy"
+            ),
             job=Message(job),
             name=name,
             error=type(fault).__name__,

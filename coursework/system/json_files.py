@@ -42,9 +42,7 @@ def json_of(data: bytes, source: str) -> Any:
         text = data.decode("utf-8-sig")
         value = json.loads(text, parse_int=_integer, parse_float=_decimal, parse_constant=_constant)
     except RecursionError as fault:
-        raise BadInput(
-            "{source} is not JSON that can be read: it is nested too deep", source=source
-        ) from fault
+        raise BadInput("{source} cannot be read: its JSON is nested too deep", source=source) from fault
     except ValueError as fault:
         raise BadInput("{source} is not JSON: {problem}", source=source, problem=str(fault)[:100]) from fault
     if "\\u0000" in text or "\\ud" in text.casefold():

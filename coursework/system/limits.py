@@ -31,7 +31,7 @@ MOST_WORKERS = 256
 def beyond(subject: str, count: int, most: int, unit: str) -> Message:
     """Return the message for too much: ``a file of 7,000,000 rows is not read; the limit is 2,000,000: part
     it into several``."""
-    template = "{subject} of {count:,} {unit} is not read; the limit is {most:,}: part it into several"
+    template = "{subject} of {count:,} {unit} is not read; the limit is {most:,}: split it into several"
     return Message(template, subject=Message(subject), count=count, unit=Message(unit), most=most)
 
 

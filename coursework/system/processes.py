@@ -134,7 +134,7 @@ def _given(sent: deque[tuple[str, Future[Any]]]) -> Any:
         return task.result()
     except Lost as fault:
         raise Lost(
-            "{problem}: {name} is not done, and what comes after it may not be", problem=fault, name=name
+            "{problem}: {name} is not done, and later steps may not be", problem=fault, name=name
         ) from None
 
 
@@ -169,8 +169,8 @@ def processes(count: int) -> Iterator[Submit]:
                 raise
     except BrokenProcessPool as broken:
         raise CourseworkError(
-            "a process that shared the work ended by itself: too little memory, or a script that starts the work "
-            "outside of 'if __name__ == \"__main__\":'; close what takes memory, or put that line before it"
+            "a worker process ended by itself: there was too little memory, or a script starts the work outside "
+            "of 'if __name__ == \"__main__\":'; free some memory, or put that line before it"
         ) from broken
 
 

@@ -35,7 +35,7 @@ def duplicate_column(header: Iterable[str], columns: Iterable[str]) -> str:
     else ""."""
     titles = [as_written(title.strip()).casefold() for title in header]
     duplicate = next((column for column in columns if titles.count(column) > 1), "")
-    template = "the header names the column {column} twice; take one of them away"
+    template = "the header names the column {column} twice; remove one of them"
     return Message(template, column=duplicate) if duplicate else ""
 
 
@@ -106,7 +106,7 @@ def _refuse_nul(path: Path, data: bytes) -> None:
     if b"\0" in data and "\0" in (text := data.decode(encoding_of(data), "replace")):
         line = len(re.findall(r"\r\n|\n|\r", text.partition("\0")[0])) + 1
         raise BadInput(
-            "{file}, line {line}: holds a NUL byte, which no table does; take it out", file=path, line=line
+            "{file}, line {line}: a NUL byte, which no table contains; remove it", file=path, line=line
         )
 
 

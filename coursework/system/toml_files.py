@@ -89,7 +89,7 @@ def table_of(source: str, source_name: str) -> dict[str, Any]:
     for number, line in enumerate(source.splitlines(), start=1):
         if line.partition("=")[0].count(".") > _MOST_DOTS:
             raise BadInput(
-                "{source_name}, line {number}: more than {most} dots before what is said; a key has one or two",
+                "{source_name}, line {number}: a key with more than {most} dots; a key has one or two",
                 source_name=source_name,
                 number=number,
                 most=_MOST_DOTS,
@@ -98,13 +98,14 @@ def table_of(source: str, source_name: str) -> dict[str, Any]:
         table = tomllib.loads(source)
     except RecursionError:
         raise BadInput(
-            "{source_name}: brackets within brackets, too many to be read", source_name=source_name
+            "{source_name}: brackets nested too deep to be read", source_name=source_name
         ) from None
     except ValueError as fault:
         raise BadInput("{source_name}: {problem}", source_name=source_name, problem=fault) from fault
     if _holds_huge(table):
         raise BadInput(
-            "{source_name}: a whole number of more than 64 bits, which TOML has not", source_name=source_name
+            "{source_name}: a whole number of more than 64 bits, which TOML does not have",
+            source_name=source_name,
         )
     return table
 

@@ -53,7 +53,7 @@ def unpack(archive: Path, folder: Path, limits: ArchiveLimits = USUAL) -> list[P
             members = [info for info in opened.infolist() if not info.is_dir()]
             if len(members) > limits.files:
                 raise BadInput(
-                    "{archive} holds {count} files; {most} is the most",
+                    "{archive} contains {count} files; at most {most} are allowed",
                     archive=archive.name,
                     count=len(members),
                     most=limits.files,
@@ -101,7 +101,7 @@ def _write(opened: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path, most: i
             size += len(chunk)
             if size > most:
                 raise BadInput(
-                    "{archive} unpacks to more than it may ({filename!r}): it is not gone on with",
+                    "{archive} unpacks to more than the limit ({filename!r}): it is not read further",
                     archive=archive.name,
                     filename=member.filename[:60],
                 )

@@ -281,7 +281,10 @@ def _replacement_errors(path: Path) -> Iterator[None]:
         yield
     except OSError as fault:
         raise BadInput(
-            "{file} cannot be written ({reason}); close what has it open, move it away, or choose another --out",
+            (
+                "{file} cannot be written ({reason}); close the program that has it open, move the file, or choose "
+                "another --out"
+            ),
             file=path,
             reason=fault.strerror,
         ) from fault

@@ -83,7 +83,7 @@ def test_an_example_never_overwrites(copied, capsys):
 @pytest.mark.parametrize("more", [["beam"], ["--from", "assour"], ["--as", "mine"], ["--lang", "fr"]])
 def test_an_example_is_copied_whole_and_takes_nothing_more(tmp_path, capsys, more):
     assert run(["new", str(tmp_path / "own"), *more, "--example", "engineering"]) == 2
-    assert "copied whole" in capsys.readouterr().err
+    assert "copied as a whole" in capsys.readouterr().err
     assert not (tmp_path / "own").exists()
 
 

@@ -84,7 +84,7 @@ def test_a_language_that_the_course_does_not_speak_is_refused(english, told):
     for command in (("show", "crank_pin"), ("build", "--out", english / "out"), ("notebook",)):
         status, _, err = told("--course", english, *command, "--lang", "fr")
         assert (status, len(err.splitlines())) == (2, 1)
-        assert "does not speak 'fr'; it speaks en" in err
+        assert "is not available in 'fr', only in en" in err
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,7 @@ def test_a_new_assignment_in_a_language_that_an_exercise_lacks_is_refused(englis
         "--course", english, "new", "assignment", tmp_path / "dm.toml", "crank_pin", "--lang", "fr"
     )
     assert status == 2
-    assert "crank_pin is not written in 'fr'; it is in en" in err
+    assert "crank_pin is not available in 'fr', only in en" in err
     assert (
         told("--course", english, "new", "assignment", tmp_path / "dm.toml", "crank_pin", lang="fr_FR")[0]
         == 0
@@ -193,4 +193,4 @@ def test_a_line_in_a_language_that_an_exercise_lacks_is_told_by_its_student(told
         build = ("build", asked, "--roster", tmp_path / "class.csv", "--out", tmp_path / "out")
         status, _, err = told("--course", tmp_path / "mine", *build)
         assert status == 2
-        assert "'en', which the line of Zoé in the roster asks for; it has fr" in err
+        assert "'en', which the line of Zoé in the roster requests; it has fr" in err

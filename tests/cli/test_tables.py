@@ -125,7 +125,7 @@ def test_a_table_of_either_kind_is_read_back_as_the_other(written, tmp_path, cap
         where = ["--issued", out / "sheets/issued.json", "--out", out / "marks", "--no-feedback"]
         assert command("grade", out / "answers.csv", *where, "--decimal", other) == 1
         said = capsys.readouterr()
-        assert "not what they were" not in said.out
+        assert "marks changed" not in said.out
         assert "edited" not in said.err
         assert rows_of(out / "marks/changes.csv", SPREADSHEETS[other].delimiter) == []
     assert told[0] == told[1]

@@ -180,7 +180,7 @@ def test_a_record_is_checked_when_it_comes_back(course):
         exercise.from_record({**record, "exercise": "ball_reducer"})
     with pytest.raises(BadInput, match="r1"):
         exercise.from_record({**record, "given": {}})
-    with pytest.raises(BadInput, match="no value"):
+    with pytest.raises(BadInput, match="not one of its values"):
         exercise.from_record({**record, "given": {**record["given"], "r1": {"value": "x", "unit": "mm"}}})
 
 

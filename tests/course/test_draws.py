@@ -208,10 +208,10 @@ def test_distinct_variants_are_distinct_or_the_error_says_how_many_exist(small_c
     assert exercise.draws.population() == 3 * 2 * 3
     drawn = distinct_variants(exercise, 0, 18, "fr")
     assert len({tuple(v.given.values()) for v in drawn}) == 18
-    with pytest.raises(Starved, match="19 different variants asked, only 18 exist"):
+    with pytest.raises(Starved, match="19 different variants requested, only 18 exist"):
         distinct_variants(exercise, 0, 19, "fr")
     refused = Counter()
-    with pytest.raises(Starved, match="1 different variant asked, 0 found"):
+    with pytest.raises(Starved, match="1 different variant requested, 0 found"):
         distinct_variants(exercise, 0, 1, "fr", refused, parts=())
 
 

@@ -102,7 +102,7 @@ def test_another_variant_of_who_was_issued_one_is_refused_and_nothing_is_kept(st
     number = put(store, content(course))
     other = content(course, (ANA, BEN, CLEO, "Dan"))
     other["issued"][0] = item(course, ANA, 77)
-    with pytest.raises(BadInput, match=r"Ana was issued crank_pin 0.*give it another name"):
+    with pytest.raises(BadInput, match=r"Ana was issued crank_pin 0.*choose another name"):
         put(store, other)
     assert stored(store, number) == content(course)
 
@@ -117,7 +117,7 @@ def test_another_record_of_a_seed_is_refused(store, course):
 
 def test_a_build_of_exercises_needs_a_name(store, course):
     told = {key: value for key, value in content(course).items() if key != "assignment"}
-    with pytest.raises(BadInput, match="name it"):
+    with pytest.raises(BadInput, match="name them"):
         put(store, told)
     put(store, told, name="tutorial")
     with store.reading() as connection:

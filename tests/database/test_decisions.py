@@ -104,7 +104,7 @@ def test_a_decision_outlives_a_marking(store, number, course):
     [
         ([PLACE], "acepted", None, UnknownName, "did you mean 'accepted'"),
         ([PLACE], "given", None, BadInput, "say how many"),
-        ([PLACE], "given", 99, BadInput, "give that or fewer"),
+        ([PLACE], "given", 99, BadInput, "give at most these"),
         ([PLACE._replace(part="xx")], "accepted", None, UnknownName, "no part 'xx'"),
         ([PLACE._replace(exercise="crank")], "accepted", None, UnknownName, "no exercise 'crank'"),
         ([PLACE, PLACE._replace(part="nn")], "accepted", None, UnknownName, "no part 'nn'"),

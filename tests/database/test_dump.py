@@ -200,7 +200,7 @@ def test_only_an_empty_database_takes_a_dump(full, tmp_path):
             lambda p: p.write_text(p.read_text("utf-8").replace("\n1,", "\none,", 1), "utf-8"),
             "mark.csv, line 2",
         ),
-        (lambda p: p.with_name("dump.json").unlink(), "holds no dump"),
+        (lambda p: p.with_name("dump.json").unlink(), "contains no dump"),
         (lambda p: p.with_name("dump.json").write_text('{"format": "7"}', "utf-8"), "another version"),
     ],
 )
@@ -216,7 +216,7 @@ def test_a_spoiled_dump_is_refused_and_nothing_of_it_kept(full, tmp_path, spoil,
 
 def test_a_folder_of_other_files_is_left_alone(full, tmp_path):
     (tmp_path / "thesis.txt").write_text("mine", "utf-8")
-    with pytest.raises(BadInput, match="holds other files"):
+    with pytest.raises(BadInput, match="contains other files"):
         dump(full, tmp_path)
 
 

@@ -117,7 +117,7 @@ def test_more_who_ask_than_are_served_at_once_is_told_in_a_line(store):
     taken = [store.engine.connect() for _ in range(pool.size() + pool._max_overflow)]
     with pytest.raises(BadInput, match="limit"), store.reading():
         pass
-    with pytest.raises(BadInput, match="nothing of this was kept"), store.begin():
+    with pytest.raises(BadInput, match="nothing was stored"), store.begin():
         pass
     for one in taken:
         one.close()

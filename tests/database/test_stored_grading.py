@@ -246,7 +246,7 @@ def test_a_report_of_a_database_is_that_of_the_folder(one):
         (["grade", "first.csv", "--db", "{url}", "--assignment", "week4"], "did you mean 'week3'"),
         (["grade", "none.csv", "--db", "{url}"], "no such file"),
         (["grade", "first.csv", "--issued", "i.json", "--assignment", "x"], "--assignment is of a database"),
-        (["grade", "--from", "first.csv", "--db", "{url}"], "--from takes the marks as they stand"),
+        (["grade", "--from", "first.csv", "--db", "{url}"], "--from takes the marks"),
         (["report", "--db", "{url}", "--out", "r"], "nothing of it is marked yet"),
         (["report"], "name one of them"),
         (["report", "--db", "{url}"], "no folder to write"),
@@ -292,6 +292,6 @@ def test_a_longer_roster_adds_and_another_build_is_refused(one, capsys):
     one.status("database", "show", one.url, "--json")
     assert json.loads(capsys.readouterr().out)[0]["students"] == 5
     assert one.status(*job, "--seed", "5", "--overwrite") == 2
-    assert "give it another name" in capsys.readouterr().err
+    assert "choose another name" in capsys.readouterr().err
     elsewhere = [one.folder / "again" if word == one.built else word for word in job]
     assert one.status(*elsewhere, "--seed", "5") == 0

@@ -131,7 +131,7 @@ def test_an_assignment_without_a_scale_has_no_mark(course, tmp_path):
 def test_an_assignment_that_is_none_is_told(course, tmp_path, capsys):
     issued = issue(tmp_path, [item(course, "Ada", 5)], mark={"of": "twenty", "step": 1})
     assert grade(course, issued, right(course, "Ada", 5))[0] == 2
-    assert "its assignment is none" in capsys.readouterr().err
+    assert "the assignment in it is not valid" in capsys.readouterr().err
 
 
 # --------------------------------------------------------------------- sittings
@@ -177,7 +177,7 @@ def test_answers_that_do_not_say_their_sitting_are_of_the_latest_and_told(course
     assert status == 0
     assert {m["sitting"] for m in table(marks / "marks.csv") if m["student"] == "Ada"} == {"2"}
     told = capsys.readouterr().err
-    assert told.count("answers without a seed are taken for sitting 2, seed 7") == 1
+    assert told.count("answers without a seed count for sitting 2, seed 7") == 1
 
 
 def test_another_seed_is_refused_with_both_of_the_student(course, two_sittings):

@@ -307,7 +307,7 @@ def test_solutions_are_shown_from_their_day_on_or_when_wanted(issued_file, state
 @pytest.mark.parametrize(
     ("stated", "told"),
     [
-        ({"solutions_after": "2026-12-05"}, "until 2026-12-05"),
+        ({"solutions_after": "2026-12-05"}, "before 2026-12-05"),
         ({"answers": "never"}, "never"),
         ({"solutions_after": "soon"}, "is a day such as"),
     ],

@@ -141,7 +141,7 @@ def test_a_sheet_that_a_teacher_wrote_on_is_set_aside_and_told(marked, capsys):
     assert grade(marked, "later.csv") == 0
     said = capsys.readouterr().err
     assert "bo.html was changed since it was written; it is now bo.before.html" in said
-    assert "cy.html is of an earlier marking; it was changed since, and is kept" in said
+    assert "cy.html is from an earlier marking and was changed since; it is kept" in said
     assert (feedback / "bo.before.html").read_text("utf-8") == "a note to bo"
     assert (feedback / "cy.html").read_text("utf-8") == "a note to cy"
     assert "a note" not in (feedback / "bo.html").read_text("utf-8")
@@ -184,7 +184,7 @@ def test_who_answered_counts_for_the_limit_of_sheets(marked, monkeypatch, capsys
     assert (marked / "out" / "marks" / "feedback" / "bo.html").exists()
     assert grade(marked, "first.csv", "--out", str(marked / "all")) == 0
     assert (
-        "no feedback sheets are printed for 3 students who answered, more than 2" in capsys.readouterr().err
+        "no feedback sheets are printed for more than 2 students, and 3 answered" in capsys.readouterr().err
     )
     assert not (marked / "all" / "feedback").exists()
     assert grade(marked, "first.csv", "--out", str(marked / "asked"), "--feedback") == 0
@@ -194,7 +194,7 @@ def test_who_answered_counts_for_the_limit_of_sheets(marked, monkeypatch, capsys
 def test_a_class_without_a_roster_is_counted_by_its_answers():
     sheets = Sheets(sheets={(f"student {n}", "crank_pin", 0, 0): {} for n in range(22_000)})
     assert not usual_feedback(sheets)
-    assert "22,000 students" in sheets.warnings[0]
+    assert "22,000 answered" in sheets.warnings[0]
     several = Sheets(sheets={("Ada", f"exercise {n}", 0, 0): {} for n in range(2_000)})
     assert usual_feedback(several)
     assert several.warnings == []

@@ -107,7 +107,7 @@ def test_where_nothing_tells_whose_they_are_both_wait_for_a_person(marked, issue
     assert points[BO] > 0
     assert len(rejected) == 2 * len(issued[ADA][1])
     assert {row["student"] for row in rejected} == {ADA}
-    assert all("a person must say which is theirs" in row["reason"] for row in rejected)
+    assert all("a person must decide which one counts" in row["reason"] for row in rejected)
     assert f"different sheets of {ADA}" in said.err
 
 
@@ -128,7 +128,7 @@ def test_a_name_of_file_or_folder_tells_whose_sheet_counts(marked, issued, endin
         **{named("aaa", ending): made(issued, x="1"), named(own, ending): made(issued)}
     )
     assert points[ADA] == ALL
-    assert all(f"names {ADA}, whose own sheet in" in row["reason"] for row in rejected)
+    assert all(f"names {ADA}, who has another sheet in" in row["reason"] for row in rejected)
     assert {row["source"].partition(",")[0].rpartition("/")[2] for row in rejected} == {named("aaa", ending)}
 
 

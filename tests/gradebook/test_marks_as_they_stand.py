@@ -125,7 +125,7 @@ def test_another_folder_holds_the_marks_too(course, marks, tmp_path):
 
 def test_what_is_marked_is_said_once(course, marks, capsys):
     assert again(course, marks, str(marks.parent / "answers.csv")) == 2
-    assert "name no SUBMISSIONS" in capsys.readouterr().err
+    assert "omit SUBMISSIONS" in capsys.readouterr().err
     assert (
         run(["--course", str(course.folder.root), "grade", "--issued", str(marks.parent / "issued.json")])
         == 2

@@ -72,7 +72,7 @@ def test_a_cell_that_cannot_be_read_costs_its_own_exercise(tmp_path):
 def test_a_cell_that_is_gone_or_not_tagged_is_told_with_what_stands_in_others(tmp_path):
     rows = read(tmp_path, [cell('{"x": "1,5"}', SHEETS[0]), cell('{"class": "2"}', SHEETS[1], tags=())])
     assert placed(rows) == BOTH[:1]
-    assert refused(rows) == [("Ada", "grashof", "12", "no cell tagged 'answers' is of grashof, seed 12")]
+    assert refused(rows) == [("Ada", "grashof", "12", "no cell tagged 'answers' belongs to grashof, seed 12")]
     assert rows[-1].row["answer"] == '{"class": "2"}'
 
 

@@ -74,14 +74,14 @@ def test_moodles_export_is_filled_and_every_other_byte_stays(fill):
         b"emile@example.org,0.00,", b"emile@example.org,3,"
     )
     assert status == 0
-    assert "out of 9: that must be the item's maximum" in told
-    assert "1 student with no marks, and left as they were: Bob Ray" in told
+    assert "out of 9: this must be the maximum of the item" in told
+    assert "1 student with no marks; left as they were: Bob Ray" in told
 
 
 def test_a_stranger_is_told_and_never_written(fill):
     status, told, data = fill("moodle", "moodle_gradebook_en.csv", ANN, EVE)
     assert status == 1
-    assert "1 student with marks, but no line in the export, and not written: Eve Nemo" in told
+    assert "1 student with marks but no line in the export; not written: Eve Nemo" in told
     assert b"eve" not in data
     assert data.count(b"\n") == (RECORDED / "moodle_gradebook_en.csv").read_bytes().count(b"\n")
 
@@ -95,7 +95,7 @@ def test_two_of_one_name_are_told_apart_by_mail_and_a_name_alone_is_nobodys(fill
         "moodle", "moodle_gradebook.csv", ("Ann Doe", "2", "11", "", "", ""), item="Week 3, marked"
     )
     assert (status, data) == (1, (RECORDED / "moodle_gradebook.csv").read_bytes())
-    assert "several lines or none that is surely theirs, and not written: Ann Doe" in told
+    assert "no line, or several, that could be theirs; not written: Ann Doe" in told
 
 
 def test_one_name_and_another_mail_is_another_person(fill):
@@ -103,7 +103,7 @@ def test_one_name_and_another_mail_is_another_person(fill):
         "moodle", "moodle_gradebook_en.csv", ("Ann Doe", "2", "9", "other@example.org", "", "")
     )
     assert status == 1
-    assert "no line in the export, and not written: Ann Doe" in told
+    assert "no line in the export; not written: Ann Doe" in told
 
 
 def test_moodle_is_given_a_point_in_every_language_unless_told(fill):
@@ -136,7 +136,7 @@ def test_canvas_keeps_what_is_excused_its_line_of_maxima_and_its_invented_studen
     before, now = ((RECORDED / "canvas_gradebook.csv").read_bytes().split(b"\r\n"), data.split(b"\r\n"))
     assert [k for k, (a, b) in enumerate(zip(before, now, strict=True)) if a != b] == [2, 4]
     assert b"EX" in now[3]
-    assert "what stays as the platform has it: Ann Doe (4712): EX" in told
+    assert "cells that keep the platform's value: Ann Doe (4712): EX" in told
     assert "left as they were: Bob Ray\n" in told, "nobody is called Student, Test or Points Possible"
     assert status == 1, "Eve is a stranger"
 
@@ -174,7 +174,7 @@ def test_sakais_export_is_filled_by_the_maximum_in_its_title(fill):
             "canvas_gradebook.csv",
             "Week 3",
             ("--out-of", "9"),
-            "says that Week 3 (102) is out of 20; --out-of says 9",
+            "states that Week 3 (102) is out of 20, and --out-of states 9",
         ),
         ("moodle", "moodle_responses_en.csv", "Quiz", ("--score", "mark"), "has no column 'mark'"),
         ("moodle", "README.md", "Week 3", (), "names nobody"),
@@ -197,7 +197,7 @@ def test_an_item_of_several_columns_is_named_whole(fill, tmp_path):
     status, told, data = fill("moodle", tmp_path / "two.csv", ANN)
     assert (status, data) == (2, None)
     assert (
-        "several columns of 'Week 3': 'Quiz: Week 3 (Real)', 'Quiz: Week 3 (Percentage)'; name one whole"
+        "several columns 'Week 3': 'Quiz: Week 3 (Real)', 'Quiz: Week 3 (Percentage)'; give the full name"
         in told
     )
     status, _, data = fill(
@@ -244,7 +244,7 @@ def test_the_template_is_never_overwritten(tmp_path, capsys):
     marks = summary(tmp_path / "marks", ANN)
     given = ["--template", str(template), "--item", "Week 3", "--out", str(template)]
     assert run(["gradebook", "moodle", str(marks), *given]) == 2
-    assert "keep the platform's export as it came" in capsys.readouterr().err
+    assert "keep the platform's export" in capsys.readouterr().err
 
 
 def test_from_a_report_to_the_gradebook_with_nothing_between(tmp_path):

@@ -90,7 +90,7 @@ def test_a_corrected_solution_says_what_changed_and_for_whom(small_course, issue
     solution.write_text(text.replace("return r * omega\n", "return 2 * r * omega\n"), "utf-8")
     capsys.readouterr()
     grade(corrected, issued)
-    assert "3 marks are not what they were" in capsys.readouterr().out
+    assert "3 marks changed" in capsys.readouterr().out
     changes = table(issued / "marks" / "changes.csv")
     assert [c["student"] for c in changes] == ["Ada", "Bo", "Cy"]
     assert {c["part"] for c in changes} == {"v"}
@@ -621,7 +621,7 @@ def test_an_acceptance_of_a_sheet_that_was_issued_and_not_handed_in_is_a_note(
     [
         (["Ada,crank_pin,,y,1", "Ada,crank_pin,,y,0.5"], "0.5", "line 3: points 0.5 for Ada, crank_pin, y"),
         (["ADA,crank_pin,{Ada},y,0.25", "Ada,crank_pin,,y,"], "1", "line 3: full points for Ada"),
-        (["Ada,crank_pin,,y,", "Ada,crank_pin,{Ada},y,0.25"], "0.25", "and line 2 says full points"),
+        (["Ada,crank_pin,,y,", "Ada,crank_pin,{Ada},y,0.25"], "0.25", "but full points in line 2"),
         (["Ada,crank_pin,,y,1", "Ada,crank_pin,{Ada}.0,y,"], "1", ""),
         (["Ada,crank_pin,,y,1", "Bo,crank_pin,,y,0"], "1", ""),
     ],
@@ -643,7 +643,7 @@ def test_a_misspelt_heading_of_what_is_accepted_is_told(small_course, issued, tm
     path = tmp_path / "by_hand.csv"
     path.write_text("student,exercise,part,point,note\nAda,crank_pin,y,0.5,oral\n", "utf-8")
     assert grade(small_course, issued, "--accepted", path) == 1
-    assert "line 1: no column 'point' is read; did you mean 'points'?" in capsys.readouterr().err
+    assert "line 1: the column 'point' is not read; did you mean 'points'?" in capsys.readouterr().err
 
 
 def test_points_cut_at_their_comma_are_refused(small_course, issued, tmp_path, capsys):

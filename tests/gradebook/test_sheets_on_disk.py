@@ -162,7 +162,7 @@ def test_nothing_is_left_where_nothing_can_be_marked(course, tmp_path, by_disk):
     by_disk()
     issued = issue(tmp_path, [item(course, "Ada", 5)])
     file = write(tmp_path / "a.csv", [("Nobody", "crank_pin", "5", "v", "1")] * 9)
-    with pytest.raises(BadInput, match="9 rows rejected; the first is told"):
+    with pytest.raises(BadInput, match="9 rows rejected; the first one"):
         grade_files(course, [file], issued, tmp_path / "out", feedback=False)
     assert not (tmp_path / "out").exists()
 

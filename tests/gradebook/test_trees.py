@@ -101,7 +101,7 @@ def test_a_notebook_of_another_than_who_handed_it_in_is_nobodys(tmp_path):
     write(tmp_path, "submitted/adoe/week3/a.ipynb", notebook("Ann Doe", rA="1"))
     book = graded(tmp_path / "out", tmp_path / "submitted", students=CLASS)
     (rejected,) = book.rejected
-    assert "handed in by Bob Ray (bray), but it names Ann Doe" in rejected.reason
+    assert "submitted by Bob Ray (bray), but it names Ann Doe" in rejected.reason
     assert [row["answer"] for row in table(tmp_path / "out/marks/marks.csv")] == ["1"]
 
 

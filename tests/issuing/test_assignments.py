@@ -89,7 +89,7 @@ def by_student(found):
         ("seed = 12", "seed = -1", r"line 17: a seed is a whole number"),
         ('duration = "1 h 30"', 'logo = "logo.svg"', r"line 4: logo: there is no file"),
         ("title = { fr", 'title = { xx = "?", fr', r"line 1: title: no language 'xx'"),
-        ('name = "grashof"', 'name = "vocabulary"', r"line 20: vocabulary stands twice"),
+        ('name = "grashof"', 'name = "vocabulary"', r"line 20: vocabulary appears twice"),
         ('[[exercises]]\nname = "grashof"', '[[exercises]]\nnmae = "grashof"', r"line 20: no key 'nmae'"),
         ("date = 2026-12-04", "date = ", r"week3.toml: "),
     ],
@@ -102,7 +102,7 @@ def test_what_makes_no_sense_is_told_with_its_line_and_the_nearest_name(tmp_path
 
 def test_a_logo_needs_words_for_who_cannot_see_it(tmp_path):
     (tmp_path / "logo.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>", "utf-8")
-    with pytest.raises(BadInput, match="line 1: a logo needs words"):
+    with pytest.raises(BadInput, match="line 1: a logo needs a text"):
         read_assignment(stated(tmp_path, 'logo = "logo.svg"\n' + TEXT), COURSE)
     one = read_assignment(stated(tmp_path, 'logo = "logo.svg"\nlogo_alt = "Our school"\n' + TEXT), COURSE)
     assert one.picture("fr").alt == "Our school"
@@ -163,7 +163,7 @@ def test_what_was_issued_stays_even_where_the_file_says_other_points(midterm, tm
     assert points["Zoé Martin"] == 2
     assert points["Late One"] == 9
     fewer = read_assignment(stated(tmp_path, TEXT[: TEXT.index('[[exercises]]\nname = "grashof"')]), COURSE)
-    with pytest.raises(BadInput, match="not issued there as it is now"):
+    with pytest.raises(BadInput, match="changed since it was issued there"):
         dealt(fewer, CLASS, content)
 
 

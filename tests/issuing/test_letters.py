@@ -100,7 +100,7 @@ def build(course, tmp_path, name, capsys):
 
 def test_build_names_the_students_whose_letters_no_font_has(small_course, tmp_path, capsys):
     said, files = build(small_course, tmp_path, "out", capsys)
-    assert "2 names with letters that no font of the PDF draws" in said
+    assert "2 names with letters that no font of the PDF has" in said
     assert "李 明 (李明), 王 明 (王明)" in said
     assert "Ada" not in said
     assert len(files) == 3
@@ -111,7 +111,7 @@ def test_a_font_in_the_course_s_templates_draws_what_the_others_lack(small_cours
     _, before = build(small_course, tmp_path, "before", capsys)
     font_of("李明", small_course / "templates" / "fonts" / "course.ttf")
     said, files = build(small_course, tmp_path, "after", capsys)
-    assert "1 name with letters that no font of the PDF draws, printed as squares: 王 明 (王)" in said
+    assert "1 name with letters that no font of the PDF has, printed as squares: 王 明 (王)" in said
     assert files["ada.fr.pdf"] == before["ada.fr.pdf"]
     with_font = [name for name, data in files.items() if b"CourseFont" in data or b"Course Font" in data]
     assert len(with_font) == 2

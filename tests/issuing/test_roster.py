@@ -109,7 +109,7 @@ def test_moodles_gradebook_is_a_roster_without_its_marks(name, mail):
         "Department": "",
         mail: "wb.ann2@example.org",
     }
-    assert "4 columns of marks not carried: Week 3, marked (Real), Quiz: Week 3 (Real), …" in note
+    assert "4 columns of marks not used: Week 3, marked (Real), Quiz: Week 3 (Real), …" in note
 
 
 def test_canvass_gradebook_is_a_roster_without_maxima_and_without_its_invented_student():
@@ -121,8 +121,8 @@ def test_canvass_gradebook_is_a_roster_without_maxima_and_without_its_invented_s
         "SIS Login ID": "emile@example.org",
         "Section": "Mechanisms A",
     }
-    assert "2 lines of no student left out: Points Possible, Student, Test" in notes[0]
-    assert "3 columns of marks not carried" in notes[1]
+    assert "2 lines without a student left out: Points Possible, Student, Test" in notes[0]
+    assert "3 columns of marks not used" in notes[1]
 
 
 def test_blackboards_and_sakais_gradebooks_are_rosters():
@@ -142,7 +142,7 @@ def test_an_average_of_moodles_is_no_student_and_a_surname_alone_is_one(tmp_path
     header = "Nom de famille,Prénom,Adresse de courriel\n"
     students, notes = read(tmp_path, header + "Doe,Ann,a@b.c\nMoyenne globale,,\nPelé,,\n")
     assert [s.name for s in students] == ["Doe Ann", "Pelé"]
-    assert "1 line of no student left out: Moyenne globale" in notes[0]
+    assert "1 line without a student left out: Moyenne globale" in notes[0]
 
 
 def test_two_of_one_name_are_told_apart_by_what_identifies_them_or_refused(tmp_path):
@@ -152,9 +152,9 @@ def test_two_of_one_name_are_told_apart_by_what_identifies_them_or_refused(tmp_p
         ("ann doe (8)", "8"),
         ("Bo", "9"),
     ]
-    with pytest.raises(BadInput, match="stands on line 2 already; tell them apart, by a number"):
+    with pytest.raises(BadInput, match="is already on line 2; distinguish them, for instance by a number"):
         read(tmp_path, "student,group\nAnn Doe,A\nAnn Doe,B\n")
-    with pytest.raises(BadInput, match=r"line 3: Ann Doe \(7\) stands on line 2 already"):
+    with pytest.raises(BadInput, match=r"line 3: Ann Doe \(7\) is already on line 2"):
         read(tmp_path, "student,number\nAnn Doe,7\nAnn Doe,7\n")
 
 

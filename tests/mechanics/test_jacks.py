@@ -294,7 +294,7 @@ def test_a_load_on_the_way_out_acts_as_the_jack_grows():
 
 
 def test_thrust_and_torque_are_shown_where_they_drive():
-    with pytest.raises(WrongValue, match="a jack drives the mechanism, and no crank; show drive_thrust"):
+    with pytest.raises(WrongValue, match="a jack drives the mechanism, not a crank; show drive_thrust"):
         scene(0, show=("drive_torque",))
     crank = COURSE["four_bar_motion"]
     with pytest.raises(WrongValue, match="no jack drives the mechanism; show drive_torque"):

@@ -195,7 +195,7 @@ GONE = object()
 RECORD = ("issued", 0, "record")
 PART = (*RECORD, "parts", 0)
 ISSUED = {
-    "a part without id": (changed((*PART, "id"), GONE), "item 1 of 3: no issued record: id of a part is a text; found nothing"),
+    "a part without id": (changed((*PART, "id"), GONE), "item 1 of 3 is not an issued record: id of a part is a text; found nothing"),
     "a part twice": (changed((*PART, "id"), '"I"'), "it has the part 'I' twice"),
     "points that are none": (changed((*PART, "points"), '"2"'), "points of 'Z' are a number above 0"),
     "a seed of 5000 digits": (changed((*RECORD, "seed"), "9" * 5000), "is not JSON: a number of 5000 digits, 999"),
@@ -209,7 +209,7 @@ ISSUED = {
     "half a character in a name": (changed(("issued", 0, "student"), r'"A\ud800"'), "issued[0].student holds half a character"),
     "100 000 lists": (lambda data: DEEP.encode(), "nested too deep"),
     "a sitting that is a text": (changed(("issued", 0, "sitting"), '"2"'), "sitting is a whole number"),
-    "nobody's columns": (changed(("students",), '["Ana"]'), "its students are no columns"),
+    "nobody's columns": (changed(("students",), '["Ana"]'), "the students in it are not columns"),
 }  # fmt: skip
 
 
@@ -235,25 +235,25 @@ def test_what_was_issued_is_told_by_its_item(coil, tmp_path, capsys, reader, cas
 
 ROWS = {
     ("built", lambda data: DEEP.encode()): "nested too deep",
-    ("built", lambda data: b'{"files": {"../x": []}}'): "is no list of what was written",
-    ("built", lambda data: b'{"files": {"x": "y"}}'): "is no list of what was written",
+    ("built", lambda data: b'{"files": {"../x": []}}'): "is not a list of written files",
+    ("built", lambda data: b'{"files": {"x": "y"}}'): "is not a list of written files",
     ("built", lambda data: data.replace(b".ipynb", b"\\ud800", 1)): "holds half a character",
-    ("marks", lambda data: data.replace(b"Ben", b"B\0n", 1)): "marks.csv, line 9: holds a NUL byte",
-    ("marks, of a report", lambda data: data.replace(b"Ben", b"B\0n", 1)): "marks.csv, line 9: holds a NUL byte",
-    ("marks, as they stand", lambda data: data.replace(b"Ben", b"B\0n", 1)): "marks.csv, line 9: holds a NUL byte",
-    ("accepted", lambda data: data.replace(b"good", b"g\0od")): "accepted.csv, line 2: holds a NUL byte",
-    ("summary, for a platform", lambda data: data.replace(b",20,", b",inf,")): "out_of of Ana are a number; found 'inf'",
+    ("marks", lambda data: data.replace(b"Ben", b"B\0n", 1)): "marks.csv, line 9: a NUL byte",
+    ("marks, of a report", lambda data: data.replace(b"Ben", b"B\0n", 1)): "marks.csv, line 9: a NUL byte",
+    ("marks, as they stand", lambda data: data.replace(b"Ben", b"B\0n", 1)): "marks.csv, line 9: a NUL byte",
+    ("accepted", lambda data: data.replace(b"good", b"g\0od")): "accepted.csv, line 2: a NUL byte",
+    ("summary, for a platform", lambda data: data.replace(b",20,", b",inf,")): "out_of of Ana must be a number; found 'inf'",
     ("dump, person.csv", lambda data: data.replace(b"Ben", b"B\xe9n", 1)): "person.csv is not UTF-8",
     ("dump, person.csv", lambda data: data + data.splitlines(True)[-1]): "person.csv is damaged",
     ("dump, person.csv", lambda data: data + b"1\r\n"): "person.csv, line 5: 1 cells where the header has",
-    ("dump, person.csv", lambda data: data.replace(b"\n1,", b"\n" + b"9" * 5000 + b",")): "line 2: id is not what it is in a dump",
-    ("dump, person.csv", lambda data: data.replace(b"\n1,", b"\n" + b"9" * 30 + b",")): "line 2: id is not what it is in a dump",
+    ("dump, person.csv", lambda data: data.replace(b"\n1,", b"\n" + b"9" * 5000 + b",")): "line 2: id has a value that no dump has",
+    ("dump, person.csv", lambda data: data.replace(b"\n1,", b"\n" + b"9" * 30 + b",")): "line 2: id has a value that no dump has",
     ("dump, mark.csv", lambda data: data.replace(b"id,", b"id,id,", 1)): "has the columns",
     ("dump, variant.csv", lambda data: data.replace(b'"{', DEEP.encode() + b'"{', 1)): "variant.csv, line 2",
-    ("dump, variant.csv", lambda data: data.replace(b'""given""', b'""taken""')): "what the dump has of",
+    ("dump, variant.csv", lambda data: data.replace(b'""given""', b'""taken""')): "the part of the dump about",
     ("dump, dump.json", lambda data: DEEP.encode()): "nested too deep",
-    ("dump, dump.json", lambda data: data.replace(b'"rows"', b'"row"')): "says not how many rows",
-    ("dump, dump.json", lambda data: data.replace(b": 3", b": null")): "says not how many rows",
+    ("dump, dump.json", lambda data: data.replace(b'"rows"', b'"row"')): "does not state the number of rows",
+    ("dump, dump.json", lambda data: data.replace(b": 3", b": null")): "does not state the number of rows",
 }  # fmt: skip
 
 
@@ -312,7 +312,7 @@ def test_a_gradebook_that_is_cut_in_a_character_is_told(coil, tmp_path, capsys):
         "x",
     )
     assert coil(*words, "--out", tmp_path / "o.txt") == 2
-    assert f"{tmp_path / 'g.txt'} is damaged: it begins as utf-16-le" in capsys.readouterr().err
+    assert f"{tmp_path / 'g.txt'} is damaged: it begins in utf-16-le" in capsys.readouterr().err
 
 
 def test_a_parquet_of_odd_columns_is_one_rejection(tmp_path):
@@ -326,7 +326,7 @@ def test_a_parquet_of_odd_columns_is_one_rejection(tmp_path):
         for name in usual:
             parquet.write_table(arrow.table({**usual, name: column}), tmp_path / f"{number}.parquet")
             (rejected,) = read_file(tmp_path / f"{number}.parquet")
-            assert f"the column {name} holds {column.type}" in rejected.reason
+            assert f"the column {name} contains {column.type}" in rejected.reason
     parquet.write_table(
         arrow.table({**usual, "answer": arrow.array([[1.5, None]])}), tmp_path / "list.parquet"
     )

@@ -156,7 +156,7 @@ def read_all(path, data):
 )
 def test_a_table_of_answers_without_any_is_told(tmp_path, header):
     (row,) = read_all(tmp_path / "a.csv", header)
-    assert row == Rejected(str(tmp_path / "a.csv"), "the file holds no answers")
+    assert row == Rejected(str(tmp_path / "a.csv"), "the file contains no answers")
 
 
 def test_a_parquet_without_rows_or_with_damaged_names_is_told(tmp_path):

@@ -180,7 +180,7 @@ def test_a_spoilt_storage_stops_no_page(spoilt):
     ("change", "reason"),
     [
         (lambda sheet: sheet.update(answers=[1, 2]), "an item is"),
-        (lambda sheet: sheet.update(answers={}), "holds no answer"),
+        (lambda sheet: sheet.update(answers={}), "contains no answer"),
         (lambda sheet: sheet["answers"].update(rA={"$": 1}), "an answer is a text or a number"),
         (lambda sheet: sheet.pop("answers"), "an item is"),
     ],

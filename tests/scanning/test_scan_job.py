@@ -304,7 +304,7 @@ def test_an_archive_is_as_its_files(read, scans, tmp_path):
 
 
 def test_nothing_named_and_nothing_kept_is_said(scanned, tmp_path):
-    with pytest.raises(BadInput, match="name scans"):
+    with pytest.raises(BadInput, match="name the scans"):
         scan(scanned.course, [], scanned.issued, tmp_path / "none")
 
 

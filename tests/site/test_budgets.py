@@ -258,7 +258,7 @@ def test_a_notebook_with_its_figures_is_taken(class_of_three):
     )
     reply = sent(class_of_three, number, "mine.ipynb", json.dumps(notebook).encode())
     assert reply.status_code == 422  # nothing is answered in it
-    assert "holds no answer" in reply.text
+    assert "contains no answer" in reply.text
 
 
 @pytest.mark.e2e

@@ -134,7 +134,7 @@ def test_a_zip_of_answers_is_read_and_one_that_is_a_bomb_is_refused(desk):
     send(desk, "answers", "answers", "all.zip", zipped(**{"a__ed.csv": data}))
     assert "Ed" in class_now(desk.site, desk.number).last_sitting
     bomb = send(desk, "answers", "answers", "bomb.zip", zipped(**{"a.csv": b"0" * (60 * 1024 * 1024)}))
-    assert (bomb.status_code, "more than it may" in bomb.text) == (422, True)
+    assert (bomb.status_code, "more than the limit" in bomb.text) == (422, True)
     outside = send(desk, "answers", "answers", "out.zip", zipped(**{"..__..__out.csv": data}))
     assert (outside.status_code, "outside" in outside.text) == (422, True)
 

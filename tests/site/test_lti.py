@@ -396,7 +396,7 @@ def test_a_folder_for_another_address_is_refused(tmp_path):
 
 def test_a_file_of_an_earlier_version_is_named_with_what_to_do(tmp_path, capsys):
     (tmp_path / "lti.sqlite").touch()
-    for lang, told in (("en", "nothing reads it now"), ("fr", "plus rien ne le lit")):
+    for lang, told in (("en", "no longer read"), ("fr", "plus rien ne le lit")):
         with messages_in(lang):
             _check_lti(tmp_path, "https://new.example.org")
         said = capsys.readouterr().err

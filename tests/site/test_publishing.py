@@ -143,7 +143,7 @@ def test_what_a_build_issued_is_taken_in_as_it_is(class_of_three, staff):
         ({}, {"file": ("x.toml", b"\xff")}, "not UTF-8"),
         ({}, {"file": ("x.toml", b"a = ")}, "x.toml"),
         ({"title": "x", "exercise": "grashof"}, {"roster": ("r.csv", b"a,b\n1,2\n")}, "roster.csv"),
-        ({}, {"issued": ("issued.json", b"{}")}, "no list of issued records"),
+        ({}, {"issued": ("issued.json", b"{}")}, "not a list of issued records"),
         ({"title": "x", "exercise": "grashof", "versions": "-1", "accounts": "1"}, {}, "versions"),
     ],
 )

@@ -238,11 +238,11 @@ def test_a_port_that_is_taken_is_told_with_what_to_do(capsys, tmp_path):
     ("told", "says"),
     [
         (("--port", "70000"), "at most 65,535"),
-        (("--port", "0", "--host", "203.0.113.7"), "127.0.0.1 is this machine alone"),
+        (("--port", "0", "--host", "203.0.113.7"), "127.0.0.1 is for this machine only"),
         (("--port", "0", "--host", "0.0.0.0"), "--url https://"),
         (("--port", "0", "--url", "mechanics.example.org"), "found 'mechanics.example.org'"),
         (("--port", "0", "--url", "https://example.org/mechanics"), "no path"),
-        (("--demo", "x", "--db", "y"), "--demo brings its own database"),
+        (("--demo", "x", "--db", "y"), "--demo has its own database"),
         (("--port", "0", "--db", "mysql://x/y"), "mysql"),
         (("--port", "0", "--db", "/no/such/folder/x.db"), "/no/such/folder"),
     ],

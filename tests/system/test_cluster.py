@@ -315,7 +315,7 @@ def test_a_worker_without_the_package_is_told_in_a_line(tmp_path, load):
         machines.scheduler()
         machines.worker("--no-nanny", path="")
         with (
-            pytest.raises(coursework.errors.CourseworkError, match="has not this package") as told,
+            pytest.raises(coursework.errors.CourseworkError, match="does not have this package") as told,
             cluster(machines.address, load),
         ):
             list(in_turn(slept([0]), 2))
@@ -429,7 +429,7 @@ def test_when_no_worker_is_left_the_missing_is_named(own_machines, load):
     workers = own_machines.workers(2, "--no-nanny")
     told = lost_by(lambda: [worker.kill() for worker in workers], own_machines, load)
     assert told.startswith(f"no worker is left at {own_machines.address} (waited 3 s): task ")
-    assert told.endswith("is not done, and what comes after it may not be")
+    assert told.endswith("is not done, and later steps may not be")
 
 
 def test_a_worker_that_comes_late_does_what_waits(own_machines, load):
@@ -468,14 +468,14 @@ def test_a_worker_that_falls_silent_is_given_up(own_machines, load):
 def test_a_scheduler_that_is_killed_ends_the_run(own_machines, load):
     own_machines.workers(1, "--no-nanny")
     told = lost_by(own_machines.started[0].kill, own_machines, load)
-    assert told.startswith(f"the scheduler at {own_machines.address} answers no more (waited 3 s): task ")
+    assert told.startswith(f"the scheduler at {own_machines.address} no longer answers (waited 3 s): task ")
 
 
 @pytest.mark.slow
 def test_a_scheduler_that_falls_silent_ends_the_run(own_machines, load):
     own_machines.workers(1, "--no-nanny")
     told = lost_by(lambda: os.kill(own_machines.started[0].pid, signal.SIGSTOP), own_machines, load)
-    assert "answers no more" in told
+    assert "no longer answers" in told
 
 
 @pytest.mark.slow

@@ -92,7 +92,7 @@ def read(folder: Path) -> Marks:
     _check_verdicts(path, lines.verdicts)
     if lines.out_of and min(lines.out_of) <= 0:
         raise BadInput(
-            "{path}: a line is out of {out_of:g} points; every part is out of some",
+            "{path}: a line is out of {out_of:g} points; every part must have some",
             path=path,
             out_of=min(lines.out_of),
         )
@@ -208,12 +208,12 @@ def _summary(path: Path, decimals: _Decimals) -> dict[str, StudentSummary]:
 def _no_marks(folder: Path) -> BadInput:
     if folder.is_file():
         return BadInput(
-            "{folder} is a file; give the folder that 'coursework grade' wrote, with marks.csv in it",
+            "{folder} is a file; give the folder written by 'coursework grade', with marks.csv in it",
             folder=folder,
         )
     if not folder.is_dir():
         return BadInput(
-            "there is no folder {folder}; give the one that 'coursework grade' wrote", folder=folder
+            "there is no folder {folder}; give the one written by 'coursework grade'", folder=folder
         )
     results = sorted(p.name for p in folder.iterdir())
     names = ", ".join(results[:6]) + (", …" if len(results) > 6 else "")
@@ -222,10 +222,10 @@ def _no_marks(folder: Path) -> BadInput:
     would_do = (
         Message("did you mean {inside}?", inside=below[0])
         if below
-        else Message("give the folder that 'coursework grade' wrote")
+        else Message("give the folder written by 'coursework grade'")
     )
     return BadInput(
-        "{folder} holds no marks.csv ({found}); {would_do}", folder=folder, found=found, would_do=would_do
+        "{folder} contains no marks.csv ({found}); {would_do}", folder=folder, found=found, would_do=would_do
     )
 
 
@@ -309,7 +309,7 @@ def _bad_line(
             columns=", ".join(columns),
         )
     return BadInput(
-        "{path}, line {line}: {first} and {second} are numbers, to {most:g}; found {found!r}",
+        "{path}, line {line}: {first} and {second} must be numbers up to {most:g}; found {found!r}",
         path=path,
         line=line,
         first=columns[-2],

@@ -126,7 +126,7 @@ class KeyFolder:
         kids = [key.kid for key in self.keys]
         matching = [key for key in self.keys if kid and key.kid.startswith(kid)]
         if len(matching) != 1:
-            raise BadInput("no one key {kid!r}{near}", kid=kid, near=nearest(kid, kids))
+            raise BadInput("{kid!r} does not name exactly one key{near}", kid=kid, near=nearest(kid, kids))
         if matching[0] == self.signing:
             raise BadInput(
                 "{kid} is the key that signs; 'coursework lti keys rotate' makes another first",

@@ -125,14 +125,13 @@ class Services:
             try:
                 members += [_member(member) for member in answer.json().get("members", [])]
             except (ValueError, AttributeError, TypeError, KeyError) as fault:
-                raise NotServed(
-                    Message("{platform} answers with no roster", platform=platform.name)
-                ) from fault
+                raise NotServed(Message("{platform} sends no roster", platform=platform.name)) from fault
             page = answer.links.get("next", {}).get("url", "")
             if page and origin(page) != origin(url):
                 raise NotServed(
                     Message(
-                        "{platform} sends us elsewhere for the rest of its roster", platform=platform.name
+                        "{platform} refers to another server for the rest of its roster",
+                        platform=platform.name,
                     )
                 )
         return members
@@ -146,7 +145,10 @@ class Services:
         if origin(url) not in platform.services:
             raise NotServed(
                 Message(
-                    "{platform} names an address at {origin!r}, which is not among its own: add it to its 'origins' in platforms.toml where it is",
+                    (
+                        "{platform} names an address at {origin!r}, which is not one of its own: if it is, add it to its "
+                        "'origins' in platforms.toml"
+                    ),
                     platform=platform.name,
                     origin=origin(url)[:100],
                 ),
@@ -189,7 +191,7 @@ class Services:
         if not answer.is_success:
             raise NotServed(
                 Message(
-                    "{platform} gives no token: it answers {status}",
+                    "{platform} sends no token: it answers {status}",
                     platform=platform.name,
                     status=answer.status_code,
                 ),
@@ -199,7 +201,7 @@ class Services:
             had = answer.json()
             token, seconds = str(had["access_token"]), float(had.get("expires_in", 3600))
         except (ValueError, KeyError, TypeError) as fault:
-            raise NotServed(Message("{platform} gives no token", platform=platform.name)) from fault
+            raise NotServed(Message("{platform} sends no token", platform=platform.name)) from fault
         with self._lock:
             self._tokens[name] = token, time.monotonic() + max(0.0, seconds - 30)
         return token

@@ -108,7 +108,7 @@ def checked_url(url: str, label: str) -> str:
         )
     if parts.scheme == "http" and not is_loopback(host):
         raise BadInput(
-            "{label} is plain http: {url}; keys and launches would go unprotected: give its https address",
+            "{label} is plain http: {url}; keys and launches would be unprotected: give its https address",
             label=Message(label),
             url=url,
         )
@@ -259,7 +259,7 @@ class _SettingsReader(TomlReader):
                 raise self.refused(
                     ["platforms", number],
                     Message(
-                        "{issuer} with client_id {client_id} stands twice; keep one",
+                        "{issuer} with client_id {client_id} appears twice; keep one",
                         issuer=platform.issuer,
                         client_id=platform.client_id,
                     ),

@@ -43,7 +43,10 @@ class MarkedNotebook:
         if abs(out_of - most) > _EPSILON:
             warn(
                 Message(
-                    "{name} is worth {most:g} points in nbgrader's database and {out_of:g} as it was issued; run nbgrader generate_assignment anew",
+                    (
+                        "{name} is worth {most:g} points in nbgrader's database and {out_of:g} as issued; run nbgrader "
+                        "generate_assignment again"
+                    ),
                     name=name,
                     most=most,
                     out_of=out_of,

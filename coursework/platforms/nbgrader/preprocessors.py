@@ -118,7 +118,7 @@ def restore(nb: NotebookNode, released_cells: Mapping[str, NotebookNode]) -> lis
     changes, cells, seen = [], [], set[str]()
     for cell in nb.cells:
         if not _completed(cell):
-            changes.append(Message("a cell that is none was left out"))
+            changes.append(Message("something that is not a cell was left out"))
             continue
         name = _grade_id(cell)
         if name in released_cells and name not in seen:
@@ -130,12 +130,12 @@ def restore(nb: NotebookNode, released_cells: Mapping[str, NotebookNode]) -> lis
             if name in released_cells:
                 change = Message("a second cell {name} counts as the student's own", name=name)
             else:
-                change = Message("a cell that was not released counts as the student's own")
+                change = Message("a cell that was not in the released notebook counts as the student's own")
             changes.append(change)
         cells.append(cell)
     for index, (name, cell) in enumerate(released_cells.items()):
         if name not in seen:
-            changes.append(Message("the cell {name} was gone", name=name))
+            changes.append(Message("the cell {name} was missing", name=name))
             cells.insert(_behind(cells, list(released_cells)[:index]), cell)
     nb.cells = cells
     for cell in nb.cells:  # restored cells have no id, and copies share one

@@ -125,7 +125,10 @@ def check(nb_assignment: NbAssignment) -> None:
         )
     if nb_assignment.has_personal_variants and not nb_assignment.has_roster:
         raise BadInput(
-            "nbgrader has one notebook of {name} for a class: one variant, or a variant a student by --roster FILE.csv; found {variants} that are nobody's",
+            (
+                "nbgrader has one notebook of {name} for a class: one variant, or one for each student with --roster "
+                "FILE.csv; found {variants} without a student"
+            ),
             name=nb_assignment.name,
             variants=counted(len(nb_assignment.papers), "variant"),
         )
@@ -136,14 +139,17 @@ def check(nb_assignment: NbAssignment) -> None:
     for exercise, different in parts_of.items():
         if len(different) > 1:
             everywhere = set.intersection(*({part for part, _ in parts} for parts in different))
-            advice: str = Message("name parts that all of them ask, or give everybody one variant")
+            advice: str = Message("name parts that all of them ask, or give everybody the same variant")
             if everywhere:
                 advice = Message(
-                    "name parts that all of them ask, such as --parts {parts}, or give everybody one variant",
+                    "name parts that all of them ask, such as --parts {parts}, or give everybody the same variant",
                     parts=",".join(sorted(everywhere)),
                 )
             raise BadInput(
-                "the variants of {exercise} do not ask the same, and nbgrader has the same cells for a class: {advice}",
+                (
+                    "the variants of {exercise} ask different parts, and nbgrader has the same cells for a class: "
+                    "{advice}"
+                ),
                 exercise=exercise,
                 advice=advice,
             )

@@ -55,7 +55,7 @@ def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> Dr
 def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> DrawnPiece:
     if not image.caption.strip():
         raise BadInput(
-            "the figure {name} has no caption, which tells what it shows to who does not see it",
+            "the figure {name} has no caption, which describes it to those who cannot see it",
             name=image.name,
         )
     created = _call(course.folder, lesson, image.name)
@@ -104,7 +104,7 @@ def _of_exercise(course: Course[Any], lesson: str, image: LessonImage, lang: str
     for name in image.asked:
         if name not in _ASKED:
             raise BadInput(
-                "nothing called {name!r} is asked of a picture{nearest}",
+                "a picture has no option {name!r}{nearest}",
                 name=name,
                 nearest=nearest(name, _ASKED),
             )

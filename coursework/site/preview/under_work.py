@@ -55,7 +55,7 @@ class _Process:
                     self.end()
                     return ViewResult(
                         fault=Message(
-                            "this took more than {seconds} s, and was stopped: a loop that does not end?",
+                            "this took more than {seconds} s and was stopped: perhaps a loop does not end",
                             seconds=f"{seconds:g}",
                         )
                     )

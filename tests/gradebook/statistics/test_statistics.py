@@ -259,11 +259,11 @@ def test_an_answer_of_any_length_is_read_and_no_setting_is_left_changed(folder):
     ("damage", "says"),
     [
         (lambda text: text.replace("verdict", "judgement", 1), "verdict missing, found .*judgement"),
-        (lambda text: text.replace("correct,1", "correct,much"), "line 2: points and out_of are numbers"),
-        (lambda text: text.replace("correct,1", "correct,nan"), "line 2: points and out_of are numbers"),
+        (lambda text: text.replace("correct,1", "correct,much"), "line 2: points and out_of must be numbers"),
+        (lambda text: text.replace("correct,1", "correct,nan"), "line 2: points and out_of must be numbers"),
         (
             lambda text: text.replace("correct,1", "correct,1e308"),
-            "line 2: points and out_of are numbers, to 1e",
+            "line 2: points and out_of must be numbers up to 1e",
         ),
         (lambda text: text.replace("correct,1,1", "correct,1,0"), "out of 0 points"),
         (lambda text: text.replace("correct,", "splendid,"), "no verdict 'splendid'; there is correct"),

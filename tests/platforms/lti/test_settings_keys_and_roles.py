@@ -135,7 +135,7 @@ def test_the_key_that_signs_is_not_retired(tmp_path):
     assert [key.kid for key in folder.keys] == [first.kid, second.kid]
     with pytest.raises(BadInput, match="rotate"):
         folder.retire(second.kid)
-    with pytest.raises(BadInput, match="no one key"):
+    with pytest.raises(BadInput, match="does not name exactly one key"):
         folder.retire("")
     assert folder.retire(first.kid).kid == first.kid
 
@@ -198,16 +198,16 @@ def test_a_canvas_has_one_issuer_and_its_own_frames(lti, tmp_path):
     ("arguments", "said"),
     [
         (["platform", "moddle", "https://x.example.org"], "did you mean 'moodle'?"),
-        (["platform", "moodle"], "where is it?"),
+        (["platform", "moodle"], "state its address"),
         (["platform", "moodle", "http://x.example.org"], "plain http"),
         (["platform", "moodle", "https://x.example.org", "--client-id", "1"], "--deployment"),
         (
             ["platform", "other", "https://x.example.org", "--client-id", "1", "--deployment", "1"],
             "--auth-url is missing",
         ),
-        (["keys", "turn"], "keys knows list, new, rotate and retire"),
-        (["keys", "retire"], "which key?"),
-        (["keys", "retire", "abc"], "no one key 'abc'"),
+        (["keys", "turn"], "keys takes list, new, rotate or retire"),
+        (["keys", "retire"], "state the key"),
+        (["keys", "retire", "abc"], "'abc' does not name exactly one key"),
         (["roster", "Mechanics"], "no database"),
     ],
 )

@@ -569,7 +569,7 @@ def test_a_roster_that_leads_elsewhere_is_not_followed(tool):
         )
 
     services = Services(httpx.Client(transport=httpx.MockTransport(answer)), tool.keys)
-    with pytest.raises(NotServed, match="elsewhere"):
+    with pytest.raises(NotServed, match="another server"):
         services.roster(PLATFORM, f"{SITE}/members")
 
 

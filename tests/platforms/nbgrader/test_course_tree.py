@@ -68,7 +68,7 @@ def test_nothing_of_the_staff_s_lies_where_nbgrader_copies_it_to_students(tmp_pa
     [
         (["grashof", "--variants", "3"], "--roster"),
         (["grashof", "--lang", "fr,en"], "--lang fr or --lang en"),
-        (["serial_joints", "--roster", "class.csv"], "do not ask the same"),
+        (["serial_joints", "--roster", "class.csv"], "ask different parts"),
     ],
 )
 def test_what_one_notebook_cannot_hold_is_refused_with_what_would_do(

@@ -178,11 +178,11 @@ def test_a_notebook_that_is_none_stops_nobody_else_and_is_told(classroom):
     [
         ("gil", "was not issued"),
         ("hal", "no exercise 'grashof' was issued"),
-        ("ivy", "the answers cell must hold one dict and nothing else"),
+        ("ivy", "the answers cell must contain one dict and nothing else"),
         ("cleo", "the cell coursework-slotted_mechanism-rA was changed"),
         ("eve", "the cell coursework-slotted_mechanism-rA was gone"),
         ("fay", "a second cell coursework-slotted_mechanism-rA counts as the student's own"),
-        ("dan", "a cell that was not released counts as the student's own"),
+        ("dan", "a cell that was not in the released notebook counts as the student's own"),
     ],
 )
 def test_what_is_odd_is_told_to_the_staff(classroom, student, said):

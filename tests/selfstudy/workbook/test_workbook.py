@@ -342,7 +342,7 @@ def test_a_book_prints_no_variant_that_a_class_is_given(small):
             "line 11: the figure no_rod fails in line 15 of rods.py: ZeroDivisionError",
         ),
         ("figure:one_rod", "figure:lost", "line 11: no picture"),
-        ("figure:turning_rod", "exercise:crank_pin?sed=1", "line 43: nothing called 'sed'"),
+        ("figure:turning_rod", "exercise:crank_pin?sed=1", "line 43: a picture has no option 'sed'"),
         ("![A rod that turns]", "![]", "line 43: the figure turning_rod has no caption"),
         ("level=2", "level=9", "line 27: a worked example has a level from 0"),
         ("x = 41 + 1", "x = 41 + y", "line 35: NameError"),
