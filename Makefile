@@ -7,7 +7,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo site test test-all test-share test-clients test-plain golden docs lint wheel wheel-test lock lock-test sbom audit clean
+.PHONY: demo site test test-all test-share test-clients test-plain golden docs style lint wheel wheel-test lock lock-test sbom audit clean
 .DEFAULT_GOAL := demo
 
 # A stamp for each extra, all in one environment: a command installs what it still lacks. Renewed when the requirements
@@ -39,17 +39,17 @@ site: $(VENV)/ready-site  ## The site on this machine, opened in the browser
 PYTEST := python -m pytest -n auto -q
 
 # Of each sweep over seeds, exercises or languages the first few: see tests/sweeps.py.
-test: $(VENV)/ready-test lint  ## Every promise on a handful of exercises and on those that differ from the main branch
+test: $(VENV)/ready-test style  ## Every promise on a handful of exercises and on those that differ from the main branch
 	$(BIN)/$(PYTEST) -m "not slow and not sweep and not e2e"
 
-test-all: $(VENV)/ready-test $(VENV)/ready-e2e lint  ## Every test, sweeps at full length
+test-all: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every test, sweeps at full length
 	$(BIN)/$(PYTEST)
 
 # Each commit names one of sixteen shares by its own digits.
 SHARE ?= $(shell printf '%d/16' "$$((0x$$(git rev-parse --short=7 HEAD) % 16))")
 
 # What test has, all with other programs, an eighth of the sweeps over exercises and a sixteenth of their long ends.
-test-share: $(VENV)/ready-test $(VENV)/ready-e2e lint  ## Every promise, and a share of the sweeps that changes with each commit
+test-share: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every promise, and a share of the sweeps that changes with each commit
 	$(BIN)/$(PYTEST) --share $(SHARE)
 
 # CLIENTS names what no registry has: make test-clients CLIENTS="--moodle ../moodle --qti-sdk ../qti-sdk"
@@ -139,9 +139,11 @@ sbom: $(VENV)/ready-supply  ## The inventory of what the site installs, in build
 audit: $(VENV)/ready-supply  ## Known vulnerabilities of what the site installs; asks the package index
 	$(BIN)/pip-audit --require-hashes --disable-pip -r locks/site.txt
 
-lint: $(VENV)/ready-test
+style: $(VENV)/ready-test  ## Names, imports and layout
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+
+lint: style  ## And the types, which the tests check as well
 	$(BIN)/mypy
 
 clean:
