@@ -1,4 +1,4 @@
-"""The command line: reads arguments, calls what does the work, says what became of it."""
+"""Command line: reads arguments, runs a command, reports its faults in a line."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ import click
 
 from coursework.cli.commands import commands, named_command
 from coursework.cli.options import BAD, DONE, complain
+from coursework.cli.printing import problem_of
 from coursework.errors import CourseworkError
 from coursework.language.environment import language_of
-from coursework.messages import messages_in
+from coursework.messages import Message, localised, messages_in
 from coursework.system.ending import Ended, end_cleanly, has_ended
 from coursework.system.visible import visible_streams
 
@@ -41,12 +42,12 @@ def _run(arguments: Sequence[str]) -> int:
         click.echo(fault.format_message(), err=True)
         return BAD
     except click.ClickException as fault:
-        hint = (
-            f"; see 'coursework {named_command(arguments)}--help'"
-            if isinstance(fault, click.UsageError)
-            else ""
+        if not isinstance(fault, click.UsageError):
+            return complain(fault.format_message())
+        command = f"coursework {named_command(arguments)}--help"
+        return complain(
+            localised(Message("{problem}; see '{command}'", problem=problem_of(fault), command=command))
         )
-        return complain(fault.format_message().rstrip(".") + hint)
     except click.exceptions.Exit as stop:
         return stop.exit_code
     except Ended as end:
@@ -54,11 +55,12 @@ def _run(arguments: Sequence[str]) -> int:
         complain(str(end))
         return int(str(end.code))
     except click.Abort:
-        return complain("interrupted")
+        return complain(localised(Message("interrupted")))
     except CourseworkError as fault:
         return complain(str(fault))
     except BrokenPipeError:
         sys.stderr.close()
         return DONE
     except OSError as fault:
-        return complain(f"{fault.filename or 'a file'}: {fault.strerror or fault}")
+        file = fault.filename or Message("a file")
+        return complain(localised(Message("{file}: {problem}", file=file, problem=fault.strerror or fault)))

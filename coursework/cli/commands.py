@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from coursework.cli.options import FilePath
+from coursework.errors import unknown
 from coursework.system.cache import cached_result
 from coursework.system.distribution import VERSION
 
@@ -57,6 +58,14 @@ class _Commands(click.Group):
         file, function = COMMANDS[cmd_name]
         command: click.Command = getattr(import_module(f"coursework.cli.{file}"), function)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the named command, as :mod:`click` does; refuse another name and offer the nearest one."""
+        if args and args[0] not in COMMANDS and not args[0].startswith("-") and not ctx.resilient_parsing:
+            ctx.fail(str(unknown("command", args[0], COMMANDS)))
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands with what each does, as :mod:`click` does; their files are loaded where one has changed."""

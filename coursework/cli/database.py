@@ -179,7 +179,7 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     print_notes(sheets.warnings)
     rejected = sheets.rejected
     for row in rejected[:_TOLD]:
-        warn("{source}: {reason}", source=row.source, reason=row.reason)
+        warn("{source}: {reason}", source=row.place, reason=row.reason)
     if len(rejected) > _TOLD:
         warn("and {count} more rejected rows: grade with --out DIR", count=len(rejected) - _TOLD)
     with store.reading() as connection:

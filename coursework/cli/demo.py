@@ -192,7 +192,7 @@ def class_of_twelve(
             marked=marked,
             rejected=len(book.rejected),
         ),
-        *(Message("  rejected: {source}: {reason}", source=r.source, reason=r.reason) for r in book.rejected),
+        *(Message("  rejected: {source}: {reason}", source=r.place, reason=r.reason) for r in book.rejected),
         Message("  The answers contain a second answer, a stranger and a damaged notebook on purpose."),
         *(f"{localised(words):{width}}  {out / folder}" for words, folder in folders.items()),
     ]

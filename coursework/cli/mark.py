@@ -231,7 +231,7 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
     for fault in book.faults:
         click.echo(f"coursework: {one_line(localised(fault))}", err=True)
     warn_some(
-        [Message("{source}: {reason}", source=row.source, reason=row.reason) for row in book.rejected],
+        [Message("{source}: {reason}", source=row.place, reason=row.reason) for row in book.rejected],
         out / "rejected.csv",
     )
     return FOUND if book.review_count else DONE
@@ -314,7 +314,7 @@ def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
 
 def _print_warnings(book: Gradebook) -> None:
     for warning in book.warnings:
-        click.echo(f"coursework: note: {one_line(localised(warning))}", err=True)
+        warn("note: {note}", note=one_line(localised(warning)))
 
 
 def grade_with_bar(

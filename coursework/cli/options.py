@@ -29,7 +29,7 @@ DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
 def print_notes(notes: Sequence[str]) -> None:
     """Say what is to be known and is no error."""
     for note in notes[:10]:
-        click.echo(f"coursework: note: {one_line(localised(note))}", err=True)
+        warn("note: {note}", note=one_line(localised(note)))
     if len(notes) > 10:
         warn("note: and {count} more such", count=len(notes) - 10)
 

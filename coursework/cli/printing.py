@@ -44,6 +44,24 @@ def warn(template: str, /, **values: Any) -> None:
     click.echo(f"coursework: {localised(Message(template, **values))}", err=True)
 
 
+def problem_of(fault: click.UsageError) -> str:
+    """Return what is wrong with the arguments, as a message where :mod:`click` has an English text alone."""
+    match fault:
+        case click.NoSuchOption():
+            near = fault.possibilities[:1] if fault.possibilities else ()
+            nearest = Message("; did you mean {near!r}?", near=near[0]) if near else ""
+            return Message("no option {option!r}{nearest}", option=fault.option_name, nearest=nearest)
+        case click.BadOptionUsage():
+            return Message("the option {option!r} needs a value", option=fault.option_name)
+        case click.MissingParameter():
+            name = fault.param.get_error_hint(fault.ctx) if fault.param and fault.ctx else fault.param_hint
+            return Message("{parameter} is missing", parameter=name)
+        case click.BadParameter() if fault.param and fault.ctx:
+            name = fault.param.get_error_hint(fault.ctx)
+            return Message("invalid value for {parameter}: {problem}", parameter=name, problem=fault.message)
+    return fault.format_message().rstrip(".")
+
+
 def warn_some(lines: Sequence[str], file: Path) -> None:
     """Print the first lines on the error stream, and how many more stand in a file."""
     for line in lines[:_SHOWN]:

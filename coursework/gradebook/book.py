@@ -35,7 +35,7 @@ from coursework.gradebook.scale import exact, mark_of
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
-from coursework.messages import Message, localised
+from coursework.messages import localised
 
 # ------------------------------------------------------------------------- tables
 
@@ -61,28 +61,13 @@ def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
         }
 
 
-#: English place of an answer in a file. A file of a million rows states one in each: as a message each would cost more.
-_PLACE = re.compile(r"(?P<file>.*), (?P<unit>line|row|item) (?P<number>\d+)", re.DOTALL)
-_UNITS = {
-    "line": "{file}, line {line}",
-    "row": "{file}, row {line}",
-    "item": "{file}, item {line}",
-}
-
-
-def _place(source: str) -> str:
-    """Return the place of a row in its file as a message."""
-    found = None if isinstance(source, Message) else _PLACE.fullmatch(source)
-    return Message(_UNITS[found["unit"]], file=found["file"], line=found["number"]) if found else source
-
-
 def rejected_rows(rejected: Iterable[Rejected]) -> Iterator[dict[str, Any]]:
     """Yield the lines of ``rejected.csv``."""
     for row in rejected:
         yield {
             **dict.fromkeys(REJECTED_COLUMNS, ""),
             **row.row,
-            "source": localised(_place(row.source)),
+            "source": localised(row.place),
             "reason": localised(row.reason),
         }
 

@@ -73,10 +73,10 @@ class EditedMarks:
         if rejected:
             first = rejected[0]
             if len(rejected) == 1:
-                raise BadInput("{file}: {reason}; nothing is written", file=first.source, reason=first.reason)
+                raise BadInput("{file}: {reason}; nothing is written", file=first.place, reason=first.reason)
             raise BadInput(
                 "{file}: {reason} (and {count} lines more); nothing is written",
-                file=first.source,
+                file=first.place,
                 reason=first.reason,
                 count=len(rejected) - 1,
             )

@@ -297,11 +297,11 @@ def nothing_in(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str
         )
     first = rejected[0]
     if len(rejected) == 1:
-        return Message("{nothing}: {file}: {reason}", nothing=message, file=first.source, reason=first.reason)
+        return Message("{nothing}: {file}: {reason}", nothing=message, file=first.place, reason=first.reason)
     return Message(
         "{nothing} ({count} rows rejected; the first one): {file}: {reason}",
         nothing=message,
         count=len(rejected),
-        file=first.source,
+        file=first.place,
         reason=first.reason,
     )

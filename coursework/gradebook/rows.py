@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -47,6 +48,15 @@ class AnswerRow(NamedTuple):
     origin: RowOrigin | None = None  #: where a platform collected it
 
 
+#: English place of an answer in a file. A file of a million rows states one in each: as a message each would cost more.
+_PLACE = re.compile(r"(?P<file>.*), (?P<unit>line|row|item) (?P<number>\d+)", re.DOTALL)
+_UNITS = {
+    "line": "{file}, line {line}",
+    "row": "{file}, row {line}",
+    "item": "{file}, item {line}",
+}
+
+
 @dataclass(frozen=True)
 class Rejected:
     """Row or file that cannot be marked, with the reason."""
@@ -54,6 +64,14 @@ class Rejected:
     source: str
     reason: str
     row: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def place(self) -> str:
+        """``source`` as a message that can be translated."""
+        found = None if isinstance(self.source, Message) else _PLACE.fullmatch(self.source)
+        if found is None:
+            return self.source
+        return Message(_UNITS[found["unit"]], file=found["file"], line=found["number"])
 
 
 def path_text(path: Path) -> str:

@@ -62,7 +62,10 @@ def file_of(lang: str, of: str = "") -> Path:
 def no_language(lang: str) -> UnknownName:
     """Return the error for a language that the engine does not speak."""
     return UnknownName(
-        f"no language {lang!r}; there is {', '.join(languages())}; the words of another would be {file_of(lang)}"
+        "no language {lang!r}; there is {languages}; the words of another would be in {file}",
+        lang=lang,
+        languages=", ".join(languages()),
+        file=file_of(lang),
     )
 
 

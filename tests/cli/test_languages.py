@@ -194,3 +194,19 @@ def test_a_line_in_a_language_that_an_exercise_lacks_is_told_by_its_student(told
         status, _, err = told("--course", tmp_path / "mine", *build)
         assert status == 2
         assert "'en', which the line of Zoé in the roster requests; it has fr" in err
+
+
+def test_wrong_arguments_are_named_in_the_readers_language(cli, monkeypatch):
+    monkeypatch.setenv("LANG", "fr_FR.UTF-8")
+    monkeypatch.delenv("LC_ALL", raising=False)
+    monkeypatch.delenv("LANGUAGE", raising=False)
+    rows = {
+        ("bild",): "aucune commande « bild » ; vouliez-vous dire « build » ?",
+        ("show", "--sead", "3"): "aucune option « --sead » ; vouliez-vous dire « --seed » ?",
+        ("show", "crank_pin", "--seed", "x"): "valeur non valable pour '--seed' : attend un nombre entier",
+        ("show", "crank_pin", "--seed"): "l’option « --seed » demande une valeur",
+        ("export",): "il manque 'PLATFORM'",
+    }
+    told = {arguments: cli(*arguments) for arguments in rows}
+    found = {arguments: (status, err.replace("\u202f", " ")) for arguments, (status, _, err) in told.items()}
+    assert {a: found[a] for a, text in rows.items() if found[a][0] != 2 or text not in found[a][1]} == {}
