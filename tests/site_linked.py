@@ -21,7 +21,7 @@ from coursework.platforms.lti.settings import Settings
 from coursework.platforms.lti.storage import Storage
 from coursework.site.application import application
 from coursework.site.desk.class_cache import class_now
-from coursework.site.desk.class_page import rows
+from coursework.site.desk.class_table import rows
 from coursework.site.frame.settings import Site
 from coursework.site.lti.service import mounted
 

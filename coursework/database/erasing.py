@@ -18,6 +18,7 @@ from coursework.database.tables import (
     answer,
     assignment,
     audit,
+    class_summary,
     dealt,
     decision,
     delivery,
@@ -71,6 +72,7 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
     gone = {}
     for name, (table, theirs) in conditions(connection, known_as).items():
         gone[name] = connection.execute(delete(table).where(theirs)).rowcount
+    connection.execute(delete(class_summary))  # which name everybody in the class
     issued = exists().where(variant.c.assignment_id == assignment.c.id, dealt.c.variant_id == variant.c.id)
     connection.execute(delete(assignment).where(assignment.c.link.is_not(None), ~issued))
     theirs = audit.c.actor == number

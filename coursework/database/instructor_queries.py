@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from typing import Any, NamedTuple
 from zlib import crc32
 
-from sqlalchemy import Connection, delete, func, insert, select
+from sqlalchemy import Column, Connection, Select, Text, cast, delete, func, insert, select
 
 from coursework.database.decisions import stored_decision
 from coursework.database.tables import (
@@ -55,22 +55,42 @@ class Stamp(NamedTuple):
 
 
 def stamp(connection: Connection, assignment_id: int) -> Stamp:
-    """Return the stamp of an assignment, from a few small queries."""
-    counts = []
+    """Return the stamp of an assignment."""
+    return stamps(connection, [assignment_id])[assignment_id]
+
+
+def stamps(connection: Connection, assignment_ids: Collection[int]) -> dict[int, Stamp]:
+    """Return the stamp of each assignment, from a few small queries."""
+    counts: dict[int, list[tuple[int, int]]] = {number: [] for number in assignment_ids}
     for table in (marking, decision, delivery, placing):
-        query = select(func.count(), func.max(table.c.id)).where(table.c.assignment_id == assignment_id)
-        count, last = connection.execute(query).one()
-        counts.append((int(count), int(last or 0)))
-    given = select(func.count(), func.max(dealt.c.id)).select_from(dealt.join(variant))
-    count, last = connection.execute(given.where(variant.c.assignment_id == assignment_id)).one()
-    counts.append((int(count), int(last or 0)))
-    rules = select(assignment.c.published, assignment.c.stated).where(assignment.c.id == assignment_id)
-    rule_rows = [list(row) for row in connection.execute(rules)]
-    more = select(func.max(extension.c.id)).where(extension.c.assignment_id == assignment_id)
-    counts.append(
-        (crc32(json.dumps(rule_rows, sort_keys=True).encode()), int(connection.execute(more).scalar() or 0))
-    )
-    return Stamp(*counts)
+        last_ids = select(table.c.assignment_id, func.count(), func.max(table.c.id))
+        _add_counts(connection, counts, last_ids, table.c.assignment_id)
+    given = select(variant.c.assignment_id, func.count(), func.max(dealt.c.id))
+    _add_counts(connection, counts, given.select_from(dealt.join(variant)), variant.c.assignment_id)
+    stated = select(assignment.c.id, assignment.c.published, assignment.c.stated)
+    rules = {
+        number: crc32(json.dumps([list(row)], sort_keys=True).encode())
+        for number, *row in connection.execute(stated.where(assignment.c.id.in_(counts)))
+    }
+    more = select(extension.c.assignment_id, func.max(extension.c.id)).group_by(extension.c.assignment_id)
+    last = dict(connection.execute(more.where(extension.c.assignment_id.in_(counts))).all())
+    return {
+        number: Stamp._make([*pairs, (rules.get(number, crc32(b"[]")), last.get(number, 0))])
+        for number, pairs in counts.items()
+    }
+
+
+def _add_counts(
+    connection: Connection,
+    counts: Mapping[int, list[tuple[int, int]]],
+    query: Select[Any],
+    number: Column[int],
+) -> None:
+    """Append the number of rows and the last id of each assignment, ``0, 0`` without any."""
+    rows = connection.execute(query.where(number.in_(counts)).group_by(number))
+    found = {row[0]: (row[1], row[2]) for row in rows}
+    for assignment_id, pairs in counts.items():
+        pairs.append(found.get(assignment_id, (0, 0)))
 
 
 class AssignmentOverview(NamedTuple):
@@ -80,16 +100,22 @@ class AssignmentOverview(NamedTuple):
     name: str
     stated: Mapping[str, Any] | None
     published: Mapping[str, Any] | None
-    columns: Mapping[str, Any]  #: of the roster, by student
+    columns: str  #: of the roster, as JSON
     created: datetime
     submissions: int
     last: datetime | None  #: time of the last submission
 
 
+_LISTED = (
+    assignment.c.id, assignment.c.name, assignment.c.stated, assignment.c.published, assignment.c.created,
+    cast(assignment.c.columns, Text).label("roster"),
+)  # fmt: skip
+
+
 def listed_assignments(connection: Connection, assignment_id: int | None = None) -> list[AssignmentOverview]:
     """Return the assignments, the latest first; one alone if given."""
     query = (
-        select(assignment, func.count(delivery.c.id), func.max(delivery.c.id))
+        select(*_LISTED, func.count(delivery.c.id), func.max(delivery.c.id))
         .select_from(assignment.outerjoin(delivery))
         .group_by(assignment.c.id)
         .order_by(assignment.c.id.desc())
@@ -107,7 +133,7 @@ def listed_assignments(connection: Connection, assignment_id: int | None = None)
             row.name,
             row.stated,
             row.published,
-            row.columns,
+            row.roster,
             row.created,
             row[-2],
             received_at.get(row[-1]),

@@ -446,6 +446,20 @@ prepared = Table(
     info={"derived": True},
 )
 
+#: Cached counts and table of a class (:mod:`coursework.database.class_summaries`).
+class_summary = Table(
+    "class_summary",
+    METADATA,
+    _key(),
+    Column("assignment_id", ForeignKey("assignment.id", ondelete="CASCADE"), nullable=False, unique=True),
+    Column("state", String(64), nullable=False),  #: digest of everything on which the summary depends
+    Column("students", Integer, nullable=False),
+    Column("handed_in", Integer, nullable=False),
+    Column("waiting", Integer, nullable=False),
+    Column("content", CompressedText, nullable=False),  #: JSON of the table
+    info={"derived": True},
+)
+
 #: Extension: other dates or another number of attempts for one person; the last counts.
 extension = Table(
     "extension",

@@ -9,10 +9,12 @@ import pytest
 from desk_class import EXERCISE, SEED, DeskClass, told
 from rows_of_strangers import FORMULA, computed_cells
 from site_people import TEACHER
+from sqlalchemy import select
 
 from coursework.database.erasing import erase
 from coursework.database.instructor_queries import Stamp, people_of, stamp
 from coursework.database.publication import set_counting_attempt
+from coursework.database.tables import class_summary
 from coursework.site.desk.class_cache import class_now
 from coursework.site.desk.question_cards import question_card
 from coursework.system.tables import as_written
@@ -201,8 +203,10 @@ def test_what_was_erased_is_shown_as_nobody_elses(tmp_path):
     desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {"Ada": {"rA": "1"}})
     desk.hand_in({"Bo": {"rA": "777"}})
     before = class_now(desk.site, desk.number)
+    assert ">Bo<" in desk.page(TEACHER).text
     with desk.site.store.begin() as connection:
         erase(connection, people_of(connection, desk.number)["Bo"])
+        assert connection.execute(select(class_summary)).first() is None
     desk.hand_in({"Cy": {"rA": "888"}})
     now = class_now(desk.site, desk.number)
     assert str(now.stamp) != str(before.stamp)

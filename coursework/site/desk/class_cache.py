@@ -3,6 +3,7 @@ ones."""
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import timedelta
@@ -42,6 +43,8 @@ from coursework.site.frame.requests import HTTPException, Request
 from coursework.site.frame.settings import Site
 from coursework.site.papers.submission import mark, pass_dates
 
+_SHEET = 11_000  #: bytes of a marked sheet with its record, as measured
+_MOST = 120_000_000  #: bytes of the classes of a process, besides the one that is asked for
 _MARKING = timedelta(minutes=1)  #: after which another process may mark a submission that one began to mark
 
 
@@ -58,7 +61,7 @@ class _ClassCache:
     measured: dict[int, Measure] = field(default_factory=dict)
 
 
-_class_caches: WeakKeyDictionary[Store, dict[int, _ClassCache]] = WeakKeyDictionary()
+_class_caches: WeakKeyDictionary[Store, OrderedDict[int, _ClassCache]] = WeakKeyDictionary()
 _lock = Lock()
 
 
@@ -84,7 +87,10 @@ def class_now(site: Site, assignment_id: int) -> ClassState:
 
 def _current_class(site: Site, assignment_id: int) -> ClassState:
     with _lock:
-        cached = _class_caches.setdefault(site.store, {}).setdefault(assignment_id, _ClassCache())
+        caches = _class_caches.setdefault(site.store, OrderedDict())
+        cached = caches.setdefault(assignment_id, _ClassCache())
+        caches.move_to_end(assignment_id)
+        _forget_others(caches)
     with cached.lock, site.store.reading() as connection:
         about = next(iter(listed_assignments(connection, assignment_id)), None)
         if about is None:
@@ -101,6 +107,15 @@ def _current_class(site: Site, assignment_id: int) -> ClassState:
         return now
 
 
+def _forget_others(caches: OrderedDict[int, _ClassCache]) -> None:
+    """Forget the classes that were used least recently, where all together take too many bytes."""
+    total = 0
+    for number, cached in reversed([*caches.items()]):
+        total += _SHEET * len(cached.marked)
+        if total > _MOST and number != next(reversed(caches)):
+            del caches[number]
+
+
 def _read(
     course: Course, connection: Connection, about: AssignmentOverview, at: Stamp, cached: _ClassCache
 ) -> ClassState:
@@ -113,7 +128,8 @@ def _read(
         )
         now.__dict__.update({k: before.__dict__[k] for k in _LASTING if k in before.__dict__})
         return now
-    issued = issued_of(connection, about.id)
+    is_issued = before is not None and _issued_at(before.stamp, before.about) == _issued_at(at, about)
+    issued = before.issued if before is not None and is_issued else issued_of(connection, about.id)
     sheets = placed_sheets(course, issued, rows_of(connection, about.id))
     last = last_markings(connection, about.id)
     unknown = [marking for marking in last.values() if marking.id not in cached.marked]
@@ -135,7 +151,12 @@ def _read(
 
 def _has_come(at: Stamp, about: AssignmentOverview) -> tuple[Any, ...]:
     """Return the part of a stamp that decisions do not change."""
-    return at.markings, at.submissions, at.dealt, about.columns, about.stated
+    return at.markings, at.submissions, *_issued_at(at, about)
+
+
+def _issued_at(at: Stamp, about: AssignmentOverview) -> tuple[Any, ...]:
+    """Return the part of a stamp on which the issued variants depend."""
+    return at.dealt, about.columns, about.stated
 
 
 #: Cached properties that decisions do not change.
@@ -153,8 +174,8 @@ def class_here(request: Request) -> ClassState:
     return class_now(request.site, request.path_params["assignment"])
 
 
-def class_page_of(request: Request, now: ClassState, template: str, tab: str, **names: Any) -> Response:
-    """Return an instructor's page of one assignment, under its heading."""
+def class_page_of(request: Request, now: Any, template: str, tab: str, **names: Any) -> Response:
+    """Return an instructor's page of one assignment, under its heading; ``now`` is its state or its table."""
     return request.render(
         template, now=now, tab=tab, heading=assignment_title(now.about, request.lang), **names
     )

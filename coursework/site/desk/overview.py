@@ -9,18 +9,20 @@ from pathlib import PurePath
 from starlette.responses import Response
 
 from coursework.database.assignments import put_issued
-from coursework.database.class_state import ClassState
-from coursework.database.instructor_queries import listed_assignments
+from coursework.database.class_summaries import ClassCounts, stored_counts, summary_states
+from coursework.database.instructor_queries import AssignmentOverview, listed_assignments, stamps
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput, CourseworkError
 from coursework.issuing.issued import Issued
-from coursework.site.desk.class_cache import assignment_title, class_here, class_now
+from coursework.site.desk.class_cache import assignment_title, class_here
+from coursework.site.desk.class_table import computed_table
 from coursework.site.desk.question_cards import moment, question_card
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.clock import Leap, last_leap
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 from coursework.site.frame.responses import redirect
 from coursework.site.frame.times import length_text, moment_text
+from coursework.site.papers.submission import pass_dates
 
 
 @dataclass(frozen=True)
@@ -40,19 +42,29 @@ class Tile:
 
 def overview(request: Request) -> Response:
     """Return the overview of the assignments, the latest first."""
-    with request.site.store.reading() as connection:
-        assignments = listed_assignments(connection)
-        leap = last_leap(connection, request.received_at)
+    assignments, counts, leap = _stored(request)
+    if pass_dates(request.site, request.site.clock(), *(about.id for about in assignments)):
+        assignments, counts, leap = _stored(request)
     return request.render(
         "site/instructor/desk",
         tiles=[
-            _tile(request, about.id)
+            _counted(request, about, counts[about.id]) if about.id in counts else _tile(request, about)
             for about in assignments
-            if request.user.may(Permission.MARKS_READ, about.id, "")
         ],
         told=request.query_params.get("told", ""),
         clock="" if leap is None else _clock_text(request, leap),
     )
+
+
+def _stored(request: Request) -> tuple[list[AssignmentOverview], dict[int, ClassCounts], Leap | None]:
+    """Return the assignments that the user may see, the stored counts that are true now, and the last leap of
+    the clock."""
+    with request.site.store.reading() as connection:
+        listed = listed_assignments(connection)
+        assignments = [item for item in listed if request.user.may(Permission.MARKS_READ, item.id, "")]
+        at = stamps(connection, [about.id for about in assignments])
+        states = summary_states(connection, request.site.course, assignments, at)
+        return assignments, stored_counts(connection, states), last_leap(connection, request.received_at)
 
 
 def _clock_text(request: Request, leap: Leap) -> str:
@@ -64,25 +76,23 @@ def _clock_text(request: Request, leap: Leap) -> str:
     )
 
 
-def _tile(request: Request, number: int) -> Tile:
-    """Return the tile of an assignment; with the reason if the course of the site cannot mark it."""
+def _tile(request: Request, about: AssignmentOverview) -> Tile:
+    """Return the tile of an assignment that has changed; with the reason if the course of the site cannot mark it."""
     try:
-        return _counted(request, class_now(request.site, number))
+        table = computed_table(request.site, about.id)
     except CourseworkError as fault:
         if isinstance(fault, HTTPException):
             raise
-        with request.site.store.reading() as connection:
-            about = listed_assignments(connection, number)[0]
-        return Tile(number, assignment_title(about, request.lang), about.name, 0, 0, 0, "", False, str(fault))
+        return Tile(
+            about.id, assignment_title(about, request.lang), about.name, 0, 0, 0, "", False, str(fault)
+        )
+    return _counted(request, table.about, table.counts)
 
 
-def _counted(request: Request, now: ClassState) -> Tile:
-    about = now.about
+def _counted(request: Request, about: AssignmentOverview, counts: ClassCounts) -> Tile:
     last = moment(about.last, request.lang) if about.last else ""
-    return Tile(
-        about.id, assignment_title(about, request.lang), about.name, len(now.issued.students) or len(now.results),
-        len({graded.student for graded in now.machine.values()}), now.waiting, last, about.published is not None,
-    )  # fmt: skip
+    title = assignment_title(about, request.lang)
+    return Tile(about.id, title, about.name, *counts, last, about.published is not None)
 
 
 def bring(request: Request) -> Response:

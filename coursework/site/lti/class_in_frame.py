@@ -13,7 +13,7 @@ from coursework.database.publication import CHARGE, Publication
 from coursework.database.tables import identity
 from coursework.language.words import words
 from coursework.platforms.lti.storage import Waiting
-from coursework.site.desk import class_page
+from coursework.site.desk import class_table
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import moment_text
 from coursework.site.lti.launch_request import LTIRequest
@@ -47,7 +47,7 @@ def class_rows(
     people, subjects = people_of(connection, now.about.id), _subjects(connection, request.launch.issuer)
     charges = Publication.of(now.about.published or {}).late == CHARGE
     scores, rows = request.scores(), []
-    for row in class_page.rows(now):
+    for row in class_table.rows(now):
         person = people.get(row.student, 0)
         subject = subjects.get(person, "")
         if subject not in here:

@@ -1,0 +1,219 @@
+"""Table of a class with its counts: computed from the whole class, and stored until something changes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from sqlalchemy.exc import IntegrityError
+
+from coursework.database.class_state import ClassState
+from coursework.database.class_summaries import (
+    ClassCounts,
+    put_summary,
+    stored_table,
+    summary_states,
+)
+from coursework.database.instructor_queries import AssignmentOverview, Stamp, listed_assignments, stamp
+from coursework.errors import BadInput
+from coursework.gradebook.book import Result
+from coursework.gradebook.columns import own_columns
+from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.scale import mark_of
+from coursework.issuing.students import folded
+from coursework.marking.mark import Mark
+from coursework.site.desk.class_cache import class_now
+from coursework.site.desk.question_cards import sign_of
+from coursework.site.frame.requests import HTTPException
+from coursework.site.frame.settings import Site
+from coursework.site.papers.submission import pass_dates
+
+
+class Cell(NamedTuple):
+    """Answer in the table."""
+
+    sign: str  #: full, part, none, wait, missing; empty if the question was not asked
+    points: float
+    verdict: str
+    by_hand: bool
+
+
+BLANK = Cell("", 0.0, "", False)
+
+
+@dataclass(frozen=True)
+class ClassRow:
+    """Student in the table."""
+
+    order: int  #: position in the class
+    student: str
+    identity: str
+    cells: tuple[Cell, ...]
+    points: float
+    out_of: float
+    mark: str
+    tries: int
+    late: int  #: seconds
+    handed_in: bool
+
+    @property
+    def waits(self) -> int:
+        return sum(cell.sign == "wait" for cell in self.cells)
+
+    @property
+    def minutes_late(self) -> int:
+        return -(-self.late // 60)
+
+
+def rows(now: ClassState) -> list[ClassRow]:
+    """Return a row for every student of the class, in the order of the roster."""
+    counted: dict[str, dict[tuple[str, str], Cell]] = {}
+    for sheet, graded in now.graded.items():
+        if graded.sitting == now.results[graded.student].sitting:
+            counted.setdefault(graded.student, {}).update(_cells(now, now.machine[sheet], graded))
+    return [
+        _row(now, number, student, result, counted.get(student, {}))
+        for number, (student, result) in enumerate(now.results.items())
+    ]
+
+
+def _cells(now: ClassState, machine: Graded, graded: Graded) -> dict[tuple[str, str], Cell]:
+    return {
+        (graded.exercise, part): Cell(
+            sign_of(mark), mark.points, mark.verdict, _by_hand(machine.lines[part], mark)
+        )
+        for part, mark in graded.lines.items()
+    }
+
+
+def _by_hand(before: Mark, now: Mark) -> bool:
+    return before is not now and (before.verdict, before.points) != (now.verdict, now.points)
+
+
+def _row(
+    now: ClassState, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
+) -> ClassRow:
+    columns = own_columns(now.issued, student)
+    titles = (now.issued.assignment or {}).get("identity") or ()
+    identity = " ".join(filter(None, (columns.get(folded(str(title)), "") for title in titles)))
+    submitted = now.site_submissions.get(student)
+    tries = (
+        submitted.attempts
+        if submitted
+        else max((n for s, n in now.book.students if s == student), default=0)
+        if cells
+        else 0
+    )
+    return ClassRow(
+        number, student, identity, tuple(cells.get(question, BLANK) for question in now.questions),
+        result.points, result.out_of, mark_of(now.issued, result.counts, result.out_of),
+        tries, submitted.late if submitted else 0, bool(cells) or submitted is not None,
+    )  # fmt: skip
+
+
+def _means(now: ClassState, table_rows: Sequence[ClassRow]) -> list[str]:
+    """Return the mean of each question over the students who submitted, in percent of its points."""
+    most: dict[tuple[str, str], float] = {}
+    for (name, _), record in now.issued.records.items():
+        most.update({(name, str(p["id"])): float(p["points"]) for p in record["parts"]})
+    means = []
+    for column, question in enumerate(now.questions):
+        had = [row.cells[column].points for row in table_rows if row.cells[column].sign]
+        means.append(f"{100 * sum(had) / (len(had) * most[question]):.0f}" if had else "")
+    return means
+
+
+@dataclass(frozen=True)
+class ClassTable:
+    """Table of a class at one stamp."""
+
+    about: AssignmentOverview
+    stamp: Stamp
+    counts: ClassCounts
+    content: str  #: the rest, as JSON
+
+    @property
+    def waiting(self) -> int:
+        return self.counts.waiting
+
+    @cached_property
+    def _parsed(self) -> Mapping[str, Any]:
+        parsed: Mapping[str, Any] = json.loads(self.content)
+        return parsed
+
+    @cached_property
+    def questions(self) -> tuple[tuple[str, str], ...]:
+        """Exercise and part of every question."""
+        return tuple((exercise, part) for exercise, part, _ in self._parsed["questions"])
+
+    def number(self, exercise: str, part: str) -> str:
+        """Return the number of a question on the papers."""
+        return next(str(n) for e, p, n in self._parsed["questions"] if (e, p) == (exercise, part))
+
+    @property
+    def means(self) -> Sequence[str]:
+        """Mean of each question over the students who submitted, in percent of its points."""
+        means: Sequence[str] = self._parsed["means"]
+        return means
+
+    @property
+    def has_mark(self) -> bool:
+        return bool((self.about.stated or {}).get("mark"))
+
+    @cached_property
+    def rows(self) -> list[ClassRow]:
+        """Row of every student, in the order of the roster."""
+        cells = [Cell(*cell) for cell in self._parsed["cells"]]
+        return [
+            ClassRow(number, student, identity, tuple(cells[k] for k in own), *rest)
+            for number, (student, identity, own, *rest) in enumerate(self._parsed["rows"])
+        ]
+
+
+def class_table(site: Site, assignment_id: int) -> ClassTable:
+    """Return the table of a class: as stored, unless something has changed since.
+
+    Raises
+    ------
+    HTTPException
+        There is no such assignment.
+    """
+    pass_dates(site, site.clock(), assignment_id)
+    with site.store.reading() as connection:
+        about = next(iter(listed_assignments(connection, assignment_id)), None)
+        if about is None:
+            raise HTTPException("own", 404)
+        at = stamp(connection, assignment_id)
+        state = summary_states(connection, site.course, [about], {assignment_id: at})[assignment_id]
+        stored = stored_table(connection, assignment_id, state)
+    return computed_table(site, assignment_id) if stored is None else ClassTable(about, at, *stored)
+
+
+def computed_table(site: Site, assignment_id: int) -> ClassTable:
+    """Return the table of a class, computed from the class; store it once every sheet is marked."""
+    now = class_now(site, assignment_id)
+    handed_in = len({graded.student for graded in now.machine.values()})
+    counts = ClassCounts(len(now.issued.students) or len(now.results), handed_in, now.waiting)
+    table = ClassTable(now.about, now.stamp, counts, _content(now))
+    if now.is_marked:
+        with suppress(BadInput, IntegrityError), site.store.begin() as connection:
+            states = summary_states(connection, site.course, [now.about], {assignment_id: now.stamp})
+            put_summary(connection, assignment_id, states[assignment_id], counts, table.content)
+    return table
+
+
+def _content(now: ClassState) -> str:
+    """Return the table of a class as JSON; equal cells stand once."""
+    cells: dict[Cell, int] = {}
+    table_rows, lines = rows(now), []
+    for row in table_rows:
+        own = [cells.setdefault(cell, len(cells)) for cell in row.cells]
+        rest = row.points, row.out_of, row.mark, row.tries, row.late, row.handed_in
+        lines.append([row.student, row.identity, own, *rest])
+    questions = [[exercise, part, now.number(exercise, part)] for exercise, part in now.questions]
+    content = {"questions": questions, "means": _means(now, table_rows), "cells": list(cells), "rows": lines}
+    return json.dumps(content)
