@@ -256,3 +256,16 @@ def test_no_table_to_download_holds_what_a_spreadsheet_would_compute(tmp_path):
     assert {name: found for name, text in tables.items() if (found := computed_cells(text))} == {}
     assert "x;'=cmd" in tables["marks.csv"]
     assert FORMULA in {as_written(row["answer"]) for row in csv.DictReader(io.StringIO(tables["marks.csv"]))}
+
+
+def test_long_lists_have_pages_and_a_search(desk, monkeypatch):
+    monkeypatch.setattr("coursework.site.frame.paging._ROWS", 4)
+    text = desk.page(TEACHER, sort="name", page="2").text
+    assert re.findall(r'<tr id="s(\d)"', text) == list("45")
+    assert "5 to 6 of 6" in text
+    assert 'href="?sort=name&amp;page=1"' in text
+    for address, name in ((f"/desk/assignments/{desk.number}", "Flo"), ("/desk/people", "Flo")):
+        browser = desk.browser(TEACHER)
+        first, found = (browser.get(address, params={"find": sought}).text for sought in ("", "FLO"))
+        assert (f">{name}<" in first, f">{name}<" in found, ">Ada<" in found) == (False, True, False), address
+        assert "1 to 4 of" in first

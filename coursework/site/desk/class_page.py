@@ -14,6 +14,7 @@ from coursework.language.numbers import localise
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import class_page_of
 from coursework.site.desk.class_table import ClassRow, ClassTable, class_table
+from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import Request, Route
 from coursework.site.frame.responses import redirect
 
@@ -28,8 +29,9 @@ def class_page(request: Request) -> Response:
     table_rows = now.rows
     sort, sought = request.query_params.get("sort", ""), request.query_params.get("find", "").strip()
     selected = sorted((row for row in table_rows if _matches(row, sought)), key=_sorting(now, sort))
+    page = page_of(request, selected)
     return class_page_of(
-        request, now, "site/instructor/class", "class", rows=selected, all_rows=len(table_rows), sort=sort, sought=sought,
+        request, now, "site/instructor/class", "class", page=page, rows=page.rows, all_rows=len(table_rows), sort=sort, sought=sought,
         handed_in=sum(row.handed_in for row in table_rows), has_mark=now.has_mark,
         has_late=any(row.late for row in table_rows), means=now.means, **_words(request),
     )  # fmt: skip

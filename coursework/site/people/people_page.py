@@ -21,6 +21,7 @@ from coursework.issuing.roster import Student
 from coursework.platforms.lti.storage import drop_launches
 from coursework.site.desk.class_cache import assignment_title
 from coursework.site.frame.budgets import DESK_FILE
+from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
 from coursework.site.people.accounts import DAYS, as_login, invited
@@ -58,9 +59,10 @@ def everybody(request: Request) -> Response:
         return _invite(request)
     with request.site.store.reading() as connection:
         lines = _lines(request, connection)
+    page = page_of(request, lines, lambda line: f"{line.name} {line.login}")
     may_invite = {role: may(request.user, to_invite(role)) for role in ROLES}
     return request.render(
-        "site/instructor/people", lines=lines, added=_count(request.query_params.get("added", "")), may_invite=may_invite,
+        "site/instructor/people", page=page, lines=page.rows, added=_count(request.query_params.get("added", "")), may_invite=may_invite,
         staff_roles=_staff_roles(request), left=bool(request.query_params.get("left")),
     )  # fmt: skip
 

@@ -49,6 +49,7 @@ from coursework.issuing.roster import Student
 from coursework.issuing.variant_assignment import assign_variants
 from coursework.language.words import words
 from coursework.site.frame.budgets import DESK_FILE
+from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import FormData, HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
 from coursework.site.frame.settings import Site
@@ -199,9 +200,10 @@ def _page(
         people = holders(connection, listed.id)
         more = extensions(connection, listed.id)
         noted = _noted(connection, listed.name)
+    page = page_of(request, people, lambda holder: holder.student)
     return request.render(
         "site/instructor/publish", 422 if faults or problem else 200, one=listed, said_now=publication, faults=faults, problem=problem,
-        people=people, extensions=more, noted=noted, phase=_phase(listed.publication, request.received_at), zone=zone_name(request.received_at),
+        page=page, people=page.rows, has_versions=any(holder.letter for holder in people), is_issued=bool(people), extensions=more, noted=noted, phase=_phase(listed.publication, request.received_at), zone=zone_name(request.received_at),
         field=field_text, moment=lambda at: "" if at is None else moment_text(at, request.lang),
         exact=lambda at: exact_text(at, request.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
         sittings=SITTINGS, sittings_now=listed.stated.get("sittings", SITTINGS[0]), most_tries=MOST_TRIES,
