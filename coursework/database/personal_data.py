@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from sqlalchemy import ColumnElement, Connection, Table, exists, or_, select
+from sqlalchemy import ColumnElement, Connection, Select, Table, exists, or_, select
 
 from coursework.database.people import person_by_id
 from coursework.database.tables import (
@@ -144,9 +144,17 @@ def ids_of(connection: Connection, table: Table, known_as: PersonIdentifiers) ->
     query = select(table.c.id, table.c.assignment_id, table.c.student).where(
         table.c.assignment_id.in_(numbers)
     )
-    return [
-        row.id for row in connection.execute(query) if known_as.answers_to(row.assignment_id, row.student)
-    ]
+    return _named(connection, query, known_as)
+
+
+def _named(connection: Connection, query: Select[Any], known_as: PersonIdentifiers) -> list[int]:
+    """Return the ids of the person's rows among those of a query; every name that occurs is compared once."""
+    student = query.selected_columns.student
+    names = {name for _, name in known_as.students}
+    occurring = connection.execute(query.with_only_columns(student).distinct()).scalars()
+    theirs = query.where(student.in_([name for name in occurring if folded(name) in names]))
+    rows = connection.execute(theirs)
+    return [row.id for row in rows if known_as.answers_to(row.assignment_id, row.student)]
 
 
 def _dealt(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
@@ -156,9 +164,7 @@ def _dealt(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
         .join(variant)
         .where(dealt.c.person_id.is_(None), dealt.c.student != "")
     )
-    return [
-        row.id for row in connection.execute(query) if known_as.answers_to(row.assignment_id, row.student)
-    ]
+    return _named(connection, query, known_as)
 
 
 def _answers(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
@@ -168,9 +174,7 @@ def _answers(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
         .join(delivery)
         .where(delivery.c.assignment_id.in_(numbers))
     )
-    return [
-        row.id for row in connection.execute(query) if known_as.answers_to(row.assignment_id, row.student)
-    ]
+    return _named(connection, query, known_as)
 
 
 def _rejected(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
@@ -186,12 +190,12 @@ def _rejected(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
 
 def personal_data(connection: Connection, known_as: PersonIdentifiers) -> dict[str, list[dict[str, Any]]]:
     """Return all stored data of a person: the rows of each table, and the audit entries about the person."""
-    data = {}
-    for name, (table, mine) in reversed(conditions(connection, known_as).items()):
+    data, chosen_by = {}, conditions(connection, known_as)
+    for name, (table, mine) in reversed(chosen_by.items()):
         columns = [column for column in table.c if column.name not in _HIDDEN.get(name, ())]
         chosen = select(*columns).where(mine).order_by(*table.primary_key)
         data[name] = [dict(row._mapping) for row in connection.execute(chosen)]
-    data["dealt"] = _papers(connection, known_as)
+    data["dealt"] = _papers(connection, chosen_by["dealt"][1])
     noted = connection.execute(select(audit).order_by(audit.c.id))
     data["audit"] = [_of_audit(row, known_as) for row in noted if _tells_of(row, known_as)]
     return data
@@ -213,7 +217,7 @@ def _tells_of(row: Any, known_as: PersonIdentifiers) -> bool:
     )
 
 
-def _papers(connection: Connection, known_as: PersonIdentifiers) -> list[dict[str, Any]]:
+def _papers(connection: Connection, mine: ColumnElement[bool]) -> list[dict[str, Any]]:
     """Return the variants issued to the person, with their given values."""
     query = (
         select(
@@ -221,7 +225,7 @@ def _papers(connection: Connection, known_as: PersonIdentifiers) -> list[dict[st
             dealt.c.lang, variant.c.exercise, variant.c.seed, variant.c.record,
         )
         .select_from(dealt.join(variant).join(assignment))
-        .where(conditions(connection, known_as)["dealt"][1])
+        .where(mine)
         .order_by(dealt.c.id)
     )  # fmt: skip
     return [dict(row._mapping) for row in connection.execute(query)]
