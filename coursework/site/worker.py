@@ -1,5 +1,5 @@
 """Worker of the site: it marks submissions, submits saved answers and prepares pages, from a queue in the
-database.
+database; when there is nothing to do, it counts the classes that have changed.
 
 One process serves all server processes. It may be killed at any time: another one repeats its unfinished job.
 """
@@ -9,12 +9,14 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from functools import partial
 
 from sqlalchemy import select
 
-from coursework.database.instructor_queries import unmarked
+from coursework.database.class_summaries import stored_counts, summary_states
+from coursework.database.instructor_queries import listed_assignments, stamps, unmarked
 from coursework.database.jobs import (
     MARK,
     PREPARE,
@@ -33,6 +35,7 @@ from coursework.database.marking import mark_submission
 from coursework.database.publication import Publication
 from coursework.database.tables import assignment, extension
 from coursework.errors import CourseworkError
+from coursework.site.desk.class_table import computed_table
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.settings import Site
 from coursework.site.papers.opening import prepare, prepare_soon
@@ -43,6 +46,7 @@ LOG = logging.getLogger("coursework.site")
 SETTLES = timedelta(seconds=20)
 _POLL = 0.3  #: seconds between two checks of an empty queue
 _DATES = 1.0  #: seconds between two checks of the dates
+_COUNTS = 60.0  #: seconds between two counts of a class that changes all the time
 #: Marking waits for a short time without submissions, so as not to slow a rush, but not for long.
 _QUIET, _LONGEST = timedelta(seconds=0.5), timedelta(seconds=5)
 _LONG_AGO = datetime.min.replace(tzinfo=UTC)
@@ -58,18 +62,23 @@ class Worker:
     def __init__(self, site: Site, name: str):
         self.site, self.name = site, name
         self._variants = LRUCache(_VARIANTS)
+        self._counted: dict[int, str] = {}  #: states of the classes when they were last counted
 
     def run(self) -> None:
         """Work until the process is told to terminate."""
         self._log_faults(self.take_over)
         self._log_faults(self.prepare_all)
-        dates = 0.0
+        dates = counts = 0.0
         while True:
             if time.monotonic() - dates > _DATES:
                 self._log_faults(self.close)
                 dates = time.monotonic()
-            if not self._log_faults(self.work_once):
-                time.sleep(_POLL)
+            if self._log_faults(self.work_once):
+                continue
+            if time.monotonic() - counts > _COUNTS:
+                self._log_faults(self.count_classes)
+                counts = time.monotonic()
+            time.sleep(_POLL)
 
     def _log_faults(self, work: Callable[[], bool | None]) -> bool:
         try:
@@ -185,6 +194,28 @@ class Worker:
         """Queue another try to submit a person's saved answers; its failure is logged."""
         with self.site.store.begin() as connection:
             put_job(connection, RESCUE, number, self.site.clock(), person=person)
+
+    # ------------------------------------------------------------------- counts
+
+    def count_classes(self) -> None:
+        """Compute the tables of the classes that have changed, for the pages of all processes."""
+        with self.site.store.reading() as connection:
+            abouts = listed_assignments(connection)
+            at = stamps(connection, [about.id for about in abouts])
+            states = summary_states(connection, self.site.course, abouts, at)
+            known = {
+                **self._counted,
+                **{number: states[number] for number in stored_counts(connection, states)},
+            }
+        for number, state in states.items():
+            if known.get(number) == state:
+                continue
+            with self.site.store.reading() as connection:
+                if is_any(connection):
+                    return
+            self._counted[number] = state  # once, even if this course cannot mark it
+            with suppress(CourseworkError):
+                computed_table(self.site, number)
 
 
 def work(site: Site, name: str) -> None:
