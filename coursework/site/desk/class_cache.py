@@ -42,6 +42,7 @@ from coursework.issuing.issued import Issued
 from coursework.site.frame.requests import HTTPException, Request
 from coursework.site.frame.settings import Site
 from coursework.site.papers.submission import mark, pass_dates
+from coursework.system.garbage import paused_collection
 
 _SHEET = 11_000  #: bytes of a marked sheet with its record, as measured
 _MOST = 120_000_000  #: bytes of the classes of a process, besides the one that is asked for
@@ -102,7 +103,8 @@ def _current_class(site: Site, assignment_id: int) -> ClassState:
             or (now.stamp, now.about.columns) != (at, about.columns)
             or now.course is not site.course
         ):
-            now = cached.now = _read(site.course, connection, about, at, cached)
+            with paused_collection():
+                now = cached.now = _read(site.course, connection, about, at, cached)
         now.about = about
         return now
 

@@ -31,6 +31,7 @@ from coursework.site.desk.question_cards import sign_of
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
 from coursework.site.papers.submission import pass_dates
+from coursework.system.garbage import paused_collection
 
 
 class Cell(NamedTuple):
@@ -196,9 +197,10 @@ def class_table(site: Site, assignment_id: int) -> ClassTable:
 def computed_table(site: Site, assignment_id: int) -> ClassTable:
     """Return the table of a class, computed from the class; store it once every sheet is marked."""
     now = class_now(site, assignment_id)
-    handed_in = len({graded.student for graded in now.machine.values()})
-    counts = ClassCounts(len(now.issued.students) or len(now.results), handed_in, now.waiting)
-    table = ClassTable(now.about, now.stamp, counts, _content(now))
+    with paused_collection():
+        handed_in = len({graded.student for graded in now.machine.values()})
+        counts = ClassCounts(len(now.issued.students) or len(now.results), handed_in, now.waiting)
+        table = ClassTable(now.about, now.stamp, counts, _content(now))
     if now.is_marked:
         with suppress(BadInput, IntegrityError), site.store.begin() as connection:
             states = summary_states(connection, site.course, [now.about], {assignment_id: now.stamp})
