@@ -249,6 +249,9 @@ class Part:
     takes_turns: bool = False  #: asked of some variants alone, unless it is named: :func:`in_turn`
     sort: Kind = field(init=False, repr=False, compare=False)  #: what its kind says of it
 
+    def __hash__(self) -> int:
+        return hash(self.id)  # not of every field: parts of an exercise differ in their ids
+
     def __post_init__(self) -> None:
         try:
             sort = kind_of(self.kind)

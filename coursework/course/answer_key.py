@@ -81,6 +81,7 @@ class Key:
         self.solution = variant.exercise.solution
         self.rules = variant.exercise.folder.rules if rules is None else rules
         self._known = numbers
+        self._half_widths: dict[Part, float] = {}
 
     @cached_property
     def reference(self) -> dict[str, Any]:
@@ -112,8 +113,10 @@ class Key:
         """Return the largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
         if not part.has_margin:
             return 0.0
-        size = part.sort.size(self.reference[part.quantity])
-        return max(part.half_width(size), self.envelope.get(part.quantity, 0.0))
+        if part not in self._half_widths:
+            size = part.sort.size(self.reference[part.quantity])
+            self._half_widths[part] = max(part.half_width(size), self.envelope.get(part.quantity, 0.0))
+        return self._half_widths[part]
 
     @property
     def _quantities(self) -> tuple[str, ...]:
@@ -167,6 +170,10 @@ class Key:
         """
         errors, values = self._error_values.of(quantity)
         return errors, values[:, 0]
+
+    def usual_value(self, error: UsualError, quantity: str) -> float:
+        """Return the value that an error in a formula gives for a quantity; NaN where it does not reach it."""
+        return float(self._error_values.of_one(error, quantity)[0])
 
     def usual_ways_from(
         self, quantity: str, own_answers: Mapping[str, Any]

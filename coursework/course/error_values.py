@@ -44,7 +44,7 @@ class ErrorValues:
         self.given = given
         self.effects = effects
         self.count = count
-        self._by_source: dict[str, dict[str, np.ndarray]] = {}
+        self._by_source: dict[str, tuple[tuple[UsualError, ...], dict[str, np.ndarray]]] = {}
         self._rows: dict[str, tuple[tuple[UsualError, ...], np.ndarray]] = {}
 
     def of(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
@@ -58,6 +58,13 @@ class ErrorValues:
             values = [column for _, column in pairs]
             self._rows[quantity] = errors, np.array(values).reshape(len(pairs), self.count)
         return self._rows[quantity]
+
+    def of_one(self, error: UsualError, quantity: str) -> np.ndarray:
+        """Return the values that an error in a formula gives for a quantity, shape ``(n,)``; NaN where it does not reach it."""
+        source = error.source
+        is_met = source == quantity or self._is_above(source, quantity)
+        columns = self._errors_of(source)[1] if is_met else {}
+        return columns[quantity][error.place] if quantity in columns else np.full(self.count, np.nan)
 
     def in_own_formula(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
         """Return the errors in a quantity's own formula, and their values: shape ``(errors, n)``."""
@@ -75,26 +82,31 @@ class ErrorValues:
         return self.given
 
     def _in_formulas(self, quantity: str) -> Iterator[tuple[UsualError, np.ndarray]]:
-        textbook = self.exercise.solution.graph.textbook
-        above = [n for n in textbook.quantities if n in self.right and n not in (quantity, *self.given)]
-        reach = [n for n in above if quantity in self.exercise.solution.depending_on(n)]
-        for source in (quantity, *reversed(reach)):
+        names = self.exercise.solution.graph.textbook.quantities
+        above = [n for n in names if n != quantity and self._is_above(n, quantity)]
+        for source in (quantity, *reversed(above)):
             errors, columns = self._errors_of(source)
             if quantity in columns:
                 yield from zip(errors, columns[quantity], strict=True)
 
+    def _is_above(self, source: str, quantity: str) -> bool:
+        """Return whether a quantity is met on the way to another, so that an error in its formula reaches that."""
+        is_met = source in self.right and source not in self.given
+        return is_met and quantity in self.exercise.solution.depending_on(source)
+
     def _errors_of(self, source: str) -> tuple[tuple[UsualError, ...], dict[str, np.ndarray]]:
         """Return the errors in a formula, and by quantity that they reach their values, shape ``(errors, n)``."""
-        node = self.exercise.solution.graph.textbook.node(source)
-        errors_found = formula_errors(node.function)
-        errors = tuple(UsualError(error.kind, source, index) for index, error in enumerate(errors_found))
         if source not in self._by_source:
-            values = {**node.defaults, **self.right}
-            values_of_errors = [self._value(error.formula, values) for error in errors_found]
-            self._by_source[source] = (
-                self._carried_on(source, np.array(values_of_errors)) if values_of_errors else {}
-            )
-        return errors, self._by_source[source]
+            node = self.exercise.solution.graph.textbook.node(source)
+            found = formula_errors(node.function)
+            errors = tuple(UsualError(error.kind, source, index) for index, error in enumerate(found))
+            values, known = {**node.defaults, **self.right}, dict[int, Any]()
+            wrong = np.full((len(found), self.count), np.nan)
+            for row, error in zip(wrong, found, strict=True):
+                if (real := self._value(error.formula, values, known)) is not None:
+                    row[:] = real
+            self._by_source[source] = errors, self._carried_on(source, wrong) if found else {}
+        return self._by_source[source]
 
     def _carried_on(self, source: str, wrong: np.ndarray) -> dict[str, np.ndarray]:
         """Return the values that follow from wrong values of a quantity, shape ``(errors, n)``."""
@@ -132,18 +144,21 @@ class ErrorValues:
             elif name in self.quantities:
                 yield UsualError(NEIGHBOUR, name), column
 
-    def _value(self, formula: Formula, values: Mapping[str, Any]) -> np.ndarray:
-        try:
-            return self._column(formula(values))
-        except (CourseworkError, ArithmeticError, ValueError, TypeError, NameError, KeyError):
-            return np.full(self.count, np.nan)  # the error leads nowhere
+    def _value(self, formula: Formula, values: Mapping[str, Any], known: dict[int, Any]) -> np.ndarray | None:
+        """Return the real values of a formula; None where it leads nowhere."""
+        with suppress(CourseworkError, ArithmeticError, ValueError, TypeError, NameError, KeyError):
+            return self._real(formula(values, known))
+        return None
+
+    def _real(self, value: Any) -> np.ndarray | None:
+        return _real(value, (self.count,) if self._is_batch else ())
 
     def _column(self, value: Any) -> np.ndarray:
         """Return a number, or one a variant, as a column ``(n,)``; NaN for whatever else."""
-        real = _real(value, (self.count,) if self._is_batch else ())
+        real = self._real(value)
         return np.broadcast_to(np.nan if real is None else real, (self.count,))
 
-    @property
+    @cached_property
     def _is_batch(self) -> bool:
         return any(np.ndim(value) for value in self.given.values())
 

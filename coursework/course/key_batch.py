@@ -186,6 +186,9 @@ class _KeyOfBatch(Key):
         errors, values = self._batch.error_values.of(quantity)
         return errors, values[:, self._index]
 
+    def usual_value(self, error: UsualError, quantity: str) -> float:
+        return float(self._batch.error_values.of_one(error, quantity)[self._index])
+
     def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
         for name, columns in self._batch.wrong.items():
             if quantity in columns and exists(columns[quantity][self._index]):

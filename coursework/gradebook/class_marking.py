@@ -181,19 +181,23 @@ def _mark_elsewhere(root: str, chunk: list[_SheetJob], how: _MarkingOptions) -> 
 
 def _mark_chunk(course: Course, chunk: Sequence[_SheetJob], how: _MarkingOptions) -> list[list[tuple] | str]:
     """Return the lines of each sheet, or the reason for which it cannot be marked."""
-    variants = [course[job.record["exercise"]].from_record(job.record) for job in chunk]
-    by_exercise: dict[str, list[int]] = {}
-    for i, variant in enumerate(variants):
-        by_exercise.setdefault(variant.exercise.name, []).append(i)
+    variants: dict[int, Variant] = {}  #: by the identity of their records, which sheets of one variant share
+    sheets: dict[str, list[int]] = {}
+    for i, job in enumerate(chunk):
+        name = job.record["exercise"]
+        if id(job.record) not in variants:
+            variants[id(job.record)] = course[name].from_record(job.record)
+        sheets.setdefault(name, []).append(i)
     right: list[dict[str, str]] = [{} for _ in chunk]
-    for name, places in by_exercise.items():
-        batch = keys_of(course[name], [variants[i] for i in places], how.rules)
-        readings = plainly_right(course[name], batch, [chunk[i].answers for i in places])
-        for i, digits in zip(places, readings, strict=True):
+    for name, places in sheets.items():
+        rows = {record: row for row, record in enumerate(dict.fromkeys(id(chunk[i].record) for i in places))}
+        batch = keys_of(course[name], [variants[record] for record in rows], how.rules)
+        answers = [(rows[id(chunk[i].record)], chunk[i].answers) for i in places]
+        for i, digits in zip(places, plainly_right(course[name], batch, answers), strict=True):
             right[i] = digits
     return [
-        _mark_sheet(variant, job.answers, readings_of_sheet, how.printed)
-        for variant, job, readings_of_sheet in zip(variants, chunk, right, strict=True)
+        _mark_sheet(variants[id(job.record)], job.answers, readings_of_sheet, how.printed)
+        for job, readings_of_sheet in zip(chunk, right, strict=True)
     ]
 
 

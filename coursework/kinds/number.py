@@ -30,6 +30,9 @@ class Number(Kind):
     ) -> float:
         return in_half_widths(abs(value - reference), max(part.half_width(reference), envelope), reference)
 
+    def size(self, reference: Any) -> float:
+        return abs(float(reference))
+
     def accepted(self, values: np.ndarray, references: np.ndarray, half_widths: np.ndarray) -> np.ndarray:
         with np.errstate(invalid="ignore", over="ignore"):
             gap = np.abs(values - references)

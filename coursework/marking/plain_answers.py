@@ -19,9 +19,11 @@ _SHOWN_OTHERWISE = {"*"}  #: what the echo of a unit has another sign for
 
 
 def plainly_right(
-    exercise: CourseExercise, batch: Batch, answers: Sequence[Mapping[str, Any]]
+    exercise: CourseExercise, batch: Batch, answers: Sequence[tuple[int, Mapping[str, Any]]]
 ) -> list[dict[str, str]]:
-    """For each variant of the batch, its right answers by part, as they were read: ``12,5`` as ``12.5``."""
+    """Return the right answers of each sheet by part, as they were read: ``12,5`` as ``12.5``; each sheet comes with the place
+    of its variant in the batch."""
+    places = [place for place, _ in answers]
     right: list[dict[str, str]] = [{} for _ in answers]
     exchangeable = {i for group in exercise.spec.either_order for i in group}
     for part in exercise.spec.parts:
@@ -31,10 +33,10 @@ def plainly_right(
             continue
         has_printed = part.unit != "1" and not _SHOWN_OTHERWISE & {*part.unit}
         unit = f" {part.unit}" if has_printed else ""
-        written = [sheet.get(part.id) for sheet in answers]
+        written = [sheet.get(part.id) for _, sheet in answers]
         texts = [t.removesuffix(unit) if unit and isinstance(t, str) else t for t in written]
         values, _ = read_numbers(texts, part.unit)
-        reference = np.asarray(column, dtype=float)
+        reference = np.asarray(column, dtype=float)[places]
         half_width = np.maximum(part.atol, part.rtol * np.abs(reference))
         for i in np.flatnonzero(part.sort.accepted(values, reference, half_width)):
             text = texts[i]

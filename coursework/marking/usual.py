@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -102,13 +103,17 @@ def _near(
     for reading_index, answer in enumerate(reading.values):
         if part.sort.is_trivial(answer):
             continue  # whatever is left out of a product leads there
-        away = _gaps(part, key, judged_by, values, answer)
+        close = _close(part, key, judged_by, values, answer)
+        if not len(close):
+            continue
+        given = values[close]
+        away = _gaps(part, key, judged_by, given, answer)
         usual = NEAR_DEGREES if part.sort.turn else NEAR
         apart = max(_LEAST, _BY_CHANCE / max(len(errors), 1))
         near = nearness(part, key, judged_by, answer, usual if is_own else min(usual, apart))
-        is_written_so = not part.sort.turn and np.abs(values - answer) <= half_step(values, key.rules.digits)
+        is_written_so = not part.sort.turn and np.abs(given - answer) <= half_step(given, key.rules.digits)
         for index in np.flatnonzero((away <= near) | (is_written_so & np.isfinite(away))):
-            error, same = errors[index], (reading_index, _rounded(float(values[index])))
+            error, same = errors[close[index]], (reading_index, _rounded(float(given[index])))
             if may_be(error):
                 is_here = error.source == judged_by.quantity or error.kind in TAKEN
                 first = hits.get(same, Fit(error, reading_index, float(away[index]), is_here, ()))
@@ -134,6 +139,14 @@ def _rounded(value: float) -> float:
     return float(f"{value:.9g}")
 
 
+def _close(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: float) -> np.ndarray:
+    """Return the places of the values within whose widest margin an answer lies: few, whose distances are then computed."""
+    width = key.half_width(judged_by)
+    with np.errstate(all="ignore"):
+        digit = 0.0 if part.sort.turn else 10.0 ** (1 - key.rules.digits) * np.abs(values)
+        return np.flatnonzero(gaps(values, answer, part.sort.turn) <= width + digit)
+
+
 def _gaps(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: float) -> np.ndarray:
     """Return the distance of an answer from each value, in the half-widths that such a value would have."""
     reference = key.reference[judged_by.quantity]
@@ -156,11 +169,8 @@ def _contradicts(key: Key, error: UsualError, quantity: str) -> bool:
     part = next((p for p in key.variant.parts if p.quantity == quantity), None)
     if part is None or not part.sort.is_scalar or part.judge or not part.sort.disproves:
         return False
-    errors, values = key.usual_ways(quantity)
-    if error not in errors:
-        return False
-    value = float(values[errors.index(error)])
-    if not np.isfinite(value):
+    value = key.usual_value(error, quantity)
+    if not math.isfinite(value):
         return False
     width = key.envelope.get(quantity, 0.0)
     return part.sort.apart(part, value, key.reference[quantity], None, width) > 1

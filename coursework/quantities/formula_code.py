@@ -8,13 +8,15 @@ one expression itself stands in its place. A function that says its formula by
 from __future__ import annotations
 
 import ast
+import builtins
 import copy
 import inspect
+import operator
 import re
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Any
 
@@ -112,6 +114,10 @@ class _PutIn(ast.NodeTransformer):
 
 # ---------------------------------------------------------------------- formulas
 
+_OPERATIONS: Mapping[type, Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow,
+}  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Formula:
@@ -121,19 +127,48 @@ class Formula:
     names: tuple[str, ...]  #: the quantities
     space: Mapping[str, Any]
 
-    def __call__(self, values: Mapping[str, Any]) -> Any:
-        """Evaluate the formula for scalars or arrays ``(n,)`` by name; NaN where it does not exist."""
-        with np.errstate(all="ignore"):
-            return self._function(*(values[name] for name in self.names))
+    def __call__(self, values: Mapping[str, Any], known: dict[int, Any] | None = None) -> Any:
+        """Evaluate the formula for scalars or arrays ``(n,)`` by name; NaN where it does not exist.
 
-    @cached_property
-    def _function(self) -> Callable[..., Any]:
-        parameters = ast.arguments([], [ast.arg(name) for name in self.names], None, [], [], None, [])
-        full = ast.fix_missing_locations(ast.Expression(ast.Lambda(parameters, self.tree)))
-        created: Callable[..., Any] = eval(
-            compile(full, "<formula>", "eval"), dict(self.space)
-        )  # of the course's own code
-        return created
+        ``known`` holds the values of trees that several formulas of the same quantities share, by identity.
+        """
+        with np.errstate(all="ignore"):
+            return self._value(self.tree, values, {} if known is None else known)
+
+    def _value(self, node: ast.expr, values: Mapping[str, Any], known: dict[int, Any]) -> Any:
+        """Return the value of a tree: most are evaluated once, which compiling them would not be worth."""
+        if id(node) not in known:
+            of = partial(self._value, values=values, known=known)
+            match node:
+                case ast.Name(id=name):
+                    value = self._meaning(name, values)
+                case ast.Constant(value=value):
+                    pass
+                case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATIONS:
+                    value = _OPERATIONS[type(op)](of(left), of(right))
+                case ast.UnaryOp(op=ast.USub(), operand=operand):
+                    value = -of(operand)
+                case ast.Call(func=function, args=arguments, keywords=[]) if not _has_starred(arguments):
+                    value = of(function)(*map(of, arguments))
+                case ast.Attribute(value=inner, attr=name):
+                    value = getattr(of(inner), name)
+                case _:
+                    value = self._compiled(node, values)
+            known[id(node)] = value
+        return known[id(node)]
+
+    def _meaning(self, name: str, values: Mapping[str, Any]) -> Any:
+        if name in self.names:
+            return values[name]
+        return self.space[name] if name in self.space else getattr(builtins, name)
+
+    def _compiled(self, node: ast.expr, values: Mapping[str, Any]) -> Any:
+        code = compile(ast.fix_missing_locations(ast.Expression(node)), "<formula>", "eval")
+        return eval(code, {**self.space, **{n: values[n] for n in self.names}})  # of the course's own code
+
+
+def _has_starred(arguments: Sequence[ast.expr]) -> bool:
+    return any(isinstance(argument, ast.Starred) for argument in arguments)
 
 
 @lru_cache(maxsize=1024)

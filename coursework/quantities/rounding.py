@@ -37,11 +37,13 @@ def rounded(value: Any, digits: int) -> Any:
         return np.where(step > 0, np.rint(array / step) * step, array)[()]
 
 
-def half_step(value: Any, digits: int) -> np.ndarray:
+def half_step(value: Any, digits: int) -> Any:
     """Return half of the last of ``digits`` significant digits, the largest change by rounding; 0 for 0.
 
     A number that a last bit keeps below a power of ten has the digits of the power.
     """
+    if isinstance(value, float) and 0 < abs(value) < math.inf:  # one number costs a tenth so
+        return 0.5 * 10.0 ** (math.floor(math.log10(abs(value)) + 1e-12) + 1 - digits)
     size = np.abs(np.asarray(value, dtype=float))
     with np.errstate(all="ignore"):
         decade = np.floor(np.log10(np.where(size > 0, size, 1.0)) + 1e-12)

@@ -72,11 +72,24 @@ def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
     formula = replace(formula, space={**_NEIGHBOURS, **formula.space})
     changes = list(_Changes(formula).of(formula.tree))
     changes += _whole_formula_errors(formula)
-    results: dict[str, FormulaError] = {}
+    results: dict[Any, FormulaError] = {}
+    met: dict[int, Any] = {}
     for kind, about, tree in sorted(changes, key=lambda change: KINDS.index(change[0])):
-        results.setdefault(ast.dump(tree), FormulaError(kind, about, replace(formula, tree=tree)))
-    results.pop(ast.dump(formula.tree), None)
+        results.setdefault(_shape(tree, met), FormulaError(kind, about, replace(formula, tree=tree)))
+    results.pop(_shape(formula.tree, met), None)
     return tuple(results.values())
+
+
+def _shape(node: Any, met: dict[int, Any]) -> Any:
+    """Return what equal trees have in common; ``met`` holds that of trees which several share, by identity."""
+    if isinstance(node, list):
+        return tuple(_shape(item, met) for item in node)
+    if not isinstance(node, ast.AST):
+        return type(node), node
+    if id(node) not in met:
+        fields = (_shape(getattr(node, name, None), met) for name in node._fields)
+        met[id(node)] = type(node), *fields
+    return met[id(node)]
 
 
 def _whole_formula_errors(formula: Formula) -> Iterator[_Change]:
