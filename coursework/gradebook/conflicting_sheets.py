@@ -8,8 +8,8 @@ file that is named after the student, or is in their folder, is theirs; if there
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Mapping, Sequence
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from coursework.gradebook.rows import AnswerRow, joined_by_and
@@ -18,7 +18,6 @@ from coursework.issuing.students import file_stems
 from coursework.messages import Message
 
 Sheet = tuple[str, str, int]  #: student, exercise and seed
-Doubts = Mapping[tuple[Sheet, str], str]  #: by sheet and file, why its rows wait
 
 _OWN = re.compile(
     r".*?\.(?:ipynb|json)(?=, |$)", re.S
@@ -29,30 +28,41 @@ _AGAIN = re.compile(r"\s*\([0-9]+\)$")  #: what browsers add to the name of a fi
 def file_of(row: AnswerRow) -> str:
     """Return the student's own file of a row; empty for a row of a table, or for one whose student a platform
     identifies."""
-    match = _OWN.match(row.source) if row.origin is None else None
+    if row.origin is not None or not (".ipynb" in row.source or ".json" in row.source):
+        return ""  # nearly all
+    match = _OWN.match(row.source)
     return match[0] if match else ""
 
 
-def doubts(issued: Issued, rows: Iterable[tuple[AnswerRow, Callable[[], Sheet | None]]]) -> Doubts:
-    """Return the reasons for which rows wait for a person, by sheet and file. Each row comes with a function
-    that returns its sheet, if it has one."""
-    sheets: dict[Sheet, dict[str, dict[str, str]]] = {}
-    people: dict[str, set[str]] = {}
-    for row, sheet_of in rows:
+class Doubts:
+    """Rows of sheets in several files, and why those wait whose answers differ: known when all rows have been noted."""
+
+    def __init__(self, issued: Issued) -> None:
+        self._issued = issued
+        self._sheets: dict[Sheet, dict[str, dict[str, str]]] = {}
+        self._people: dict[str, set[str]] = {}
+
+    def note(self, row: AnswerRow, sheet: Sheet | None) -> None:
+        """Note a row, with its sheet if it has one."""
         if not (file := file_of(row)):
-            continue
-        people.setdefault(file, set()).add(row.student)
-        if (sheet := sheet_of()) is not None and (text := _text(row)):
-            sheets.setdefault(sheet, {}).setdefault(file, {}).setdefault(row.part, text)
-    waiting: dict[tuple[Sheet, str], str] = {}
-    for sheet, files in sheets.items():
-        single_author = {file: answers for file, answers in files.items() if len(people[file]) == 1}
-        if _differ(list(single_author.values())):
-            waiting |= {
-                (sheet, file): why
-                for file, why in _reasons_to_wait(issued, sheet, list(single_author)).items()
-            }
-    return waiting
+            return
+        self._people.setdefault(file, set()).add(row.student)
+        if sheet is not None and (text := _text(row)):
+            self._sheets.setdefault(sheet, {}).setdefault(file, {}).setdefault(row.part, text)
+
+    def why(self, sheet: Sheet, row: AnswerRow) -> str:
+        """Return the reason for which a row waits for a person; empty if it does not."""
+        return self._reasons.get((sheet, file_of(row)), "") if self._reasons else ""
+
+    @cached_property
+    def _reasons(self) -> Mapping[tuple[Sheet, str], str]:
+        waiting: dict[tuple[Sheet, str], str] = {}
+        for sheet, files in self._sheets.items():
+            single_author = {file: answers for file, answers in files.items() if len(self._people[file]) == 1}
+            if _differ(list(single_author.values())):
+                reasons = _reasons_to_wait(self._issued, sheet, list(single_author))
+                waiting |= {(sheet, file): why for file, why in reasons.items()}
+        return waiting
 
 
 def _text(row: AnswerRow) -> str:

@@ -5,15 +5,13 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 from coursework.course.answer_keys import part_called
 from coursework.course.course import Course
 from coursework.errors import CourseworkError, UnknownName, nearest
-from coursework.gradebook.conflicting_sheets import Doubts, doubts, file_of
+from coursework.gradebook.conflicting_sheets import Doubts
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin, joined_by_and
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import namesakes
@@ -225,8 +223,8 @@ def placed_sheets(
     CourseworkError
         The course cannot mark: no solutions, an exercise that the records do not fit.
     """
-    sheets = Sheets()
-    fill(course, issued, sheets, placed_rows(course, issued, list(rows), sheets))
+    sheets, doubts = Sheets(), Doubts(issued)
+    fill(course, issued, sheets, list(placed_rows(course, issued, rows, sheets, doubts)), doubts)
     return sheets
 
 
@@ -234,10 +232,14 @@ PlacedRow = tuple[SheetKey, AnswerRow] | Rejected  #: a row with its place, or w
 
 
 def placed_rows(
-    course: Course, issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], sheets: Sheets
+    course: Course,
+    issued: Issued,
+    rows: Iterable[AnswerRow | Rejected | PlatformFile],
+    sheets: Sheets,
+    doubts: Doubts,
 ) -> Iterator[PlacedRow]:
-    """Yield each row with its sheet, or the rejected row; record in ``sheets`` what concerns all rows. The
-    rows are read twice: first to find those that contradict each other, then one by one.
+    """Return an iterator of each row with its sheet, or the rejected row; it records in ``sheets`` what concerns all rows,
+    and notes rows in ``doubts``.
 
     Raises
     ------
@@ -245,14 +247,11 @@ def placed_rows(
         As for :func:`placed_sheets`, before the first row is read.
     """
     _check_records(course, issued)
-    waits = doubts(
-        issued, ((row, partial(_sheet_of, issued, row)) for row in rows if isinstance(row, AnswerRow))
-    )
-    return _placed_in_order(issued, rows, sheets, waits)
+    return _placed_in_order(issued, rows, sheets, doubts)
 
 
 def _placed_in_order(
-    issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], sheets: Sheets, waits: Doubts
+    issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], sheets: Sheets, doubts: Doubts
 ) -> Iterator[PlacedRow]:
     place_told = _place_cache(issued)
     unsaid: set[SheetKey] = set()  #: sheets of several sittings whose answers do not state one
@@ -267,11 +266,9 @@ def _placed_in_order(
         if row.warning and row.warning not in sheets.warnings:
             sheets.warnings.append(row.warning)
         key = place_told(row)
+        doubts.note(row, None if isinstance(key, str) else key[:3])
         if isinstance(key, str):
             yield Rejected(row.source, key, as_texts(row))
-            continue
-        if waits and (doubt := waits.get((key[:3], file_of(row)))):
-            yield Rejected(row.source, doubt, as_texts(row))
             continue
         if issued.has_sittings and not row.seed and key not in unsaid and len(issued.seeds_of(*key[:2])) > 1:
             unsaid.add(key)
@@ -317,9 +314,11 @@ def _place_cache(issued: Issued) -> Callable[[AnswerRow], SheetKey | str]:
     return place_told
 
 
-def fill(course: Course, issued: Issued, sheets: Sheets, placements: Iterable[PlacedRow]) -> None:
-    """Put rows on their sheets."""
-    put_row = row_placer(course, issued, sheets)
+def fill(
+    course: Course, issued: Issued, sheets: Sheets, placements: Iterable[PlacedRow], doubts: Doubts
+) -> None:
+    """Put rows on their sheets, after all of them were placed."""
+    put_row = row_placer(course, issued, sheets, doubts)
     for placed_row in placements:
         refused = placed_row if isinstance(placed_row, Rejected) else put_row(*placed_row)
         if refused is not None:
@@ -328,13 +327,15 @@ def fill(course: Course, issued: Issued, sheets: Sheets, placements: Iterable[Pl
 
 
 def row_placer(
-    course: Course, issued: Issued, sheets: Sheets
+    course: Course, issued: Issued, sheets: Sheets, doubts: Doubts
 ) -> Callable[[SheetKey, AnswerRow], Rejected | None]:
     """Return a function that adds a row to its sheet, or returns the rejected row; it receives the rows of a
     sheet in their order."""
     parts_of_variant: dict[tuple[str, int], tuple[str, ...]] = {}
 
     def put(key_of_sheet: SheetKey, row: AnswerRow) -> Rejected | None:
+        if doubt := doubts.why(key_of_sheet[:3], row):
+            return Rejected(row.source, doubt, as_texts(row))
         key, reason = key_of_sheet[1:3], ""
         if key not in parts_of_variant:
             parts_of_variant[key] = tuple(str(part["id"]) for part in issued.records[key]["parts"])
@@ -371,12 +372,6 @@ def row_placer(
         return None
 
     return put
-
-
-def _sheet_of(issued: Issued, row: AnswerRow) -> tuple[str, str, int] | None:
-    with suppress(UnplacedError):
-        return sheet_of_row(issued, row)
-    return None
 
 
 def _leave_blank(sheets: Sheets, key: SheetKey, parts: Sequence[str], row: AnswerRow) -> None:

@@ -15,13 +15,14 @@ import pickle
 import tempfile
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from itertools import chain, islice
 from operator import itemgetter
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 from coursework.course.course import Course
+from coursework.gradebook.conflicting_sheets import Doubts
 from coursework.gradebook.placing import PlacedRow, SheetKey, Sheets, fill, placed_rows, row_placer
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.issuing.issued import Issued
@@ -46,66 +47,45 @@ def placed_on_disk(
     BadInput
         The disk cannot be written.
     """
-    sheets_read = Sheets()
+    sheets_read, doubts = Sheets(), Doubts(issued)
     folder = next(directory for directory in (out, *out.absolute().parents) if directory.is_dir())
-    with ExitStack() as stack:
+    placements = placed_rows(course, issued, rows, sheets_read, doubts)
+    first = list(islice(placements, AT_ONCE))
+    if len(first) < AT_ONCE:
+        fill(course, issued, sheets_read, first, doubts)
+        yield sheets_read
+        return
+    with _Blocks(folder) as stored:
         with _Blocks(folder) as by_part:
-            with _Blocks(folder) as read:
-                again = _RereadableRows(rows, read)
-                placements = placed_rows(course, issued, again, sheets_read)
-                if not again.are_many:
-                    fill(course, issued, sheets_read, placements)
-                    yield sheets_read
-                    return
-                rejected = _split_by_sheet(placements, by_part)
-            sheets = _SheetsOnDisk(sheets_read, stack.enter_context(_Blocks(folder)))
+            rejected = _split_by_sheet(first, placements, by_part)
+            sheets = _SheetsOnDisk(sheets_read, stored)
             for part in range(PARTS):
-                rejected += sheets.take(course, issued, by_part.of(part), part)
+                rejected += sheets.take(course, issued, by_part.of(part), part, doubts)
         sheets.rejected = [row for _, row in sorted(rejected, key=itemgetter(0))]
         yield sheets
 
 
-_Read = AnswerRow | Rejected | PlatformFile
-
-
-class _RereadableRows:
-    """Rows that are read twice: kept in memory, or on disk if there are many."""
-
-    def __init__(self, rows: Iterable[_Read], blocks: _Blocks) -> None:
-        self._first: Iterable[_Read] | None = rows
-        self._blocks = blocks
-        self._held: list[_Read] = []
-        self.are_many = False
-
-    def __iter__(self) -> Iterator[_Read]:
-        if self._first is None:
-            yield from chain.from_iterable(self._blocks.of(0))
-            yield from self._held
-            return
-        rows, self._first = self._first, None
-        for row in rows:
-            self._held.append(row)
-            if len(self._held) == AT_ONCE:
-                self.are_many = True
-                self._blocks.add(0, self._held)
-                self._held = []
-            yield row
-
-
 _NumberedRow = tuple[int, Rejected]  #: by the number of the row
+_NumberedAnswer = tuple[
+    int, SheetKey, tuple[Any, ...]
+]  #: a plain tuple is written and read in half the time of a row
 
 
-def _split_by_sheet(placements: Iterator[PlacedRow], by_part: _Blocks) -> list[_NumberedRow]:
+def _split_by_sheet(
+    first: list[PlacedRow], others: Iterator[PlacedRow], by_part: _Blocks
+) -> list[_NumberedRow]:
     """Add rows to the parts of their sheets; return the rejected rows."""
     rejected: list[_NumberedRow] = []
-    numbered = enumerate(placements)
+    numbered = enumerate(chain(first, others))
     while some := list(islice(numbered, AT_ONCE)):
-        parts: dict[int, list[tuple[int, SheetKey, AnswerRow]]] = {}
+        first.clear()
+        parts: dict[int, list[_NumberedAnswer]] = {}
         for number, placed_row in some:
             if isinstance(placed_row, Rejected):
                 rejected.append((number, placed_row))
             else:
-                parts.setdefault(hash(placed_row[0]) % PARTS, []).append((number, *placed_row))
+                key, row = placed_row
+                parts.setdefault(hash(key) % PARTS, []).append((number, key, tuple(row)))
         for part, rows in parts.items():
             by_part.add(part, rows)
     return rejected
@@ -116,7 +96,7 @@ class _Stored(NamedTuple):
 
     number: int  #: of the first row received
     key: SheetKey
-    rows: dict[str, AnswerRow]
+    rows: dict[str, tuple[Any, ...]]
     lang: str | None
     submitted: str | None
     apart: bool
@@ -152,16 +132,17 @@ class _SheetsOnDisk(Sheets):
         self,
         course: Course,
         issued: Issued,
-        blocks: Iterable[Sequence[tuple[int, SheetKey, AnswerRow]]],
+        blocks: Iterable[Sequence[_NumberedAnswer]],
         part: int,
+        doubts: Doubts,
     ) -> list[_NumberedRow]:
         """Place the rows of a part on their sheets, and store these on disk; return the rejected rows."""
         sheets_of_part, rejected = Sheets(), []
-        put_row = row_placer(course, issued, sheets_of_part)
+        put_row = row_placer(course, issued, sheets_of_part, doubts)
         numbers: dict[SheetKey, int] = {}
         for number, key, row in chain.from_iterable(blocks):
             numbers.setdefault(key, number)
-            if (refused := put_row(key, row)) is not None:
+            if (refused := put_row(key, AnswerRow(*row))) is not None:
                 rejected.append((number, refused))
         self._is_dated = self._is_dated or sheets_of_part.is_dated
         sheets_of_part.drop_empty()
@@ -184,13 +165,13 @@ class _SheetsOnDisk(Sheets):
 
 def _stored(sheets: Sheets, key: SheetKey, number: int) -> _Stored:
     values = sheets.langs.get(key), sheets.submitted.get(key), key in sheets.apart
-    return _Stored(number, key, sheets.sheets[key], *values)
+    return _Stored(number, key, {part: tuple(row) for part, row in sheets.sheets[key].items()}, *values)
 
 
 def _together(some: Iterable[_Stored]) -> Sheets:
     sheets = Sheets()
     for stored in some:
-        sheets.sheets[stored.key] = stored.rows
+        sheets.sheets[stored.key] = {part: AnswerRow(*row) for part, row in stored.rows.items()}
         if stored.lang is not None:
             sheets.langs[stored.key] = stored.lang
         if stored.submitted is not None:
