@@ -90,7 +90,7 @@ def lines_of(connection: Connection, sheets: Iterable[LastMarking]) -> dict[int,
 
 def _line(sent: Sequence[Any]) -> Mark:
     """Return a mark from its columns."""
-    return Mark.received((*sent[:_MATCHES], tuple(sent[_MATCHES]), *sent[_MATCHES + 1 :]))
+    return Mark(*sent)._replace(matches=tuple(sent[_MATCHES]))
 
 
 def machine_marks(

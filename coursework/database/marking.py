@@ -3,7 +3,7 @@ last marking."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
@@ -290,16 +290,10 @@ def _marks(number: int, result: Graded | str) -> Iterator[dict[str, Any]]:
         return
     order: dict[str, int] = {part: position for position, part in enumerate(result.answered)}
     for position, line in enumerate(result.lines.values()):
-        columns: Sequence[Any] = line.sent(printed=True)
         yield {
             "marking_id": number,
             "place": position,
             "came": order.get(line.part),
-            **dict(zip(_SENT, columns, strict=True)),
+            **line._asdict(),
             "matches": list(line.matches),
         }
-
-
-_SENT = (
-    "part", "answer", "read_as", "verdict", "points", "out_of", "lang", "matches", "in_other_order", "says", "feedback",
-)  # fmt: skip

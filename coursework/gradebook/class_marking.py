@@ -17,7 +17,7 @@ from coursework.gradebook.placing import SheetKey, Sheets, as_texts
 from coursework.gradebook.rows import Rejected
 from coursework.issuing.issued import Issued
 from coursework.language.words import words
-from coursework.marking.feedback import Sentence, right_feedback, right_says
+from coursework.marking.feedback import Sentence, right_texts
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.marking.plain_answers import plainly_right
@@ -39,13 +39,6 @@ class _SheetJob(NamedTuple):
     answers: Mapping[str, Any]
 
 
-class _MarkingOptions(NamedTuple):
-    """Options of the marking, for this process and for others."""
-
-    printed: bool  #: feedback sheets are to be made of them
-    rules: Rules | None  #: the course's unless the assignment says others
-
-
 def rules_of(course: Course, issued: Issued) -> Rules | None:
     """Return the course's rules of marking, overridden by the assignment's; None if the assignment states
     none.
@@ -64,8 +57,8 @@ def rules_of(course: Course, issued: Issued) -> Rules | None:
         raise BadInput(as_message(fault)) from fault
 
 
-def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:
-    """Yield the marked sheets, in their order; ``printed`` if feedback sheets are made of them.
+def marked(course: Course, issued: Issued, sheets: Sheets) -> Iterator[Graded]:
+    """Yield the marked sheets, in their order.
 
     A sheet that cannot be marked affects no other: its rows are added to the rejected ones, with a warning.
 
@@ -74,7 +67,7 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
     NoSolution
         The course cannot mark.
     """
-    return _rejecting(sheets, _judged(course, issued, sheets, printed))
+    return _rejecting(sheets, _judged(course, issued, sheets))
 
 
 def rejecting(sheets: Sheets, results: Iterable[tuple[SheetKey, Graded | str]]) -> Iterator[Graded]:
@@ -107,9 +100,7 @@ def _rejecting(sheets: Sheets, results: Iterable[_MarkedSheet]) -> Iterator[Grad
         )
 
 
-def judged(
-    course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True
-) -> Iterator[tuple[SheetKey, Graded | str]]:
+def judged(course: Course, issued: Issued, sheets: Sheets) -> Iterator[tuple[SheetKey, Graded | str]]:
     """Yield each sheet with its marks, or with the reason for which it cannot be marked, in their order.
 
     Raises
@@ -117,10 +108,10 @@ def judged(
     NoSolution
         The course cannot mark.
     """
-    return ((sheet, result) for _, sheet, result in _judged(course, issued, sheets, printed))
+    return ((sheet, result) for _, sheet, result in _judged(course, issued, sheets))
 
 
-def _judged(course: Course, issued: Issued, sheets: Sheets, printed: bool) -> Iterator[_MarkedSheet]:
+def _judged(course: Course, issued: Issued, sheets: Sheets) -> Iterator[_MarkedSheet]:
     sent: deque[tuple[Sheets, list[SheetKey]]] = deque()  #: chunks that are being marked
 
     def chunks() -> Iterator[list[_SheetJob]]:
@@ -131,8 +122,8 @@ def _judged(course: Course, issued: Issued, sheets: Sheets, printed: bool) -> It
                 sent.append((among, chunk))
                 yield [_sheet_job(issued, among, sheet) for sheet in chunk]
 
-    how = _MarkingOptions(printed, rules_of(course, issued))
-    for results in _marked_chunks(course, chunks(), sheets.answers, how):
+    rules = rules_of(course, issued)
+    for results in _marked_chunks(course, chunks(), sheets.answers, rules):
         among, chunk = sent.popleft()
         for sheet, result in zip(chunk, results, strict=True):
             yield among, sheet, result if isinstance(result, str) else _graded(issued, among, sheet, result)
@@ -153,7 +144,7 @@ def record_of(issued: Issued, sheets: Sheets, sheet: SheetKey) -> Mapping[str, A
 
 
 def _graded(issued: Issued, sheets: Sheets, sheet: SheetKey, sent: Sequence[tuple[Any, ...]]) -> Graded:
-    lines = {line.part: line for line in map(Mark.received, sent)}
+    lines = {line.part: line for line in map(Mark._make, sent)}
     sitting = sheet[3] or issued.sitting_of(*sheet[:3])
     record = record_of(issued, sheets, sheet)
     graded = Graded(*sheet[:3], lines, tuple(sheets.sheets[sheet]), record, sitting=sitting)
@@ -161,25 +152,25 @@ def _graded(issued: Issued, sheets: Sheets, sheet: SheetKey, sent: Sequence[tupl
 
 
 def _marked_chunks(
-    course: Course, chunks: Iterator[list[_SheetJob]], answers: int, how: _MarkingOptions
+    course: Course, chunks: Iterator[list[_SheetJob]], answers: int, rules: Rules | None
 ) -> Iterator[list[list[tuple] | str]]:
     """Yield each chunk marked, in order; use several processes for many answers."""
     count = workers(answers, WORTH_PROCESSES)
     if count < 2:
         for chunk in chunks:
-            yield _mark_chunk(course, chunk, how)
+            yield _mark_chunk(course, chunk, rules)
         return
     root, first = str(course.folder.root), itertools.count(1, CHUNK)
     yield from in_turn(
-        (Task(f"sheet {next(first)} on", _mark_elsewhere, (root, chunk, how)) for chunk in chunks), count
+        (Task(f"sheet {next(first)} on", _mark_elsewhere, (root, chunk, rules)) for chunk in chunks), count
     )
 
 
-def _mark_elsewhere(root: str, chunk: list[_SheetJob], how: _MarkingOptions) -> list[list[tuple] | str]:
-    return _mark_chunk(opened(root, Variant), chunk, how)
+def _mark_elsewhere(root: str, chunk: list[_SheetJob], rules: Rules | None) -> list[list[tuple] | str]:
+    return _mark_chunk(opened(root, Variant), chunk, rules)
 
 
-def _mark_chunk(course: Course, chunk: Sequence[_SheetJob], how: _MarkingOptions) -> list[list[tuple] | str]:
+def _mark_chunk(course: Course, chunk: Sequence[_SheetJob], rules: Rules | None) -> list[list[tuple] | str]:
     """Return the lines of each sheet, or the reason for which it cannot be marked."""
     variants: dict[int, Variant] = {}  #: by the identity of their records, which sheets of one variant share
     sheets: dict[str, list[int]] = {}
@@ -191,27 +182,25 @@ def _mark_chunk(course: Course, chunk: Sequence[_SheetJob], how: _MarkingOptions
     right: list[dict[str, str]] = [{} for _ in chunk]
     for name, places in sheets.items():
         rows = {record: row for row, record in enumerate(dict.fromkeys(id(chunk[i].record) for i in places))}
-        batch = keys_of(course[name], [variants[record] for record in rows], how.rules)
+        batch = keys_of(course[name], [variants[record] for record in rows], rules)
         answers = [(rows[id(chunk[i].record)], chunk[i].answers) for i in places]
         for i, digits in zip(places, plainly_right(course[name], batch, answers), strict=True):
             right[i] = digits
     return [
-        _mark_sheet(variants[id(job.record)], job.answers, readings_of_sheet, how.printed)
+        _mark_sheet(variants[id(job.record)], job.answers, readings_of_sheet)
         for job, readings_of_sheet in zip(chunk, right, strict=True)
     ]
 
 
-def _mark_sheet(
-    variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str], printed: bool
-) -> list[tuple] | str:
-    """Return the lines of a sheet in the order of its parts, or the reason for which it cannot be marked.
-    Answers known to be ``right`` are not marked again."""
+def _mark_sheet(variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str]) -> list[tuple] | str:
+    """Return the marks of a sheet in the order of its parts, or the reason for which it cannot be marked. Answers
+    known to be ``right`` are not marked again. The marks are plain tuples, which pass between processes at half the price."""
     try:
         marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
         return [
-            _right(variant, part, answers[part.id], right[part.id], printed=printed)
+            _right(variant, part, answers[part.id], right[part.id])
             if part.id in right
-            else _waiting(marking[part.id]).sent(printed=printed)
+            else tuple(_waiting(marking[part.id]))
             for part in variant.parts
         ]
     except NoSolution:
@@ -223,11 +212,9 @@ def _mark_sheet(
         return f"{type(fault).__name__}: {' '.join(str(fault).split())[:80]}"
 
 
-def _right(variant: Variant, part: Part, answer: str, read_as: str, *, printed: bool) -> tuple[Any, ...]:
-    """Return the mark of an answer that is known to be right, in the form in which processes exchange it."""
-    points = float(part.points)
-    message = right_says(variant, part, read_as) if printed else ""
-    texts = message, right_feedback(variant, part, read_as)
+def _right(variant: Variant, part: Part, answer: str, read_as: str) -> tuple[Any, ...]:
+    """Return the mark of an answer that is known to be right."""
+    points, texts = float(part.points), right_texts(variant, part, read_as)
     return (part.id, answer, read_as, "correct", points, points, variant.lang, (), False, *texts)
 
 
@@ -236,4 +223,4 @@ def _waiting(mark: Mark) -> Mark:
     unchanged."""
     if mark.verdict != "unreadable":
         return mark
-    return mark._replace(told=(*mark.told, Sentence(words(mark.lang)["marking"]["waits"], {})))
+    return mark.saying(*Sentence(words(mark.lang)["marking"]["waits"], {}).texts(mark.lang))

@@ -22,7 +22,6 @@ from coursework.gradebook.rows import AnswerRow
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 from coursework.language.words import words
-from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 from coursework.messages import Message, as_message
 from coursework.system.limits import MOST_TABLE_BYTES
@@ -86,8 +85,7 @@ class Decision(NamedTuple):
             The part has fewer points.
         """
         if self.kind == KEPT:
-            reason = RecordedSentence(self.reason, self.reason)
-            return line._replace(told=(*line.told, reason)) if self.reason else line
+            return line.saying(self.reason, self.reason)
         points = line.out_of if self.points is None else self.points
         check_points(points, line.part, line.out_of, self.location or self.by)
         verdict, word = ACCEPTED, "accepted"
@@ -95,7 +93,7 @@ class Decision(NamedTuple):
             verdict = ACCEPTED if points >= line.out_of else "partial" if points > 0 else "wrong"
             word = "by_hand"
         message = f"{words(lang)['marking'][word]} {self.reason}".strip()
-        return line._replace(verdict=verdict, points=points, told=(RecordedSentence(message, message),))
+        return line._replace(verdict=verdict, points=points, says=message, feedback=message)
 
 
 class Decisions:

@@ -24,7 +24,6 @@ from coursework.gradebook.rows import AnswerRow, Rejected, RowOrigin
 from coursework.issuing.identity import identifies
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
-from coursework.marking.feedback import RecordedSentence
 from coursework.marking.mark import Mark
 from coursework.messages import Message
 from coursework.system.tables import as_written, delimiter_of, open_csv
@@ -204,10 +203,10 @@ def _edited_mark(mark: Mark, line: _MarksLine) -> Mark:
                 out_of=mark.out_of,
                 found=line.points[:40],
             )
-    messages = mark.told
+    says, feedback = mark.says, mark.feedback
     if line.feedback is not None and line.feedback != " ".join(mark.feedback.split()):
-        messages = (RecordedSentence(_verbatim(line.feedback), line.feedback),)
-    return mark._replace(verdict=line.verdict, points=points, told=messages)
+        says, feedback = _verbatim(line.feedback), line.feedback
+    return mark._replace(verdict=line.verdict, points=points, says=says, feedback=feedback)
 
 
 def _number(text: str) -> float:

@@ -84,7 +84,7 @@ def grade_files(
         if not sheets.count:
             raise BadInput(nothing_in(submissions, sheets.rejected))
         feedback = usual_feedback(sheets) if feedback is None else feedback
-        results = marked(course, issued, sheets, printed=feedback)
+        results = marked(course, issued, sheets)
         return write_marks(
             course, issued, sheets, results, out, files=files, decisions=files.decisions, feedback=feedback,
             spreadsheet=spreadsheet, progress=progress, form=form,
@@ -214,7 +214,7 @@ def grade_edited_marks(
     sheets = standing.sheets
     feedback = usual_feedback(sheets) if feedback is None else feedback
     earlier = len(sheets.rejected)
-    machine = list(marked(course, issued, sheets, printed=feedback))
+    machine = list(marked(course, issued, sheets))
     standing.refuse(sheets.rejected[earlier:])
     book = Gradebook(issued, sheets.rows_in, 0, sheets.rejected, sheets.warnings)
     sheets_shown = []

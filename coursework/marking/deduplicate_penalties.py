@@ -32,10 +32,8 @@ def signs_counted_once(variant: Variant, marks: Mapping[str, Mark], share: float
             for i in others:
                 note = words(variant.lang)["marking"]["sign_with"]
                 message = Sentence(note, {"first": questions(variant, [first], "and")})
-                mark = marks[i]
-                first_by_group[i] = mark._replace(
-                    verdict="follow_through", points=share * mark.out_of, told=(*mark.told, message)
-                )
+                mark = marks[i]._replace(verdict="follow_through", points=share * marks[i].out_of)
+                first_by_group[i] = mark.saying(*message.texts(variant.lang))
     return {**marks, **first_by_group}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterator, Sequence
-from functools import partial
+from functools import partial, reduce
 from typing import TYPE_CHECKING, Any
 
 from coursework.course.answer_key import Key
@@ -70,7 +70,7 @@ def mark_wrong(
     else:
         mark = mark_of("wrong", 0.0, read_as, _unexplained_message(variant, part, read, before), matches)
         more += _size_remarks(variant, part, value, reference)
-    return mark._replace(told=(*mark.told, *more))
+    return reduce(lambda told, sentence: told.saying(*sentence.texts(variant.lang)), more, mark)
 
 
 def _remarks(

@@ -35,27 +35,12 @@ class Sentence(NamedTuple):
     sentence: str
     pieces: Mapping[str, str]
 
-    def markdown(self) -> str:
-        """Return the sentence with its pieces, Markdown."""
-        return self.sentence.format(**self.pieces)
-
-    def plain(self, lang: str) -> str:
-        """One line of plain text. Sentences and most pieces recur: each is made plain once."""
+    def texts(self, lang: str) -> tuple[str, str]:
+        """Return the sentence with its pieces: Markdown, and one line of plain text. Sentences and most pieces recur: each is
+        made plain once."""
         pieces = {n: text if _is_plain(text) else plain_line(text, lang) for n, text in self.pieces.items()}
-        return " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
-
-
-class RecordedSentence(NamedTuple):
-    """Message in both forms: Markdown, where it was wanted, and one line of plain text."""
-
-    says: str
-    feedback: str
-
-    def markdown(self) -> str:
-        return self.says
-
-    def plain(self, lang: str) -> str:
-        return self.feedback
+        plain = " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
+        return self.sentence.format(**self.pieces), plain
 
 
 _BARE = re.compile(r"[\w\s.,;:()=/°%·²³−…+^?!-]*")
@@ -232,25 +217,18 @@ def symbol(variant: Variant, name: str) -> str:
     return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
 
 
-def right_feedback(variant: Variant, part: Part, read_as: str) -> str:
-    """Return the feedback on a right answer, as one line of plain text."""
-    sentence = _plain_right(variant.exercise, part, variant.lang)
-    return sentence.replace(_READ, echo(read_as, variant.lang))
-
-
-def right_says(variant: Variant, part: Part, read_as: str) -> str:
-    """Return the same, Markdown."""
-    return _right(variant.exercise, part, variant.lang, echo(read_as, variant.lang)).markdown()
-
-
-def _right(exercise: CourseExercise, part: Part, lang: str, read: str) -> Sentence:
-    name = f"${exercise.symbol(part.quantity)}$"
-    return Sentence(words(lang)["marking"]["correct"], {"name": name[:1].upper() + name[1:], "read": read})
+def right_texts(variant: Variant, part: Part, read_as: str) -> tuple[str, str]:
+    """Return the feedback on a right answer: Markdown, and one line of plain text."""
+    says, plain = _right(variant.exercise, part, variant.lang)
+    read = echo(read_as, variant.lang)
+    return says.replace(_READ, read), plain.replace(_READ, read)
 
 
 _READ = "\N{OBJECT REPLACEMENT CHARACTER}"
 
 
 @lru_cache(maxsize=4096)
-def _plain_right(exercise: CourseExercise, part: Part, lang: str) -> str:
-    return _right(exercise, part, lang, _READ).plain(lang)
+def _right(exercise: CourseExercise, part: Part, lang: str) -> tuple[str, str]:
+    name = f"${exercise.symbol(part.quantity)}$"
+    pieces = {"name": name[:1].upper() + name[1:], "read": _READ}
+    return Sentence(words(lang)["marking"]["correct"], pieces).texts(lang)

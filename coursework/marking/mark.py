@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from coursework.errors import unknown
-from coursework.marking.feedback import RecordedSentence, Sentence
+from coursework.marking.feedback import Sentence
 from coursework.model import Part
 from coursework.parsing.reading import Reading
 
@@ -26,32 +26,18 @@ class Mark(NamedTuple):
     lang: str
     matches: tuple[str, ...] = ()  #: every verdict that explains this answer, the one given first
     in_other_order: bool = False  #: right because the student exchanged two assemblies
-    told: tuple[Sentence | RecordedSentence, ...] = ()  #: what is said of it, sentence by sentence
+    says: str = ""  #: feedback, Markdown in the sheet's language; it never states the reference value
+    feedback: str = ""  #: the same as one line of plain text
 
-    @property
-    def says(self) -> str:
-        """Return the feedback as Markdown in the sheet's language; it never states the reference value."""
-        return " ".join(filter(None, (said.markdown() for said in self.told)))
-
-    @property
-    def feedback(self) -> str:
-        """Return the feedback as one line of plain text."""
-        return " ".join(filter(None, (said.plain(self.lang) for said in self.told)))
+    def saying(self, says: str, feedback: str) -> Mark:
+        """Return the mark with one more sentence, Markdown and plain text."""
+        more = (" ".join(filter(None, texts)) for texts in ((self.says, says), (self.feedback, feedback)))
+        return self._replace(says=next(more), feedback=next(more))
 
     @property
     def mistakes(self) -> tuple[str, ...]:
         """The named mistakes that give this answer."""
         return tuple(m.partition(":")[2] for m in self.matches if m.startswith("mistake:"))
-
-    def sent(self, *, printed: bool) -> tuple[Any, ...]:
-        """Plain values, which pass between processes at half the price: its texts made, the Markdown where it is to
-        be ``printed``."""
-        return (*self[:-1], self.says if printed else "", self.feedback)
-
-    @classmethod
-    def received(cls, sent: tuple[Any, ...]) -> Mark:
-        """Return the mark of what was :meth:`sent`."""
-        return cls._make((*sent[:-2], (RecordedSentence(*sent[-2:]),)))
 
 
 class SheetMarks(Mapping[str, Mark]):
@@ -102,5 +88,5 @@ def made_mark(
         variant.lang,
         matches,
         False,
-        (message,),
+        *message.texts(variant.lang),
     )

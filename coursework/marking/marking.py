@@ -113,7 +113,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             if is_scale(part) and reading.values[nearest[0]] <= 0:
                 no_scale.add(i)
                 read_as = echo(marks[i].read_as, variant.lang)
-                marks[i] = marks[i]._replace(told=(say(variant, part, "scale", read=read_as),))
+                says, feedback = say(variant, part, "scale", read=read_as).texts(variant.lang)
+                marks[i] = marks[i]._replace(says=says, feedback=feedback)
         else:
             nearest = nearest_of.get(i) or nearest_reading(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
@@ -122,7 +123,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     for i in marks:
         if target[i] != i and marks[i].verdict == "correct":
             note = Sentence(words(variant.lang)["marking"]["either_order"], {})
-            marks[i] = marks[i]._replace(in_other_order=True, told=(*marks[i].told, note))
+            marks[i] = marks[i]._replace(in_other_order=True).saying(*note.texts(variant.lang))
     return SheetMarks(marks)
 
 

@@ -66,9 +66,8 @@ def standing(store, number, student=None):
 
 
 def comparable(one):
-    """A sheet as plain values, sentences as they are told."""
-    lines = {part: line.sent(printed=True) for part, line in one.lines.items()}
-    return one._replace(lines=lines, record=dict(one.record))
+    """A sheet as plain values."""
+    return one._replace(record=dict(one.record))
 
 
 def copy_of(course, tmp_path, old="", new="", file=SOLUTION):

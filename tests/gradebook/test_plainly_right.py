@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import coursework
-from coursework.gradebook.class_marking import _mark_chunk, _MarkingOptions, _SheetJob
+from coursework.gradebook.class_marking import _mark_chunk, _SheetJob
 from coursework.marking.marking import mark
 
 COURSE = coursework.open_course()
@@ -24,11 +24,9 @@ def test_a_sheet_marked_in_bulk_says_what_it_says_alone(name, lang):
         )
         for v in variants
     ]
-    for job, variant, lines in zip(
-        jobs, variants, _mark_chunk(COURSE, jobs, _MarkingOptions(True, None)), strict=True
-    ):
+    for job, variant, lines in zip(jobs, variants, _mark_chunk(COURSE, jobs, None), strict=True):
         alone = mark(variant, job.answers)
         assert [line[-2:] for line in lines if line[3] == "correct"] == [
-            line.sent(printed=True)[-2:] for line in alone.values() if line.verdict == "correct"
+            line[-2:] for line in alone.values() if line.verdict == "correct"
         ]
         assert any(line[3] == "correct" for line in lines)

@@ -395,7 +395,7 @@ def test_the_envelope_widens_and_never_narrows():
 @pytest.mark.parametrize("name", sampled(COURSE.names))
 def test_many_sheets_are_marked_as_each_alone(name):
     """By the column or one by one, the verdict, the points, what was read and what is said are the same."""
-    from coursework.gradebook.class_marking import _mark_chunk, _MarkingOptions, _SheetJob, _waiting
+    from coursework.gradebook.class_marking import _mark_chunk, _SheetJob, _waiting
     from coursework.marking.mark import Mark
 
     exercise = COURSE[name]
@@ -418,13 +418,13 @@ def test_many_sheets_are_marked_as_each_alone(name):
             elif isinstance(value, str):
                 answers[part.id] = value
         jobs.append(_SheetJob(variant.record, answers))
-    together = _mark_chunk(COURSE, jobs, _MarkingOptions(printed=False, rules=None))
+    together = _mark_chunk(COURSE, jobs, None)
     for job, lines in zip(jobs, together, strict=True):
         alone = exercise.from_record(job.record).grade(job.answers)
-        lines = [Mark.received(line) for line in lines]
+        lines = [Mark(*line) for line in lines]
         assert [line.part for line in lines] == list(alone)
         for line in lines:
-            mark = Mark.received(_waiting(alone[line.part]).sent(printed=False))
+            mark = _waiting(alone[line.part])
             assert (line.verdict, line.points, line.read_as, line.answer, line.feedback, line.matches) == (
                 mark.verdict, mark.points, mark.read_as, mark.answer, mark.feedback, mark.matches,
             )  # fmt: skip

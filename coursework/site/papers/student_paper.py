@@ -73,7 +73,7 @@ def read_back(variant: Any, part: Part, text: str) -> ReadBack:
     if reading.status == "missing":
         return ReadBack("missing", "")
     if reading.status != "read":
-        return ReadBack(reading.status, say_not_read(variant, part, reading).plain(variant.lang))
+        return ReadBack(reading.status, say_not_read(variant, part, reading).texts(variant.lang)[1])
     if part.sort.is_open:
         return ReadBack("waits", texts["waits"])
     lines = [plain_line(line, variant.lang) for line in readings(variant, part, text)[1]]
