@@ -620,20 +620,28 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bo
         value = float(digits)
         if value - value == 0:
             return Reading.plain(text, value, digits)
-    target, text = target_unit(unit), bare_value(text)
+    target_unit(unit)
+    text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         return _from_real(text)
+    return (_read_text if text.__class__ is str else _read)(text, unit, thousands, proportions)
+
+
+def _read(text: Any, unit: str, thousands: bool, proportions: bool) -> Reading:
     if isinstance(text, str) and "\n" in text and _LINES.search(text.replace("\r", "")):
         return Reading(text, "unreadable", code="two_values", found=shorten(" ".join(text.split())))
 
     def read(plain: str) -> Reading:
-        plain = with_signs(plain)
+        plain, target = with_signs(plain), target_unit(unit)
         refuse_no_number(plain, target)
         texts = restated(plain, unit) if is_of_paper(unit) else (plain,)
         amounts = [a for piece in texts for a in read_amounts(piece, target, thousands, proportions)]
         return _from_amounts(text, amounts)
 
     return reading_of(text, read)
+
+
+_read_text = lru_cache(maxsize=4096)(_read)  #: a class writes the same, what is no number above all
 
 
 def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.ndarray]:
