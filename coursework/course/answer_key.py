@@ -76,6 +76,8 @@ class KeyNumbers(NamedTuple):
 class Key:
     """The reference values of one variant, and the values each known wrong way would give."""
 
+    is_of_batch = False  #: computed with others, so that every asked quantity exists
+
     def __init__(self, variant: KeySource, rules: Rules | None = None, numbers: KeyNumbers | None = None):
         self.variant = variant
         self.solution = variant.exercise.solution

@@ -151,6 +151,8 @@ class Batch:
 class _KeyOfBatch(Key):
     """The key of one variant among many."""
 
+    is_of_batch = True
+
     def __init__(self, variant: KeySource, batch: Batch, index: int) -> None:
         super().__init__(variant, batch.rules)
         self._batch, self._index = batch, index

@@ -26,6 +26,7 @@ from coursework.model import Part
 from coursework.system.processes import Task, in_turn, workers
 
 CHUNK = 500  #: sheets marked together
+_KNOWN = 2000  #: variants whose keys are kept for the next chunks
 WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has started
 
 
@@ -157,8 +158,9 @@ def _marked_chunks(
     """Yield each chunk marked, in order; use several processes for many answers."""
     count = workers(answers, WORTH_PROCESSES)
     if count < 2:
+        known: dict[str, Variant] = {}
         for chunk in chunks:
-            yield _mark_chunk(course, chunk, rules)
+            yield _mark_chunk(course, chunk, rules, known)
         return
     root, first = str(course.folder.root), itertools.count(1, CHUNK)
     yield from in_turn(
@@ -166,29 +168,37 @@ def _marked_chunks(
     )
 
 
+_known: dict[str, Variant] = {}  #: of this process, where it marks for another
+
+
 def _mark_elsewhere(root: str, chunk: list[_SheetJob], rules: Rules | None) -> list[list[tuple] | str]:
-    return _mark_chunk(opened(root, Variant), chunk, rules)
+    return _mark_chunk(opened(root, Variant), chunk, rules, _known)
 
 
-def _mark_chunk(course: Course, chunk: Sequence[_SheetJob], rules: Rules | None) -> list[list[tuple] | str]:
-    """Return the lines of each sheet, or the reason for which it cannot be marked."""
-    variants: dict[int, Variant] = {}  #: by the identity of their records, which sheets of one variant share
-    sheets: dict[str, list[int]] = {}
-    for i, job in enumerate(chunk):
-        name = job.record["exercise"]
-        if id(job.record) not in variants:
-            variants[id(job.record)] = course[name].from_record(job.record)
-        sheets.setdefault(name, []).append(i)
-    right: list[dict[str, str]] = [{} for _ in chunk]
-    for name, places in sheets.items():
-        rows = {record: row for row, record in enumerate(dict.fromkeys(id(chunk[i].record) for i in places))}
-        batch = keys_of(course[name], [variants[record] for record in rows], rules)
-        answers = [(rows[id(chunk[i].record)], chunk[i].answers) for i in places]
-        for i, digits in zip(places, plainly_right(course[name], batch, answers), strict=True):
-            right[i] = digits
+def _mark_chunk(
+    course: Course, chunk: Sequence[_SheetJob], rules: Rules | None, known: dict[str, Variant]
+) -> list[list[tuple] | str]:
+    """Return the lines of each sheet, or the reason for which it cannot be marked. Variants that are ``known`` from
+    the chunks before keep the keys that were computed for them."""
+    names = {
+        id(job.record): f"{job.record} {rules}" for job in chunk
+    }  # sheets of one variant share its record
+    variants = {name: known[name] for name in names.values() if name in known}
+    new: dict[str, list[Variant]] = {}
+    for job in chunk:
+        exercise, name = job.record["exercise"], names[id(job.record)]
+        if name not in variants:
+            variants[name] = course[exercise].from_record(job.record)
+            new.setdefault(exercise, []).append(variants[name])
+    for exercise, of_exercise in new.items():
+        keys_of(course[exercise], of_exercise, rules)
+    if len(known) > _KNOWN:
+        known.clear()
+    known.update(variants)
+    sheets = [(variants[names[id(job.record)]], job.answers) for job in chunk]
     return [
-        _mark_sheet(variants[id(job.record)], job.answers, readings_of_sheet)
-        for job, readings_of_sheet in zip(chunk, right, strict=True)
+        _mark_sheet(*sheet, readings_of_sheet)
+        for sheet, readings_of_sheet in zip(sheets, plainly_right(sheets), strict=True)
     ]
 
 

@@ -24,7 +24,7 @@ def test_a_sheet_marked_in_bulk_says_what_it_says_alone(name, lang):
         )
         for v in variants
     ]
-    for job, variant, lines in zip(jobs, variants, _mark_chunk(COURSE, jobs, None), strict=True):
+    for job, variant, lines in zip(jobs, variants, _mark_chunk(COURSE, jobs, None, {}), strict=True):
         alone = mark(variant, job.answers)
         assert [line[-2:] for line in lines if line[3] == "correct"] == [
             line[-2:] for line in alone.values() if line.verdict == "correct"

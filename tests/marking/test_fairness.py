@@ -418,7 +418,7 @@ def test_many_sheets_are_marked_as_each_alone(name):
             elif isinstance(value, str):
                 answers[part.id] = value
         jobs.append(_SheetJob(variant.record, answers))
-    together = _mark_chunk(COURSE, jobs, None)
+    together = _mark_chunk(COURSE, jobs, None, {})
     for job, lines in zip(jobs, together, strict=True):
         alone = exercise.from_record(job.record).grade(job.answers)
         lines = [Mark(*line) for line in lines]

@@ -219,7 +219,7 @@ def test_the_bulk_marker_gives_the_same_marks(course, tmp_path):
         _SheetJob(v.record, {"half": str(v.given["sum"] / 2), "x": "1", "y": str(v.given["sum"] - 1 - i % 2)})
         for i, v in enumerate(variants)
     ]
-    for variant, job, lines in zip(variants, jobs, _mark_chunk(opened, jobs, None), strict=True):
+    for variant, job, lines in zip(variants, jobs, _mark_chunk(opened, jobs, None, {}), strict=True):
         alone = {p: (m.verdict, m.points) for p, m in variant.grade(job.answers).items()}
         assert {line[0]: (line[3], line[4]) for line in lines} == alone
 

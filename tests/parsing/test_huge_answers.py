@@ -116,7 +116,7 @@ HOSTILE = (
 def test_both_ways_to_mark_a_class_give_one_verdict(name):
     exercise = COURSE[name]
     variants = list(exercise.variants(range(1, 8)))
-    batch = keys_of(exercise, variants)
+    keys_of(exercise, variants)
     for turn in range(len(HOSTILE)):
         sheets = []
         for variant in variants:
@@ -132,7 +132,7 @@ def test_both_ways_to_mark_a_class_give_one_verdict(name):
                     )
             sheets.append(texts)
         for variant, texts, right in zip(
-            variants, sheets, plainly_right(exercise, batch, sheets), strict=True
+            variants, sheets, plainly_right(list(zip(variants, sheets, strict=True))), strict=True
         ):
             marks = mark(variant, texts)
             for part in variant.parts:
