@@ -30,36 +30,11 @@ from coursework.gradebook.decisions import (
 )
 from coursework.issuing.students import folded
 
-
-class DecidedAnswer(NamedTuple):
-    """Answer to which a decision applies."""
-
-    student: str
-    exercise: str
-    seed: str  #: empty for whatever variant they have
-    part: str
-    answer: str | None = None  #: what was seen: another one is not decided on; None for whatever it is
-
-    @staticmethod
-    def of(decided: Decision) -> DecidedAnswer:
-        """Return the answer that a decision is about."""
-        return DecidedAnswer(*decided.answer_id, decided.answer)
-
-
 # ---------------------------------------------------------------------- writing
 
 
-def decide(
-    connection: Connection,
-    assignment_id: int,
-    places: Iterable[DecidedAnswer],
-    kind: str,
-    points: float | None,
-    reason: str,
-    by: str,
-) -> None:
-    """Store a decision on some answers. A decision of the kind ``given`` applies only to the answer that was
-    seen.
+def decide(connection: Connection, assignment_id: int, decisions: Iterable[Decision]) -> None:
+    """Store decisions, as of now. One of the kind ``given`` applies only to the answer that was seen.
 
     Raises
     ------
@@ -68,53 +43,43 @@ def decide(
     BadInput
         Points that are more than the part has, or none where some are given.
     """
-    if kind not in KINDS:
-        raise UnknownName("no kind of decision {kind!r}{nearest}", kind=kind, nearest=nearest(kind, KINDS))
-    if kind == GIVEN and points is None:
-        raise BadInput("points are given, or the answer is accepted: say how many")
-    places = list(places)
-    if kind != WITHDRAWN:
-        _check(connection, assignment_id, places, points)
-    decided_at = datetime.now(UTC)
-    values = {
-        "assignment_id": assignment_id,
-        "kind": kind,
-        "points": points,
-        "reason": reason,
-        "by": by,
-        "made": decided_at,
-    }
-    if places:
-        connection.execute(
-            insert(decision),
-            [{**decided._asdict(), "seed": str(decided.seed), **values} for decided in places],
-        )
+    decisions = list(decisions)
+    for one in decisions:
+        if one.kind not in KINDS:
+            raise UnknownName(
+                "no kind of decision {kind!r}{nearest}", kind=one.kind, nearest=nearest(one.kind, KINDS)
+            )
+        if one.kind == GIVEN and one.points is None:
+            raise BadInput("points are given, or the answer is accepted: say how many")
+    _check(connection, assignment_id, [one for one in decisions if one.kind != WITHDRAWN])
+    if decisions:
+        now = {"assignment_id": assignment_id, "made": datetime.now(UTC)}
+        rows = [{**dict(zip(_STORED, one, strict=False)), **now} for one in decisions]
+        connection.execute(insert(decision), rows)
 
 
-def _check(
-    connection: Connection, assignment_id: int, places: Sequence[DecidedAnswer], points: float | None
-) -> None:
+def _check(connection: Connection, assignment_id: int, decisions: Sequence[Decision]) -> None:
     """Raise an error for an exercise or a part that does not exist, or for more points than the part has."""
-    exercises = {answer.exercise for answer in places}
+    exercises = {one.exercise for one in decisions}
     query = select(variant.c.exercise, variant.c.record["parts"].label("parts")).where(
         variant.c.assignment_id == assignment_id, variant.c.exercise.in_(exercises)
     )
     worth: dict[str, dict[str, float]] = {}
-    for row in connection.execute(query):
+    for row in connection.execute(query) if decisions else ():
         worth.setdefault(row.exercise, {}).update({str(p["id"]): float(p["points"]) for p in row.parts})
-    for answer in places:
-        parts = worth.get(answer.exercise)
+    for one in decisions:
+        parts = worth.get(one.exercise)
         if parts is None:
-            raise UnknownName("no exercise {exercise!r} was issued", exercise=answer.exercise)
-        if answer.part not in parts:
+            raise UnknownName("no exercise {exercise!r} was issued", exercise=one.exercise)
+        if one.part not in parts:
             raise UnknownName(
                 "{exercise} has no part {part!r}{nearest}",
-                exercise=answer.exercise,
-                part=answer.part,
-                nearest=nearest(answer.part, parts),
+                exercise=one.exercise,
+                part=one.part,
+                nearest=nearest(one.part, parts),
             )
-        if points is not None:
-            check_points(points, answer.part, parts[answer.part], f"{answer.student}, {answer.exercise}")
+        if one.points is not None:
+            check_points(one.points, one.part, parts[one.part], f"{one.student}, {one.exercise}")
 
 
 # ---------------------------------------------------------------------- reading
@@ -230,7 +195,7 @@ _STATED = Decision._fields.index("made")  #: fields of a decision that a workshe
 def _store_decision(connection: Connection, assignment_id: int, one: Decision) -> None:
     """Store a decision; ignore a line that names nothing issued, since the reader of the file reports it."""
     with suppress(UnknownName):
-        decide(connection, assignment_id, [DecidedAnswer.of(one)], one.kind, one.points, one.reason, one.by)
+        decide(connection, assignment_id, [one])
 
 
 def _by_answer(decisions: Iterable[Decision]) -> dict[tuple[str, str, str], list[Decision]]:

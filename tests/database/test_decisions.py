@@ -8,12 +8,13 @@ from stored_class import ANA, BEN, content, put, rows
 
 import coursework
 from coursework.database.current_marks import graded
-from coursework.database.decisions import DecidedAnswer, decide, history
+from coursework.database.decisions import decide, history
 from coursework.database.marking import mark_new
 from coursework.database.tables import decision
 from coursework.errors import BadInput, UnknownName
+from coursework.gradebook.decisions import Decision
 
-PLACE = DecidedAnswer(BEN, "crank_pin", "1", "x")
+PLACE = Decision(BEN, "crank_pin", "1", "x", "accepted")
 
 
 @pytest.fixture
@@ -28,9 +29,10 @@ def number(store, course):
     return found
 
 
-def say(store, number, *told, by="Prof. Roe"):
+def say(store, number, places, kind, points, reason, by="Prof. Roe"):
+    told = {"kind": kind, "points": points, "reason": reason, "by": by}
     with store.begin() as connection:
-        decide(connection, number, *told, by=by)
+        decide(connection, number, [place._replace(**told) for place in places])
 
 
 def line(store, number, student=BEN, part="x"):

@@ -6,7 +6,7 @@ import pytest
 
 from coursework import open_course
 from coursework.database.assignments import put_issued
-from coursework.database.decisions import DecidedAnswer, decide
+from coursework.database.decisions import decide
 from coursework.database.instructor_queries import (
     Placing,
     Stamp,
@@ -26,6 +26,7 @@ from coursework.database.instructor_queries import (
 from coursework.database.marking import mark_new
 from coursework.database.progress import PersonProgress
 from coursework.database.submissions import insert_submission
+from coursework.gradebook.decisions import Decision
 from coursework.gradebook.rows import AnswerRow, RowOrigin
 
 AT = datetime(2026, 11, 23, 9, tzinfo=UTC)
@@ -59,7 +60,7 @@ def number(store):
 
 def decided(store, number, kind, by, points=None):
     with store.begin() as connection:
-        decide(connection, number, [DecidedAnswer("Ada", EXERCISE, "42", "rA", "? 2")], kind, points, "", by)
+        decide(connection, number, [Decision("Ada", EXERCISE, "42", "rA", kind, points, "", "? 2", by)])
 
 
 def test_a_stamp_changes_with_what_is_added_and_says_whose_it_is(store, number):

@@ -12,13 +12,14 @@ from stored_class import ANA, BEN, content, put, rows
 import coursework
 from coursework.cli import run
 from coursework.database.assignments import put_issued
-from coursework.database.decisions import DecidedAnswer, decide
+from coursework.database.decisions import decide
 from coursework.database.dump import dump, restore
 from coursework.database.marking import mark_new
 from coursework.database.store import Store
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import METADATA
 from coursework.errors import BadInput
+from coursework.gradebook.decisions import Decision
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 
 AT = datetime(2026, 1, 2, 3, 4, 5, 678901, UTC)
@@ -53,9 +54,7 @@ def full(store, small_course):
     ]
     with store.begin() as connection:
         insert_submission(connection, number, odd, source=ODD, received_at=AT)
-        decide(
-            connection, number, [DecidedAnswer(BEN, "crank_pin", "", "x", ODD)], "given", 1 / 3, ODD, "\\N"
-        )
+        decide(connection, number, [Decision(BEN, "crank_pin", "", "x", "given", 1 / 3, ODD, ODD, "\\N")])
         person = {"person_id": 1}
         own = {
             "account": {**person, "login": ODD, "role": "student", "created": AT, "closed": None},

@@ -171,8 +171,9 @@ def test_nothing_new_writes_the_same_files_and_marks_nothing(one, capsys):
 
 def test_a_decision_of_a_file_is_taken_in_once_and_a_later_one_from_elsewhere_stands(one):
     from coursework.database.assignments import assignment_called
-    from coursework.database.decisions import DecidedAnswer, decide, history
+    from coursework.database.decisions import decide, history
     from coursework.database.store import Store
+    from coursework.gradebook.decisions import Decision
 
     first = one.file("first.csv", one.rows("Ana", why="It stores."))
     one.grade(first)
@@ -184,8 +185,8 @@ def test_a_decision_of_a_file_is_taken_in_once_and_a_later_one_from_elsewhere_st
     store = Store(one.url)
     with store.begin() as connection:
         number = assignment_called(connection, "week3")
-        place = DecidedAnswer("Ana", "coil", "", "why", "It stores.")
-        decide(connection, number, [place], "given", 1, "second reading", "Prof. Roe")
+        told = "given", 1, "second reading", "It stores.", "Prof. Roe"
+        decide(connection, number, [Decision("Ana", "coil", "", "why", *told)])
     for _ in range(2):
         one.status("grade", "--db", one.url, "--out", stored, *FORMATS)
     marks = {row["part"]: row for row in table(stored / "marks.csv")}

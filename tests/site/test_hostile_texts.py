@@ -15,12 +15,13 @@ from sqlalchemy import select
 from tables import each_row
 
 from coursework.database.assignments import put_issued
-from coursework.database.decisions import DecidedAnswer, decide
+from coursework.database.decisions import decide
 from coursework.database.marking import mark_new
 from coursework.database.people import put_account
 from coursework.database.publication import AT_ONCE, Publication, publish
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import person
+from coursework.gradebook.decisions import Decision
 from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.site.frame.forms import clean
 
@@ -61,8 +62,8 @@ class Hostile(Class):
             publish(connection, self.number, Publication(tries=None, feedback=AT_ONCE, answers=AT_ONCE))
             insert_submission(connection, self.number, rows, source=self.texts[0], received_at=self.at)
             for place, name in zip(self.texts, self.names, strict=True):
-                told = DecidedAnswer(name, EXERCISE, str(SEED), parts[0], place)
-                decide(connection, self.number, [told], "given", 0.0, place, TEACHER)
+                told = "given", 0.0, place, place, TEACHER
+                decide(connection, self.number, [Decision(name, EXERCISE, str(SEED), parts[0], *told)])
             dealt = {row.name: row.id for row in connection.execute(select(person))}
             self.ids |= {name: dealt[name] for name in self.names}
             for k, name in enumerate(self.names):

@@ -25,10 +25,11 @@ from sqlalchemy import func, select, update
 from coursework.cli.site import _check_lti
 from coursework.database.assignments import issued_of
 from coursework.database.audit import noted
-from coursework.database.decisions import GIVEN, DecidedAnswer, decide
+from coursework.database.decisions import GIVEN, decide
 from coursework.database.publication import CHARGE, NEVER
 from coursework.database.tables import account, delivery, identity, person
 from coursework.errors import BadInput
+from coursework.gradebook.decisions import Decision
 from coursework.messages import messages_in
 from coursework.site.lti.service import settings_of
 
@@ -209,15 +210,8 @@ def test_a_decision_sends_the_score_anew(linked):
     before = linked.points("Ada Byron")
     part = "rA"
     with linked.site.store.begin() as connection:
-        decide(
-            connection,
-            linked.number,
-            [DecidedAnswer("Ada Byron", "slotted_mechanism", "", part)],
-            GIVEN,
-            0.5,
-            "half",
-            "Ada",
-        )
+        half = Decision("Ada Byron", "slotted_mechanism", "", part, GIVEN, 0.5, "half", by="Ada")
+        decide(connection, linked.number, [half])
     assert linked.lti.state.watch.look() == 1
     assert linked.lti.state.watch.look() == 0
     last = linked.sent()[-1]
@@ -248,8 +242,8 @@ def test_what_cannot_be_read_is_handed_in_only_when_one_insists_and_is_pending(l
     assert visitor.hand_in(path, page, texts, _as_it_is="1").status_code == 303
     assert linked.sent()[-1]["gradingProgress"] == "PendingManual"
     with linked.site.store.begin() as connection:
-        place = DecidedAnswer("Ada Byron", "slotted_mechanism", "", "rA")
-        decide(connection, linked.number, [place], GIVEN, 0.25, "", "Ada")
+        given = Decision("Ada Byron", "slotted_mechanism", "", "rA", GIVEN, 0.25, by="Ada")
+        decide(connection, linked.number, [given])
     linked.lti.state.watch.look()
     assert linked.sent()[-1]["gradingProgress"] == "FullyGraded"
 

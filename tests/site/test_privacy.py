@@ -15,13 +15,14 @@ from sqlalchemy import JSON, String, insert, select, update
 
 from coursework.database import erasing
 from coursework.database.audit import note
-from coursework.database.decisions import DecidedAnswer, decide
+from coursework.database.decisions import decide
 from coursework.database.people import put_person
 from coursework.database.publication import Publication, publish
 from coursework.database.submissions import insert_submission
 from coursework.database.tables import METADATA, SafeText, extension, worksheet
 from coursework.database.tables import person as people
 from coursework.errors import BadCourse
+from coursework.gradebook.decisions import Decision
 from coursework.gradebook.rows import AnswerRow, Rejected
 
 LEA, NUMBER, MAIL = "Léa Quatrebarbes", "20264711", "lea.quatrebarbes@example.org"
@@ -95,10 +96,10 @@ def lea(site):
             *site.rows(MAX),
         ]
         insert_submission(connection, site.number, file, source=f"of {LEA} and others.csv", received_at=at)
-        place = DecidedAnswer(LEA, "slotted_mechanism", "11", "rA", "1")
-        decide(connection, site.number, [place], "accepted", None, f"agreed with {LEA}", TEACHER)
-        other = DecidedAnswer(MAX, "slotted_mechanism", "", "rA")
-        decide(connection, site.number, [other], "accepted", None, f"as {LEA} said", LEA)
+        place = LEA, "slotted_mechanism", "11", "rA"
+        agreed = Decision(*place, "accepted", None, f"agreed with {LEA}", "1", TEACHER)
+        other = Decision(MAX, "slotted_mechanism", "", "rA", "accepted", reason=f"as {LEA} said", by=LEA)
+        decide(connection, site.number, [agreed, other])
         told = {"assignment_id": site.number, "reason": f"{LEA} was ill", "by": TEACHER, "made": at}
         connection.execute(insert(extension).values(person_id=person, **told))
         connection.execute(insert(extension).values(person_id=site.ids[MAX], **{**told, "by": LEA}))

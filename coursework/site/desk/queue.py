@@ -12,7 +12,7 @@ from typing import Any
 from starlette.responses import Response
 
 from coursework.database.class_state import ClassState, OpenGroup, UnplacedRow
-from coursework.database.decisions import DecidedAnswer, decide
+from coursework.database.decisions import decide
 from coursework.database.instructor_queries import (
     decided_since,
     undoable,
@@ -313,7 +313,8 @@ def _decide(request: Request, now: ClassState, group: AnswerGroup) -> str:
         )
         free = [answer for answer in members if _key(answer) not in decided_meanwhile]
         comment = request.form.text("comment").strip()[:LONGEST]
-        decide(connection, now.about.id, map(_target, free), kind, points, comment, request.actor.name)
+        by = request.actor.name
+        decide(connection, now.about.id, [_decision(a, kind, points, comment, by) for a in free])
         about = {"assignment": now.about.id, "exercise": group.exercise, "part": group.part, "kind": kind}
         if free:
             request.note(connection, "decision", count=len(free), points=points, **about)
@@ -346,10 +347,8 @@ def _chosen(request: Request, now: ClassState, group: AnswerGroup) -> Sequence[A
     return [answer for answer in waits if answer.student == student] or waits[:1]
 
 
-def _target(answer: AnswerToReview) -> DecidedAnswer:
-    return DecidedAnswer(
-        answer.student, answer.sheet.exercise, str(answer.sheet.seed), answer.mark.part, answer.mark.answer
-    )
+def _decision(answer: AnswerToReview, kind: str, points: float | None, reason: str, by: str) -> Decision:
+    return Decision(*_key(answer), kind, points, reason, answer.mark.answer, by)
 
 
 def _decided_meanwhile(
@@ -371,15 +370,9 @@ def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
     with request.site.store.begin() as connection:
         batch = undoable(connection, now.about.id, request.actor.name)
         if batch:
-            decide(
-                connection,
-                now.about.id,
-                map(DecidedAnswer.of, batch),
-                WITHDRAWN,
-                None,
-                "",
-                request.actor.name,
-            )
+            by = request.actor.name
+            withdrawn = [b._replace(kind=WITHDRAWN, points=None, reason="", by=by) for b in batch]
+            decide(connection, now.about.id, withdrawn)
             request.note(connection, "undo", assignment=now.about.id, count=len(batch))
     later = class_now(request.site, now.about.id)
     if not batch:

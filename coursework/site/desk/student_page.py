@@ -16,7 +16,6 @@ from starlette.responses import Response
 
 from coursework.database.class_state import ClassState
 from coursework.database.decisions import (
-    DecidedAnswer,
     HistoryEvent,
     decide,
     history,
@@ -25,6 +24,7 @@ from coursework.database.instructor_queries import people_of, practised, submiss
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.columns import own_columns
+from coursework.gradebook.decisions import Decision
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.issuing.students import folded
@@ -198,17 +198,10 @@ def _decided(request: Request, now: ClassState, student: str) -> str:
     if sheet is None or part not in sheet.lines:
         raise HTTPException("own", 404)
     kind, points = requested_decision(request, sheet.lines[part])
-    target = DecidedAnswer(student, exercise, seed, part, sheet.lines[part].answer)
+    comment, answer = form.text("comment").strip()[:_LONGEST], sheet.lines[part].answer
+    decision = Decision(student, exercise, seed, part, kind, points, comment, answer, request.actor.name)
     with request.site.store.begin() as connection:
-        decide(
-            connection,
-            now.about.id,
-            [target],
-            kind,
-            points,
-            form.text("comment").strip()[:_LONGEST],
-            request.actor.name,
-        )
+        decide(connection, now.about.id, [decision])
         request.note(connection, "decision", assignment=now.about.id, exercise=exercise, part=part, kind=kind, points=points, count=1)  # fmt: skip
     return str(texts["decided"][kind]).format(1, localise(f"{points or 0:g}", request.lang))
 
