@@ -181,7 +181,7 @@ def told_place(subject: Subject, point: HardPlace, texts: Words, lang: str) -> s
 
 def symbol_of(exercise: CourseExercise, name: str) -> str:
     """Return the symbol of a quantity of the statement or of the solution alone, as inline Markdown."""
-    return f"${exercise.solution.symbols.get(name) or exercise.symbol(name)}$"
+    return f"${exercise.solution_symbol(name)}$"
 
 
 def _paragraphs(sentences: Iterable[str]) -> str:

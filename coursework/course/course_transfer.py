@@ -53,7 +53,7 @@ class Carried:
     """A course and the tasks about it, as bytes; ``content`` is what a process needs of the folder before the first."""
 
     def __init__(self, folder: Folder):
-        builtin = folder.root == builtin_root().resolve()
+        builtin = folder.is_builtin
         self.content = b"" if builtin else zipped(dict(_files(folder)))
         digest = "" if builtin else hashlib.sha256(self.content).hexdigest()
         self._caller = _Caller(versions(), digest, folder.root.name)

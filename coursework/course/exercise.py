@@ -108,6 +108,10 @@ class CourseExercise(Generic[V]):
         """LaTeX of a quantity of the statement."""
         return self.spec.symbol(name)
 
+    def solution_symbol(self, name: str) -> str:
+        """LaTeX of a quantity of the solution, or else of the statement."""
+        return self.solution.symbols.get(name) or self.symbol(name)
+
     def plan(
         self, only: Sequence[str] | None = None, *, effects: Iterable[str] | None = None
     ) -> tuple[str, ...]:

@@ -65,9 +65,14 @@ class Folder:
         return f"<folder {self.root.name}>"
 
     @property
+    def is_builtin(self) -> bool:
+        """Return whether this is the course that the package brings."""
+        return self.root == builtin_root().resolve()
+
+    @property
     def label(self) -> str:
         """Return the name of the course in messages."""
-        if self.root == builtin_root().resolve():
+        if self.is_builtin:
             return Message("the built-in course")
         return Message("course {name}", name=self.root.name)
 

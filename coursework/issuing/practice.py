@@ -7,7 +7,6 @@ from contextlib import suppress
 from copy import copy
 from typing import Any
 
-from coursework.course.builtin import builtin_root
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
 from coursework.course.lessons import taught_by
@@ -39,12 +38,12 @@ class PracticeOf:
     def after(self, exercise: str, student: str, lang: str) -> Practice:
         """Return the practice of ``student`` after an exercise, in a language."""
         course_exercise = self._course[exercise]
-        root = course_exercise.folder.root
+        folder = course_exercise.folder
         seed = self._seed(course_exercise, student) if self._offers else None
         return Practice(
             exercise,
             course_exercise.version,
-            "" if root == builtin_root().resolve() else root.name,
+            "" if folder.is_builtin else folder.root.name,
             seed,
             self._taught(course_exercise, lang),
             () if seed is None else self._asked(exercise, seed, lang),

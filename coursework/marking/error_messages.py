@@ -11,7 +11,7 @@ from coursework.course.answer_key import Key
 from coursework.course.asked import KeySource
 from coursework.language.words import listed, quoted, words
 from coursework.marking.diagnosis import EarlierAnswers, Explanation, alternatives, explained, fits_followed
-from coursework.marking.feedback import Sentence, echo, questions, say, symbol
+from coursework.marking.feedback import Sentence, echo, questions, say
 from coursework.marking.mark import Mark, made_mark
 from coursework.marking.usual import NAMED, whys
 from coursework.markup.markdown import plain_line
@@ -187,7 +187,7 @@ def _unexplained_message(variant: Variant, part: Part, read: str, before: Earlie
     to_mend = [p for p in parts if p.quantity not in before.right]
     states: dict[str, list[str]] = {}
     for p in to_mend or parts:
-        states.setdefault(before.state(p), []).append(f"${symbol(variant, p.quantity)}$")
+        states.setdefault(before.state(p), []).append(f"${variant.exercise.solution_symbol(p.quantity)}$")
     groups = [
         (table["depends_on_many"] if len(symbols) > 1 else table["depends_on"])[state].format(
             listed(symbols, variant.lang)
@@ -203,7 +203,7 @@ def _given_above(variant: Variant, quantity: str) -> list[str]:
     graph = variant.exercise.solution.graph.textbook
     above = graph.ancestors((quantity,)) if quantity in graph.names else frozenset()
     given = [name for name in variant.stated if name in above and name != quantity]
-    return [f"${symbol(variant, name)}$" for name in given] if len(given) <= _LISTED else []
+    return [f"${variant.exercise.solution_symbol(name)}$" for name in given] if len(given) <= _LISTED else []
 
 
 def _asked_above(variant: KeySource, quantity: str, among: set[str]) -> list[Part]:

@@ -127,7 +127,7 @@ def _to_eliminate(variant: Variant, part: Part, run: str) -> str:
     vocabulary, run = vocabulary_of(tuple(sorted(stated))), spelled_out(plain_spelling(run)).strip()
     while run and (known := vocabulary.first(run)):
         if known[1] == "variable" and known[2] not in part.variables:
-            return f"${symbol(variant, known[2])}$"
+            return f"${variant.exercise.solution_symbol(known[2])}$"
         run = run[known[0] :]
     return ""
 
@@ -203,18 +203,13 @@ def _harmless(text: str) -> str:
 def amount(variant: Variant, name: str, value: float) -> str:
     """Return a quantity and its value as Markdown: ``$r_3$ = 120,4 mm``."""
     unit = variant.exercise.units.get(name, "1")
-    return f"${symbol(variant, name)}$ = {with_unit(significant(value), unit, variant.lang)}"
+    return f"${variant.exercise.solution_symbol(name)}$ = {with_unit(significant(value), unit, variant.lang)}"
 
 
 def either_symbol(variant: Variant, names: Sequence[str], *, both: bool) -> str:
     """Names of quantities as they are printed: ``$r_2$ or $r_3$``; ``and`` where ``both`` are meant."""
     joint = words(variant.lang)["marking"]["and" if both else "or"]
-    return f" {joint} ".join(f"${symbol(variant, name)}$" for name in names)
-
-
-def symbol(variant: Variant, name: str) -> str:
-    """Return the LaTeX symbol of a quantity, asked or met on the way."""
-    return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
+    return f" {joint} ".join(f"${variant.exercise.solution_symbol(name)}$" for name in names)
 
 
 def right_texts(variant: Variant, part: Part, read_as: str) -> tuple[str, str]:

@@ -13,7 +13,6 @@ from coursework.course.answer_key import Key
 from coursework.course.error_values import NEIGHBOUR, TAKEN, UsualError
 from coursework.kinds.nearness import gaps
 from coursework.language.words import listed, words
-from coursework.marking.feedback import symbol
 from coursework.model import Part
 from coursework.parsing.reading import Reading
 from coursework.quantities.formula_latex import PrintedName, tree_latex
@@ -192,7 +191,7 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
             return str(table["taken_hidden"])
         form = table["taken_asked"] if numbers else table["taken"]
         number = numbers[0] if numbers else 0
-        return str(form.format(term=f"${symbol(variant, error.source)}$", number=number))
+        return str(form.format(term=f"${variant.exercise.solution_symbol(error.source)}$", number=number))
     node = variant.exercise.solution.graph.textbook.node(error.source)
     usual_error = formula_errors(node.function)[error.place]
     about = usual_error.about
@@ -201,7 +200,9 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
     else:
         printed_names = {
             name: PrintedName(
-                symbol(variant, name), False, "angle" if variant.exercise.units.get(name) == "deg" else ""
+                variant.exercise.solution_symbol(name),
+                False,
+                "angle" if variant.exercise.units.get(name) == "deg" else "",
             )
             for name in usual_error.formula.names
         }
@@ -212,7 +213,9 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
         return sentence
     if error.source not in seen:
         return str(table["elsewhere_hidden"].format(why=sentence))
-    return str(table["elsewhere"].format(where=f"${symbol(variant, error.source)}$", why=sentence))
+    return str(
+        table["elsewhere"].format(where=f"${variant.exercise.solution_symbol(error.source)}$", why=sentence)
+    )
 
 
 def _may_be_shown(about: ast.expr, formula: Collection[str], seen: Collection[str]) -> bool:

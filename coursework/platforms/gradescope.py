@@ -127,7 +127,7 @@ def _steps(issued: Issued, lang: str) -> str:
 
 
 def _zip(folder: Folder, issued: bytes, lang: str) -> bytes:
-    is_own_course = folder.root != builtin_root().resolve()
+    is_own_course = not folder.is_builtin
     requirements = " ".join(f"'{requirement}'" for requirement in REQUIREMENTS)
     settings = {"course": "course" if is_own_course else "", "lang": lang}
     files = {

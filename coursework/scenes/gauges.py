@@ -51,7 +51,7 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
     text = [
         _gauge(
             reel,
-            exercise.solution.symbols.get(name) or exercise.symbol(name),
+            exercise.solution_symbol(name),
             exercise.units.get(name, "1"),
             effects_of[name],
             value,

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from coursework.course.answer_keys import answer_keys
-from coursework.course.builtin import builtin_root
 from coursework.course.course import Course
 from coursework.course.lessons import taught_by
 from coursework.course.variant import Variant
@@ -73,7 +72,7 @@ if TYPE_CHECKING:
 def study_sheet(variant: Variant, student: str = "", neighbours: Collection[str] = ()) -> StudySheet:
     """Return the self-study notebook of a variant, before it is printed, with links to the lessons in ``neighbours``, the folder of the notebook."""
     exercise = variant.exercise
-    is_other_course = exercise.folder.root != builtin_root().resolve()
+    is_other_course = not exercise.folder.is_builtin
     return StudySheet(
         handout=handout(variant, student),
         file=FILE,

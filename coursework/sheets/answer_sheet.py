@@ -86,16 +86,12 @@ def question_called(variant: Variant, part: Part) -> str:
     return f"*{asks[:1].upper()}{asks[1:]}*"
 
 
-def _symbol(variant: Variant, name: str) -> str:
-    return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
-
-
 def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step, ...]:
     """Return the quantities that are not given, in order."""
     units = variant.exercise.units
     named = {**values, **variant.existing(_named_besides(variant, values))}
     kinds = {n: kind_of(v, units.get(n, "1")) for n, v in named.items()}
-    symbols = tuple((n, _symbol(variant, n), kinds[n]) for n in named)
+    symbols = tuple((n, variant.exercise.solution_symbol(n), kinds[n]) for n in named)
     numbers = {
         n: PrintedName(number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True, kinds[n])
         for n, v in named.items()
@@ -138,7 +134,7 @@ def _step(
         raise BadCourse(
             f"{exercise.solution.source}: the formula of {name} names {fault}, which is not among its quantities"
         ) from fault
-    symbol = _symbol(variant, name)
+    symbol = variant.exercise.solution_symbol(name)
     return Step(
         name=name,
         symbol=symbol,
@@ -239,7 +235,7 @@ def _matrix_latex(value: np.ndarray) -> str:
 
 def _symbols(variant: Variant) -> dict[str, str]:
     """LaTeX of what equations may be written in."""
-    return {n: _symbol(variant, n) for p in variant.parts for n in p.variables}
+    return {n: variant.exercise.solution_symbol(n) for p in variant.parts for n in p.variables}
 
 
 def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:

@@ -17,6 +17,7 @@ from coursework.database.audit import noted
 from coursework.database.publication import ACCEPT, CHARGE, Publication, extensions, published
 from coursework.errors import unknown
 from coursework.issuing.issued import Issued
+from coursework.site.frame import jobs
 from coursework.site.publication import assigning
 from coursework.site.publication.publishing import holders
 
@@ -162,7 +163,7 @@ def test_a_name_is_given_once(class_of_three, staff):
 
 def test_a_large_class_is_dealt_by_another_process_the_same_way(class_of_three, staff, monkeypatch):
     roster = b"student\n" + b"".join(b"S%d\n" % k for k in range(24))
-    monkeypatch.setattr(assigning, "_PATIENCE", 0.0)
+    monkeypatch.setattr(jobs, "_PATIENCE", 0.0)
     reply = handed_out(class_of_three, staff, file=TOML, roster=roster)
     assert "This page looks again by itself" in staff.get(reply.headers["location"]).text
     number = dealt_by(class_of_three, staff, reply)
@@ -204,8 +205,8 @@ def test_a_job_reports_its_fault_in_the_language_of_who_began_it(class_of_three,
 
 
 def test_a_dealing_that_was_interrupted_is_told(class_of_three, staff):
-    assigning._store_state(class_of_three.site, "abc", assigning.AssigningJob(assigning.RUNNING, "x", 3))
-    class_of_three.at += timedelta(hours=1)
+    jobs.store(class_of_three.site, "dealing abc", jobs.Job(jobs.RUNNING, "x", 3))
+    class_of_three.at += timedelta(hours=2)
     assert "interrupted" in staff.get("/desk/assignments/dealing/abc").text
 
 

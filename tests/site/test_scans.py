@@ -22,13 +22,14 @@ from coursework.database.tables import person
 from coursework.issuing.answer_papers import answer_papers
 from coursework.site.desk import scan_jobs
 from coursework.site.desk.class_cache import class_now
+from coursework.site.frame import jobs
 
 
 @pytest.fixture
 def desk(tmp_path, monkeypatch):
     """A class that wrote on paper; pictures tell what is on them."""
     monkeypatch.setattr("coursework.scanning.pages.read_page", read_told)
-    monkeypatch.setattr(scan_jobs, "workers", lambda tasks: 1)
+    monkeypatch.setattr(jobs, "workers", lambda tasks: 1)
     return DeskClass(f"sqlite:///{tmp_path}/site.db", {})
 
 

@@ -1,15 +1,10 @@
-"""Jobs that read uploaded scans, in a separate process so that no student waits for them.
-
-The state of a job is in the database, so that every process of the site can show it.
-"""
+"""Jobs that read uploaded scans, in a separate process so that no student waits for them."""
 
 from __future__ import annotations
 
 import json
-import threading
 from collections.abc import Mapping, Sequence
-from contextvars import copy_context
-from datetime import datetime, timedelta
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -19,26 +14,12 @@ from coursework.course.variant import Variant
 from coursework.database.assignments import issued_content
 from coursework.database.audit import note
 from coursework.database.scans import ScannedPage, put_scanned
-from coursework.database.settings import put_value, value_of
-from coursework.errors import CourseworkError
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.scan import read_files
 from coursework.scanning.scan_store import REFUSED, PageScan, page_as_json, page_id, picture_of, stored_page
+from coursework.site.frame import jobs
+from coursework.site.frame.jobs import Job
 from coursework.site.frame.settings import Site
-from coursework.system.processes import processes, workers
-
-_PATIENCE = 1.5  #: seconds for which the request waits for the job
-_GIVEN_UP = timedelta(minutes=60)  #: after which an unfinished job counts as interrupted
-RUNNING, DONE, FAILED = "running", "done", "failed"
-
-
-class ScanJob(NamedTuple):
-    """State of the job that reads the last upload."""
-
-    state: str
-    files: int
-    pages: int = 0  #: number of new pages, at the end
-    messages: tuple[str, ...] = ()  #: reasons of a failure
 
 
 class _ScannedPage(NamedTuple):
@@ -54,58 +35,24 @@ class _ScannedPage(NamedTuple):
 def begin(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
     """Start to read the uploaded files, given by name, for the person ``by``; return at the end or after a
     short wait."""
-    _store_state(site, number, ScanJob(RUNNING, len(sent)))
-    # The context has the reader's language, in which faults are stored.
-    thread = threading.Thread(
-        target=copy_context().run, args=(_run, site, number, dict(sent), by), daemon=True
-    )
-    thread.start()
-    thread.join(_PATIENCE)
+    jobs.begin(site, _key(number), "", len(sent), partial(_run, site, number, dict(sent), by))
 
 
-def job(site: Site, number: int) -> ScanJob | None:
-    """Return the state of the last job; None if nothing was ever uploaded. An interrupted job counts as
-    failed."""
-    with site.store.reading() as connection:
-        stored = value_of(connection, _key(number))
-    if stored is None:
-        return None
-    state, files, pages, messages = stored["job"]
-    status = ScanJob(state, files, pages, tuple(messages))
-    if state == RUNNING and site.clock() - datetime.fromisoformat(stored["at"]) > _GIVEN_UP:
-        return status._replace(state=FAILED)
-    return status
+def job(site: Site, number: int) -> Job | None:
+    """Return the state of the job that reads the last upload, whose result is the number of new pages; None if
+    nothing was ever uploaded."""
+    return jobs.stored_job(site, _key(number))
 
 
 def _key(number: int) -> str:
     return f"scans {number}"
 
 
-def _store_state(site: Site, number: int, now: ScanJob) -> None:
-    with site.store.begin() as connection:
-        put_value(connection, _key(number), {"job": list(now), "at": site.clock().isoformat()})
-
-
-def _run(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
-    begun = ScanJob(RUNNING, len(sent))
-    try:
-        with site.store.reading() as connection:
-            content = issued_content(connection, number)
-        scanned = _read_apart(str(site.course.folder.root), content, sent)
-        pages = _store(site, number, content, scanned, by)
-        _store_state(site, number, begun._replace(state=DONE, pages=pages))
-    except CourseworkError as fault:
-        _store_state(site, number, begun._replace(state=FAILED, messages=(str(fault),)))
-    except Exception as fault:  # the page reports it, since nobody waits for this thread
-        _store_state(site, number, begun._replace(state=FAILED, messages=(type(fault).__name__,)))
-
-
-def _read_apart(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_ScannedPage]:
-    if workers(2) < 2:
-        return _read(root, content, sent)
-    with processes(1) as submit:
-        scanned: list[_ScannedPage] = submit(_read, root, content, sent).result()
-        return scanned
+def _run(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> tuple[int, tuple[str, ...]]:
+    with site.store.reading() as connection:
+        content = issued_content(connection, number)
+    scanned = jobs.apart(_read, str(site.course.folder.root), content, sent)
+    return _store(site, number, content, scanned, by), ()
 
 
 def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_ScannedPage]:

@@ -226,10 +226,7 @@ class Worksheet:
         if self._is_revealed(name):
             solution = hints.revealed_text(self.variant, name)
         number = next((k for k, p in enumerate(self.parts, 1) if p == name), 0)
-        symbol = self.variant.exercise.solution.symbols.get(quantity) or self.variant.exercise.symbol(
-            quantity
-        )
-        title = "" if number else f"${symbol}$"
+        title = "" if number else f"${self.variant.exercise.solution_symbol(quantity)}$"
         return QuestionHints(
             name,
             Markup(markdown.html_inline(title, lang)),

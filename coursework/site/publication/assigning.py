@@ -1,17 +1,12 @@
-"""Jobs that assign variants to a class, in a separate process so that no student waits for them.
-
-The state of a job is in the database, so that every process of the site can show it.
-"""
+"""Jobs that assign variants to a class, in a separate process so that no student waits for them."""
 
 from __future__ import annotations
 
 import secrets
-import threading
 from collections.abc import Mapping, Sequence
-from contextvars import copy_context
 from dataclasses import dataclass, field
-from datetime import datetime, timedelta
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 from sqlalchemy import update
 
@@ -19,22 +14,18 @@ from coursework.course.course import opened
 from coursework.course.variant import Variant
 from coursework.database.assignments import put_issued
 from coursework.database.audit import note
-from coursework.database.settings import put_value, value_of
 from coursework.database.tables import assignment
-from coursework.errors import CourseworkError
 from coursework.issuing.assignment import assignment_of
 from coursework.issuing.issued import SECRET, issued_content
 from coursework.issuing.roster import Student
 from coursework.issuing.variant_assignment import assign_variants
 from coursework.messages import localised
+from coursework.site.frame import jobs
+from coursework.site.frame.jobs import Job
 from coursework.site.frame.settings import Site
 from coursework.site.papers.opening import prepare_soon
-from coursework.system.processes import processes, workers
 
 _ALONE = 40  #: sheets that are assigned faster than a process starts
-_PATIENCE = 1.5  #: seconds for which the request waits for the job
-_GIVEN_UP = timedelta(minutes=20)  #: after which an unfinished job counts as interrupted
-RUNNING, DONE, FAILED = "running", "done", "failed"
 
 
 @dataclass(frozen=True)
@@ -53,20 +44,6 @@ class AssignmentRequest:
         return len(self.students) * len(self.table.get("exercises", ()))
 
 
-class AssigningJob(NamedTuple):
-    """State of a job that assigns variants."""
-
-    state: str
-    name: str
-    papers: int
-    number: int = 0  #: id of the assignment, at the end
-    messages: tuple[str, ...] = ()  #: notes, or reasons of a failure
-
-    @property
-    def is_over(self) -> bool:
-        return self.state != RUNNING
-
-
 @dataclass
 class _Outcome:
     content: dict[str, Any] = field(default_factory=dict)
@@ -83,63 +60,23 @@ def begin(site: Site, wanted: AssignmentRequest, by: str, event: str) -> str:
     """Start to assign variants for the person ``by``, with ``event`` in the audit; return the job's token at
     the end or after a short wait."""
     token = secrets.token_hex(8)
-    _store_state(site, token, AssigningJob(RUNNING, wanted.name, wanted.papers))
-    # The context has the reader's language, in which faults are stored.
-    thread = threading.Thread(
-        target=copy_context().run, args=(_run, site, token, wanted, by, event), daemon=True
-    )
-    thread.start()
-    thread.join(_PATIENCE)
+    jobs.begin(site, _key(token), wanted.name, wanted.papers, partial(_run, site, wanted, by, event))
     return token
 
 
-def assigning_job(site: Site, token: str) -> AssigningJob | None:
-    """Return the state of a job; None for an unknown one. An interrupted job counts as failed: none of its
-    variants were issued."""
-    with site.store.reading() as connection:
-        stored = value_of(connection, _key(token))
-    if stored is None:
-        return None
-    state, name, papers, number, messages = stored["dealing"]
-    job = AssigningJob(state, name, papers, number, tuple(messages))
-    if not job.is_over and site.clock() - datetime.fromisoformat(stored["at"]) > _GIVEN_UP:
-        return job._replace(state=FAILED)
-    return job
+def assigning_job(site: Site, token: str) -> Job | None:
+    """Return the state of a job, whose result is the id of the assignment; None for an unknown one."""
+    return jobs.stored_job(site, _key(token))
 
 
 def _key(token: str) -> str:
     return f"dealing {token[:40]}"
 
 
-def _store_state(site: Site, token: str, now: AssigningJob) -> None:
-    with site.store.begin() as connection:
-        put_value(connection, _key(token), {"dealing": list(now), "at": site.clock().isoformat()})
-
-
-def _run(site: Site, token: str, wanted: AssignmentRequest, by: str, event: str) -> None:
-    begun = AssigningJob(RUNNING, wanted.name, wanted.papers)
-    try:
-        outcome = _assigned_in_process(site, wanted)
-        number = _store(site, wanted, outcome, by, event)
-        _store_state(
-            site,
-            token,
-            begun._replace(state=DONE, number=number, messages=tuple(map(localised, outcome.notes))),
-        )
-    except CourseworkError as fault:
-        _store_state(site, token, begun._replace(state=FAILED, messages=(str(fault),)))
-    except Exception as fault:  # the page reports it, since nobody waits for this thread
-        _store_state(site, token, begun._replace(state=FAILED, messages=(type(fault).__name__,)))
-
-
-def _assigned_in_process(site: Site, wanted: AssignmentRequest) -> _Outcome:
-    """Assign variants, in another process if there are many."""
+def _run(site: Site, wanted: AssignmentRequest, by: str, event: str) -> tuple[int, tuple[str, ...]]:
     root = str(site.course.folder.root)
-    if wanted.papers <= _ALONE or workers(2) < 2:
-        return _assigned(root, wanted)
-    with processes(1) as submit:
-        outcome: _Outcome = submit(_assigned, root, wanted).result()
-        return outcome
+    outcome = _assigned(root, wanted) if wanted.papers <= _ALONE else jobs.apart(_assigned, root, wanted)
+    return _store(site, wanted, outcome, by, event), tuple(map(localised, outcome.notes))
 
 
 def _assigned(root: str, wanted: AssignmentRequest) -> _Outcome:

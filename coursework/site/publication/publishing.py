@@ -49,6 +49,7 @@ from coursework.issuing.roster import Student
 from coursework.issuing.variant_assignment import assign_variants
 from coursework.language.words import words
 from coursework.site.frame.budgets import DESK_FILE
+from coursework.site.frame.jobs import DONE
 from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import FormData, HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
@@ -175,8 +176,8 @@ def assigning_page(request: Request) -> Response:
     job = assigning.assigning_job(request.site, str(request.path_params["token"]))
     if job is None:
         raise HTTPException("page", 404)
-    if job.state == assigning.DONE and not job.messages:
-        return redirect(f"/desk/assignments/{job.number}")
+    if job.state == DONE and not job.messages:
+        return redirect(f"/desk/assignments/{job.result}")
     return request.render("site/instructor/publish_dealing", dealing=job)
 
 
