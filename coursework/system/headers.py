@@ -54,6 +54,11 @@ def security_headers(
     return headers if frames else {**headers, "x-frame-options": "DENY"}
 
 
+def cookie_name(is_secure: bool, name: str = "coursework") -> str:
+    """Return the name of a cookie: over https the prefix keeps neighbouring hosts from setting one in its place."""
+    return f"__Host-{name}" if is_secure else name
+
+
 class Guarded:
     """ASGI middleware that adds the security headers to every response that lacks them, whoever made it."""
 

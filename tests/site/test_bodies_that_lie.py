@@ -8,7 +8,7 @@ from site_browser import served
 from site_people import ZOE, Class, seal_of, signed_in
 from tables import each_row
 
-from coursework.site.frame.cookies import cookie_name
+from coursework.system.headers import cookie_name
 
 pytestmark = pytest.mark.e2e
 

@@ -23,7 +23,6 @@ from coursework.database.permissions import is_of_staff
 from coursework.gradebook.submissions import read_rows
 from coursework.site.application import ROUTES
 from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS
-from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON
 from coursework.site.frame.requests import Response as SiteResponse
 from coursework.site.lti.service import AT_ONCE as LINKS_AT_ONCE
@@ -31,6 +30,7 @@ from coursework.site.lti.service import LARGEST
 from coursework.site.lti.site_host import SiteHost
 from coursework.site.papers import assignments
 from coursework.system.allowances import Allowances
+from coursework.system.headers import cookie_name
 from coursework.system.processes import Exceeded, ResourceLimits, confined, processor_time
 from coursework.system.request_slots import Crowded, RequestSlots
 

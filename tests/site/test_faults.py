@@ -16,7 +16,7 @@ from coursework.database.publication import Publication
 from coursework.database.submissions import rows_of, submissions_of
 from coursework.database.tables import mark, person
 from coursework.database.tables import progress as entries
-from coursework.site.frame.cookies import cookie_name
+from coursework.system.headers import cookie_name
 
 pytestmark = pytest.mark.e2e
 

@@ -18,6 +18,7 @@ import jwt
 
 from coursework.platforms.lti.refusal import LTIRefusal
 from coursework.platforms.lti.settings import LTIPlatform, Settings, origin
+from coursework.system.headers import cookie_name
 
 _HINTS = ("iss", "login_hint", "target_link_uri", "lti_message_hint", "lti_deployment_id", "client_id")
 _LONGEST = 2000  #: characters of a parameter
@@ -129,18 +130,12 @@ class Login:
 
 def cookie_of(state: str, url: str) -> str:
     """Return the name of the cookie of a state: each has its own, so that two links may be opened at once."""
-    return cookie_name(f"lti-{_digest(state)[:16]}", url)
+    return cookie_name(url.startswith("https:"), f"lti-{_digest(state)[:16]}")
 
 
 def session_cookie(session: str, url: str) -> str:
     """Return the name of the cookie of a session: each link that is open has its own."""
-    return cookie_name(f"lti-at-{_digest(session)[:16]}", url)
-
-
-def cookie_name(name: str, url: str) -> str:
-    """Return the name of a cookie of the service at ``url``; over https with the prefix that prevents plain
-    http and neighbouring hosts from setting it."""
-    return f"__Host-{name}" if url.startswith("https:") else name
+    return cookie_name(url.startswith("https:"), f"lti-at-{_digest(session)[:16]}")
 
 
 def _digest(text: str) -> str:

@@ -21,11 +21,6 @@ ANONYMOUS_SECONDS = 30 * 24 * 3600  #: lifetime of an anonymous cookie
 _HALF = 16  #: bytes of a CSRF token, and of the mask before it
 
 
-def cookie_name(is_secure: bool, name: str = COOKIE) -> str:
-    """Return the name of a cookie: over https the prefix keeps neighbouring hosts from setting one in its place."""
-    return f"__Host-{name}" if is_secure else name
-
-
 class Session(NamedTuple):
     """The session of a browser."""
 

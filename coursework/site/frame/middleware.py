@@ -27,7 +27,7 @@ from coursework.site.frame.cookies import ANONYMOUS_SECONDS, COOKIE, LANG, Sessi
 from coursework.site.frame.devices import Devices
 from coursework.site.frame.forms import read_form
 from coursework.site.frame.permission_check import GREATEST, check_permission, note_export, person_of
-from coursework.site.frame.requests import HTTPException, Person, Request, Route
+from coursework.site.frame.requests import HTTPException, Person, Request, Route, preferred_language
 from coursework.site.frame.responses import redirect, set_cookie
 from coursework.site.frame.security_log import FAILED, event_of, location_of, log_events
 from coursework.site.frame.settings import Entrance, Site
@@ -171,13 +171,9 @@ class Middleware:
             return person_of(connection, row) if row is not None else None
 
     def _lang(self, request: Request) -> str:
-        languages = self.site.languages
-        preferences = [request.cookie(LANG), request.person.lang if request.person else ""]
-        preferences += [
-            preference.split(";")[0].strip()[:2].lower()
-            for preference in request.headers.get("accept-language", "")[:500].split(",")
-        ]
-        return next((lang for lang in preferences if lang in languages), languages[0])
+        own = request.person.lang if request.person else ""
+        preferences = request.cookie(LANG), own, request.headers.get("accept-language", "")
+        return preferred_language(",".join(preferences), self.site.languages)
 
     # -------------------------------------------------------------- checks
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,8 +19,9 @@ from coursework.errors import CourseworkError
 from coursework.language.words import words
 from coursework.site.frame.arrivals import arrived
 from coursework.site.frame.budgets import DESK, PLAIN, Budget
-from coursework.site.frame.cookies import Session, cookie_name
+from coursework.site.frame.cookies import Session
 from coursework.site.frame.devices import DEVICE
+from coursework.system.headers import cookie_name
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -227,6 +229,12 @@ class Route(NamedTuple):
     def request_budget(self) -> Budget:
         """Budget of its requests; the smallest if none is stated."""
         return self.budget or (DESK if is_of_staff(self.permission) else PLAIN)
+
+
+def preferred_language(wanted: str, languages: Sequence[str]) -> str:
+    """Return the first of the wanted languages that there is, from ``fr-CA, en;q=0.8`` or ``fr_FR``; else the first."""
+    codes = re.findall(r"(?:^|[,\s])([a-zA-Z]{2,3})(?=[-_,;.\s]|$)", wanted[:500])
+    return next((code.lower() for code in codes if code.lower() in languages), languages[0])
 
 
 def clean(text: str) -> str:

@@ -6,8 +6,8 @@ from urllib.parse import quote
 
 from starlette.responses import RedirectResponse, Response
 
-from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.requests import Request
+from coursework.system.headers import cookie_name
 
 
 class Download(Response):

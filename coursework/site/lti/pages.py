@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from coursework.course.folder import Folder
 from coursework.language.words import words
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of, script_digest
 from coursework.sheets.paper import FeedbackPaper, Paper
+from coursework.site.frame.pages import SitePages
 
 Filled = Mapping[str, Sequence[str]]
 
@@ -32,21 +32,18 @@ class SheetForm:
     leave: str = ""  #: address of the course, opened outside the frame
 
 
-class LTIPages:
+class LTIPages(SitePages):
     """Renderer of the pages of one course."""
-
-    def __init__(self, folder: Folder):
-        self._folders = folder.template_folders
 
     def page(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
         """Return the page of a template such as ``lti_pick``."""
         texts = words(lang)
         usual = {"lang": lang, "words": texts, "said": texts["lti"], "paper": "a4", "title": ""}
-        return render(environment_of(self._folders, lang), f"{template}.html.j2", {**usual, **names})
+        return self.rendered(template, lang, {**usual, **names})
 
     def digest(self, script: str) -> str:
         """Return the digest by which a policy allows a script among the templates, ``sha256-…``."""
-        return script_digest(environment_of(self._folders, "en"), script)
+        return script_digest(environment_of(self._folder.template_folders, "en"), script)
 
     def sheet(self, paper: Paper, form: SheetForm) -> str:
         """Return a paper with input fields for the answers."""
@@ -57,7 +54,7 @@ class LTIPages:
         return self._page("platform/lti_paper_feedback", paper, form)
 
     def _page(self, template: str, paper: Paper | FeedbackPaper, form: SheetForm) -> str:
-        env = environment_of(self._folders, paper.heading.lang)
+        env = environment_of(self._folder.template_folders, paper.heading.lang)
         files = [{"filled": form.filled}] * len(papers.sheets_of(paper))
         names = papers.context(paper, "html.j2", partial(render, env), files)
         more = {"image": papers.image, "form": form, "filled": form.filled, "keeping": ""}

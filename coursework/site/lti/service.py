@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import hmac
 import json
 import logging
@@ -38,8 +37,9 @@ from coursework.platforms.lti.settings import LTIPlatform, Settings, checked_url
 from coursework.platforms.lti.storage import Storage, Waiting
 from coursework.platforms.lti.tokens import verified
 from coursework.site.frame.budgets import Budget
+from coursework.site.frame.cookies import Session
 from coursework.site.frame.forms import read_form
-from coursework.site.frame.requests import FormData
+from coursework.site.frame.requests import FormData, preferred_language
 from coursework.site.frame.requests import HTTPException as RefusedForm
 from coursework.site.frame.security_log import location_of
 from coursework.site.frame.settings import Site
@@ -147,8 +147,7 @@ class _Service:
         self.services = Services(client, self.keys)
         self.sender = Sender(settings, self.storage, self.services)
         self.host = SiteHost(site, self.storage, self.sender.wake)
-        self._secret = self.keys.secret
-        self._login = Login(settings, self._secret, clock)
+        self._login = Login(settings, self.keys.secret, clock)
         self._rosters: dict[str, tuple[float, list[Member]]] = {}
 
     # ------------------------------------------------------------------ requests
@@ -249,7 +248,7 @@ class _Service:
         response.headers.setdefault("Cache-Control", "no-store")
 
     def refused(self, request: Request, fault: LTIRefusal) -> Response:
-        lang = self._lang(request.headers.get("accept-language", ""))
+        lang = preferred_language(request.headers.get("accept-language", ""), self.site.languages)
         texts = words(lang)["lti"]["refused"]
         names = {
             "title": texts["title"],
@@ -272,14 +271,6 @@ class _Service:
         response = await run_in_threadpool(self.refused, request, LTIRefusal(why, fault.status_code))
         self._guard(response, request)
         return response
-
-    def _lang(self, wanted: str) -> str:
-        """Return the first requested language that the host supports, from ``fr-CA, en;q=0.8`` or from
-        ``fr_FR``."""
-        for code in re.findall(r"[a-zA-Z]{2,3}(?=[-_,;.\s]|$)", wanted):
-            if code.lower() in self.host.languages:
-                return str(code.lower())
-        return self.host.languages[0]
 
     # ------------------------------------------------------------------ launches
 
@@ -335,7 +326,7 @@ class _Service:
         launch = request.state.launch
         lti_request = self._lti_request(launch, name, request)
         if request.method == "POST":
-            self._check_csrf_token(request, lti_request, form)
+            self._check_csrf_token(request, name, form)
         if launch.kind == PICKING:
             response = self._picking(lti_request, form, request)
         elif lti_request.path == "roster.csv":
@@ -347,14 +338,16 @@ class _Service:
         return response
 
     def _lti_request(self, launch: Launch, name: str, request: Request | None = None) -> LTIRequest:
-        csrf_token = hmac.new(self._secret, f"form {name}".encode(), hashlib.sha256).hexdigest()
         return LTIRequest(
             launch,
-            self._lang(launch.locale or (request.headers.get("accept-language", "") if request else "")),
+            preferred_language(
+                launch.locale or (request.headers.get("accept-language", "") if request else ""),
+                self.site.languages,
+            ),
             f"{self.settings.url}/at/{name}",
             request.path_params.get("path", "") if request else "",
             dict(request.query_params) if request else {},
-            csrf_token,
+            self.site.cookies.csrf_token(Session(name)),
             (lambda: self._roster(launch)) if launch.memberships else None,
             lambda: self._scores(launch),
         )
@@ -362,12 +355,12 @@ class _Service:
     def _scores(self, launch: Launch) -> dict[str, Waiting]:
         return {waiting.launch.person: waiting for waiting in self.storage.scores(launch)}
 
-    def _check_csrf_token(self, request: Request, lti_request: LTIRequest, form: FormData) -> None:
+    def _check_csrf_token(self, request: Request, name: str, form: FormData) -> None:
         """Check the CSRF token of a form: the form must come from a page of this session."""
         sent = request.headers.get("origin")
         if sent is not None and sent != origin(self.settings.url):
             raise LTIRefusal("form", 403, "a form from another site")
-        if not hmac.compare_digest(form.text("_seal").encode(), lti_request.csrf_token.encode()):
+        if not self.site.cookies.fits(Session(name), form.text("_seal")):
             raise LTIRefusal("form", 403, "a form without its csrf_token")
 
     # -------------------------------------------------------------------- roster

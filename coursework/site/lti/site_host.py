@@ -60,10 +60,6 @@ class SiteHost:
         self._site, self._storage, self._wake = site, storage, wake
 
     @property
-    def languages(self) -> tuple[str, ...]:
-        return self._site.languages
-
-    @property
     def pages(self) -> LTIPages:
         return LTIPages(self._site.course.folder)
 
