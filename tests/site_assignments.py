@@ -74,8 +74,8 @@ def dealt_by(one, staff, reply):
     while not (found := assigning.assigning_job(one.site, token)).is_over:
         assert time.monotonic() < until
         time.sleep(0.05)
-    assert found.state == "done", found.told
-    return found.number
+    assert found.state == "done", found.messages
+    return found.result
 
 
 def handed_out(one, staff, data=None, **files):

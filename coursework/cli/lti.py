@@ -127,7 +127,8 @@ def _platform(
 ) -> LTIPlatform | None:
     """Return the platform that is told; none as long as it has not said its client ID."""
     from coursework.platforms.lti.settings import KINDS as known
-    from coursework.platforms.lti.settings import LTIPlatform, checked_url, origin
+    from coursework.platforms.lti.settings import LTIPlatform, checked_url
+    from coursework.system.headers import origin
 
     if kind not in KINDS:
         raise BadInput("no kind of platform {kind!r}{nearest}", kind=kind, nearest=nearest(kind, KINDS))

@@ -107,5 +107,5 @@ def end_all_sessions(connection: Connection) -> int:
 
 
 def digest_of(token: str) -> str:
-    """Return the SHA-256 of a token, which the database stores."""
+    """Return the SHA-256 of a token or a key, which the database stores."""
     return hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, MutableMapping, Sequence
 from typing import Any
+from urllib.parse import urlsplit
 
 _POLICY = (
     ("default-src", "'none'"),
@@ -52,6 +53,12 @@ def security_headers(
     parts.append("frame-ancestors " + (" ".join(frames) or "'none'"))
     headers = {"content-security-policy": "; ".join(parts), **_ALWAYS, **(_HTTPS if is_secure else {})}
     return headers if frames else {**headers, "x-frame-options": "DENY"}
+
+
+def origin(url: str) -> str:
+    """Return the origin of an address: ``https://moodle.example.org``."""
+    parts = urlsplit(url)
+    return f"{parts.scheme}://{parts.netloc}"
 
 
 def cookie_name(is_secure: bool, name: str = "coursework") -> str:

@@ -21,7 +21,6 @@ from coursework.course.variant import Variant
 from coursework.errors import BadCourse
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
-from coursework.marking.feedback import symbol
 from coursework.marking.usual import why
 from coursework.quantities.error_kinds import PENALTIES
 from coursework.quantities.usual_errors import formula_errors
@@ -232,9 +231,11 @@ def test_a_cause_is_told_in_symbols_that_the_student_has_seen(name):
     for lang in ("en", "fr"):
         (variant,) = distinct_variants(COURSE[name], 0, 1, lang, parts=(ALL,))
         known = {*variant.given, *(part.quantity for part in variant.exercise.spec.parts)}
-        seen = sorted((symbol(variant, quantity) for quantity in known), key=len, reverse=True)
+        seen = sorted(
+            (variant.exercise.solution_symbol(quantity) for quantity in known), key=len, reverse=True
+        )
         names = variant.exercise.solution.graph.names - known
-        unseen = {symbol(variant, name) for name in names} - {*seen}
+        unseen = {variant.exercise.solution_symbol(name) for name in names} - {*seen}
         wrong = []
         for part in variant.parts:
             if not part.sort.is_scalar or part.judge:

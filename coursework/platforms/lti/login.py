@@ -17,8 +17,8 @@ from urllib.parse import urlencode, urlsplit
 import jwt
 
 from coursework.platforms.lti.refusal import LTIRefusal
-from coursework.platforms.lti.settings import LTIPlatform, Settings, origin
-from coursework.system.headers import cookie_name
+from coursework.platforms.lti.settings import LTIPlatform, Settings
+from coursework.system.headers import cookie_name, origin
 
 _HINTS = ("iss", "login_hint", "target_link_uri", "lti_message_hint", "lti_deployment_id", "client_id")
 _LONGEST = 2000  #: characters of a parameter

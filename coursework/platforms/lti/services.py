@@ -17,7 +17,8 @@ from coursework.errors import CourseworkError
 from coursework.messages import Message
 from coursework.platforms.lti.keys import KeyFolder
 from coursework.platforms.lti.roles import Role, role_of
-from coursework.platforms.lti.settings import LTIPlatform, origin
+from coursework.platforms.lti.settings import LTIPlatform
+from coursework.system.headers import origin
 
 if TYPE_CHECKING:
     from coursework.platforms.lti.storage import Waiting

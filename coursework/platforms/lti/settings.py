@@ -12,6 +12,7 @@ from urllib.parse import urlsplit
 
 from coursework.errors import BadInput
 from coursework.messages import Message, as_message
+from coursework.system.headers import origin
 from coursework.system.toml_files import TomlReader, source_of, table_of
 
 FILE = "platforms.toml"
@@ -66,12 +67,6 @@ class Settings:
     @property
     def frames(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(frame for p in self.platforms for frame in p.frames))
-
-
-def origin(url: str) -> str:
-    """Return the origin of an address: ``https://moodle.example.org``."""
-    parts = urlsplit(url)
-    return f"{parts.scheme}://{parts.netloc}"
 
 
 def is_loopback(host: str) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import secrets
 import time
 from collections.abc import Callable, Mapping
@@ -13,6 +12,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Table, delete, insert, select, update
 
 from coursework.database.personal_data import launch_sessions
+from coursework.database.sessions import digest_of
 from coursework.database.store import Store, insert_unless_there
 from coursework.database.tables import lti_course, lti_launch, lti_nonce, lti_session, person
 from coursework.platforms.lti.launch import Launch
@@ -218,11 +218,6 @@ def drop_launches(connection: Connection, person_id: int, issuer: str, subject: 
     rows = connection.execute(select(lti_launch).where(lti_launch.c.person_id == person_id)).all()
     ids = [row.id for row in rows if (row.launch["issuer"], row.launch["person"]) == (issuer, subject)]
     connection.execute(delete(lti_launch).where(lti_launch.c.id.in_(ids)))
-
-
-def digest_of(text: str) -> str:
-    """Return the SHA-256 of a token or a key, which the database stores."""
-    return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()
 
 
 def _put(connection: Connection, table: Table, key: Mapping[str, Any], values: Mapping[str, Any]) -> None:

@@ -33,6 +33,7 @@ from coursework.site.frame.security_log import FAILED, event_of, location_of, lo
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.frame.threads import Lanes, Run
 from coursework.site.people import home
+from coursework.system.headers import origin
 from coursework.system.processes import processor_time
 from coursework.system.request_slots import WAITING, Crowded
 
@@ -201,7 +202,7 @@ class Middleware:
     def _check_origin(self, request: Request) -> None:
         """Check that a form comes from a page of this site, according to the browser's headers."""
         sent, host = request.headers.get("origin"), request.headers.get("host", "")
-        origins = {_origin(self.site.url)}
+        origins = {origin(self.site.url)}
         if _host(f"//{host}") in _LOOPBACK:
             origins.add(f"http://{host}")
         if sent is not None and sent not in origins:
@@ -293,8 +294,3 @@ def _host(url: str) -> str:
         return urlsplit(url).hostname or ""
     except ValueError:
         return ""
-
-
-def _origin(url: str) -> str:
-    parts = urlsplit(url)
-    return f"{parts.scheme}://{parts.netloc}"

@@ -19,13 +19,13 @@ from coursework.database.identities import (
 )
 from coursework.database.instructor_queries import stamp
 from coursework.database.people import person_by_identifier, put_person
+from coursework.database.sessions import digest_of
 from coursework.database.tables import assignment
 from coursework.issuing.assignment import Assignment, assignment_of
 from coursework.issuing.issued import issued_content as content_of
 from coursework.issuing.roster import Student
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import assign_variants
-from coursework.platforms.lti.storage import digest_of
 from coursework.site.frame.requests import HTTPException
 from coursework.site.frame.settings import Site
 from coursework.site.lti import connecting

@@ -18,13 +18,13 @@ from coursework.database.publication import (
     publish,
     set_counting_attempt,
 )
+from coursework.database.sessions import digest_of
 from coursework.database.tables import assignment
 from coursework.errors import BadInput
 from coursework.issuing.assignment import Assignment, assignment_of
 from coursework.platforms.lti.launch import Launch
 from coursework.platforms.lti.link_settings import LinkSettings
 from coursework.platforms.lti.refusal import LTIRefusal
-from coursework.platforms.lti.storage import digest_of
 from coursework.site.frame.settings import Site
 
 

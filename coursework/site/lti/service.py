@@ -33,7 +33,7 @@ from coursework.platforms.lti.refusal import LTIRefusal
 from coursework.platforms.lti.roles import Role
 from coursework.platforms.lti.sending import Sender
 from coursework.platforms.lti.services import Member, NotServed, Services
-from coursework.platforms.lti.settings import LTIPlatform, Settings, checked_url, origin, read_settings
+from coursework.platforms.lti.settings import LTIPlatform, Settings, checked_url, read_settings
 from coursework.platforms.lti.storage import Storage, Waiting
 from coursework.platforms.lti.tokens import verified
 from coursework.site.frame.budgets import Budget
@@ -47,7 +47,7 @@ from coursework.site.lti.launch_request import LTIRequest
 from coursework.site.lti.offers import offer_groups
 from coursework.site.lti.scores import ScoreWatch
 from coursework.site.lti.site_host import SiteHost
-from coursework.system.headers import Guarded, security_headers
+from coursework.system.headers import Guarded, origin, security_headers
 from coursework.system.processes import processor_time
 from coursework.system.request_slots import Crowded
 

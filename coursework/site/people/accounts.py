@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import secrets
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -23,7 +22,14 @@ from coursework.database.accounts import (
 from coursework.database.audit import OF_ACCOUNTS, Actor, note, noted
 from coursework.database.people import put_person
 from coursework.database.permissions import ADMINISTRATOR, Permission
-from coursework.database.sessions import LONGEST, begin_session, end_session, end_sessions, sessions_of
+from coursework.database.sessions import (
+    LONGEST,
+    begin_session,
+    digest_of,
+    end_session,
+    end_sessions,
+    sessions_of,
+)
 from coursework.errors import BadInput
 from coursework.platforms.lti.storage import end_launch_sessions
 from coursework.site.frame.attempts import Attempt
@@ -152,11 +158,6 @@ def invited(site: Site, connection: Connection, person: int, login: str, role: s
     now = site.clock()
     invite(connection, person, login, role, digest_of(end), now + timedelta(days=DAYS), now)
     return f"{site.url}/invitation/{end}"
-
-
-def digest_of(end: str) -> str:
-    """Return the stored digest of an invitation's address."""
-    return hashlib.sha256(end.encode()).hexdigest()
 
 
 def invitation(request: Request) -> Response:
