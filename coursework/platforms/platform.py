@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar
 
+from coursework.course.key_batch import keys_of
 from coursework.course.variant import Variant
 from coursework.errors import unknown
 from coursework.platforms.items import Item, Loss, MadeItem, Pool, item
@@ -60,8 +61,9 @@ class Platform(ABC):
 
 
 def made_items(name: str, variants: Sequence[Variant], pool: str) -> list[MadeItem]:
-    """Return variants of one language as the files of the platform of a name hold them."""
+    """Return variants of one exercise and language as the files of the platform of a name hold them."""
     platform, first = platform_of(name), variants[0]
+    keys_of(first.exercise, variants)
     pieces = PagePieces(renderer_of(first.exercise.folder).template_folders, first.lang)
     return [platform.made(item(variant, pool), pieces) for variant in variants]
 

@@ -26,7 +26,7 @@ from coursework.rendering.renderer import renderer_of
 from coursework.system.processes import Task, in_turn, workers
 
 _TRIED = 24  #: variants in the sample that finds the most frequent parts
-_CHUNK = 8  #: variants per task of a process
+_CHUNK = 16  #: variants per task of a process
 _WORTH_PROCESSES = 40  #: variants; fewer are made faster than a process starts
 _USUAL = 1 / 3  #: least share of them with the same parts, if the pool uses those parts
 
