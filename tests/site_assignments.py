@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 
 from site_people import MAX, ZOE
 
+from coursework.course.secrecy import Secret
 from coursework.database.assignments import put_issued
 from coursework.database.publication import Publication, publish
 from coursework.issuing.assignment import AskedExercise, Assignment, Scale
@@ -22,14 +23,22 @@ ASSIGNMENT = Assignment(
     instructions={"en": "Show your work."},
     mark=Scale(20, 0.5),
 )
+_ASSIGNED = {}
 USUAL = Publication(opens=OPENS, closes=CLOSES, tries=2)
 
 
 def dealt(one, publication=USUAL, names=(ZOE, MAX), assignment=ASSIGNMENT, before=None, **more):
     """Deal an assignment to people of a class and publish it; gives its number."""
-    found = assign_variants(
-        one.site.course, assignment, [Student(name) for name in names], ["en"], before, **more
-    )
+    course, students = one.site.course, [Student(name) for name in names]
+    if before is None and not more:
+        # Each test draws the same secrets: what another test was dealt by this one is what would be drawn.
+        secret = Secret.new()
+        key = id(course), repr(assignment), tuple(names), secret
+        if key not in _ASSIGNED:
+            _ASSIGNED[key] = assign_variants(course, assignment, students, ["en"], secret=secret)
+        found = _ASSIGNED[key]
+    else:
+        found = assign_variants(course, assignment, students, ["en"], before, **more)
     content = issued_content(found.issues, assignment)
     with one.site.store.begin() as connection:
         number = put_issued(connection, content, assignment.name)

@@ -1,8 +1,12 @@
 """A site of the built-in course with an instructor and students, and browsers without a browser, each signed in as somebody."""
 
 import re
+import shutil
+import tempfile
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import cache
+from pathlib import Path
 
 from site_client import Client
 from sqlalchemy import event
@@ -60,6 +64,27 @@ def count_of(found):
     )
 
 
+def put_people(store):
+    """Put three people with accounts into a database; return their numbers."""
+    ids = {}
+    with store.begin() as connection:
+        for name, role in ((ZOE, "student"), (MAX, "student"), (TEACHER, "administrator")):
+            ids[name] = put_person(connection, identifier=folded(name), name=name, lang="", columns={})
+            put_account(connection, ids[name], login=f"{name.split()[0].lower()}@example.org", role=role)
+    return ids
+
+
+@cache
+def pristine():
+    """A database with the three people, and their numbers: copied, since making one takes longer than many tests."""
+    path = Path(tempfile.mkdtemp()) / "site.db"
+    store = Store(f"sqlite:///{path}")
+    ids = put_people(store)
+    store.scrub()
+    store.close()
+    return path, ids
+
+
 class Browser(Client):
     """Follows no address by itself; ``fill`` fills in the seal of the page's forms."""
 
@@ -79,17 +104,13 @@ class Class:
 
     def __init__(self, url, entrance=Entrance.ACCOUNTS):
         self.at = datetime(2026, 11, 23, 9, tzinfo=UTC)
+        path = Path(url.removeprefix("sqlite:///"))
+        is_new_file = url.startswith("sqlite:///") and not path.exists()
+        if is_new_file:
+            shutil.copy(pristine()[0], path)
         self.site = Site(open_course(), Store(url), entrance, HOME, lambda: self.at)
         self.app = application(self.site)
-        self.ids = {}
-        with self.site.store.begin() as connection:
-            for name, role in ((ZOE, "student"), (MAX, "student"), (TEACHER, "administrator")):
-                self.ids[name] = put_person(
-                    connection, identifier=folded(name), name=name, lang="", columns={}
-                )
-                put_account(
-                    connection, self.ids[name], login=f"{name.split()[0].lower()}@example.org", role=role
-                )
+        self.ids = dict(pristine()[1] if is_new_file else put_people(self.site.store))
 
     @classmethod
     def of(cls, other):

@@ -1,5 +1,7 @@
 """Databases of both kinds, new and empty."""
 
+import shutil
+
 import pytest
 from postgres_server import running
 
@@ -23,8 +25,18 @@ def url(request, tmp_path):
     server.give_back(address)
 
 
+@pytest.fixture(scope="session")
+def empty(tmp_path_factory):
+    """An empty database in a file: copied, since making one takes longer than many tests."""
+    path = tmp_path_factory.mktemp("empty") / "marks.db"
+    Store(f"sqlite:///{path}").close()
+    return path
+
+
 @pytest.fixture
-def store(url):
+def store(url, empty):
+    if url.startswith("sqlite:///"):
+        shutil.copy(empty, url.removeprefix("sqlite:///"))
     opened = Store(url)
     yield opened
     opened.close()

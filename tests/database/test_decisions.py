@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from sqlalchemy import func, select
 from stored_class import ANA, BEN, content, put, rows
+from tables import each_row
 
 import coursework
 from coursework.database.current_marks import graded
@@ -101,7 +102,7 @@ def test_a_decision_outlives_a_marking(store, number, course):
     assert line(store, number).verdict == "accepted"
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("places", "kind", "points", "fault", "says"),
     [
         ([PLACE], "acepted", None, UnknownName, "did you mean 'accepted'"),

@@ -10,6 +10,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from site_assignments import ASSIGNMENT, CLOSES, OPENS, USUAL, code_of, dealt, handed_in, right
 from site_people import MAX, TEACHER, ZOE
+from tables import each_row
 
 from coursework.database.current_marks import graded
 from coursework.database.publication import (
@@ -25,6 +26,11 @@ from coursework.site.desk.class_cache import class_now
 from coursework.site.papers import submission
 
 SECOND = timedelta(seconds=1)
+
+
+@pytest.fixture
+def number(class_of_three):
+    return dealt(class_of_three)
 
 
 def delivered(one, number, name=ZOE):
@@ -271,16 +277,14 @@ def test_the_same_answers_once_more_cost_no_try(class_of_three):
     assert len(delivered(class_of_three, number)) == 1
 
 
-@pytest.mark.parametrize("bad", ["", "0", "x", "1e9", "-1"])
-def test_a_form_that_says_no_number_is_refused(class_of_three, bad):
-    number = dealt(class_of_three)
+@each_row("bad", ["", "0", "x", "1e9", "-1"])
+def test_a_form_that_says_no_number_is_refused(class_of_three, number, bad):
     reply = class_of_three.browser(ZOE).fill(f"/assignments/{number}/hand-in", {"e1-rA": "1", "_number": bad})
     assert reply.status_code == 400
 
 
-@pytest.mark.parametrize("bad", ['{"e1-rA": 1e999}', '{"e1-rA": "x"}', "[1]", "[" * 60_000])
-def test_versions_that_are_none_are_refused(class_of_three, bad):
-    number = dealt(class_of_three)
+@each_row("bad", ['{"e1-rA": 1e999}', '{"e1-rA": "x"}', "[1]", "[" * 60_000])
+def test_versions_that_are_none_are_refused(class_of_three, number, bad):
     sent = {"e1-rA": "1", "_versions": bad}
     assert class_of_three.browser(ZOE).fill(f"/assignments/{number}", sent).status_code == 400
 
@@ -558,9 +562,8 @@ def test_a_json_file_of_anothers_sheet_gives_nothing(class_of_three):
     assert "319,8" not in page.text
 
 
-@pytest.mark.parametrize("name", ["x.parquet", "x.py", "x", "../x.toml"])
-def test_a_file_of_another_kind_is_refused(class_of_three, name):
-    number = dealt(class_of_three)
+@each_row("name", ["x.parquet", "x.py", "x", "../x.toml"])
+def test_a_file_of_another_kind_is_refused(class_of_three, number, name):
     page = class_of_three.browser(ZOE).fill(f"/assignments/{number}/file", files={"file": (name, b"1")})
     assert page.status_code == 422
 

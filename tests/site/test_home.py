@@ -2,6 +2,7 @@
 
 import pytest
 from site_people import TEACHER, ZOE, Class
+from tables import each_row
 
 from coursework.site.frame.settings import Entrance
 
@@ -19,7 +20,7 @@ def test_the_language_is_the_browsers_until_another_is_chosen(class_of_three):
     assert 'lang="en"' in browser.get("/no-such-page").text
 
 
-@pytest.mark.parametrize("back", ["https://evil.example", "//evil.example", "/\\evil.example", "practice"])
+@each_row("back", ["https://evil.example", "//evil.example", "/\\evil.example", "practice"])
 def test_no_form_leads_away(class_of_three, back):
     assert class_of_three.browser(ZOE).fill("/language", {"back": back}).headers["location"] == "/"
 

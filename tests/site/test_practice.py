@@ -10,6 +10,7 @@ from course_of_every_kind import write_course
 from site_people import MAX, TEACHER, ZOE, count_of, statements
 from site_practising import BOX, Practising, right_answer, words_of
 from sqlalchemy import insert
+from tables import each_row
 
 from coursework import open_course
 from coursework.database import tables
@@ -78,9 +79,7 @@ def test_no_variant_of_a_class_is_practised(class_of_three, zoe):
     assert class_of_three.browser(TEACHER).get(f"/practice/{EXERCISE}/77").status_code == 200
 
 
-@pytest.mark.parametrize(
-    "address", [f"{EXERCISE}/0", f"{EXERCISE}/x", f"{EXERCISE}/-1", "no_such", "no_such/3000000"]
-)
+@each_row("address", [f"{EXERCISE}/0", f"{EXERCISE}/x", f"{EXERCISE}/-1", "no_such", "no_such/3000000"])
 def test_other_addresses_lead_nowhere(class_of_three, address):
     assert class_of_three.browser(ZOE).get(f"/practice/{address}").status_code == 404
 
@@ -305,7 +304,7 @@ def test_drafts_are_those_of_one_person(zoe):
     assert "777" not in other.get(zoe.address).text
 
 
-@pytest.mark.parametrize("below", ["", "/draft", "/read", "/solution", "/motion"])
+@each_row("below", ["", "/draft", "/read", "/solution", "/motion"])
 def test_nobody_practises_without_a_name(zoe, below):
     stranger = zoe.class_.browser()
     assert stranger.get(zoe.address + below).status_code == 303
@@ -344,7 +343,7 @@ def test_an_upload_is_no_oracle(zoe):
     assert entries(zoe.class_) == [one]
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     ["", "{}", "[1, 2]", "\x00", '{"format": "coursework progress", "version": 1, "entries": [{"at": NaN}]}'],
 )

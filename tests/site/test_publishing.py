@@ -42,6 +42,11 @@ CELL = re.compile(r"<(t[hd])\b[^>]*>(.*?)</\1>", re.DOTALL)
 
 
 @pytest.fixture
+def number(class_of_three):
+    return dealt(class_of_three, None)
+
+
+@pytest.fixture
 def staff(class_of_three):
     return class_of_three.browser(TEACHER)
 
@@ -133,7 +138,7 @@ def test_what_a_build_issued_is_taken_in_as_it_is(class_of_three, staff):
     assert staff.get(f"/desk/assignments/{taken}/preview").status_code == 200
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("data", "files", "told"),
     [
         ({}, {}, "a title and a name"),
@@ -273,7 +278,7 @@ def test_what_the_form_says_is_what_is_published(class_of_three, staff):
     assert 'value="2026-11-23T12:00"' in page
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("change", "told"),
     [
         ({"closes": "2026-11-23T07:00"}, "closes before it opens"),
@@ -293,8 +298,9 @@ def test_what_the_form_says_is_what_is_published(class_of_three, staff):
         ({"answers": "last_try", "tries": ""}, "no last try"),
     ],
 )
-def test_a_publication_that_makes_no_sense_is_refused_and_says_why(class_of_three, staff, change, told):
-    number = dealt(class_of_three, None)
+def test_a_publication_that_makes_no_sense_is_refused_and_says_why(
+    class_of_three, staff, number, change, told
+):
     reply = staff.fill(f"/desk/assignments/{number}/publish", {**FORM, **change})
     assert (reply.status_code, told in reply.text) == (422, True)
     with class_of_three.site.store.reading() as connection:

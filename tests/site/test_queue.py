@@ -5,6 +5,7 @@ import re
 import pytest
 from desk_class import EXERCISE, OTHER, SEED, DeskClass, Rejected, field, told
 from site_people import TEACHER, ZOE
+from tables import each_row
 
 from coursework.database.current_marks import graded
 from coursework.database.decisions import read_decisions
@@ -103,7 +104,7 @@ def test_points_are_given_up_to_those_of_the_part(desk):
     assert (marks(desk)["Ada"].verdict, marks(desk)["Ada"].points) == ("partial", 0.5)
 
 
-@pytest.mark.parametrize("do", ["give:-1", "give:", "give:nan", "give:x"])
+@each_row("do", ["give:-1", "give:", "give:nan", "give:x"])
 def test_points_that_are_none_decide_nothing(desk, do):
     press(desk, TEACHER, desk.page(TEACHER, "/queue"), do)
     assert marks(desk)["Ada"].verdict == "unreadable"

@@ -239,7 +239,7 @@ def test_one_session_is_ended_from_the_list(class_of_three):
     assert not is_in(here)
 
 
-@pytest.mark.parametrize("odd", ["", "x", "-1", "9" * 30, "²"])
+@each_row("odd", ["", "x", "-1", "9" * 30, "²"])
 def test_a_number_that_is_none_ends_nothing(class_of_three, odd):
     here = class_of_three.browser(ZOE)
     assert here.fill("/account", {"session": odd}).status_code == 422
