@@ -123,12 +123,6 @@ def test_each_question_repeats_statement_figure_and_data(drawn):
             assert "mm" in one["text"]
 
 
-def test_what_is_exported_again_is_the_same_bytes(course, drawn):
-    again = of_exercises(course, EXERCISES, 3, 0, LANGS, None)
-    for lang in LANGS:
-        assert packed(drawn.pool(lang, CANVAS)) == packed(again.pool(lang, CANVAS))
-
-
 def test_a_longer_pool_keeps_the_identifiers_of_a_shorter(course):
     shorter, longer = (
         {

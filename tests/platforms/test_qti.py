@@ -241,10 +241,8 @@ def _content(element):
 
 
 @both
-def test_the_same_bytes_again(drawn, platform):
-    (one,), (other,) = (files_of(pool_of("grashof", count=2), platform) for _ in "ab")
-    assert one.path == other.path
-    assert one.make() == other.make()
+def test_the_archive_says_neither_when_nor_in_which_order_it_was_written(platform):
+    (one,) = files_of(pool_of("grashof"), platform)
     with zipfile.ZipFile(io.BytesIO(one.make())) as archive:
         assert archive.namelist() == sorted(archive.namelist())
         assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
