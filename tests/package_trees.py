@@ -1,4 +1,4 @@
-"""The files of the package, parsed once for all tests that look at its code."""
+"""The files of the package, without the courses that it brings, parsed once for all tests that look at its code."""
 
 import ast
 from functools import cache
@@ -9,11 +9,14 @@ import coursework
 PACKAGE = Path(coursework.__file__).resolve().parent
 
 
+FILES = [
+    path.relative_to(PACKAGE).as_posix()
+    for path in sorted(PACKAGE.rglob("*.py"))
+    if not {"skeleton", "examples", "_course"} & set(path.parts)
+]
+
+
 @cache
 def trees():
-    """The tree of each file by its path, without the courses that the package brings."""
-    return {
-        path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_text("utf-8"))
-        for path in sorted(PACKAGE.rglob("*.py"))
-        if not {"skeleton", "examples", "_course"} & set(path.parts)
-    }
+    """The tree of each file by its path."""
+    return {file: ast.parse((PACKAGE / file).read_text("utf-8")) for file in FILES}

@@ -2,10 +2,8 @@
 
 import ast
 
-from package_trees import trees
+from package_trees import FILES, trees
 from tables import each_row
-
-FILES = trees()
 
 #: From the ground up.
 ROOMS = (
@@ -53,7 +51,7 @@ def upward(file, tree):
 
 @each_row("file", FILES)
 def test_a_file_imports_from_its_own_room_and_from_rooms_below(file):
-    assert not upward(file, FILES[file])
+    assert not upward(file, trees()[file])
 
 
 @each_row(
@@ -75,7 +73,7 @@ def test_every_file_stands_in_a_room():
 
 
 def test_no_files_import_each_other_in_a_circle():
-    needs = {f: {file_of(m) for m, _ in imported(tree)} - {None, f} for f, tree in FILES.items()}
+    needs = {f: {file_of(m) for m, _ in imported(tree)} - {None, f} for f, tree in trees().items()}
     while needs:
         free = {f for f, others in needs.items() if not others & needs.keys()}
         assert free, f"these import each other: {', '.join(sorted(needs))}"
