@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import coursework
 from coursework.marking.marking import mark
 from coursework.sheets.paper import FeedbackPaper, Logo, Paper, PaperHeading, SolutionPaper
@@ -40,18 +42,22 @@ def bare(lang: str, student: str = "") -> PaperHeading:
     return PaperHeading(lang, title, course, student)
 
 
+@cache
 def variants(lang: str, names=NAMES, seed: int = 7):
     return [COURSE[name].variant(seed=seed + place, lang=lang) for place, name in enumerate(names)]
 
 
+@cache
 def paper(top: PaperHeading, names=NAMES, seed: int = 7) -> Paper:
     return Paper(top, tuple(one.handout(top.student) for one in variants(top.lang, names, seed)))
 
 
+@cache
 def solution(top: PaperHeading, names=NAMES, seed: int = 7) -> SolutionPaper:
     return SolutionPaper(top, tuple(one.answer_sheet(top.student) for one in variants(top.lang, names, seed)))
 
 
+@cache
 def feedback(top: PaperHeading, *, answers: bool = True, names=NAMES) -> FeedbackPaper:
     """Every second question answered wrong, the others not at all; advice at the end."""
     sheets = tuple(_marked(one, top.student) for one in variants(top.lang, names))

@@ -9,6 +9,7 @@ import sys
 from datetime import date
 
 import pytest
+from tables import each_row
 
 import coursework
 from coursework.authoring.scaffold import new_course
@@ -175,7 +176,7 @@ def test_an_answer_accepted_by_hand_stays_accepted(small_course, issued, capsys)
     assert [(c["mark_before"], c["mark_now"]) for c in (first, second)] == [("15", "17.5"), ("17.5", "20")]
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("text", "told"),
     [
         ("student,exercise,part,points\nAda,crank_pin,y,half\n", "points are a number"),

@@ -102,7 +102,7 @@ RIGHT = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "part", "text"), RIGHT)
+@each_row(("name", "part", "text"), RIGHT)
 def test_any_correct_form_is_right(name, part, text):
     assert verdict(name, part, text) == "correct"
 

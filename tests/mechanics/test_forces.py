@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from exact_mechanics import ExactMechanics
-from sweeps import sampled
+from sweeps import sampled, seeds
 from tables import each_row
 
 import coursework
@@ -83,9 +83,14 @@ def test_one_degree_of_freedom_as_the_exercise_counts_it(name):
 
 
 @every_mechanism
-@pytest.mark.parametrize("seed", sampled(range(20), range(3)))
-def test_loops_close_and_rates_are_those_of_the_solution(name, seed):
+@seeds(3, 20)
+def test_loops_close_and_rates_are_those_of_the_solution(name, seeds):
     """The rates follow from the joints alone; the solution has its own formulas for them."""
+    for seed in seeds:
+        loops_close(name, seed)
+
+
+def loops_close(name, seed):
     exercise, scene = COURSE[name], scene_of(name, seed, ("inertia",))
     q, _, _ = instants(scene)
     stance = scene.pose(q, by_joints=True)
@@ -111,15 +116,16 @@ def test_loops_close_and_rates_are_those_of_the_solution(name, seed):
 
 
 @every_mechanism
-@pytest.mark.parametrize("seed", sampled(range(20), range(3)))
-def test_effort_by_virtual_power_is_effort_by_equilibrium(name, seed):
-    scene = scene_of(name, seed, ("load", "gravity", "inertia"))
-    q, speed, acceleration = instants(scene)
-    by_power = scene.forces.over(q, speed, acceleration).effort
-    borne = scene.forces.over(q, speed, acceleration, joints=True)
-    size = np.nanmax(np.abs(np.array([by_power, *borne.joints.values()])), initial=1.0)
-    assert np.isfinite(by_power).any()
-    np.testing.assert_allclose(borne.effort, by_power, atol=1e-11 * size)
+@seeds(3, 20)
+def test_effort_by_virtual_power_is_effort_by_equilibrium(name, seeds):
+    for seed in seeds:
+        scene = scene_of(name, seed, ("load", "gravity", "inertia"))
+        q, speed, acceleration = instants(scene)
+        by_power = scene.forces.over(q, speed, acceleration).effort
+        borne = scene.forces.over(q, speed, acceleration, joints=True)
+        size = np.nanmax(np.abs(np.array([by_power, *borne.joints.values()])), initial=1.0)
+        assert np.isfinite(by_power).any()
+        np.testing.assert_allclose(borne.effort, by_power, atol=1e-11 * size)
 
 
 @every_mechanism

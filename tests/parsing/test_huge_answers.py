@@ -202,13 +202,13 @@ HUGE_VALUES = [10**5000, -(10**5000), 10**309, Fraction(10**5000), Fraction(10**
 
 
 @pytest.mark.parametrize("name", COURSE.names)
-@pytest.mark.parametrize("place", range(len(HUGE_VALUES)))
-def test_a_number_that_no_float_holds_stops_nothing(name, place):
+def test_a_number_that_no_float_holds_stops_nothing(name):
     variant = COURSE[name].variant(1)
-    marks = mark(variant, dict.fromkeys((part.id for part in variant.parts), HUGE_VALUES[place]))
-    for part in variant.parts:
-        assert marks[part.id].verdict != "correct"
-        assert isinstance(marks[part.id].answer, str)
+    for value in HUGE_VALUES:
+        marks = mark(variant, dict.fromkeys((part.id for part in variant.parts), value))
+        for part in variant.parts:
+            assert marks[part.id].verdict != "correct"
+            assert isinstance(marks[part.id].answer, str)
 
 
 def test_a_whole_number_of_thousands_of_digits_is_told_by_its_power_of_ten():

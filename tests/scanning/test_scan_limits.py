@@ -181,7 +181,7 @@ def test_an_honest_page_is_never_taken_for_anothers(kind, step, built, places):
 # ----------------------------------------------------------------------------- copies
 
 
-@pytest.mark.parametrize("turn", [0, 1, 2, 3])
+@pytest.mark.parametrize("turn", [1, 2, *(pytest.param(turn, marks=slow) for turn in (0, 3))])
 def test_a_copy_is_known_however_it_is_turned(turn, built, tmp_path):
     rng = np.random.default_rng(4)
     picture = scanned(built[1]["Zoé"], Scan(dpi=200, skew=0.7, noise=2.5), rng)

@@ -16,7 +16,7 @@ from coursework.structure.likeness import drawn_in_course, likeness
 from coursework.structure.numbered import to_count, to_decompose
 from coursework.structure.scheme import kinematic_scheme
 
-NUMBERS = range(1000, 1040)
+NUMBERS = range(1000, 1024)
 MECHANISMS = [to_count(n) for n in NUMBERS] + [to_decompose(n).joints for n in NUMBERS]
 KINDS = {"revolute": (ground_pivot, pin), "prismatic": (slider,), "higher": (contact,)}
 
