@@ -11,11 +11,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-import pytest
-
 import coursework
-
-pytest.importorskip("distributed", reason="a cluster needs pip install -e '.[e2e]'")
 
 PACKAGE = Path(coursework.__file__).resolve().parents[1]
 

@@ -75,13 +75,13 @@ def test_places_are_approached_from_both_sides(course):
 
 
 def test_a_length_vanishes_from_one_side(course):
-    place = next(p for p in places(course, "quick_return") if p.kind == VANISHING)
+    place = next(p for p in places(course, "slotted_mechanism") if p.kind == VANISHING)
     assert place.given[place.moved] == 0
     assert all(given[place.moved] > 0 for given in place.approach())
 
 
 def test_those_that_lose_most_come_first_and_easy_exercises_have_none(course):
-    lost = [p.lost for p in places(course, "two_loop_linkage")]
+    lost = [p.lost for p in places(course, "slider_crank")]
     assert lost == sorted(lost, reverse=True)
     assert lost[0] > 1e-6
     assert not places(course, "coriolis")

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import threading
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -30,7 +31,10 @@ from coursework.system import cluster as clusters
 from coursework.system.cluster import SELDOM, cluster
 from coursework.system.processes import Lost, Task, in_turn, processes
 
-pytestmark = pytest.mark.e2e
+pytestmark = [
+    pytest.mark.e2e,
+    pytest.mark.skipif(not find_spec("distributed"), reason="a cluster needs pip install -e '.[e2e]'"),
+]
 
 FORMATS = "pdf,html,ipynb,tex"
 

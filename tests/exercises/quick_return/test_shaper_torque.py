@@ -102,11 +102,11 @@ def test_many_variants_at_once_have_the_crossings_that_each_has_alone():
 
 def test_the_middle_of_what_is_told_of_a_crossing_is_seldom_right():
     right = 0
-    for variant in EXERCISE.variants(range(100)):
+    for variant in EXERCISE.variants(range(40)):
         told = variant.exercise.spec.told(variant.given)
         given = {f"theta_{name}": sum(told[name]) / 2 for name in ("rise", "fall")}
         right += sum(variant.grade(given)[i].verdict == "correct" for i in given)
-    assert right < 0.15 * 200
+    assert right < 0.15 * 80
 
 
 @every_seed
