@@ -181,12 +181,14 @@ PLACES_ON_PAPER = r'<svg.*?</svg>|size: \([^)]*\)|letters: "(?:[^"\\]|\\.)*"'
 def test_a_handout_holds_no_answer(name, lang, seeds):
     """No reference value, to four digits, stands in what the student receives, but where it is a given one."""
     for key in keys(name)[seeds.start : seeds.stop]:
-        handout = key.variant.in_language(lang).handout()
+        handout, renderer = key.variant.in_language(lang).handout(), renderer_of(COURSE.folder)
         given = {f"{abs(v):.4g}" for v in key.variant.given.values() if isinstance(v, float)}
         texts = {
-            "page": re.sub(r"<svg.*?</svg>", "", renderer_of(COURSE.folder).html(handout), flags=re.DOTALL),
-            "notebook": re.sub(r'"image/png": "[^"]*"', "", renderer_of(COURSE.folder).notebook(handout)),
-            "sheet": re.sub(PLACES_ON_PAPER, "", renderer_of(COURSE.folder).typst(handout), flags=re.DOTALL),
+            "page": re.sub(r"<svg.*?</svg>", "", renderer.html(handout), flags=re.DOTALL),
+            "notebook": re.sub(r'"image/png": "[^"]*"', "", renderer.notebook(handout)),
+            "sheet": re.sub(PLACES_ON_PAPER, "", renderer.typst(handout), flags=re.DOTALL),
+            "source": renderer.tex(handout, "f.pdf").replace("{,}", ","),
+            "terminal": renderer.terminal(handout),
         }
         for part in key.variant.parts:
             value = key.reference[part.quantity]
