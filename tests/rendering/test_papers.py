@@ -309,7 +309,7 @@ def test_a_logo_is_a_picture_told_in_words(data, form):
 
 @each_row(("data", "form"), [(b"GIF89a", "png"), (png(1, 1), "svg"), (b"", "svg"), (b"", "png")])
 def test_a_logo_of_another_format_is_refused(data, form):
-    with pytest.raises(BadInput, match=r"logo is no (PNG|SVG)"):
+    with pytest.raises(BadInput, match=r"logo is not an? (PNG|SVG)"):
         RENDERER.paper_pdf(paper(replace(heading("en"), logo=Logo(data, form, ALT["en"])), NAMES[:1]))
 
 
