@@ -80,8 +80,12 @@ BREAKS = {
 }
 
 
+def checked(folder, variants=2, rendered=0):
+    return check(coursework.open_course(folder)["crank_pin"], variants, rendered=rendered)
+
+
 def test_the_small_course_passes_untouched(small_course):
-    report = check(coursework.open_course(small_course)["crank_pin"], 20, rendered=1)
+    report = checked(small_course, 20, rendered=1)
     assert report.failures == []
     assert report.counts["right answers"] > 0
     assert report.counts["mistakes recognised"] > 0
@@ -96,27 +100,27 @@ def test_the_check_fails_on(small_course, name):
     path.write_text(text.replace(old, new), "utf-8")
     variants = 60 if name == "a mistake that never shows" else 3
     rendered = name == "a formula that no format can print"
-    report = check(coursework.open_course(small_course)["crank_pin"], variants, rendered=rendered)
+    report = checked(small_course, variants, rendered=rendered)
     assert any(told in failure for failure in report.failures), report.failures[:5]
 
 
 def test_a_missing_language_is_a_failure(small_course):
     (small_course / "exercises" / "crank_pin.en.md.j2").unlink()
-    report = check(coursework.open_course(small_course)["crank_pin"], 2, rendered=1)
+    report = checked(small_course, 2, rendered=1)
     assert any("no statement in 'en'" in f for f in report.failures)
 
 
 def test_texts_in_a_language_that_the_engine_does_not_speak_are_a_failure(small_course):
     for kind in ("exercises", "solutions"):
         shutil.copy(small_course / kind / "crank_pin.en.md.j2", small_course / kind / "crank_pin.es.md.j2")
-    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    failures = checked(small_course).failures
     told = [f for f in failures if f.endswith(f"words would be {file_of('es')}")]
     assert [f.split(" ")[0] for f in told] == ["exercises/crank_pin.es.md.j2"]
 
 
 def test_a_solution_without_its_text_is_told_by_its_folder(small_course):
     (small_course / "solutions" / "crank_pin.en.md.j2").unlink()
-    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    failures = checked(small_course).failures
     assert any(
         f.startswith("solutions/crank_pin.en.md.j2 is missing, and with it the section '## mistake")
         for f in failures
@@ -125,13 +129,13 @@ def test_a_solution_without_its_text_is_told_by_its_folder(small_course):
 
 def test_a_course_without_any_title_is_headed_by_its_folder(small_course):
     (small_course / "exercises" / "course.toml").unlink()
-    assert check(coursework.open_course(small_course)["crank_pin"], 2).failures == []
+    assert checked(small_course, rendered=1).failures == []
 
 
 def test_a_fault_is_told_once_without_the_name_that_is_printed_before_it(small_course):
     path = small_course / "exercises" / "crank_pin.py"
     path.write_text(path.read_text("utf-8").replace("theta % 90 >= 10", "theta > 999"), "utf-8")
-    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    failures = checked(small_course).failures
     starved = [f for f in failures if "found no variant" in f]
     assert [f.split(" ")[0] for f in starved] == ["seed"]
     assert len(failures) == len(set(failures))
@@ -140,14 +144,14 @@ def test_a_fault_is_told_once_without_the_name_that_is_printed_before_it(small_c
 def test_a_function_that_fails_everywhere_is_told_once(small_course):
     path = small_course / "solutions" / "crank_pin.py"
     path.write_text(path.read_text("utf-8").replace("return r * omega\n", "return r * omegga\n"), "utf-8")
-    (failure,) = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    (failure,) = checked(small_course).failures
     assert "name 'omegga' is not defined" in failure
 
 
 def test_a_parameter_that_nothing_gives_is_told_with_the_nearest_name(small_course):
     path = small_course / "solutions" / "crank_pin.py"
     path.write_text(path.read_text("utf-8").replace("def x(r, theta)", "def x(r, thta)"), "utf-8")
-    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    failures = checked(small_course).failures
     assert failures == ["solutions/crank_pin.py: x needs thta, which is not given; did you mean 'theta'?"]
 
 
@@ -175,7 +179,7 @@ def test_equations_are_compared_with_the_size_of_their_terms(small_course, case)
 
 def test_a_course_without_solutions_is_told_so_once_and_without_numbers_that_are_none(small_course):
     shutil.rmtree(small_course / "solutions")
-    report = check(coursework.open_course(small_course)["crank_pin"], 2)
+    report = checked(small_course)
     assert len(report.failures) == 1
     assert "no solution of 'crank_pin'" in report.failures[0]
     assert not any("nan" in note for note in notes([report]))
