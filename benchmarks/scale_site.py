@@ -50,10 +50,11 @@ from coursework.site.frame.settings import Entrance, Site
 ASKED = Assignment("week 1", (AskedExercise("slotted_mechanism", ("rA", "theta4")), AskedExercise("grashof")))
 STUDENTS, ASSIGNMENTS = 5000, 20
 URL = "http://127.0.0.1:8000"
-#: Address of each page, with the number of the last assignment; the first is a warm-up that is not timed.
 STAFF, STUDENT = "instructor", "student"
+#: Address of each page, with the number of the last assignment.
 PAGES: Mapping[str, tuple[str, str]] = {
-    "first page of the desk": (STAFF, "/desk"),
+    "desk, all classes changed": (STAFF, "/desk"),
+    "desk": (STAFF, "/desk"),
     "class": (STAFF, "/desk/{0}"),
     "class by total": (STAFF, "/desk/{0}?sort=total"),
     "queue": (STAFF, "/desk/{0}/queue"),
