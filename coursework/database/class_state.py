@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache, cached_property, partial
 from hashlib import sha256
 
 from coursework.course.course import Course
@@ -40,8 +40,13 @@ class UnplacedRow:
     id: str  #: digest of what it says and where
     row: Rejected
     student: str  #: whom it names, as issued; empty for a stranger
-    near: str  #: similar name of a student, if it names a stranger
     became: Placing | None
+    near_of: Callable[[str], str] = field(repr=False, compare=False)
+
+    @property
+    def near(self) -> str:
+        """Similar name of a student, if it names a stranger."""
+        return "" if self.student else self.near_of(self.row.row.get("student", ""))
 
     @property
     def waits(self) -> bool:
@@ -216,16 +221,23 @@ class ClassState:
         return answers + sum(row.waits for row in self.named)
 
     @cached_property
-    def unplaced(self) -> tuple[tuple[str, Rejected, str, str], ...]:
-        """Rows that could not be placed or marked: digest, row, student, and similar name."""
+    def unplaced(self) -> tuple[tuple[str, Rejected, str], ...]:
+        """Rows that could not be placed or marked: digest, row, and student."""
         sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected))
         list(rejecting(sheets, self.faults.items()))
-        return tuple((row_id(row), row, *named_by(self.issued, row)) for row in sheets.rejected)
+        return tuple((row_id(row), row, self._named_by(row)) for row in sheets.rejected)
+
+    def _named_by(self, row: Rejected) -> str:
+        name = row.row.get("student", "")
+        return (self.issued.student(name) if name else None) or ""
 
     @cached_property
     def rejected(self) -> tuple[UnplacedRow, ...]:
         """Rows that could not be placed, each with its placing by a person."""
-        return tuple(UnplacedRow(*unplaced, self.placings.get(unplaced[0])) for unplaced in self.unplaced)
+        near = cache(
+            partial(near_name, self.issued)
+        )  # slow in a large class: of the rows that are shown alone
+        return tuple(UnplacedRow(*one, self.placings.get(one[0]), near) for one in self.unplaced)
 
     @property
     def of_nobody(self) -> int:
@@ -235,17 +247,14 @@ class ClassState:
     @property
     def named(self) -> tuple[UnplacedRow, ...]:
         """Rejected rows that name a student of the class."""
-        return tuple(row for row in self.rejected if row.student and row.student in self.issued.students)
+        names = frozenset(self.issued.students)
+        return tuple(row for row in self.rejected if row.student in names)
 
 
-def named_by(issued: Issued, row: Rejected) -> tuple[str, str]:
-    """Return the student whom a rejected row names, as issued, and the name that is most similar to a
-    stranger's."""
-    name = row.row.get("student", "")
-    student = issued.student(name) if name else None
-    is_one = name and student is None and len(namesakes(name, issued.students)) < 2
-    near = closest(name[:60], issued.students) if is_one else None
-    return student or "", near or ""
+def near_name(issued: Issued, name: str) -> str:
+    """Return the student whose name is most similar to a stranger's; empty if it is that of several."""
+    is_one = name and len(namesakes(name, issued.students)) < 2
+    return (closest(name[:60], issued.students) if is_one else None) or ""
 
 
 def row_id(row: Rejected) -> str:

@@ -269,3 +269,14 @@ def test_long_lists_have_pages_and_a_search(desk, monkeypatch):
         first, found = (browser.get(address, params={"find": sought}).text for sought in ("", "FLO"))
         assert (f">{name}<" in first, f">{name}<" in found, ">Ada<" in found) == (False, True, False), address
         assert "1 to 4 of" in first
+
+
+def test_a_stranger_is_compared_with_the_class_where_the_row_is_shown(desk, monkeypatch):
+    data = f"student,exercise,seed,part,answer\nFlow,{EXERCISE},{SEED},rA,12\n"
+    send(desk, "answers", "answers", "late.csv", data.encode())
+    assert "<option selected>Flo</option>" in desk.page(TEACHER, "/files").text
+    monkeypatch.setattr("coursework.database.class_state.closest", None)
+    desk.hand_in({"Di": {"rA": "12"}})
+    for end in ("", "/queue", "/questions"):
+        assert desk.page(TEACHER, end).status_code == 200, end
+    assert desk.browser(TEACHER).get("/desk").status_code == 200
