@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from coursework.figures.ink import number
-from coursework.figures.plot import GRID, LINE, RIGHT, WRONG, page, put, round_values
-from coursework.figures.text import SIZE, LabelText, read, words
+from coursework.figures.plot import GRID, LINE, RIGHT, WRONG, page, put, round_values, written
+from coursework.figures.text import SIZE, LabelText, read
 
 _WIDTH = 150.0  #: of a chart, mm
 _TEXT, _SMALL = 0.85, 0.75  #: sizes of letters, relative to those of a figure
@@ -39,7 +39,7 @@ def bars(
 
     A row is a label, a length, and what is written at the bar's end; the axis reaches ``full``, or the longest bar.
     """
-    texts = [(_text(label), length, words(end)) for label, length, end in rows]
+    texts = [(_text(label), length, written(end)) for label, length, end in rows]
     most = full or max((length for _, length, _ in texts), default=0) or 1
     left = _ROOM + max((_width(label) for label, _, _ in texts), default=0)
     right = 2 * _ROOM + max((_width(end, _SMALL) for _, _, end in texts), default=0)
@@ -72,14 +72,14 @@ def histogram(
         return above + _COLUMNS * (1 - value / most)
 
     ticks = _whole_values(most)
-    body = [put(words(vertical), complex(left, above - 2.5), "start", _TEXT)]
+    body = [put(written(vertical), complex(left, above - 2.5), "start", _TEXT)]
     body += _grid([f"M{number(left)} {number(y(t))}h{number(right - left)}" for t in ticks])
-    body += [put(words(f"{t:g}"), complex(left - 1.5, y(t) + 1.0), "end", _SMALL) for t in ticks]
+    body += [put(written(f"{t:g}"), complex(left - 1.5, y(t) + 1.0), "end", _SMALL) for t in ticks]
     for (low, high), count in zip(pairwise(edges), counts, strict=True):
         if count:
             body.append(_box(x(low) + 0.3, y(count), x(high) - x(low) - 0.6, y(0) - y(count)))
             at = complex((x(low) + x(high)) / 2, y(count) - 1.2)
-            body.append(put(words(str(count)), at, "middle", _SMALL))
+            body.append(put(written(str(count)), at, "middle", _SMALL))
     body += _foot({x(e): f"{e:g}" for e in edges}, horizontal, left, right, y(0))
     return _page(y(0) + _BELOW, body, title)
 
@@ -104,7 +104,7 @@ def scatter(
     }
     every = [point for run in series.values() for point in run]
     left, above = 14.0, 6.0
-    right = _WIDTH - _SAMPLE - 3 * _ROOM - max((_width(words(name), _SMALL) for name in series), default=0)
+    right = _WIDTH - _SAMPLE - 3 * _ROOM - max((_width(written(name), _SMALL) for name in series), default=0)
     height = max(_POINTS, _ENTRY * len(series))
     (low, high), (least, most) = (_reach([point[k] for point in every]) for k in (0, 1))
 
@@ -114,7 +114,7 @@ def scatter(
 
     across = sorted({round(a) for a, _ in every}) if integers else _whole_between(low, high)
     upward = _whole_between(least, most)
-    body = [put(words(vertical), complex(left, above - 2.5), "start", _TEXT)]
+    body = [put(written(vertical), complex(left, above - 2.5), "start", _TEXT)]
     body += _grid(
         [f"M{number(at((t, most)).real)} {number(above)}v{number(height)}" for t in across]
         + [f"M{number(left)} {number(at((low, t)).imag)}h{number(right - left)}" for t in upward]
@@ -124,7 +124,7 @@ def scatter(
         entry = complex(right + _ROOM, above + _ENTRY * (position + 0.5))
         body += _series(position, [at(point) for point in run])
         body += _series(position, [entry, entry + _SAMPLE], marked=entry + _SAMPLE / 2)
-        body.append(put(words(name), entry + _SAMPLE + 1.5 + 1j, "start", _SMALL))
+        body.append(put(written(name), entry + _SAMPLE + 1.5 + 1j, "start", _SMALL))
     labels = {at((t, most)).real: f"{t}" if integers else _power(t) for t in across}
     body += _foot(labels, horizontal, left, right, above + height)
     return _page(above + height + _BELOW, body, title)
@@ -164,7 +164,7 @@ def _page(height: float, body: Sequence[str], title: str) -> str:
 
 
 def _text(label: LabelText | str) -> LabelText:
-    return words(label) if isinstance(label, str) else label
+    return written(label) if isinstance(label, str) else label
 
 
 def _width(text: LabelText, size: float = _TEXT) -> float:
@@ -207,4 +207,4 @@ def _foot(
     """Return a horizontal axis with the labels of its ticks, by abscissa, and its title."""
     axis = f'<path d="M{number(left)} {number(base)}H{number(right)}" stroke="#000" stroke-width="0.25"/>'
     below = [put(_text(label), complex(x, base + 4.2), "middle", _SMALL) for x, label in ticks.items()]
-    return [axis, *below, put(words(title), complex((left + right) / 2, base + 9.2), "middle", _TEXT)]
+    return [axis, *below, put(written(title), complex((left + right) / 2, base + 9.2), "middle", _TEXT)]

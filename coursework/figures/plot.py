@@ -13,7 +13,7 @@ import numpy as np
 
 from coursework.errors import WrongValue
 from coursework.figures.ink import number
-from coursework.figures.text import SIZE, LabelText, read, words
+from coursework.figures.text import SIZE, LabelText, MeasuredRun, read, words
 from coursework.figures.writing import accents, as_outlines
 from coursework.language.numbers import localise, significant
 
@@ -218,13 +218,18 @@ class Plot:
         return put(read(localise(significant(value, 6), self.lang)), at, anchor, _SMALL)
 
 
+def written(text: str) -> LabelText:
+    """Return words that anybody wrote, in upright letters."""
+    return words(text, MeasuredRun)
+
+
 def page(size: tuple[float, float], body: Sequence[str], title: str = "") -> str:
     """Return an SVG of this size, mm, with a title above it on as many lines as it takes."""
     lines = _title_lines(title, size[0] - 2) if title else []
     if above := _LINE * len(lines) + 1 if lines else 0.0:
         body = [f'<g transform="translate(0 {number(above)})">', *body, "</g>"]
     titles = [
-        put(words(line), complex(size[0] / 2, _LINE * (k + 0.8)), "middle") for k, line in enumerate(lines)
+        put(written(line), complex(size[0] / 2, _LINE * (k + 0.8)), "middle") for k, line in enumerate(lines)
     ]
     width, height = number(size[0]), number(size[1] + above)
     return "\n".join([
@@ -252,7 +257,7 @@ def _title_lines(title: str, room: float) -> list[str]:
 
 
 def _fits(text: str, room: float) -> bool:
-    return words(text).width * SIZE <= room
+    return written(text).width * SIZE <= room
 
 
 def _dot(x: float, y: float, right: bool | None) -> str:

@@ -43,7 +43,7 @@ _DRAWN = str.maketrans("ϵϕ⋅∘∗", "εφ·°*")  #: letters and signs as fi
 _UPRIGHT_WIDTHS = {
     19: "'|", 22: ",.", 25: "ijlI-:;·′  !", 29: "°", 32: "tJ()/[]f", 38: "rs*", 42: "cz",
     46: "aeégèêàç0123456789?ôk", 50: "bdovxhnpquùSPFyLε", 55: "+−=<>±×EBYαβζδηθκλμξτ", 60: "TRZXρσφπνω",
-    66: "CKUV&%", 71: "ADGHNOQΩΘ", 75: "²", 79: "mw∞œ", 95: "WM",
+    66: "CKUV&%", 71: "ADGHNOQΩΘ", 79: "mw∞œ", 95: "WM",
 }  # fmt: skip
 _ITALIC_WIDTHS = {
     19: "|", 23: ",.:;!", 27: "′° ·iîjlι", 32: "ftI()/[]", 37: "rsεξ", 41: "cesτéèêJz",
@@ -57,13 +57,6 @@ def _by_letter(table: dict[int, str]) -> dict[str, float]:
 
 
 _WIDTHS = {False: _by_letter(_UPRIGHT_WIDTHS), True: _by_letter(_ITALIC_WIDTHS)}
-
-
-def _measured(letter: str, italic: bool) -> float:
-    """Return the width of a letter that the tables lack, em."""
-    from coursework.figures.typesetting import glyph_width
-
-    return glyph_width(letter, italic)
 
 
 _DESCENDING = frozenset("gjpqyQJ,;()[]/βγζημξρφψχ|")
@@ -84,7 +77,11 @@ class LetterRun:
     @cached_property
     def width(self) -> float:
         table = _WIDTHS[self.italic]
-        return self.size * added(table.get(letter) or _measured(letter, self.italic) for letter in self.text)
+        return self.size * added(table.get(letter) or self.unlisted(letter) for letter in self.text)
+
+    def unlisted(self, letter: str) -> float:
+        """Return the width of a letter that the tables lack, em."""
+        return 0.75
 
     @cached_property
     def top(self) -> float:
@@ -94,6 +91,15 @@ class LetterRun:
     def bottom(self) -> float:
         descending = _ITALIC_DESCENDING if self.italic else _DESCENDING
         return self.rise - self.size * (0.24 if descending & set(self.text) else 0.02)
+
+
+class MeasuredRun(LetterRun):
+    """Letters of texts that anybody wrote: those that the tables lack are measured."""
+
+    def unlisted(self, letter: str) -> float:
+        from coursework.figures.typesetting import glyph_width
+
+        return glyph_width(letter, self.italic)
 
 
 @dataclass(frozen=True)
@@ -160,15 +166,15 @@ def read(label: str) -> LabelText:
     return LabelText(tuple(letters.runs), tuple(letters.accents))
 
 
-def words(text: str) -> LabelText:
+def words(text: str, run: type[LetterRun] = LetterRun) -> LabelText:
     """Return words in upright letters; a letter with a combining arrow becomes one with an arrow over it."""
     letters = _Letters()
     pieces = _VECTOR.split(text)
     for position, piece in enumerate(pieces):
         if position % 2:
-            letters.put(Accent("vec", Symbol(piece, "letter")), LetterRun("", italic=True))
+            letters.put(Accent("vec", Symbol(piece, "letter")), run("", italic=True))
         elif piece or len(pieces) == 1:
-            letters.letters(piece, LetterRun("", italic=False))
+            letters.letters(piece, run("", italic=False))
     return LabelText(tuple(letters.runs), tuple(letters.accents))
 
 

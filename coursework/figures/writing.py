@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from html import escape
 from typing import NamedTuple, TypeAlias
 
@@ -107,7 +108,7 @@ def as_outlines(text: LabelText, at: complex) -> str:
     for index, run in enumerate(text.runs):
         at = left + SIZE * complex(text.start(index), -run.rise)
         for letter in run.text:
-            item = LetterRun(letter, run.italic, run.size)
+            item = replace(run, text=letter)
             scale = _fine(run.size * SIZE / 100)
             if outline := glyph(letter, run.italic):
                 move = f"translate({pair(at)}) scale({scale} -{scale})"

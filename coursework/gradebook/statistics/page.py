@@ -13,8 +13,8 @@ import numpy as np
 from coursework.course.course import Course
 from coursework.errors import WrongValue
 from coursework.figures.charts import bars, histogram
+from coursework.figures.plot import written as printed
 from coursework.figures.text import LabelText, joined, read
-from coursework.figures.text import words as printed
 from coursework.gradebook.columns import VERDICTS
 from coursework.gradebook.statistics.captions import SHORT, Names
 from coursework.gradebook.statistics.measures import (
