@@ -1,11 +1,13 @@
 """Booklets: the sheets of all students in one PDF to print, and a table of their pages.
 
-A booklet has a limited number of sheets or papers; a larger class gets several, named by the sheets they
-hold. The typesetter keeps a whole document in memory, and joining PDFs would lose the accessibility tags.
+A booklet has a limited number of exercises; a larger class gets several, named by the sheets they hold. The
+typesetter keeps a whole document in memory, two megabytes a page, and joining PDFs would lose the accessibility
+tags. For the same reason one is made after the other.
 """
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -16,10 +18,11 @@ from typing import TypeVar
 from coursework.system.tables import Spreadsheet, csv_file
 from coursework.system.writing import File
 
-SHEETS = 50  #: limit of sheets or papers in one booklet
+EXERCISES = 50  #: limit of exercises in one booklet: of sheets, or in all of its papers
 
 Pages = tuple[tuple[int, int], ...]  #: the first and the last of each sheet
 _Sheet = TypeVar("_Sheet")
+_Made = TypeVar("_Made")
 
 
 @dataclass(frozen=True)
@@ -36,12 +39,12 @@ class Booklet:
             yield {**row, "first page": first, "last page": last, "file": f"{self.name}.pdf"}
 
 
-def parted(name: str, sheets: Sequence[_Sheet]) -> Iterator[tuple[str, Sequence[_Sheet]]]:
-    """Yield each booklet's name and its sheets."""
-    digits = len(str(len(sheets)))
-    for start in range(0, len(sheets), SHEETS):
-        part = sheets[start : start + SHEETS]
-        which = f".{start + 1:0{digits}}-{start + len(part):0{digits}}" if len(sheets) > SHEETS else ""
+def parted(name: str, sheets: Sequence[_Sheet], exercises: int = 1) -> Iterator[tuple[str, Sequence[_Sheet]]]:
+    """Yield each booklet's name and its sheets, of so many exercises each."""
+    digits, most = len(str(len(sheets))), max(1, EXERCISES // exercises)
+    for start in range(0, len(sheets), most):
+        part = sheets[start : start + most]
+        which = f".{start + 1:0{digits}}-{start + len(part):0{digits}}" if len(sheets) > most else ""
         yield f"{name}{which}", part
 
 
@@ -51,9 +54,13 @@ def bound(booklets: Iterable[Booklet], columns: Sequence[str], spreadsheet: Spre
     The files are to be made in this order, by one thread or several.
     """
     wanted = [(booklet, Future[Pages]()) for booklet in booklets]
+    alone = threading.Lock()
     for booklet, pages in wanted:
-        yield File(Path("handouts") / f"{booklet.name}.pdf", partial(_printed, booklet, pages))
-        yield File(Path("instructor") / f"{booklet.name}.solutions.pdf", booklet.print_solutions)
+        yield File(Path("handouts") / f"{booklet.name}.pdf", partial(_printed, booklet, pages, alone))
+        yield File(
+            Path("instructor") / f"{booklet.name}.solutions.pdf",
+            partial(_alone, booklet.print_solutions, alone),
+        )
 
     def table() -> bytes:
         rows = (row for booklet, pages in wanted for row in booklet.rows(pages.result()))
@@ -62,9 +69,14 @@ def bound(booklets: Iterable[Booklet], columns: Sequence[str], spreadsheet: Spre
     yield File(Path("handouts") / "pages.csv", table)
 
 
-def _printed(booklet: Booklet, result: Future[Pages]) -> bytes:
+def _alone(make: Callable[[], _Made], lock: threading.Lock) -> _Made:
+    with lock:
+        return make()
+
+
+def _printed(booklet: Booklet, result: Future[Pages], lock: threading.Lock) -> bytes:
     try:
-        pdf, pages = booklet.print_sheets()
+        pdf, pages = _alone(booklet.print_sheets, lock)
     except BaseException as fault:
         result.set_exception(fault)
         raise

@@ -158,7 +158,8 @@ def _booklets(renderer: Renderer, issued_papers: Sequence[IssuedPaper]) -> Itera
         for lang in issued_paper.first.langs:
             groups.setdefault((issued_paper.folder or "class", lang), []).append(issued_paper)
     for (group_name, lang), group in groups.items():
-        for name, part in booklets.parted(f"{group_name}.{lang}", group):
+        exercises = max(len(issued_paper.issues) for issued_paper in group)
+        for name, part in booklets.parted(f"{group_name}.{lang}", group, exercises):
             yield _booklet(renderer, name, part, lang)
 
 

@@ -83,7 +83,7 @@ def bound_files(course, issues):
 
 
 def test_a_large_class_has_several_booklets_named_with_their_sheets(course, monkeypatch):
-    monkeypatch.setattr(booklets, "SHEETS", 4)
+    monkeypatch.setattr(booklets, "EXERCISES", 4)
     names = [str(f.path) for f in bound_files(course, issues_of(course, 10))]
     assert names == [
         "handouts/slotted_mechanism.fr.01-04.pdf",
@@ -96,10 +96,17 @@ def test_a_large_class_has_several_booklets_named_with_their_sheets(course, monk
     ]
 
 
+def test_exercises_count_not_papers(monkeypatch):
+    monkeypatch.setattr(booklets, "EXERCISES", 7)
+    parts = booklets.parted("class.fr", "abcde", 3)
+    assert list(parts) == [("class.fr.1-2", "ab"), ("class.fr.3-4", "cd"), ("class.fr.5-5", "e")]
+    assert list(booklets.parted("class.fr", "ab", 8)) == [("class.fr.1-1", "a"), ("class.fr.2-2", "b")]
+
+
 def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it(
     course, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(booklets, "SHEETS", 2)
+    monkeypatch.setattr(booklets, "EXERCISES", 2)
     issues = issues_of(course, 3, ("fr", "en"))
     writing.write(tmp_path, bound_files(course, issues))
     rows = list(csv.DictReader(io.StringIO((tmp_path / "handouts" / "pages.csv").read_text("utf-8-sig"))))
