@@ -55,7 +55,7 @@ def seen(reply):
 def test_the_list_tells_what_is_open_to_come_and_closed(class_of_three, lang):
     number = dealt(class_of_three)
     browser = class_of_three.browser(ZOE, lang)
-    words = {"en": ("Open", "To come", "Closed"), "fr": ("Ouverts", "À venir", "Fermés")}[lang]
+    words = {"en": ("Open", "Upcoming", "Closed"), "fr": ("Ouverts", "À venir", "Fermés")}[lang]
     for at, shown in ((OPENS, words[0]), (OPENS - SECOND, words[1]), (CLOSES + SECOND, words[2])):
         class_of_three.at = at
         with class_of_three.site.store.begin() as connection:
@@ -168,7 +168,7 @@ def test_after_it_closed_nothing_is_kept_and_that_is_said(class_of_three):
     browser = class_of_three.browser(ZOE)
     class_of_three.at = CLOSES + SECOND
     reply = browser.fill(f"/assignments/{number}/keep", {"text.e1-rA": "1", "over.e1-rA": "0"})
-    assert (reply.status_code, "no longer taken" in reply.json()["told"]) == (409, True)
+    assert (reply.status_code, "no longer accepted" in reply.json()["told"]) == (409, True)
 
 
 def test_what_was_kept_before_it_closed_is_said_to_be_kept(class_of_three):
@@ -237,7 +237,7 @@ def test_another_tab_with_something_else_is_told_and_loses_nothing(class_of_thre
     browser = class_of_three.browser(ZOE)
     handed_in(browser, number, {"e1-rA": "1"})
     reply = handed_in(browser, number, {"e1-rA": "2", "_versions": '{"e1-rA": 1}'})
-    assert "something else" in browser.get(reply.headers["location"]).text
+    assert "Something else" in browser.get(reply.headers["location"]).text
     assert len(delivered(class_of_three, number)) == 1
     assert 'value="2"' in browser.get(f"/assignments/{number}").text
 
@@ -497,7 +497,7 @@ def test_what_is_late_costs_beside_the_points_and_no_answer_costs_more(class_of_
     desk = class_of_three.browser(TEACHER)
     desk.get(f"/desk/{number}")
     assert zoes_total(desk, number) == {"points": f"{out_of:g}", "late": f"{0.2 * out_of:g}", "mark": "16"}
-    assert "since it came late" in seen(desk.get(f"/desk/{number}/student?name={ZOE}"))
+    assert "for lateness" in seen(desk.get(f"/desk/{number}/student?name={ZOE}"))
     # In time after all: the class is told, though nothing was handed in, marked or decided since.
     with class_of_three.site.store.begin() as connection:
         more = Extension(class_of_three.at, None, "ill", "Ada", OPENS)
@@ -595,5 +595,5 @@ def test_staff_look_a_receipt_up_and_compare_its_digest(class_of_three):
         "Other answers"
         in staff.get("/desk/receipts", params={"code": told["receipt"], "digest": "0" * 64}).text
     )
-    assert "Nobody was given" in staff.get("/desk/receipts", params={"code": "AAAA-AAAA-AAAA"}).text
+    assert "has issued no such receipt" in staff.get("/desk/receipts", params={"code": "AAAA-AAAA-AAAA"}).text
     assert browser.get("/desk/receipts").status_code == 403

@@ -229,7 +229,7 @@ def sent(class_, number, name, data, lang="en", who=ZOE):
 def test_a_table_larger_than_a_paper_is_refused_and_says_how_large_it_may_be(class_of_three):
     number = dealt(class_of_three)
     large = (HEADER + "Zoé,grashof,1,part,1\n" * 400_000).encode()
-    for lang, said in (("en", "The most is 2 MB"), ("fr", "Le maximum est 2 MB")):
+    for lang, said in (("en", "The limit is 2 MB"), ("fr", "Le maximum est 2 MB")):
         reply = sent(class_of_three, number, "a.csv", large, lang)
         assert (reply.status_code, said in reply.text) == (413, True)
     for name in ("a.csv", "A.CSV", "a.json"):
@@ -426,7 +426,7 @@ def test_who_took_much_of_a_processor_by_a_link_waits_and_still_hands_in(linked)
     who = json.dumps([SITE, "ada"])
     other, _, theirs = linked.enter(sub="max", name="Max")
     linked.site.limits.add_processor_time("link GET", who, AT_ONCE + 12 * BACK)
-    for lang, said in (("en", "asked too often"), ("fr", "Trop de demandes")):
+    for lang, said in (("en", "Too many requests"), ("fr", "Trop de demandes")):
         reply = visitor.browser.get(path, headers={"accept-language": lang})
         assert (reply.status_code, said in reply.text) == (429, True)
         assert (

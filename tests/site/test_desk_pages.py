@@ -114,10 +114,10 @@ def test_a_decision_on_a_students_page_counts_and_is_taken_back(desk):
 def test_answers_come_in_once_and_are_marked(desk):
     data = f"student,exercise,seed,part,answer\nDi,{EXERCISE},{SEED},rA,12\nNobody,{EXERCISE},{SEED},rA,12\n"
     assert told(send(desk, "answers", "answers", "late.csv", data.encode())).startswith(
-        "Answers that came in: 2. Sheets marked: 1."
+        "Answers received: 2. Sheets marked: 1."
     )
     assert told(send(desk, "answers", "answers", "late.csv", data.encode())).startswith(
-        "The very same came in before"
+        "Exactly the same was uploaded before"
     )
     now = class_now(desk.site, desk.number)
     assert [one.row.source for one in now.rejected] == ["late.csv, line 3"]
@@ -143,7 +143,7 @@ def test_a_zip_of_answers_is_read_and_one_that_is_a_bomb_is_refused(desk):
 
 def test_a_roster_adds_what_it_says_and_tells_strangers(desk):
     reply = send(desk, "roster", "roster", "class.csv", b"student,group\nBo,B\nStranger,B\n")
-    assert "1 of 2 on the roster" in reply.text
+    assert "1 of 2 people on the roster" in reply.text
     assert "Stranger" in reply.text
     assert class_now(desk.site, desk.number).issued.columns["Bo"]["group"] == "B"
 
@@ -191,10 +191,10 @@ def test_marking_again_shows_what_changes_before_it_changes(tmp_path, desk, monk
     assert "Nothing would change" in desk.page(TEACHER, "/regrade").text
     before = class_now(desk.site, desk.number).stamp
     monkeypatch.setattr("coursework.database.marking.sheet_state", lambda *more: "another")
-    assert "Sheets that would be marked anew: 3." in desk.page(TEACHER, "/regrade").text
+    assert "Sheets that would be marked again: 3." in desk.page(TEACHER, "/regrade").text
     assert class_now(desk.site, desk.number).stamp == before
     reply = desk.browser(TEACHER).fill(f"/desk/{desk.number}/regrade", {"do": "regrade"})
-    assert "Sheets marked anew: 3." in reply.text
+    assert "Sheets marked again: 3." in reply.text
     assert class_now(desk.site, desk.number).stamp != before
     assert regrading.ChangeRow._fields[0] == "student"
 

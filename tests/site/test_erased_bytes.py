@@ -146,7 +146,7 @@ def test_another_process_that_reads_is_waited_for_and_told_of(class_of_three, tm
         connection.execute(select(person)).all()
         reply = erase(class_of_three)
         assert reply.headers["location"] == "/desk/people?left=1"
-        assert "traces are still" in class_of_three.browser(TEACHER).get(reply.headers["location"]).text
+        assert "traces remain" in class_of_three.browser(TEACHER).get(reply.headers["location"]).text
         assert scrubbing.is_left(class_of_three.site)
         assert not scrubbing.scrub(class_of_three.site)
     other.close()

@@ -95,7 +95,7 @@ def test_an_exercise_is_practised_to_its_end(room, window, lang, size):
         elif not part.sort.is_open:
             page.fill(f"#answer-a-{part.id}", answer)
     page.locator(".practice-bar button[name=check]").click()
-    page.wait_for_selector("#summary >> text=/All of it is right|Tout est juste/")
+    page.wait_for_selector("#summary >> text=/Everything is right|Tout est juste/")
     fine(page)
     sheet = page.url.split("#")[0]
     page.locator("button[name=go][value=fresh]").click()
@@ -224,7 +224,7 @@ def test_answers_are_brought_in_and_marks_taken_away(room, window, handed_out, t
     page.set_input_files("input[name=answers]", str(answers))
     with page.expect_navigation():
         page.click("form[action$='/answers'] button")
-    assert re.match(r"Réponses arrivées\s:\s1\.", page.locator("main .told").first.inner_text())
+    assert re.match(r"Réponses reçues\s:\s1\.", page.locator("main .told").first.inner_text())
     fine(page)
     with page.expect_download() as taken:
         page.click("a[href$='/files/summary.csv'], a[href*='/files/summary.csv?']")
@@ -320,7 +320,7 @@ def test_a_keyboard_alone_practises(room, window):
         assert page.evaluate("document.activeElement.id") == f"told-a-{part.id}"
     tabbed(page, ".practice-bar button[name=check]")
     page.keyboard.press("Enter")
-    page.wait_for_selector("#summary >> text=All of it is right.")
+    page.wait_for_selector("#summary >> text=Everything is right.")
     assert page.evaluate("document.activeElement.id") == "summary"
 
 

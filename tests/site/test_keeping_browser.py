@@ -218,7 +218,7 @@ def test_a_browser_that_keeps_nothing_is_told(device):
     device.context.add_init_script("Storage.prototype.setItem = () => { throw new Error('full') }")
     page = device.page()
     page.fill(device.box(), "8")
-    told(page, "keeps nothing by itself")
+    told(page, "stores nothing by itself")
     told(page, KEPT)
     device.context.set_offline(True)
     page.fill(device.box(), "88")
@@ -238,10 +238,10 @@ def test_what_comes_after_the_end_is_told_and_stays_on_the_device(device):
     device.class_.at = CLOSES.replace(minute=1)
     try:
         device.context.set_offline(False)
-        told(page, "no longer taken")
+        told(page, "no longer accepted")
         page.close()
         page = device.page(f"{device.home}/assignments")
-        told(page, "no longer taken")
+        told(page, "no longer accepted")
         address = page.locator("[data-kept-left] a").get_attribute("href")
         assert device.home + address == device.place
         assert "99" in left(page)

@@ -152,7 +152,7 @@ def test_the_staff_sees_who_was_tied_and_separates_them(linked):
     ((ada, _),) = [row for row in linked.one(person.c.id, person.c.name) if row.name == "Ada Byron"]
     staff = linked.browser(ADA)
     page = staff.get(f"/desk/people/{ada}").text
-    assert "tied at the first launch" in page
+    assert "connected at the first launch" in page
     number = re.search(r'name="tie" value="(\d+)"', page)[1]
     other = f"/desk/people/{linked.ids[ZOE]}/separate"
     assert staff.fill(other, {"tie": number}).status_code == 404
@@ -266,7 +266,9 @@ def test_no_score_goes_before_marks_are_told(tmp_path):
     visitor, path = hands_in(linked)
     linked.lti.state.watch.look()
     assert linked.sent() == []
-    assert "Your points go to the course’s gradebook when they are told" in text_of(visitor.browser.get(path))
+    assert "Your points go to the course’s gradebook when they are published" in text_of(
+        visitor.browser.get(path)
+    )
     linked.at = CLOSES + timedelta(minutes=1)
     assert linked.lti.state.watch.look() == 1
     assert linked.sent()[0]["scoreGiven"] == linked.points("Ada Byron").points

@@ -58,8 +58,8 @@ def test_a_new_exercise_is_shown_at_once_in_every_view(at_work):
     assert at_work.get("/view/solution_pdf").content.startswith(b"%PDF")
     assert "sine_and_cosine_exchanged" in at_work.get("/?view=key").text
     until(lambda: at_work.get("/state").json()["stamp"].endswith(".1"))
-    assert "Every promise holds." in at_work.get("/?view=check").text
-    assert "Toutes les promesses" in at_work.get("/?view=check&lang=fr").text
+    assert "All checks passed." in at_work.get("/?view=check").text
+    assert "Toutes les vérifications" in at_work.get("/?view=check&lang=fr").text
 
 
 def test_the_page_follows_each_save_even_within_a_second_and_of_the_same_size(at_work, written):
@@ -95,7 +95,7 @@ def test_what_does_not_hold_is_told_beside_the_last_page_that_worked(at_work, wr
     assert at_work.get(f"/view/{view}?lang=en").content == good[view]
     until(lambda: at_work.get("/state").json()["stamp"].endswith(".1"))
     told = at_work.get("/?view=check&lang=en").text
-    assert "Every promise holds." not in told
+    assert "All checks passed." not in told
     assert "✗" in told
 
 

@@ -143,7 +143,7 @@ def test_what_a_build_issued_is_taken_in_as_it_is(class_of_three, staff):
     [
         ({}, {}, "a title and a name"),
         ({"title": "x"}, {}, "Choose an exercise"),
-        ({"title": "x", "exercise": "grashof"}, {}, "To whom?"),
+        ({"title": "x", "exercise": "grashof"}, {}, "For whom?"),
         ({"title": "x", "exercise": "no_such"}, {}, "Choose an exercise"),
         ({}, {"file": ("x.toml", b"titel = 1")}, "no key"),
         ({}, {"file": ("x.toml", b"\xff")}, "not UTF-8"),
@@ -170,7 +170,7 @@ def test_a_large_class_is_dealt_by_another_process_the_same_way(class_of_three, 
     roster = b"student\n" + b"".join(b"S%d\n" % k for k in range(24))
     monkeypatch.setattr(jobs, "_PATIENCE", 0.0)
     reply = handed_out(class_of_three, staff, file=TOML, roster=roster)
-    assert "This page looks again by itself" in staff.get(reply.headers["location"]).text
+    assert "This page refreshes itself" in staff.get(reply.headers["location"]).text
     number = dealt_by(class_of_three, staff, reply)
     apart = content(class_of_three, number)["issued"]
     monkeypatch.setattr(assigning, "_ALONE", 1000)
@@ -282,20 +282,20 @@ def test_what_the_form_says_is_what_is_published(class_of_three, staff):
     ("change", "told"),
     [
         ({"closes": "2026-11-23T07:00"}, "closes before it opens"),
-        ({"closes": "tomorrow"}, "no day and time"),
-        ({"closes": "0001-01-01T00:00"}, "no day and time"),
+        ({"closes": "tomorrow"}, "not a date and time"),
+        ({"closes": "0001-01-01T00:00"}, "not a date and time"),
         ({"closes": ""}, "never closes"),
         ({"tries": "0"}, "from 1 on"),
-        ({"tries": "x"}, "no number"),
+        ({"tries": "x"}, "not a number"),
         ({"late_percent": "0"}, "above 0"),
         ({"late_percent": "101"}, "above 0"),
         ({"late_percent": "nan"}, "above 0"),
-        ({"late_until": "2026-11-23T11:00"}, "before it closes"),
-        ({"late_until": ""}, "say until when"),
-        ({"feedback": "date"}, "which day"),
-        ({"feedback": "sometimes"}, "none of the choices"),
-        ({"sittings": "sometimes"}, "none of the choices"),
-        ({"answers": "last_try", "tries": ""}, "no last try"),
+        ({"late_until": "2026-11-23T11:00"}, "before the assignment closes"),
+        ({"late_until": ""}, "state a date"),
+        ({"feedback": "date"}, "the date is missing"),
+        ({"feedback": "sometimes"}, "not one of the choices"),
+        ({"sittings": "sometimes"}, "not one of the choices"),
+        ({"answers": "last_try", "tries": ""}, "no last attempt"),
     ],
 )
 def test_a_publication_that_makes_no_sense_is_refused_and_says_why(

@@ -76,7 +76,7 @@ def test_the_card_shows_what_a_person_needs(desk):
         "1.1 ·",
         "1.5 × the accepted margin",
         "Right answer:",
-        "What the student is told now",
+        "The student’s feedback now",
         ">Di<",
     ):
         assert wanted in text
@@ -138,7 +138,7 @@ def test_undo_is_a_decision_that_brings_the_card_back(desk):
     with desk.site.store.reading() as connection:
         kinds = [one.kind for one in read_decisions(connection, desk.number).on("Ada", EXERCISE, "rA")]
     assert kinds == ["accepted", "withdrawn"]
-    assert told(press(desk, TEACHER, page, "undo")) == "There is nothing of yours to undo."
+    assert told(press(desk, TEACHER, page, "undo")) == "You have nothing to undo."
 
 
 def test_nobody_undoes_what_somebody_else_decided(desk):
@@ -215,7 +215,7 @@ def test_a_row_is_not_placed_over_an_answer_that_is_marked(desk):
     name = field(desk.page(TEACHER, "/queue", why="rejected"), "row")
     place = {"row": name, "do": "place", "from": "queue", "student": "Ada", "question": f"{EXERCISE}/rA"}
     reply = desk.browser(TEACHER).fill(f"/desk/{desk.number}/rejected", place)
-    assert "has an answer to question 1.1 already" in reply.text
+    assert "already has a marked answer to question 1.1" in reply.text
     assert marks(desk)["Ada"].answer == "trop court"
 
 

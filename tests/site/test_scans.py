@@ -74,7 +74,7 @@ def test_what_is_sent_is_read_typed_and_marked(desk):
     right = desk.at_margin("rA", 0)
     reply = send(desk, ("ada.png", picture(desk, "Ada", rA=right, theta4="~104.6")))
     assert "Read. New pages: 1." in reply.text
-    assert "could not be read for sure: 1" in reply.text
+    assert "could not be read with certainty: 1" in reply.text
     card = desk.page(TEACHER, "/scans/queue")
     assert 'value="104.6"' in card.text
     assert "Enter confirms" in card.text
@@ -82,7 +82,7 @@ def test_what_is_sent_is_read_typed_and_marked(desk):
     done = fill(
         desk, "/queue", card=field(card, "card"), do="confirm", answer=desk.at_margin("theta4", 0) + "°"
     )
-    assert "handed over to be marked" in told(done)
+    assert "sent to be marked" in told(done)
     found = marks(desk, "Ada")
     assert found["rA"] == (right, 1)
     assert found["theta4"][1] == 1
@@ -90,7 +90,7 @@ def test_what_is_sent_is_read_typed_and_marked(desk):
 
 def test_an_answer_that_is_typed_anew_takes_the_place_of_the_one_before(desk):
     send(desk, ("a.png", picture(desk, "Ada", rA="1")))
-    assert "handed over" in told(fill(desk, "", do="hand over"))
+    assert "sent to be marked" in told(fill(desk, "", do="hand over"))
     assert marks(desk, "Ada")["rA"] == ("1", 0)
     send(desk, ("b.png", picture(desk, "Ada", rA=desk.at_margin("rA", 0))))
     card = desk.page(TEACHER, "/scans/queue")
@@ -141,7 +141,7 @@ def test_two_who_look_at_one_card_decide_once(desk):
     send(desk, ("a.png", picture(desk, "Ada", rA="~12", theta4="~1")))
     card = field(desk.page(TEACHER, "/scans/queue"), "card")
     fill(desk, "/queue", card=card, do="confirm", answer="12")
-    assert "meanwhile" in told(fill(desk, "/queue", OTHER, card=card, do="confirm", answer="13"))
+    assert "already dealt with" in told(fill(desk, "/queue", OTHER, card=card, do="confirm", answer="13"))
 
 
 @pytest.mark.parametrize("end", ["picture?page={}", "crop?page={}&field=0"])
