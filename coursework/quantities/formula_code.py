@@ -132,8 +132,9 @@ class Formula:
 
         ``known`` holds the values of trees that several formulas of the same quantities share, by identity.
         """
+        own = {name: values[name] for name in self.names}  # all, also where an error leaves one of them out
         with np.errstate(all="ignore"):
-            return self._value(self.tree, values, {} if known is None else known)
+            return self._value(self.tree, own, {} if known is None else known)
 
     def _value(self, node: ast.expr, values: Mapping[str, Any], known: dict[int, Any]) -> Any:
         """Return the value of a tree: most are evaluated once, which compiling them would not be worth."""
@@ -158,13 +159,13 @@ class Formula:
         return known[id(node)]
 
     def _meaning(self, name: str, values: Mapping[str, Any]) -> Any:
-        if name in self.names:
+        if name in values:
             return values[name]
         return self.space[name] if name in self.space else getattr(builtins, name)
 
     def _compiled(self, node: ast.expr, values: Mapping[str, Any]) -> Any:
         code = compile(ast.fix_missing_locations(ast.Expression(node)), "<formula>", "eval")
-        return eval(code, {**self.space, **{n: values[n] for n in self.names}})  # of the course's own code
+        return eval(code, {**self.space, **values})  # of the course's own code
 
 
 def _has_starred(arguments: Sequence[ast.expr]) -> bool:

@@ -129,3 +129,16 @@ def test_no_two_errors_of_a_formula_are_the_same_code(name):
     for quantity in graph.quantities:
         codes = [ast.dump(error.formula.tree) for error in formula_errors(graph.node(quantity).function)]
         assert len(set(codes)) == len(codes)
+
+
+def test_an_error_gives_a_value_only_where_all_quantities_of_the_formula_are_met():
+    """Also one that leaves a quantity out: who lacks it has not used the formula."""
+
+    def total(near, far):
+        return near + far
+
+    (left_out, *_) = (e for e in formula_errors(total) if e.kind == "term")
+    assert {left_out.formula({"near": 1.0, "far": 2.0})} <= {1.0, 2.0}
+    for met in ({"near": 1.0}, {"far": 2.0}):
+        with pytest.raises(KeyError):
+            left_out.formula(met)
