@@ -19,11 +19,14 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from marking import Mix
+from marking import write as write_answers
 from timing import print_table
 
 EXERCISES = ("slider_crank", "four_bar_motion", "quick_return")
 _RUN = "import sys; from coursework.cli import main; sys.exit(main())"
 _LOOK = 0.05  #: seconds between two looks at the memory
+_ANSWERS = 12  #: of a student to one exercise, about
 
 
 class Cost(NamedTuple):
@@ -91,8 +94,36 @@ def export(platform: str, students: int, folder: Path) -> Cost:
     )
 
 
+def paper(students: int, folder: Path, *more: str) -> Cost:
+    """Return the cost of a paper of the exercises for each student, as PDF, with its solutions."""
+    tables = "".join(f'[[exercises]]\nname = "{name}"\n\n' for name in EXERCISES)
+    assignment, roster = folder.with_suffix(".toml"), folder.with_suffix(".csv")
+    assignment.write_text(f'title = "Scale"\nsecret = "{"0123456789abcdef" * 2}"\n\n{tables}', "utf-8")
+    roster.write_text("\n".join(["student", *(f"s{number}" for number in range(students))]), "utf-8")
+    plain = ("build", str(assignment), "--roster", str(roster), "--formats", "pdf", "--lang", "fr")
+    return cost_of(*plain, *more, "--out", str(folder))
+
+
+def booklet(students: int, folder: Path) -> Cost:
+    """Return the cost of the same papers with booklets."""
+    return paper(students, folder, "--with", "booklet")
+
+
+def feedback(formats: str, students: int, folder: Path) -> Cost:
+    """Return the cost of marking a sheet of each student, with feedback in these formats; none marks alone."""
+    write_answers(folder, Mix(_ANSWERS * students, EXERCISES, students, 0.05, 0.3))
+    form = ("--formats", formats) if formats else ("--no-feedback",)
+    files = (str(folder / "answers.csv"), "--issued", str(folder / "issued.json"))
+    return cost_of("grade", *files, *form, "--out", str(folder / "marks"))
+
+
 JOBS: dict[str, Callable[[int, Path], Cost]] = {
-    platform: partial(export, platform) for platform in ("moodle", "stack", "canvas", "qti21", "qti3")
+    **{platform: partial(export, platform) for platform in ("moodle", "stack", "canvas", "qti21", "qti3")},
+    "paper": paper,
+    "booklet": booklet,
+    "marking": partial(feedback, ""),
+    "feedback html": partial(feedback, "html"),
+    "feedback pdf": partial(feedback, "pdf"),
 }
 
 
