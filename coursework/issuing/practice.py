@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from copy import copy
 from typing import Any
@@ -10,13 +10,12 @@ from typing import Any
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
 from coursework.course.lessons import taught_by
+from coursework.course.variant import Variant
 from coursework.errors import BadCourse, CourseworkError, Starved, nearest
 from coursework.issuing.issued import Issued
 from coursework.issuing.issuing import distinct_variants
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Lesson, Practice, Question
-
-_TRIES = 40  #: variants to try for one that was not issued
 
 Given = Mapping[str, Any]
 
@@ -91,22 +90,16 @@ def unissued_seed(exercise: CourseExercise, records: Mapping[int, Mapping[str, A
     """Return the first seed worth issuing, from 1 on, whose variant is not in the records; None if none is
     found."""
     given = [record.get("given") for record in records.values()]
-    lang, seed = exercise.languages[0], _first_free(1, records)
-    try:
-        for _ in range(_TRIES):
-            (variant,) = distinct_variants(exercise, seed, 1, lang)
-            if variant.seed not in records and variant.record["given"] not in given:
-                return int(variant.seed)
-            seed = _first_free(variant.seed + 1, records)
-    except Starved:
-        pass
+    lang = exercise.languages[0]
+
+    def is_new(variant: Variant) -> bool:
+        return variant.seed not in records and variant.record["given"] not in given
+
+    for first in (1, max(records, default=0) + 1):
+        with suppress(Starved):
+            # What was issued is passed over before it is tried, which takes far longer.
+            return int(distinct_variants(exercise, first, 1, lang, fits=is_new)[0].seed)
     return None
-
-
-def _first_free(seed: int, used: Collection[int]) -> int:
-    while seed in used:
-        seed += 1
-    return seed
 
 
 _SETTINGS = ("practice",)

@@ -25,7 +25,6 @@ from coursework.gradebook.feedback_sheets import FeedbackOptions, feedback_paper
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.submissions import read_file
-from coursework.issuing import practice as practice_module
 from coursework.issuing.issued import Issued
 from coursework.issuing.issuing import distinct_variants
 from coursework.issuing.practice import PracticeOf, unissued_seed
@@ -209,10 +208,7 @@ def test_the_variant_to_try_is_worth_issuing_and_was_issued_to_nobody(name):
     assert unissued_seed(exercise, issued) == found
 
 
-def test_where_every_variant_is_issued_one_that_is_not_the_students_is_offered(
-    tmp_path, small_course, monkeypatch
-):
-    monkeypatch.setattr(practice_module, "_TRIES", 2)
+def test_where_every_variant_is_issued_one_that_is_not_the_students_is_offered(tmp_path, small_course):
     course = coursework.open_course(small_course)
     two = distinct_variants(course["crank_pin"], 1, 3, "en")
     items = [{"student": who, "record": v.record} for who, v in zip(("Ada", "Bo"), two[:2], strict=True)]
