@@ -127,16 +127,22 @@ _NEAR, _NEAR_SYMBOL = 0.6, 0.5
 _SYMBOL = 3  #: letters of a symbol at most
 
 
-def _unaccented(name: str) -> str:
+def cut_short(text: str, most: int) -> str:
+    """Return a text short enough for a message."""
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def bare_letters(text: str) -> str:
+    """Return a text without case and accents."""
     import unicodedata
 
-    letters = unicodedata.normalize("NFKD", name.casefold())
+    letters = unicodedata.normalize("NFKD", text).casefold()
     return "".join(letter for letter in letters if not unicodedata.combining(letter))
 
 
 def _in_order(name: str) -> str:
     """Return the words of a name in the order of the alphabet, without case and accents."""
-    return " ".join(sorted(_unaccented(name).split()))
+    return " ".join(sorted(bare_letters(name).split()))
 
 
 def _words_are_near(sought: str, name: str) -> bool:

@@ -9,8 +9,8 @@ from typing import Any
 from sqlalchemy import Connection, Select, insert, select, update
 
 from coursework.database.tables import account, person
+from coursework.errors import bare_letters
 from coursework.issuing.roster import Student
-from coursework.markup.markdown import sort_key
 
 
 def people_query() -> Select[Any]:
@@ -22,7 +22,7 @@ def people_query() -> Select[Any]:
 def people(connection: Connection) -> list[Any]:
     """Return all people, sorted by name without regard to accents: Bäcker before Blanc."""
     rows = connection.execute(people_query().order_by(person.c.id))
-    return sorted(rows, key=lambda row: (sort_key(row.name), row.name))
+    return sorted(rows, key=lambda row: (bare_letters(row.name), row.name))
 
 
 def person_by_id(connection: Connection, number: int) -> Any | None:

@@ -12,6 +12,7 @@ from typing import Any
 from coursework.errors import BadInput
 from coursework.gradebook.columns import VERDICTS
 from coursework.issuing.students import folded
+from coursework.language.numbers import typed_number
 from coursework.system.limits import check_size
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
@@ -25,11 +26,8 @@ _USUAL_MARK = 20  #: maximum of a mark if no assignment states one
 
 
 def _number(text: str) -> float:
-    """Return the points in a cell of a file that anybody may have edited; NaN if there are none."""
-    try:
-        return float(text.replace(",", ".") or 0)
-    except ValueError:
-        return math.nan
+    """Return the points in a cell of a file that anybody may have edited, 0 in an empty one; NaN if there are none."""
+    return typed_number(text or "0")
 
 
 _ROUNDING = 1e-4  #: of points, as both tables print them

@@ -13,6 +13,7 @@ from coursework.gradebook.changes import rows_of
 from coursework.gradebook.columns import LATE, VERDICTS
 from coursework.gradebook.scale import exact
 from coursework.issuing.identity import Ids, identifies
+from coursework.language.numbers import typed_number
 from coursework.system.links import check_inside
 
 SCORES = ("points", "mark", "percent")
@@ -30,11 +31,11 @@ class Scored(NamedTuple):
     def of(self, most: float | None) -> str:
         """Return the points scaled to another total, rounded half up to hundredths; unchanged if the total is
         the same or unknown."""
-        if most is None or not self.out_of or exact(_number(self.out_of)) == exact(most):
+        if most is None or not self.out_of or exact(typed_number(self.out_of)) == exact(most):
             return self.points
-        total = exact(_number(self.out_of))
+        total = exact(typed_number(self.out_of))
         hundredths = (
-            math.floor(exact(_number(self.points)) * exact(most) * 100 / total + Fraction(1, 2))
+            math.floor(exact(typed_number(self.points)) * exact(most) * 100 / total + Fraction(1, 2))
             if total
             else 0
         )
@@ -72,7 +73,7 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
             )
         points, out_of, cells = (row.get(c, "").replace(",", ".") for c in (score, "out_of", LATE))
         for column, text in ((score, points), ("out_of", out_of), (LATE, cells)):
-            if text and not math.isfinite(_number(text)):
+            if text and not math.isfinite(typed_number(text)):
                 raise BadInput(
                     "{file}, line {number}: {column} of {student} must be a number; found {found!r}",
                     file=path,
@@ -81,11 +82,11 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
                     student=row["student"],
                     found=text[:40],
                 )
-        if score == "points" and (late := _number(cells or "0")):
-            points = f"{float(exact(_number(points)) - exact(late)):.10g}"
+        if score == "points" and (late := typed_number(cells or "0")):
+            points = f"{float(exact(typed_number(points)) - exact(late)):.10g}"
         if not points and score != "points":
             points = "0"
-        if math.isnan(_number(points)):
+        if math.isnan(typed_number(points)):
             raise BadInput(
                 "{file}, line {number}: {column} of {student} must be a number; found {found!r}",
                 file=path,
@@ -98,10 +99,3 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
         total = {"points": out_of, "percent": "100"}.get(score, "")
         answered = any(row.get(verdict, "0") != "0" for verdict in VERDICTS if verdict != "missing")
         yield Scored(row["student"], ids, points, total, answered)
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan

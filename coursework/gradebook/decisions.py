@@ -21,6 +21,7 @@ from coursework.gradebook.placing import UnplacedError, name_hint, sheet_of_row
 from coursework.gradebook.rows import AnswerRow
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
+from coursework.language.numbers import typed_number
 from coursework.language.words import words
 from coursework.marking.mark import Mark
 from coursework.messages import Message, as_message
@@ -396,10 +397,7 @@ def points_of(text: str, location: str) -> float | None:
     """Return the points in a cell; None for an empty cell."""
     if not text:
         return None
-    try:
-        points = float(text.replace(",", "."))
-    except ValueError:
-        points = math.nan
+    points = typed_number(text)
     if not 0 <= points < math.inf:
         raise BadInput(
             "{place}: points are a number, 0 or more; found {found!r}", place=location, found=text[:40]

@@ -7,7 +7,6 @@ of the file.
 from __future__ import annotations
 
 import csv
-import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -24,6 +23,7 @@ from coursework.gradebook.rows import AnswerRow, Rejected, RowOrigin
 from coursework.issuing.identity import identifies
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
+from coursework.language.numbers import typed_number
 from coursework.marking.mark import Mark
 from coursework.messages import Message
 from coursework.system.tables import as_written, delimiter_of, open_csv
@@ -184,7 +184,7 @@ def _check_verdict(location: str, verdict: str) -> None:
 
 def _edited_mark(mark: Mark, line: _MarksLine) -> Mark:
     """Return the mark with the verdict, the points and the feedback of the file."""
-    if _number(line.out_of) != float(f"{mark.out_of:g}"):
+    if typed_number(line.out_of) != float(f"{mark.out_of:g}"):
         raise BadInput(
             "{place}: {part} is out of {out_of:g} points, as issued; found out of {found!r}",
             place=line.location,
@@ -194,7 +194,7 @@ def _edited_mark(mark: Mark, line: _MarksLine) -> Mark:
         )
     points = mark.points
     if line.points.replace(",", ".") != f"{points:g}":
-        points = _number(line.points)
+        points = typed_number(line.points)
         if not 0 <= points <= mark.out_of:
             raise BadInput(
                 "{place}: points of {part} are a number from 0 to {out_of:g}; found {found!r}",
@@ -207,13 +207,6 @@ def _edited_mark(mark: Mark, line: _MarksLine) -> Mark:
     if line.feedback is not None and line.feedback != " ".join(mark.feedback.split()):
         says, feedback = _verbatim(line.feedback), line.feedback
     return mark._replace(verdict=line.verdict, points=points, says=says, feedback=feedback)
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text.replace(",", "."))
-    except ValueError:
-        return math.nan
 
 
 def _verbatim(text: str) -> str:

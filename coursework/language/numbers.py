@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 from coursework.language.words import words
@@ -14,6 +15,14 @@ def localise(number: str, lang: str) -> str:
     """Return a number written with a point (``-1234.5``) as the language prints it."""
     style = words(lang)["numbers"]
     return number.replace("-", MINUS).replace(".", style["decimal"])
+
+
+def typed_number(text: str) -> float:
+    """Return a number that somebody typed, with a decimal point or comma; NaN if it is none."""
+    try:
+        return float(text.replace(",", "."))
+    except ValueError:
+        return math.nan
 
 
 def plain(value: float) -> str:

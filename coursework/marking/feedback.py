@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
+from coursework.errors import cut_short
 from coursework.language.numbers import localise, significant, unit_text, with_unit
 from coursework.language.words import listed, quoted, words
 from coursework.markup.markdown import plain_line
@@ -63,7 +64,7 @@ def part_name(variant: Variant, part: Part) -> str:
 
 def echo(text: str, lang: str) -> str:
     """Return the text that was read, shortened, as the language writes numbers; safe inside Markdown."""
-    shortened_text = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
+    shortened_text = cut_short(text, ECHO)
     if "=" in text:
         return "`" + "".join(c for c in shortened_text if c.isprintable() and c not in "`$") + "`"
     return _harmless(localised(shortened_text, lang))
@@ -134,8 +135,7 @@ def _to_eliminate(variant: Variant, part: Part, run: str) -> str:
 
 def shortened(answer: str) -> str:
     """Return an answer on one line, its end left out where it is long."""
-    line = " ".join(str(answer).split())
-    return line if len(line) <= QUOTED else line[: QUOTED - 1] + "…"
+    return cut_short(" ".join(str(answer).split()), QUOTED)
 
 
 _OFFERED = 200  #: characters of all that is offered

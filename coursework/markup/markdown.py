@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 import textwrap
-import unicodedata
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 from html import escape, unescape
@@ -20,7 +19,7 @@ from markdown_it.renderer import RendererHTML
 from markdown_it.tree import SyntaxTreeNode
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-from coursework.errors import BadStatement
+from coursework.errors import BadStatement, bare_letters
 from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.markup.line import to_line
@@ -225,20 +224,14 @@ INDEX = "#index"
 
 def _typst_link(href: str, title: str, inside: str) -> str:
     if href == INDEX:
-        return f"#term({typst_string(title)}, {typst_string(sort_key(title))})[{inside}];"
+        return f"#term({typst_string(title)}, {typst_string(bare_letters(title))})[{inside}];"
     position = f"label({typst_string(unquote(href[1:]))})" if href.startswith("#") else typst_string(href)
     return f"#link({position})[{inside}];"
 
 
-def sort_key(entry: str) -> str:
-    """Return the sort key of an index entry: its letters without accents or capitals."""
-    plain = unicodedata.normalize("NFD", entry.casefold())
-    return "".join(char for char in plain if not unicodedata.combining(char))
-
-
 def anchor(entry: str) -> str:
     """Return the HTML id of a term: its sort key in letters, digits and hyphens."""
-    return "term-" + re.sub(r"[^a-z0-9]+", "-", sort_key(entry)).strip("-")
+    return "term-" + re.sub(r"[^a-z0-9]+", "-", bare_letters(entry)).strip("-")
 
 
 def _typst_table(node: SyntaxTreeNode, lang: str) -> str:

@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from functools import lru_cache
 from typing import NamedTuple
 
+from coursework.errors import bare_letters
 from coursework.language.words import languages, words
 from coursework.parsing.reading import Stop
 from coursework.parsing.spelling import tidy
@@ -19,9 +20,8 @@ FRAME = "frame"  #: what the frame is called before its number is known
 
 def folded(text: str) -> str:
     """Words without case, accents, hyphens and the s of a plural."""
-    bare = unicodedata.normalize("NFKD", text.casefold())
-    bare = "".join(c for c in bare if not unicodedata.combining(c))
-    return " ".join(w[:-1] if len(w) > 3 and w.endswith("s") else w for w in re.split(r"[\s'_-]+", bare) if w)
+    words = filter(None, re.split(r"[\s'_-]+", bare_letters(text)))
+    return " ".join(w[:-1] if len(w) > 3 and w.endswith("s") else w for w in words)
 
 
 @lru_cache(maxsize=1)

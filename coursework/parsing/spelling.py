@@ -6,12 +6,14 @@ import re
 import unicodedata
 from html import unescape
 
+from coursework.errors import cut_short
+
 MAX_FOUND = 60  #: characters of a text that a message quotes
 
 
 def shorten(text: str) -> str:
     """Return a piece of text short enough for a message."""
-    return text if len(text) <= MAX_FOUND else text[: MAX_FOUND - 1] + "…"
+    return cut_short(text, MAX_FOUND)
 
 
 _ALIKE = {

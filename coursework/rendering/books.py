@@ -11,10 +11,11 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup
 
+from coursework.errors import bare_letters
 from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.markup.links import TERM, TextLink, relinked
-from coursework.markup.markdown import INDEX, anchor, sort_key
+from coursework.markup.markdown import INDEX, anchor
 from coursework.rendering import html, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
@@ -123,7 +124,7 @@ def pages(
 
 
 def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
-    entries = sorted(book.terms.items(), key=lambda item: sort_key(item[0]))
+    entries = sorted(book.terms.items(), key=lambda item: bare_letters(item[0]))
     listed = [
         (
             typeset(entry, book.lang),

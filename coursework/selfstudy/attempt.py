@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from coursework.course.variant import Variant
+from coursework.errors import cut_short
 from coursework.language.numbers import unit_text
 from coursework.language.words import words
 from coursework.marking.answers import read
@@ -271,7 +272,7 @@ def judged_out_of(variant: Variant, marking: SheetMarks) -> float:
 def quoted(text: Any) -> str:
     """Return an answer, shortened, without characters that Markdown takes for markup."""
     wording = "".join(c for c in str(text) if c.isprintable() and c not in "$`*_\\<>[]#|{}")
-    return wording if len(wording) <= 60 else f"{wording[:59]}…"
+    return cut_short(wording, 60)
 
 
 def read_back(variant: Variant, part: Part, text: str) -> tuple[bool, tuple[str, ...]]:

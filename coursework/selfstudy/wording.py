@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Collection, Mapping
 from functools import cache
 from numbers import Integral
 from typing import Any
 
-from coursework.errors import BadInput, UnknownName, closest
+from coursework.errors import BadInput, UnknownName, bare_letters, closest
 from coursework.language.words import languages, words
 from coursework.parsing.numbers import read_number
 
@@ -30,8 +29,8 @@ def unwrapped(value: Any) -> Any:
 
 def folded(text: Any) -> str:
     """Return a text without case, accents and closing punctuation."""
-    bare = unicodedata.normalize("NFKD", str(text).translate(_DASHES)).casefold().replace("’", "'")
-    return " ".join("".join(c for c in bare if not unicodedata.combining(c)).strip(" .!,;").split())
+    bare = bare_letters(str(text).translate(_DASHES)).replace("’", "'")
+    return " ".join(bare.strip(" .!,;").split())
 
 
 @cache

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from coursework.course.course import Course
-from coursework.errors import WrongValue
+from coursework.errors import WrongValue, cut_short
 from coursework.figures.charts import bars, histogram
 from coursework.figures.plot import written as printed
 from coursework.figures.text import LabelText, joined, read
@@ -341,8 +341,7 @@ def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[Part
 
 def _short(name: str, most: int = 40) -> str:
     """Shorten a name from a file to one line of a chart."""
-    one_line = " ".join(name.split())
-    return one_line if len(one_line) <= most else one_line[: most - 1] + "…"
+    return cut_short(" ".join(name.split()), most)
 
 
 def _as_it_is(name: str) -> str:

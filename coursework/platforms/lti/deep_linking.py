@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import secrets
 import time
-import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import jwt
 
+from coursework.errors import bare_letters
 from coursework.platforms.lti.keys import SigningKey
 from coursework.platforms.lti.launch import Launch
 from coursework.platforms.lti.link_settings import AFTER, BEST, LAST, NEVER, LinkSettings, tries_of
@@ -45,25 +45,22 @@ class OfferGroup:
 def matching_offers(offer_groups: Sequence[OfferGroup], sought: str) -> list[OfferGroup]:
     """Return the groups of offers, each reduced to the offers whose title, in any language, or name contains
     every searched word."""
-    pieces = _folded(sought).split()
+    pieces = bare_letters(sought.replace("_", " ")).split()
     matching = (
         (
             s,
             tuple(
                 o
                 for o in s.offers
-                if all(piece in _folded(f"{o.title} {o.words} {s.title}") for piece in pieces)
+                if all(
+                    piece in bare_letters(f"{o.title} {o.words} {s.title}".replace("_", " "))
+                    for piece in pieces
+                )
             ),
         )
         for s in offer_groups
     )
     return [replace(group, offers=offers) for group, offers in matching if offers]
-
-
-def _folded(text: str) -> str:
-    """Return a text without capitals and accents."""
-    apart = unicodedata.normalize("NFKD", text.casefold().replace("_", " "))
-    return "".join(char for char in apart if not unicodedata.combining(char))
 
 
 def content_items(

@@ -13,11 +13,12 @@ from coursework.database.publication import CHARGE, Publication
 from coursework.database.tables import identity
 from coursework.language.words import words
 from coursework.platforms.lti.storage import Waiting
+from coursework.rendering.views import points_number
 from coursework.site.desk import class_table
 from coursework.site.frame.settings import Site
 from coursework.site.frame.times import moment_text
 from coursework.site.lti.launch_request import LTIRequest
-from coursework.site.lti.scores import assignment_state, marked_in, number_text
+from coursework.site.lti.scores import assignment_state, marked_in
 
 
 class LaunchClassRow(NamedTuple):
@@ -61,7 +62,7 @@ def class_rows(
             marked = marked_in(now, row.student)
             points = marked.given(state) if marked else points
         points_text = (
-            f"{number_text(points, request.lang)} / {number_text(row.out_of, request.lang)}"
+            f"{points_number(points, request.lang)} / {points_number(row.out_of, request.lang)}"
             if row.handed_in
             else ""
         )

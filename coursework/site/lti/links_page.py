@@ -8,8 +8,8 @@ from starlette.responses import Response
 
 from coursework.database.permissions import Permission
 from coursework.platforms.lti.storage import Storage
+from coursework.rendering.views import points_number
 from coursework.site.frame.requests import Request, Route
-from coursework.site.lti.scores import number_text
 
 
 def waiting(request: Request) -> Response:
@@ -21,7 +21,7 @@ def waiting(request: Request) -> Response:
         {
             "link": entry.launch.link_title or entry.launch.link,
             "name": entry.name,
-            "points": f"{number_text(entry.score.given, request.lang)} / {number_text(entry.score.maximum, request.lang)}",
+            "points": f"{points_number(entry.score.given, request.lang)} / {points_number(entry.score.maximum, request.lang)}",
             "failures": entry.failures,
             "why": entry.problem,
         }

@@ -29,11 +29,11 @@ from coursework.gradebook.book import Gradebook, Result, results
 from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
-from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.platforms.lti.launch import Launch
 from coursework.platforms.lti.storage import Score, Storage
 from coursework.rendering.feedback import verdict_word
+from coursework.rendering.views import points_number
 from coursework.site.desk.class_cache import class_now
 from coursework.site.frame.settings import Site
 from coursework.site.papers.assignment_state import AssignmentState
@@ -133,13 +133,9 @@ def _comment(marked: Marked, given: float, lang: str) -> str:
         for sheet in sorted(marked.sheets, key=lambda sheet: order[sheet.exercise])
         for k, line in enumerate(sheet.lines.values(), 1)
     ]
-    values = {"points": number_text(given, lang), "out_of": number_text(marked.result.out_of, lang)}
+    values = {"points": points_number(given, lang), "out_of": points_number(marked.result.out_of, lang)}
     comment = str(texts["comment"]).format(**values, number=marked.result.sitting, verdicts="; ".join(lines))
     return comment if len(comment) <= _COMMENT else comment[:_COMMENT].rpartition(";")[0] + "; …"
-
-
-def number_text(number: float, lang: str) -> str:
-    return localise(plain(round(number, 3)), lang)
 
 
 # ----------------------------------------------------------------- changed scores

@@ -13,7 +13,8 @@ from coursework.gradebook.feedback_form import FeedbackForm, shows_solutions
 from coursework.gradebook.feedback_sheets import FeedbackOptions, feedback_paper
 from coursework.gradebook.scale import mark_of
 from coursework.issuing.issued import Issued
-from coursework.language.numbers import localise, plain
+from coursework.language.numbers import localise
+from coursework.rendering.views import points_number
 from coursework.sheets.paper import FeedbackPaper
 from coursework.site.frame.requests import Request
 from coursework.site.frame.times import length_text
@@ -77,17 +78,13 @@ def _charged(
     if not share:
         return [messages["was_late"].format(late)]
     left = round(document.points * (1 - share), 9)
-    points, out_of = _number(left, request.lang), _number(document.out_of, request.lang)
+    points, out_of = points_number(left, request.lang), points_number(document.out_of, request.lang)
     notes = [messages["was_charged"].format(late, charged_text(share, request.lang), points, out_of)]
     if mark := mark_of(issued, left, document.out_of):
         notes.append(messages["charged_mark"].format(localise(mark, request.lang)))
     return notes
 
 
-def _number(number: float, lang: str) -> str:
-    return localise(plain(round(number, 3)), lang)
-
-
 def charged_text(share: float, lang: str) -> str:
     """Return a share as a number of percent, without the sign: ``10`` for 0.1."""
-    return _number(100 * share, lang)
+    return points_number(100 * share, lang)

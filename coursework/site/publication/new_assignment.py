@@ -21,6 +21,7 @@ from coursework.errors import BadInput
 from coursework.issuing.assignment import FILES, OPTIONS, Assignment, assignment_of
 from coursework.issuing.issued import Issued
 from coursework.issuing.roster import Student, read_roster
+from coursework.language.numbers import typed_number
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.forms import read_upload
 from coursework.site.frame.requests import Request, Upload
@@ -128,10 +129,7 @@ def _chosen(request: Request) -> tuple[str, dict[str, Any], str]:
 
 
 def _number(text: str, fault: str) -> float:
-    try:
-        number = float(text.replace(",", "."))
-    except ValueError:
-        number = math.nan
+    number = typed_number(text)
     if not math.isfinite(number):
         raise BadInput(fault)
     return number
