@@ -1,13 +1,16 @@
-"""Exports to platforms, booklets and feedback by the number of students: seconds, processor seconds and memory of whole commands.
+"""Whole commands by the number of students: seconds, processor seconds, memory, disk, and how fast the cost grows.
 
-python benchmarks/scale_exports.py [JOB,…] [STUDENTS,…] [FOLDER]
+python benchmarks/scale.py [JOB,…] [STUDENTS,…] [FOLDER]
 
 Each job is a function of the number of students and a folder; JOBS names them. Three exercises; a command is started anew for
-each measurement. Memory is that of the largest process, and of all processes of the command at one moment.
+each measurement. Memory is that of the largest process, and of all processes of the command at one moment. The exponent is the
+slope of the processor seconds from one number of students to the next, on logarithmic scales: 1 is proportional, 2 quadratic.
+The pages of the site are measured by ``scale_site.py``, a class that comes at one moment by ``site_rush.py``.
 """
 
 from __future__ import annotations
 
+import math
 import resource
 import shutil
 import subprocess
@@ -94,19 +97,19 @@ def export(platform: str, students: int, folder: Path) -> Cost:
     )
 
 
-def paper(students: int, folder: Path, *more: str) -> Cost:
-    """Return the cost of a paper of the exercises for each student, as PDF, with its solutions."""
+def paper(formats: str, students: int, folder: Path, *more: str) -> Cost:
+    """Return the cost of a paper of the exercises for each student, with its solutions."""
     tables = "".join(f'[[exercises]]\nname = "{name}"\n\n' for name in EXERCISES)
     assignment, roster = folder.with_suffix(".toml"), folder.with_suffix(".csv")
     assignment.write_text(f'title = "Scale"\nsecret = "{"0123456789abcdef" * 2}"\n\n{tables}', "utf-8")
     roster.write_text("\n".join(["student", *(f"s{number}" for number in range(students))]), "utf-8")
-    plain = ("build", str(assignment), "--roster", str(roster), "--formats", "pdf", "--lang", "fr")
+    plain = ("build", str(assignment), "--roster", str(roster), "--formats", formats, "--lang", "fr")
     return cost_of(*plain, *more, "--out", str(folder))
 
 
 def booklet(students: int, folder: Path) -> Cost:
     """Return the cost of the same papers with booklets."""
-    return paper(students, folder, "--with", "booklet")
+    return paper("pdf", students, folder, "--with", "booklet")
 
 
 def feedback(formats: str, students: int, folder: Path) -> Cost:
@@ -120,7 +123,9 @@ def feedback(formats: str, students: int, folder: Path) -> Cost:
 
 JOBS: dict[str, Callable[[int, Path], Cost]] = {
     **{platform: partial(export, platform) for platform in ("moodle", "stack", "canvas", "qti21", "qti3")},
-    "paper": paper,
+    "notebooks": partial(paper, "ipynb"),
+    "pages": partial(paper, "html"),
+    "PDFs": partial(paper, "pdf"),
     "booklet": booklet,
     "marking": partial(feedback, ""),
     "feedback html": partial(feedback, "html"),
@@ -128,21 +133,40 @@ JOBS: dict[str, Callable[[int, Path], Cost]] = {
 }
 
 
-def main(
-    jobs: str = ",".join(JOBS), students: str = "30,100,300", folder: str = "build/scale_exports"
-) -> None:
+def main(jobs: str = ",".join(JOBS), students: str = "30,100,300", folder: str = "build/scale") -> None:
     """Print a table of the jobs."""
     rows = []
     for job in jobs.split(","):
+        before: tuple[int, float] | None = None
         for count in map(int, students.split(",")):
             home = Path(folder) / f"{job}{count}"
             shutil.rmtree(home, ignore_errors=True)
             home.parent.mkdir(parents=True, exist_ok=True)
             cost = JOBS[job](count, home)
+            disk = sum(path.stat().st_size for path in home.rglob("*") if path.is_file()) / 1e6
             shutil.rmtree(home, ignore_errors=True)
-            rows.append((job, str(count), *(f"{value:.1f}" for value in cost)))
+            slope = before and math.log(cost.processor / before[1]) / math.log(count / before[0])
+            rows.append(
+                (
+                    job,
+                    str(count),
+                    *(f"{value:.1f}" for value in (*cost, disk)),
+                    f"{slope:.2f}" if slope else "",
+                )
+            )
+            before = count, cost.processor
             print(*rows[-1], file=sys.stderr)
-    print_table(("job", "students", "s", "processor s", "largest process, MB", "all processes, MB"), rows)
+    heads = (
+        "job",
+        "students",
+        "s",
+        "processor s",
+        "largest process, MB",
+        "all processes, MB",
+        "on disk, MB",
+        "exponent",
+    )
+    print_table(heads, rows)
 
 
 if __name__ == "__main__":
