@@ -44,8 +44,8 @@ from coursework.issuing.issued import issued_content
 from coursework.issuing.roster import Student
 from coursework.issuing.variant_assignment import assign_variants
 from coursework.site.application import application
-from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.settings import Entrance, Site
+from coursework.system.headers import cookie_name
 
 ASKED = Assignment("week 1", (AskedExercise("slotted_mechanism", ("rA", "theta4")), AskedExercise("grashof")))
 STUDENTS, ASSIGNMENTS = 5000, 20

@@ -51,8 +51,8 @@ from coursework.issuing.issued import issued_content
 from coursework.issuing.roster import Student as Enrolled
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import assign_variants
-from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.pool import PracticePool
+from coursework.system.headers import cookie_name
 
 EXERCISES = ("slotted_mechanism", "four_bar_positions", "slider_extras", "quick_return", "ball_reducer")
 READY = 40  #: variants of each that are found before the class comes

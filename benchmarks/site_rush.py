@@ -42,8 +42,8 @@ from coursework.issuing.issued import issued_content
 from coursework.issuing.roster import Student as Enrolled
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import assign_variants
-from coursework.site.frame.cookies import cookie_name
 from coursework.site.papers.submission import AS_SAVED
+from coursework.system.headers import cookie_name
 
 WITHIN, BEFORE = 20.0, 6.0  #: seconds in which the first paper is opened; before closing, when all hand in
 MARKING = 180  #: seconds that marking may take at most

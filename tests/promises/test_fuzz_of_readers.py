@@ -365,7 +365,7 @@ def overlapping(count):
     [
         (lambda: bomb(3 << 20), "unpacks to more"),
         (lambda: bomb(1 << 20, 9), "unpacks to more"),
-        (lambda: overlapping(51), "holds 51 files"),
+        (lambda: overlapping(51), "contains 51 files"),
         (lambda: overlapping(40), ""),
     ],
     ids=["one", "several", "names", "overlapping"],
