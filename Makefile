@@ -48,9 +48,10 @@ test-all: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every test, sweeps at f
 # Each commit names one of sixteen shares by its own digits.
 SHARE ?= $(shell printf '%d/16' "$$((0x$$(git rev-parse --short=7 HEAD) % 16))")
 
-# What test has, all with other programs, an eighth of the sweeps over exercises and a sixteenth of their long ends.
+# What test has, all with other programs, an eighth of the sweeps over exercises and a sixteenth of their long ends. Tests
+# with other programs wait for these: there is one worker more than processors.
 test-share: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every promise, and a share of the sweeps that changes with each commit
-	$(BIN)/$(PYTEST) --share $(SHARE)
+	$(BIN)/$(subst auto,$$(($$(getconf _NPROCESSORS_ONLN) + 1)),$(PYTEST)) --share $(SHARE)
 
 # CLIENTS names what no registry has: make test-clients CLIENTS="--moodle ../moodle --qti-sdk ../qti-sdk"
 test-clients: $(VENV)/ready-test $(VENV)/ready-e2e  ## Exports in the real players and platforms that can be set up here
