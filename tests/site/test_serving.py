@@ -230,7 +230,7 @@ def test_a_port_that_is_taken_is_told_with_what_to_do(capsys, tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         said = refusal(capsys, "--port", str(port), "--db", str(tmp_path / "x.db"))
-    assert f"port {port} of 127.0.0.1 is taken" in said
+    assert f"port {port} of 127.0.0.1 is in use" in said
     assert f"--port {port + 1}" in said
 
 

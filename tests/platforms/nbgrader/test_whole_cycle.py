@@ -182,7 +182,7 @@ def test_a_notebook_that_is_none_stops_nobody_else_and_is_told(classroom):
         ("hal", "no exercise 'grashof' was issued"),
         ("ivy", "the answers cell must contain one dict and nothing else"),
         ("cleo", "the cell coursework-slotted_mechanism-rA was changed"),
-        ("eve", "the cell coursework-slotted_mechanism-rA was gone"),
+        ("eve", "the cell coursework-slotted_mechanism-rA was missing"),
         ("fay", "a second cell coursework-slotted_mechanism-rA counts as the student's own"),
         ("dan", "a cell that was not in the released notebook counts as the student's own"),
     ],
